@@ -1,0 +1,114 @@
+//! `#[stage]` on an `impl`: ports and the `Stage` implementation from the typed `run` function.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+use syn::{FnArg, GenericArgument, ImplItem, ImplItemFn, ItemImpl, Pat, PathArguments, ReturnType, Type};
+
+/// One artifact argument of `run`.
+struct Port {
+    name: String,
+    ty: Type,
+    original: bool,
+}
+
+pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
+    let ty = item.self_ty.clone();
+    let missing = syn::Error::new_spanned(
+        &ty,
+        "a stage needs `fn run(&self, ..., cx: &Context) -> Result<..., StageError>`",
+    );
+    let run = item
+        .items
+        .iter_mut()
+        .find_map(|i| match i {
+            ImplItem::Fn(f) if f.sig.ident == "run" => Some(f),
+            _ => None,
+        })
+        .ok_or(missing)?;
+    let ports = ports(run)?;
+    let out = output(run)?;
+    let in_ports = ports.iter().map(|Port { name, ty, original }| {
+        quote! {{
+            let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
+            ::toile_core::InPort { name: #name, kind, arity, optional, original: #original }
+        }}
+    });
+    let takes = ports.iter().enumerate().map(|(i, Port { name, ty, .. })| {
+        quote! {
+            <#ty as ::toile_core::Input>::take(inputs.0.get(#i).and_then(::std::option::Option::as_ref))
+                .ok_or_else(|| ::toile_core::StageError::internal(concat!("port `", #name, "` got another type")))?
+        }
+    });
+    Ok(quote! {
+        #item
+
+        const _: () = {
+            use ::toile_core::typetag;
+
+            #[typetag::serde]
+            impl ::toile_core::Stage for #ty {
+                fn card(&self) -> ::toile_core::Card {
+                    <Self as ::toile_core::StageType>::type_card()
+                }
+                fn params(&self) -> ::std::string::String {
+                    ::toile_core::param::ron_text(self)
+                }
+                fn run_ports(
+                    &self,
+                    inputs: &::toile_core::Inputs,
+                    cx: &::toile_core::Context,
+                ) -> ::std::result::Result<::std::vec::Vec<::toile_core::PortValue>, ::toile_core::StageError> {
+                    let out = Self::run(self, #(#takes,)* cx)?;
+                    ::std::result::Result::Ok(::toile_core::Output::pack(out))
+                }
+            }
+
+            impl ::toile_core::StageType for #ty {
+                fn type_card() -> ::toile_core::Card {
+                    ::toile_core::Card {
+                        inputs: ::std::vec![#(#in_ports),*],
+                        outputs: <#out as ::toile_core::Output>::ports(),
+                        ..<Self as ::toile_core::StageMeta>::meta()
+                    }
+                }
+            }
+        };
+    })
+}
+
+/// The arguments between `&self` and the context; `#[original]` is read and taken off.
+fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
+    let count = run.sig.inputs.len();
+    let mut ports = Vec::new();
+    for (i, arg) in run.sig.inputs.iter_mut().enumerate() {
+        let FnArg::Typed(arg) = arg else { continue };
+        if i + 1 == count {
+            continue;
+        }
+        let before = arg.attrs.len();
+        arg.attrs.retain(|a| !a.path().is_ident("original"));
+        let Pat::Ident(name) = arg.pat.as_ref() else {
+            return Err(syn::Error::new_spanned(&arg.pat, "a port needs a name"));
+        };
+        ports.push(Port {
+            name: name.ident.to_string().trim_start_matches('_').to_owned(),
+            ty: (*arg.ty).clone(),
+            original: arg.attrs.len() != before,
+        });
+    }
+    Ok(ports)
+}
+
+/// The `T` of `-> Result<T, StageError>`.
+fn output(run: &ImplItemFn) -> syn::Result<Type> {
+    let wrong = || syn::Error::new_spanned(&run.sig, "`run` returns `Result<..., StageError>`");
+    let ReturnType::Type(_, ty) = &run.sig.output else { return Err(wrong()) };
+    let Type::Path(path) = ty.as_ref() else { return Err(wrong()) };
+    let PathArguments::AngleBracketed(args) = &path.path.segments.last().ok_or_else(wrong)?.arguments else {
+        return Err(wrong());
+    };
+    match args.args.first() {
+        Some(GenericArgument::Type(t)) => Ok(t.clone()),
+        _ => Err(wrong()),
+    }
+}

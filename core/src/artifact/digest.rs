@@ -1,0 +1,62 @@
+//! Content digests: the same value gives the same digest on every machine and run.
+
+/// A BLAKE3 digest of an artifact's content.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Digest(pub [u8; 32]);
+
+impl Digest {
+    /// The first eight bytes in hexadecimal, enough to tell artifacts apart in a text sheet.
+    pub fn short(&self) -> String {
+        self.0[..8].iter().map(|b| format!("{b:02x}")).collect()
+    }
+}
+
+/// Collects an artifact's content into a [`Digest`].
+///
+/// Floats are fed as their bits, so that two values are equal only where every bit is.
+#[derive(Debug, Default)]
+pub struct Digester(blake3::Hasher);
+
+impl Digester {
+    /// An empty digester.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Feeds raw bytes.
+    pub fn bytes(&mut self, bytes: &[u8]) -> &mut Self {
+        self.0.update(bytes);
+        self
+    }
+
+    /// Feeds a text with its length, so that neighbouring texts cannot run together.
+    pub fn text(&mut self, text: &str) -> &mut Self {
+        self.count(text.len()).bytes(text.as_bytes())
+    }
+
+    /// Feeds a count.
+    pub fn count(&mut self, count: usize) -> &mut Self {
+        self.bytes(&(count as u64).to_le_bytes())
+    }
+
+    /// Feeds floats by their bits.
+    pub fn floats(&mut self, floats: impl IntoIterator<Item = f64>) -> &mut Self {
+        for x in floats {
+            self.bytes(&x.to_bits().to_le_bytes());
+        }
+        self
+    }
+
+    /// Feeds vertex indices.
+    pub fn indices(&mut self, indices: impl IntoIterator<Item = u32>) -> &mut Self {
+        for i in indices {
+            self.bytes(&i.to_le_bytes());
+        }
+        self
+    }
+
+    /// The digest of all that was fed.
+    pub fn finish(&self) -> Digest {
+        Digest(*self.0.finalize().as_bytes())
+    }
+}

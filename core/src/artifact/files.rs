@@ -1,0 +1,72 @@
+//! Finished files, and the encoders that artifacts share.
+
+use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use image::{GrayImage, ImageFormat, RgbImage};
+use std::io::Cursor;
+
+/// One file to be written into the output folder.
+#[derive(Debug, Clone)]
+pub struct OutputFile {
+    /// Path below the output folder, with `/` between its parts.
+    pub path: String,
+    /// Content.
+    pub bytes: Vec<u8>,
+}
+
+/// The files that a writer stage asks the runner to write. Only the runner touches the disk.
+#[derive(Debug, Clone, Default)]
+pub struct OutputFiles(pub Vec<OutputFile>);
+
+impl OutputFiles {
+    /// One file.
+    pub fn one(path: &str, bytes: Vec<u8>) -> Self {
+        OutputFiles(vec![OutputFile { path: path.to_owned(), bytes }])
+    }
+}
+
+impl ArtifactType for OutputFiles {
+    const KIND: Kind = Kind("files");
+    const IN_SETS: bool = false;
+}
+
+impl Artifact for OutputFiles {
+    fn kind(&self) -> Kind {
+        Self::KIND
+    }
+
+    fn digest(&self, d: &mut Digester) {
+        d.text("files").count(self.0.len());
+        for file in &self.0 {
+            d.text(&file.path).count(file.bytes.len()).bytes(&file.bytes);
+        }
+    }
+
+    fn measures(&self) -> Measures {
+        let mut m = Measures::new();
+        m.count("files", self.0.len());
+        m
+    }
+
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
+        Vec::new()
+    }
+}
+
+/// A colour picture as PNG.
+pub(super) fn png_rgb(picture: &RgbImage) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    // Writing to memory fails only for pictures of zero size, which have no file form.
+    match picture.write_to(&mut bytes, ImageFormat::Png) {
+        Ok(()) => bytes.into_inner(),
+        Err(_) => Vec::new(),
+    }
+}
+
+/// A grey picture as PNG.
+pub(super) fn png_grey(picture: &GrayImage) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    match picture.write_to(&mut bytes, ImageFormat::Png) {
+        Ok(()) => bytes.into_inner(),
+        Err(_) => Vec::new(),
+    }
+}

@@ -1,0 +1,213 @@
+//! Panels in space, sewn or about to be.
+
+use super::body::{obj_text, vertex_normals};
+use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
+use std::ops::Range;
+use std::sync::Arc;
+
+/// One panel's share of the garment's vertices and triangles.
+#[derive(Debug, Clone)]
+pub struct GarmentPanel {
+    /// The panel's name; its photo has the same.
+    pub name: String,
+    /// Its vertices.
+    pub vertices: Range<usize>,
+    /// Its triangles.
+    pub triangles: Range<usize>,
+    /// Its boundary, counter-clockwise in the pattern, as garment vertices.
+    pub boundary: Vec<u32>,
+    /// Pixel coordinates in its photo, one for each of its vertices; empty without a photo.
+    pub photo_px: Vec<Point2>,
+    /// What it is made of.
+    pub fabric: Arc<Fabric>,
+}
+
+/// How far a seam has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SeamState {
+    /// Panels apart.
+    Open,
+    /// Every pair joined into one.
+    Closed,
+}
+
+/// A seam as vertex pairs.
+#[derive(Debug, Clone)]
+pub struct GarmentSeam {
+    /// Its name, `front.hem + back.hem`.
+    pub name: String,
+    /// Matched or gathered.
+    pub kind: SeamKind,
+    /// Vertices that end up in one place.
+    pub pairs: Vec<[u32; 2]>,
+    /// Open or closed.
+    pub state: SeamState,
+}
+
+/// What the last solver says of its result.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SolveStatus {
+    /// Solver steps so far, all solvers together.
+    pub steps: usize,
+    /// True where every stop rule of the last solver was met.
+    pub converged: bool,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
+    /// Greatest speed of a vertex at the end, m/s.
+    pub max_speed: f64,
+}
+
+/// Panels lifted into space with their seams.
+///
+/// Each panel keeps its own vertices, so that rest positions and photo pixels stay one per vertex;
+/// vertices that are joined share one position and one representative in `weld`.
+#[derive(Debug, Clone)]
+pub struct Garment {
+    /// Positions, metres.
+    pub positions: Vec<Point3>,
+    /// Velocities, m/s.
+    pub velocities: Vec<Vector3>,
+    /// Flat rest positions, metres, each in its panel's own plane; warp along y, weft along x.
+    pub rest: Vec<Point2>,
+    /// Triangles, counter-clockwise in `rest` and from outside the wearer.
+    pub triangles: Vec<[u32; 3]>,
+    /// Panels in order of their vertices.
+    pub panels: Vec<GarmentPanel>,
+    /// Seams.
+    pub seams: Vec<GarmentSeam>,
+    /// For every vertex the least vertex it is joined to (itself where it is not joined).
+    pub weld: Vec<u32>,
+    /// What the last solver says.
+    pub status: SolveStatus,
+}
+
+impl Garment {
+    /// The panel that owns a vertex.
+    pub fn panel_of(&self, vertex: usize) -> Option<&GarmentPanel> {
+        self.panels.iter().find(|p| p.vertices.contains(&vertex))
+    }
+
+    /// Greatest distance between the two vertices of any seam pair, metres.
+    pub fn seam_gap_max(&self) -> f64 {
+        self.seams
+            .iter()
+            .flat_map(|s| &s.pairs)
+            .map(|&[a, b]| (self.positions[a as usize] - self.positions[b as usize]).norm())
+            .fold(0.0, f64::max)
+    }
+
+    /// Unique mesh edges, each with its lower vertex first, ascending.
+    pub fn edges(&self) -> Vec<[u32; 2]> {
+        let corner = |t: &[u32; 3], k: usize| {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            [a.min(b), a.max(b)]
+        };
+        let mut edges: Vec<[u32; 2]> =
+            self.triangles.iter().flat_map(|t| (0..3).map(move |k| corner(t, k))).collect();
+        edges.sort_unstable();
+        edges.dedup();
+        edges
+    }
+
+    /// Absolute strain of every mesh edge, ascending.
+    pub fn edge_strains(&self) -> Vec<f64> {
+        let mut strains: Vec<f64> = self
+            .edges()
+            .into_iter()
+            .map(|[a, b]| {
+                let flat = (self.rest[a as usize] - self.rest[b as usize]).norm();
+                let now = (self.positions[a as usize] - self.positions[b as usize]).norm();
+                (now / flat - 1.0).abs()
+            })
+            .collect();
+        strains.sort_by(f64::total_cmp);
+        strains
+    }
+
+    /// Flat and present area of a panel, square metres.
+    pub fn panel_areas(&self, panel: &GarmentPanel) -> (f64, f64) {
+        self.triangles[panel.triangles.clone()].iter().fold((0.0, 0.0), |(flat, now), t| {
+            let [a, b, c] = t.map(|i| self.rest[i as usize]);
+            let [p, q, r] = t.map(|i| self.positions[i as usize]);
+            (flat + (b - a).perp(&(c - a)).abs() / 2.0, now + (q - p).cross(&(r - p)).norm() / 2.0)
+        })
+    }
+
+    /// Flat and present length of a panel's boundary, metres.
+    pub fn panel_boundaries(&self, panel: &GarmentPanel) -> (f64, f64) {
+        let n = panel.boundary.len();
+        (0..n).fold((0.0, 0.0), |(flat, now), k| {
+            let (a, b) = (panel.boundary[k] as usize, panel.boundary[(k + 1) % n] as usize);
+            (
+                flat + (self.rest[b] - self.rest[a]).norm(),
+                now + (self.positions[b] - self.positions[a]).norm(),
+            )
+        })
+    }
+
+    /// Area-weighted unit vertex normals, one across joined vertices.
+    pub fn vertex_normals(&self) -> Vec<Vector3> {
+        let welded: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|i| self.weld[i as usize])).collect();
+        let shared = vertex_normals(&self.positions, &welded);
+        self.weld.iter().map(|&w| shared[w as usize]).collect()
+    }
+}
+
+/// The value at a share `q` of an ascending list; 0 for an empty one.
+pub(crate) fn quantile(ascending: &[f64], q: f64) -> f64 {
+    let last = ascending.len().saturating_sub(1) as f64;
+    ascending.get((q * last).round() as usize).copied().unwrap_or(0.0)
+}
+
+impl ArtifactType for Garment {
+    const KIND: Kind = Kind("garment");
+    const IN_SETS: bool = false;
+}
+
+impl Artifact for Garment {
+    fn kind(&self) -> Kind {
+        Self::KIND
+    }
+
+    fn digest(&self, d: &mut Digester) {
+        d.text("garment").count(self.positions.len());
+        d.floats(self.positions.iter().flat_map(|p| [p.x, p.y, p.z]));
+        d.floats(self.velocities.iter().flat_map(|v| [v.x, v.y, v.z]));
+        d.floats(self.rest.iter().flat_map(|p| [p.x, p.y]));
+        d.count(self.triangles.len()).indices(self.triangles.iter().flatten().copied());
+        d.indices(self.weld.iter().copied());
+        for seam in &self.seams {
+            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied());
+        }
+    }
+
+    fn measures(&self) -> Measures {
+        let strains = self.edge_strains();
+        let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
+        for p in &self.positions {
+            (lo, hi) = (lo.inf(p), hi.sup(p));
+        }
+        let (n, area) =
+            (self.positions.len() as f64, self.panels.iter().map(|p| self.panel_areas(p).1).sum::<f64>());
+        let mut m = Measures::new();
+        m.push("vertices", n, "", 0.01 * n).push("triangles", self.triangles.len() as f64, "", 0.02 * n);
+        m.push("area", area * 1e4, "cm2", 20.0);
+        for (axis, (l, h)) in ["x", "y", "z"].into_iter().zip(lo.iter().zip(hi.iter())) {
+            m.push(&format!("min_{axis}"), l * 1e3, "mm", 5.0).push(
+                &format!("max_{axis}"),
+                h * 1e3,
+                "mm",
+                5.0,
+            );
+        }
+        m.push("seam_gap_max", self.seam_gap_max() * 1e3, "mm", 1.0);
+        m.push("strain_p50", quantile(&strains, 0.5) * 1e2, "%", 0.5);
+        m.push("strain_p99", quantile(&strains, 0.99) * 1e2, "%", 1.0);
+        m.count("open_seams", self.seams.iter().filter(|s| s.state == SeamState::Open).count());
+        m
+    }
+
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
+        vec![("obj", obj_text(&self.positions, &self.triangles))]
+    }
+}

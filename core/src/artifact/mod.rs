@@ -1,0 +1,75 @@
+//! What travels on the edges of a pipeline.
+//!
+//! Every artifact is immutable once made, carries SI units (metres, kilograms, seconds) and `f64`
+//! coordinates, and can be digested, measured and shown. One mechanism, the [`Artifact`] trait,
+//! serves the goldens, the report, `--until` and the cache.
+//!
+//! One file holds one kind.
+
+mod body;
+mod collider;
+mod digest;
+mod fabric;
+mod files;
+mod garment;
+mod geometry;
+mod mask;
+mod measures;
+mod model;
+mod outline;
+mod panel;
+mod photo;
+mod runlog;
+mod sewing;
+
+pub use body::{Body, Landmark};
+pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact};
+pub use digest::{Digest, Digester};
+pub use fabric::{Curve, Fabric};
+pub use files::{OutputFile, OutputFiles};
+pub use garment::{Garment, GarmentPanel, GarmentSeam, SeamState, SolveStatus};
+pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
+pub use mask::Mask;
+pub use measures::{Measure, Measures};
+pub use model::{Material, Mesh, Model, Texture};
+pub use outline::{CHORD_TOLERANCE, Edge, Gauge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
+pub use panel::{InnerChain, Panel, PanelEdge};
+pub use photo::Photo;
+pub use runlog::{RunLog, StageRecord};
+pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SeamKind, SewingPlan};
+
+use std::any::Any;
+use std::fmt::Debug;
+
+/// The name of an artifact's type, as it stands in diagnostics and cards: `"photo"`, `"mask"`, ...
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Kind(pub &'static str);
+
+impl std::fmt::Display for Kind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.0)
+    }
+}
+
+/// A value that one stage makes and others read.
+pub trait Artifact: Any + Send + Sync + Debug {
+    /// The artifact's kind.
+    fn kind(&self) -> Kind;
+    /// Feeds everything that makes this artifact what it is, in a fixed order.
+    fn digest(&self, digester: &mut Digester);
+    /// The figures that goldens and the report keep of it.
+    fn measures(&self) -> Measures;
+    /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.
+    ///
+    /// An empty list where the kind has no file form.
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)>;
+}
+
+/// A concrete artifact type with a kind known at compile time.
+pub trait ArtifactType: Artifact + Sized {
+    /// The kind of every value of this type.
+    const KIND: Kind;
+    /// True where pipelines hold a *named set* of this kind (`"front"`, `"back"`, ...), so that a
+    /// stage which takes one is mapped over the set.
+    const IN_SETS: bool;
+}

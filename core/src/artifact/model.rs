@@ -1,0 +1,106 @@
+//! A finished, textured model.
+
+use super::body::obj_text;
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
+use image::RgbImage;
+use std::sync::Arc;
+
+/// A colour picture that materials refer to.
+#[derive(Debug, Clone)]
+pub struct Texture {
+    /// Name, also its file's stem.
+    pub name: String,
+    /// Pixels, sRGB, top row first.
+    pub pixels: Arc<RgbImage>,
+}
+
+/// How a surface looks.
+#[derive(Debug, Clone)]
+pub struct Material {
+    /// Name.
+    pub name: String,
+    /// Colour, linear RGB, multiplied with the texture.
+    pub colour: [f32; 3],
+    /// Index into the model's textures.
+    pub texture: Option<usize>,
+    /// True where the texture is the final colour (*replace*), false where light acts on it
+    /// (*modulate*).
+    pub unlit: bool,
+    /// Roughness, 0 (mirror) to 1 (matt).
+    pub roughness: f32,
+    /// True where both faces are seen, as for cloth.
+    pub double_sided: bool,
+}
+
+/// A part of the model with one material.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    /// Name: the panel's, or `body`.
+    pub name: String,
+    /// Vertices, metres.
+    pub positions: Vec<Point3>,
+    /// Unit normals, one a vertex.
+    pub normals: Vec<Vector3>,
+    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom right.
+    /// Empty where the material has no texture.
+    pub uv: Vec<[f32; 2]>,
+    /// Triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Index into the model's materials.
+    pub material: usize,
+}
+
+/// Meshes with materials and textures; the garment first, the body (where it is shown) last.
+#[derive(Debug, Clone, Default)]
+pub struct Model {
+    /// Parts.
+    pub meshes: Vec<Mesh>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Textures.
+    pub textures: Vec<Texture>,
+}
+
+impl ArtifactType for Model {
+    const KIND: Kind = Kind("model");
+    const IN_SETS: bool = false;
+}
+
+impl Artifact for Model {
+    fn kind(&self) -> Kind {
+        Self::KIND
+    }
+
+    fn digest(&self, d: &mut Digester) {
+        d.text("model").count(self.meshes.len());
+        for mesh in &self.meshes {
+            d.text(&mesh.name).floats(mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]));
+            d.floats(mesh.uv.iter().flat_map(|uv| uv.map(f64::from)));
+            d.count(mesh.triangles.len()).indices(mesh.triangles.iter().flatten().copied());
+        }
+        for texture in &self.textures {
+            d.text(&texture.name).bytes(texture.pixels.as_raw());
+        }
+    }
+
+    fn measures(&self) -> Measures {
+        let mut m = Measures::new();
+        m.count("meshes", self.meshes.len()).count("textures", self.textures.len());
+        for t in &self.textures {
+            let sum: u64 = t.pixels.as_raw().iter().map(|&v| u64::from(v)).sum();
+            let mean = sum as f64 / t.pixels.as_raw().len().max(1) as f64;
+            m.push(&format!("{}.mean_level", t.name), mean, "grey levels", 1.0);
+        }
+        m
+    }
+
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
+        let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+        for mesh in &self.meshes {
+            let base = positions.len() as u32;
+            positions.extend_from_slice(&mesh.positions);
+            triangles.extend(mesh.triangles.iter().map(|t| t.map(|i| i + base)));
+        }
+        vec![("obj", obj_text(&positions, &triangles))]
+    }
+}

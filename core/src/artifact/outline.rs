@@ -1,0 +1,268 @@
+//! The closed curves that bound a piece of cloth.
+
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point2, polygon_area, polyline_length};
+
+/// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
+/// clockwise (y up).
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Loop {
+    /// Vertices, metres.
+    pub points: Vec<Point2>,
+    /// Indices into `points` of the corners, ascending.
+    pub corners: Vec<usize>,
+}
+
+/// What two edges that are sewn together agree upon, so that every mesher divides both alike.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gauge {
+    /// The length that fixes the number of divisions, metres: the longer of both edges.
+    pub length: f64,
+    /// The least radius of curvature on either edge, metres; infinite for straight edges.
+    pub min_radius: f64,
+}
+
+/// The share of the edge length by which a chord may leave the curve: outlines stay this true.
+pub const CHORD_TOLERANCE: f64 = 0.02;
+
+impl Gauge {
+    /// Into how many equal parts (by arc length) an edge is divided at a target edge length `h`
+    /// (metres). At least one.
+    ///
+    /// A chord of length s on radius r leaves the arc by s^2 / 8r; s is chosen so that this stays
+    /// below half of [`CHORD_TOLERANCE`] times `h`, and never above `h`.
+    pub fn divisions(&self, h: f64) -> usize {
+        let by_curve = (8.0 * self.min_radius * 0.5 * CHORD_TOLERANCE * h).sqrt();
+        let s = h.min(by_curve).max(h / 8.0);
+        ((self.length / s - 1e-9).ceil() as usize).max(1)
+    }
+}
+
+/// A named stretch of the outer loop, from one corner to the next, counter-clockwise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Edge {
+    /// A tailor's word: `neck`, `shoulder_left`, `armhole_left`, `side_left`, `hem`, ...
+    /// Left and right are the wearer's.
+    pub name: String,
+    /// Index of its first point in the outer loop.
+    pub start: usize,
+    /// Index of its last point in the outer loop (that of the next edge's first).
+    pub end: usize,
+    /// Divisions agreed with the edge it is sewn to.
+    pub gauge: Gauge,
+}
+
+/// What an inner line is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InnerKind {
+    /// A leg of a dart: sewn to its other leg.
+    Dart,
+    /// A pleat line.
+    Pleat,
+    /// A fold line.
+    Fold,
+}
+
+/// A line inside the panel that must lie on mesh edges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InnerLine {
+    /// Name, for seams.
+    pub name: String,
+    /// Purpose.
+    pub kind: InnerKind,
+    /// Vertices from its start, metres.
+    pub points: Vec<Point2>,
+}
+
+/// How pattern coordinates map to the photo: `px = origin + (x, -y) * px_per_metre`, x mirrored
+/// where the photo is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PhotoFrame {
+    /// Pixel coordinates of the pattern's origin.
+    pub origin_px: Point2,
+    /// Pixels per metre.
+    pub px_per_metre: f64,
+    /// True where the pattern is the mirror image of the photo.
+    pub mirrored: bool,
+}
+
+impl PhotoFrame {
+    /// The pixel under a pattern point.
+    pub fn to_px(&self, p: Point2) -> Point2 {
+        let sign = if self.mirrored { -1.0 } else { 1.0 };
+        Point2::new(
+            self.origin_px.x + sign * p.x * self.px_per_metre,
+            self.origin_px.y - p.y * self.px_per_metre,
+        )
+    }
+
+    /// The pattern point over a pixel.
+    pub fn to_metres(&self, px: Point2) -> Point2 {
+        let sign = if self.mirrored { -1.0 } else { 1.0 };
+        Point2::new(
+            sign * (px.x - self.origin_px.x) / self.px_per_metre,
+            (self.origin_px.y - px.y) / self.px_per_metre,
+        )
+    }
+}
+
+/// The outline of one panel: outer loop, holes, named edges and inner lines; metres, y up, as seen
+/// from outside the wearer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// The outer boundary, counter-clockwise.
+    pub outer: Loop,
+    /// Holes, clockwise.
+    pub holes: Vec<Loop>,
+    /// Named edges, counter-clockwise, covering the outer loop. Empty until a style names them.
+    pub edges: Vec<Edge>,
+    /// Darts, pleats, folds.
+    pub inner: Vec<InnerLine>,
+    /// Where the outline lies in its photo.
+    pub frame: Option<PhotoFrame>,
+}
+
+impl Outline {
+    /// Enclosed area without the holes, square metres.
+    pub fn area(&self) -> f64 {
+        let holes: f64 = self.holes.iter().map(|h| polygon_area(&h.points).abs()).sum();
+        polygon_area(&self.outer.points).abs() - holes
+    }
+
+    /// Length of the outer loop, metres.
+    pub fn perimeter(&self) -> f64 {
+        let p = &self.outer.points;
+        let closing = match (p.first(), p.last()) {
+            (Some(a), Some(b)) => (a - b).norm(),
+            _ => 0.0,
+        };
+        polyline_length(p) + closing
+    }
+
+    /// The points of a named edge, both ends included.
+    pub fn edge_points(&self, edge: &Edge) -> Vec<Point2> {
+        let n = self.outer.points.len();
+        let count = (edge.end + n - edge.start - 1) % n + 1;
+        (0..=count).map(|k| self.outer.points[(edge.start + k) % n]).collect()
+    }
+
+    /// The edge of that name.
+    pub fn edge(&self, name: &str) -> Option<&Edge> {
+        self.edges.iter().find(|e| e.name == name)
+    }
+
+    /// The box around the outer loop: least and greatest corner.
+    pub fn bounds(&self) -> (Point2, Point2) {
+        let mut lo = Point2::new(f64::INFINITY, f64::INFINITY);
+        let mut hi = -lo;
+        for p in &self.outer.points {
+            lo = lo.inf(p);
+            hi = hi.sup(p);
+        }
+        (lo, hi)
+    }
+}
+
+impl ArtifactType for Outline {
+    const KIND: Kind = Kind("outline");
+    const IN_SETS: bool = true;
+}
+
+impl Artifact for Outline {
+    fn kind(&self) -> Kind {
+        Self::KIND
+    }
+
+    fn digest(&self, d: &mut Digester) {
+        d.text("outline").count(1 + self.holes.len());
+        for lp in std::iter::once(&self.outer).chain(&self.holes) {
+            d.count(lp.points.len()).floats(lp.points.iter().flat_map(|p| [p.x, p.y]));
+            d.indices(lp.corners.iter().map(|&c| c as u32));
+        }
+        for e in &self.edges {
+            d.text(&e.name).count(e.start).count(e.end).floats([e.gauge.length, e.gauge.min_radius]);
+        }
+        for line in &self.inner {
+            d.text(&line.name).floats(line.points.iter().flat_map(|p| [p.x, p.y]));
+        }
+    }
+
+    fn measures(&self) -> Measures {
+        let (lo, hi) = self.bounds();
+        let mut m = Measures::new();
+        m.push("area", self.area() * 1e4, "cm2", 1.0);
+        m.push("perimeter", self.perimeter() * 1e2, "cm", 0.2);
+        m.push("box_width", (hi.x - lo.x) * 1e3, "mm", 0.5);
+        m.push("box_height", (hi.y - lo.y) * 1e3, "mm", 0.5);
+        m.count("loops", 1 + self.holes.len()).count("corners", self.outer.corners.len());
+        for e in &self.edges {
+            let length = polyline_length(&self.edge_points(e));
+            m.push(&format!("edge.{}", e.name), length * 1e3, "mm", 0.5);
+        }
+        m
+    }
+
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
+        vec![("svg", svg(self).into_bytes())]
+    }
+}
+
+/// Named edges get alternating colours so that a wrong corner is seen at once.
+const EDGE_COLOURS: [&str; 6] = ["#c0392b", "#2471a3", "#1e8449", "#b9770e", "#6c3483", "#117a65"];
+
+/// The outline drawn in millimetres with its edges' names and its corners.
+fn svg(outline: &Outline) -> String {
+    use std::fmt::Write;
+    let (lo, hi) = outline.bounds();
+    let (w, h) = ((hi.x - lo.x) * 1e3, (hi.y - lo.y) * 1e3);
+    let at = |p: &Point2| ((p.x - lo.x) * 1e3, (hi.y - p.y) * 1e3);
+    let line = |points: &[Point2]| {
+        let mut s = String::new();
+        for (i, p) in points.iter().enumerate() {
+            let (x, y) = at(p);
+            let _ = write!(s, "{}{x:.3},{y:.3}", if i == 0 { "M" } else { "L" });
+        }
+        s
+    };
+    let mut s = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-20 -20 {:.1} {:.1}\" width=\"{:.1}mm\" height=\"{:.1}mm\" font-family=\"sans-serif\" font-size=\"14\">\n",
+        w + 40.0,
+        h + 40.0,
+        w + 40.0,
+        h + 40.0
+    );
+    for lp in std::iter::once(&outline.outer).chain(&outline.holes) {
+        let _ = writeln!(
+            s,
+            "<path d=\"{}Z\" fill=\"#f4ecd8\" fill-rule=\"evenodd\" stroke=\"#333\" stroke-width=\"1\"/>",
+            line(&lp.points)
+        );
+        for &c in &lp.corners {
+            let (x, y) = at(&lp.points[c]);
+            let _ = writeln!(s, "<circle cx=\"{x:.3}\" cy=\"{y:.3}\" r=\"4\" fill=\"#333\"/>");
+        }
+    }
+    for (i, e) in outline.edges.iter().enumerate() {
+        let points = outline.edge_points(e);
+        let (x, y) = at(&points[points.len() / 2]);
+        let colour = EDGE_COLOURS[i % EDGE_COLOURS.len()];
+        let _ = writeln!(
+            s,
+            "<path d=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"3\"/>",
+            line(&points)
+        );
+        let _ = writeln!(
+            s,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"{colour}\" text-anchor=\"middle\">{}</text>",
+            e.name
+        );
+    }
+    for l in &outline.inner {
+        let _ = writeln!(
+            s,
+            "<path d=\"{}\" fill=\"none\" stroke=\"#555\" stroke-dasharray=\"6 4\"/>",
+            line(&l.points)
+        );
+    }
+    s.push_str("</svg>\n");
+    s
+}

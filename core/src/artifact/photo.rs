@@ -1,0 +1,72 @@
+//! A photo of a garment that lies flat.
+
+use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use image::{GrayImage, RgbImage};
+use std::sync::Arc;
+
+/// An upright sRGB photo with its scale.
+///
+/// Pixel centres lie at integer coordinates; x grows to the right, y downwards.
+#[derive(Debug, Clone)]
+pub struct Photo {
+    /// The pixels, sRGB, 8 bits a channel.
+    pub pixels: Arc<RgbImage>,
+    /// Opacity, where the file had an alpha channel that is not opaque everywhere.
+    pub alpha: Option<Arc<GrayImage>>,
+    /// Scale: pixels per metre in the plane of the garment.
+    ///
+    /// `None` until it is known: a width given for the garment (`width: "52 cm"`) needs its mask.
+    pub px_per_metre: Option<f64>,
+    /// The real width of the garment's bounding box, metres, where the pipeline gives it.
+    pub garment_width: Option<f64>,
+    /// True where the photo stands in for its mirror image (`back: MirrorOf("front")`).
+    pub mirrored: bool,
+    /// The file it was read from, for messages and the report.
+    pub file: String,
+}
+
+impl Photo {
+    /// The same photo with other pixels, as denoisers return it.
+    pub fn with_pixels(&self, pixels: RgbImage) -> Photo {
+        Photo { pixels: Arc::new(pixels), ..self.clone() }
+    }
+}
+
+impl ArtifactType for Photo {
+    const KIND: Kind = Kind("photo");
+    const IN_SETS: bool = true;
+}
+
+impl Artifact for Photo {
+    fn kind(&self) -> Kind {
+        Self::KIND
+    }
+
+    fn digest(&self, d: &mut Digester) {
+        let (w, h) = self.pixels.dimensions();
+        d.text("photo").count(w as usize).count(h as usize).bytes(self.pixels.as_raw());
+        d.count(usize::from(self.alpha.is_some())).count(usize::from(self.mirrored));
+        if let Some(alpha) = &self.alpha {
+            d.bytes(alpha.as_raw());
+        }
+        d.floats([self.px_per_metre.unwrap_or(0.0), self.garment_width.unwrap_or(0.0)]);
+    }
+
+    fn measures(&self) -> Measures {
+        let (w, h) = self.pixels.dimensions();
+        let mean = mean_level(&self.pixels);
+        let mut m = Measures::new();
+        m.count("width_px", w as usize).count("height_px", h as usize);
+        m.push("mean_level", mean, "grey levels", 0.5);
+        m
+    }
+
+    fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
+        vec![("png", super::files::png_rgb(&self.pixels))]
+    }
+}
+
+fn mean_level(pixels: &RgbImage) -> f64 {
+    let sum: u64 = pixels.as_raw().iter().map(|&v| u64::from(v)).sum();
+    sum as f64 / pixels.as_raw().len().max(1) as f64
+}

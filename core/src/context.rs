@@ -1,0 +1,171 @@
+//! What a running stage may ask of the outside world.
+
+use crate::artifact::Measure;
+use crate::{ErrorCode, StageError};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A flag that asks everything to stop.
+#[derive(Debug, Clone, Default)]
+pub struct Cancel(Arc<AtomicBool>);
+
+impl Cancel {
+    /// Not cancelled.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Asks to stop.
+    pub fn cancel(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    /// True once asked to stop.
+    pub fn is_cancelled(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+/// What a stage tells while it works.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// How far the stage has come, 0 to 1, and what it is at.
+    Progress {
+        /// Share done.
+        share: f64,
+        /// What it is at: `seam gap 3.2 mm, energy 0.41 J`.
+        text: String,
+    },
+    /// Something that the user should know.
+    Warning(String),
+}
+
+/// Receives a run's events. Called from any thread.
+pub trait Listener: Send + Sync {
+    /// Takes an event of the stage `stage` (`entry` of a named set).
+    fn event(&self, stage: &str, entry: &str, event: &Event);
+}
+
+/// A listener that takes no notice.
+impl Listener for () {
+    fn event(&self, _: &str, _: &str, _: &Event) {}
+}
+
+/// The largest file that a stage may read, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
+
+/// Handed to every run of a stage.
+pub struct Context {
+    stage: String,
+    entry: String,
+    base: PathBuf,
+    cancel: Cancel,
+    listener: Arc<dyn Listener>,
+    figures: Mutex<Vec<Measure>>,
+    warnings: Mutex<Vec<String>>,
+}
+
+impl Context {
+    /// A context for the stage `stage`, with files relative to `base`.
+    pub fn new(stage: &str, base: &Path, cancel: Cancel, listener: Arc<dyn Listener>) -> Self {
+        Context {
+            stage: stage.to_owned(),
+            entry: String::new(),
+            base: base.to_owned(),
+            cancel,
+            listener,
+            figures: Mutex::default(),
+            warnings: Mutex::default(),
+        }
+    }
+
+    /// A context for tests: no listener, files relative to the current folder.
+    pub fn quiet() -> Self {
+        Context::new("test", Path::new("."), Cancel::new(), Arc::new(()))
+    }
+
+    /// The same context for one entry of a named set.
+    pub fn for_entry(&self, entry: &str) -> Self {
+        Context {
+            entry: entry.to_owned(),
+            ..Context::new(&self.stage, &self.base, self.cancel.clone(), self.listener.clone())
+        }
+    }
+
+    /// The entry of the named set at work (`"front"`), empty for a stage that is not mapped.
+    pub fn entry(&self) -> &str {
+        &self.entry
+    }
+
+    /// Errs once the user has asked to stop. Call it at least every 50 ms.
+    pub fn check(&self) -> Result<(), StageError> {
+        match self.cancel.is_cancelled() {
+            true => Err(StageError::new(ErrorCode::Cancelled, "stopped on request")),
+            false => Ok(()),
+        }
+    }
+
+    /// The stop flag, for loops that cannot return early.
+    pub fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    /// Tells how far the stage has come.
+    pub fn progress(&self, share: f64, text: impl Into<String>) {
+        let event = Event::Progress { share: share.clamp(0.0, 1.0), text: text.into() };
+        self.listener.event(&self.stage, &self.entry, &event);
+    }
+
+    /// Tells the user something; it also stands in the report.
+    pub fn warn(&self, text: impl Into<String>) {
+        let text = text.into();
+        self.listener.event(&self.stage, &self.entry, &Event::Warning(text.clone()));
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text);
+    }
+
+    /// Keeps a figure for report and metrics: `figure("threshold", 131.0, "grey levels")`.
+    pub fn figure(&self, name: &str, value: f64, unit: &'static str) {
+        let measure = Measure { name: name.to_owned(), value, unit, tolerance: 0.0 };
+        self.figures.lock().unwrap_or_else(PoisonError::into_inner).push(measure);
+    }
+
+    /// A path of the pipeline file, which is relative to that file.
+    pub fn resolve(&self, path: &str) -> PathBuf {
+        self.base.join(path)
+    }
+
+    /// Reads a file named by the pipeline.
+    pub fn read(&self, path: &str) -> Result<Vec<u8>, StageError> {
+        let full = self.resolve(path);
+        let fail = |why: String| {
+            StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
+                .hint("paths are relative to the pipeline file")
+        };
+        let meta = std::fs::metadata(&full).map_err(|e| fail(io_words(&e)))?;
+        if !meta.is_file() {
+            return Err(fail("it is not a file".into()));
+        }
+        if meta.len() > MAX_FILE_BYTES {
+            return Err(fail(format!("it has {} bytes, the limit is {MAX_FILE_BYTES}", meta.len())));
+        }
+        std::fs::read(&full).map_err(|e| fail(io_words(&e)))
+    }
+
+    /// The figures and warnings given so far.
+    pub fn take_notes(&self) -> (Vec<Measure>, Vec<String>) {
+        let take = |e: PoisonError<_>| e.into_inner();
+        let figures = std::mem::take(&mut *self.figures.lock().unwrap_or_else(take));
+        let warnings = std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner));
+        (figures, warnings)
+    }
+}
+
+/// The system's reason without its number, so that it reads alike everywhere.
+fn io_words(e: &std::io::Error) -> String {
+    match e.kind() {
+        std::io::ErrorKind::NotFound => "no such file".into(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
+        _ => e.to_string(),
+    }
+}

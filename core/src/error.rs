@@ -1,0 +1,121 @@
+//! Errors of stages: typed, lower case, with a hint.
+
+use thiserror::Error;
+
+/// What went wrong, as a stable word that scripts can match.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum ErrorCode {
+    /// A file could not be read or is not what it should be.
+    PatternLoading,
+    /// Input that cannot be worked on: a blank photo, a garment cut by the frame, a wrong style.
+    InvalidInput,
+    /// A parameter out of its range.
+    InvalidParameter,
+    /// A mesh with triangles of no area, or an outline that crosses itself.
+    DegenerateTriangles,
+    /// A seam that cannot be sewn.
+    StitchingError,
+    /// The solver did not come to rest.
+    StaticEquilibrium,
+    /// The simulation was over suspiciously early.
+    FastFinish,
+    /// Cloth is inside the body.
+    BodyIntersection,
+    /// Cloth crosses itself.
+    SelfIntersection,
+    /// Out of time.
+    Timeout,
+    /// Stopped by the user.
+    Cancelled,
+    /// The program's own fault.
+    Internal,
+}
+
+impl ErrorCode {
+    /// The word: `stitching_error`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            ErrorCode::PatternLoading => "pattern_loading",
+            ErrorCode::InvalidInput => "invalid_input",
+            ErrorCode::InvalidParameter => "invalid_parameter",
+            ErrorCode::DegenerateTriangles => "degenerate_triangles",
+            ErrorCode::StitchingError => "stitching_error",
+            ErrorCode::StaticEquilibrium => "static_equilibrium",
+            ErrorCode::FastFinish => "fast_finish",
+            ErrorCode::BodyIntersection => "body_intersection",
+            ErrorCode::SelfIntersection => "self_intersection",
+            ErrorCode::Timeout => "timeout",
+            ErrorCode::Cancelled => "cancelled",
+            ErrorCode::Internal => "internal",
+        }
+    }
+
+    /// The exit code of a run that ends with it: 3 invalid input, 4 quality, 5 out of time or
+    /// stopped, 70 a bug.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            ErrorCode::PatternLoading
+            | ErrorCode::InvalidInput
+            | ErrorCode::InvalidParameter
+            | ErrorCode::DegenerateTriangles
+            | ErrorCode::StitchingError => 3,
+            ErrorCode::StaticEquilibrium
+            | ErrorCode::FastFinish
+            | ErrorCode::BodyIntersection
+            | ErrorCode::SelfIntersection => 4,
+            ErrorCode::Timeout | ErrorCode::Cancelled => 5,
+            ErrorCode::Internal => 70,
+        }
+    }
+}
+
+impl std::fmt::Display for ErrorCode {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Why a stage could not do its work.
+///
+/// The runner adds the stage's id, the panel and the line of the pipeline file.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct StageError {
+    /// The stable word.
+    pub code: ErrorCode,
+    /// One sentence in lower case, without a full stop.
+    pub message: String,
+    /// What the user may do about it.
+    pub hint: Option<String>,
+    /// The parameter at fault, so that the runner can point at it.
+    pub param: Option<&'static str>,
+}
+
+impl StageError {
+    /// An error with a code and a sentence.
+    pub fn new(code: ErrorCode, message: impl Into<String>) -> Self {
+        StageError { code, message: message.into(), hint: None, param: None }
+    }
+
+    /// Invalid input (exit code 3).
+    pub fn invalid(message: impl Into<String>) -> Self {
+        Self::new(ErrorCode::InvalidInput, message)
+    }
+
+    /// A fault of the program itself.
+    pub fn internal(message: impl Into<String>) -> Self {
+        Self::new(ErrorCode::Internal, message)
+    }
+
+    /// Adds a hint.
+    pub fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Names the parameter at fault.
+    pub fn at(mut self, param: &'static str) -> Self {
+        self.param = Some(param);
+        self
+    }
+}

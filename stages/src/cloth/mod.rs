@@ -1,0 +1,1 @@
+//! The cloth engine that stitchers and drapers share.

@@ -1,0 +1,6 @@
+//! Colliders: body to collision service.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

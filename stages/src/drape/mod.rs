@@ -1,0 +1,6 @@
+//! Drapers: the sewn garment under gravity.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

@@ -1,0 +1,6 @@
+//! Fabrics: presets and measured values.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

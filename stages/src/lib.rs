@@ -1,0 +1,39 @@
+//! The built-in stages of Toile: a folder a role, a file a stage.
+
+pub mod binarise;
+pub mod body;
+pub mod cloth;
+pub mod collide;
+pub mod denoise;
+pub mod drape;
+pub mod edges;
+pub mod fabric;
+pub mod mesh;
+pub mod photo;
+pub mod place;
+pub mod smooth;
+pub mod stitch;
+pub mod style;
+pub mod texture;
+pub mod write;
+
+use toile_core::Registry;
+
+/// Adds every built-in stage: the one line by which a program gets them all.
+pub fn register(registry: &mut Registry) {
+    photo::register(registry);
+    denoise::register(registry);
+    binarise::register(registry);
+    edges::register(registry);
+    style::register(registry);
+    mesh::register(registry);
+    smooth::register(registry);
+    body::register(registry);
+    fabric::register(registry);
+    place::register(registry);
+    collide::register(registry);
+    stitch::register(registry);
+    drape::register(registry);
+    texture::register(registry);
+    write::register(registry);
+}

@@ -1,0 +1,6 @@
+//! Meshers: outline to panel.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

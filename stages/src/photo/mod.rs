@@ -1,0 +1,6 @@
+//! Readers of photos.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

@@ -1,0 +1,6 @@
+//! Placement: flat panels into space around the body.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

@@ -1,0 +1,6 @@
+//! Stitchers: sew the placed panels.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}

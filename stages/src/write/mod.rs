@@ -1,0 +1,6 @@
+//! Writers: model and run to files.
+
+use toile_core::Registry;
+
+/// Adds this folder's stages.
+pub fn register(_registry: &mut Registry) {}
