@@ -31,10 +31,15 @@
 //! assert_eq!(registry.card("Invert").map(|c| c.params.len()), Some(1));
 //! ```
 
+// The macros' expansion names this crate; the tests of this crate use them too.
+#[cfg(test)]
+extern crate self as toile_core;
+
 pub mod artifact;
 mod context;
 mod error;
 pub mod param;
+pub mod pipeline;
 mod registry;
 mod stage;
 
@@ -42,7 +47,7 @@ pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
 pub use param::{Length, ParamDoc, ParamType};
-pub use registry::Registry;
+pub use registry::{Registry, Section, SectionValue};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PortValue, Role, Set, Stage, StageMeta,
     StageType,
@@ -56,7 +61,7 @@ pub use {ron, serde, typetag};
 pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
-        Context, Contract, ErrorCode, Length, ParamType, Registry, Role, Set, Stage, StageError, StageType,
-        choice, stage,
+        Context, Contract, ErrorCode, Length, ParamType, Registry, Role, Section, SectionValue, Set, Stage,
+        StageError, StageType, choice, stage,
     };
 }
