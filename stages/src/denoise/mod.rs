@@ -21,7 +21,7 @@ mod tests;
 
 pub use bilateral::{Bilateral, bilateral};
 pub use gaussian::{Gaussian, gaussian};
-pub use mean::{Neighbours, NeighbourhoodMean, neighbourhood_mean};
+pub use mean::{NeighbourhoodMean, Neighbours, neighbourhood_mean};
 pub use median::{Median, median};
 
 use toile_core::Registry;

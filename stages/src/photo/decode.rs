@@ -36,7 +36,8 @@ pub struct Decoded {
 pub fn decode(bytes: &[u8], name: &str) -> Result<Decoded, StageError> {
     let head = check_header(bytes, name)?;
     let fail = |e: image::ImageError| {
-        damaged(name, &format!("is damaged ({})", plain(&e.to_string()))).hint("export it again as JPEG or PNG")
+        damaged(name, &format!("is damaged ({})", plain(&e.to_string())))
+            .hint("export it again as JPEG or PNG")
     };
     let mut reader =
         ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fail(e.into()))?;
@@ -59,7 +60,9 @@ fn check_header(bytes: &[u8], name: &str) -> Result<Header, StageError> {
         return Err(damaged(name, "is empty"));
     }
     if !header::is_known(bytes) {
-        return Err(damaged(name, "is not a JPEG or PNG picture").hint("photos are read from JPEG and PNG files"));
+        return Err(
+            damaged(name, "is not a JPEG or PNG picture").hint("photos are read from JPEG and PNG files")
+        );
     }
     let early = || damaged(name, "ends before its picture does").hint("copy it again: it was cut short");
     let head = header::read(bytes).ok_or_else(early)?;
