@@ -11,6 +11,7 @@ pub mod fabric;
 pub mod mesh;
 pub mod photo;
 pub mod place;
+pub mod render;
 pub mod smooth;
 pub mod stitch;
 pub mod style;
