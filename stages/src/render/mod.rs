@@ -21,6 +21,7 @@ mod tests;
 pub use camera::{Frame, View};
 pub(crate) use mips::{LINEAR, Mips, encode};
 pub use overlay::Line;
+pub(crate) use pictures::jpeg;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
 pub use scene::Scene;
 

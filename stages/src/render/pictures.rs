@@ -105,7 +105,7 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
         Model { meshes: vec![body_mesh(body, 0)], materials: vec![mannequin()], textures: Vec::new() };
     let dot = |p: &toile_core::artifact::Point3| Line { ends: [*p, *p], colour: LANDMARK_COLOUR, width: 5.0 };
     let dots: Vec<Line> = body.landmarks.values().map(dot).collect();
-    let scene = Scene::new(&model);
+    let scene = Scene::draft(&model);
     let whole = |view: View| View { frame: Frame::Whole, margin: 0.04, ..view };
     let shot = |caption: &str, view: View| {
         let form = jpeg(&scene.render_with(&whole(view), &dots))?;
@@ -118,13 +118,13 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
 }
 
 fn model_pictures(model: &Model, height: u32) -> Vec<Picture> {
-    let scene = Scene::new(model);
+    let scene = Scene::draft(model);
     shots(&scene, &[], height)
 }
 
 fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<Picture> {
     let model = garment_model(garment, body);
-    shots(&Scene::new(&model), &open_seams(garment), height)
+    shots(&Scene::draft(&model), &open_seams(garment), height)
 }
 
 /// Front and back.

@@ -56,7 +56,9 @@ const CLAMP_TO_EDGE: u32 = 33071;
 /// The file: header, JSON chunk, binary chunk. `images` holds the model's textures, encoded.
 pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u8>, StageError> {
     let mut buffer = Buffer::default();
-    let meshes: Vec<Value> = model.meshes.iter().map(|m| mesh(m, &mut buffer)).collect();
+    // The standard forbids empty accessors.
+    let parts: Vec<&Mesh> = model.meshes.iter().filter(|m| !m.triangles.is_empty()).collect();
+    let meshes: Vec<Value> = parts.iter().map(|m| mesh(m, &mut buffer)).collect();
     let images: Vec<Value> = images
         .iter()
         .zip(&model.textures)
@@ -67,7 +69,7 @@ pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u
         .collect();
     let unlit = model.materials.iter().any(|m| m.unlit);
     let nodes: Vec<Value> =
-        model.meshes.iter().enumerate().map(|(i, m)| json!({ "name": m.name, "mesh": i })).collect();
+        parts.iter().enumerate().map(|(i, m)| json!({ "name": m.name, "mesh": i })).collect();
     let mut root = json!({
         "asset": { "version": "2.0", "generator": concat!("toile ", env!("CARGO_PKG_VERSION")) },
         "scene": 0,

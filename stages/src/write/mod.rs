@@ -6,7 +6,8 @@ mod names;
 mod obj;
 mod ply;
 mod preview;
-//mod report;
+mod report;
+mod report_data;
 #[cfg(test)]
 mod tests;
 mod texture_file;
@@ -15,7 +16,7 @@ pub use glb::Glb;
 pub use obj::Obj;
 pub use ply::Ply;
 pub use preview::Preview;
-//pub use report::Report;
+pub use report::Report;
 pub use texture_file::TextureFormat;
 
 use toile_core::Registry;
@@ -26,5 +27,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Obj>();
     registry.add::<Ply>();
     registry.add::<Preview>();
-    //registry.add::<Report>();
+    registry.add::<Report>();
 }
