@@ -15,6 +15,7 @@
 mod check;
 mod cloth;
 mod contact;
+mod frequency;
 mod hinge;
 mod law;
 mod membrane;

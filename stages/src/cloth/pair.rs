@@ -127,7 +127,7 @@ fn respond_pair(c: &SelfContact, thickness: f64, friction: f64, cloth: &Cloth, s
     for (&i, &w) in nodes.iter().zip(&c.weights) {
         apart += state.x[i].coords * w;
         speed += state.v[i] * w;
-        free += w * w * cloth.inverse_mass[i];
+        free += w * w * cloth.inverse_inertia[i];
     }
     let spare = c.normal.dot(&apart) - thickness;
     let least = if spare >= 0.0 { -spare / dt } else { (-spare / dt).min(PUSH_APART) };
@@ -138,6 +138,6 @@ fn respond_pair(c: &SelfContact, thickness: f64, friction: f64, cloth: &Cloth, s
     let pushed = speed + c.normal * (least - normal);
     let change = rub(pushed, c.normal, friction * (least - normal)) - speed;
     for (&i, &w) in nodes.iter().zip(&c.weights) {
-        state.v[i] += change * (w * cloth.inverse_mass[i] / free);
+        state.v[i] += change * (w * cloth.inverse_inertia[i] / free);
     }
 }

@@ -107,7 +107,7 @@ impl Seams {
         for p in &self.pairs {
             p.nodes.iter().for_each(|&n| sum[n as usize] += 2.0 * pull.stiffness * p.share);
         }
-        (0..cloth.len()).map(|i| sum[i] * cloth.inverse_mass[i]).fold(0.0, f64::max)
+        (0..cloth.len()).map(|i| sum[i] * cloth.inverse_inertia[i]).fold(0.0, f64::max)
     }
 }
 
@@ -144,12 +144,12 @@ fn merge(weld: &[u32], cloth: &Cloth, state: &mut State) {
     }
     let mut sums = vec![(0.0, Vector3::zeros(), Vector3::zeros()); cloth.len()];
     for (i, &r) in root.iter().enumerate() {
-        let (m, s) = (cloth.mass[i], &mut sums[r]);
+        let (m, s) = (cloth.inertia[i], &mut sums[r]);
         *s = (s.0 + m, s.1 + state.x[i].coords * m, s.2 + state.v[i] * m);
     }
     for (i, &r) in root.iter().enumerate() {
         let (m, x, v) = sums[r];
-        if m > cloth.mass[i] {
+        if m > cloth.inertia[i] {
             (state.x[i], state.v[i]) = (Point3::from(x / m), v / m);
         }
     }

@@ -60,6 +60,8 @@ pub struct Simulation<'a> {
     body: Contacts,
     pairs: SelfPairs,
     solver: Box<dyn Solver>,
+    /// The springs' highest frequency; joins do not raise it.
+    frequency: f64,
     dt: f64,
     limit: f64,
     kept: State,
@@ -90,6 +92,7 @@ impl<'a> Simulation<'a> {
             body: Contacts::default(),
             pairs: SelfPairs::default(),
             solver,
+            frequency: cloth.frequency(),
             dt: 0.0,
             limit: 0.0,
             kept: state.clone(),
@@ -107,9 +110,8 @@ impl<'a> Simulation<'a> {
 
     /// Finds the stable time step for the present springs and settings.
     pub fn retune(&mut self) {
-        let springs = self.cloth.frequency_bound().powi(2);
         let seams = self.settings.pull.map_or(0.0, |p| self.seams.frequency_square(p, &self.cloth));
-        self.limit = self.solver.step_limit((springs + seams).sqrt());
+        self.limit = self.solver.step_limit(self.frequency.hypot(seams.sqrt()));
         self.dt = self.dt.min(self.limit);
     }
 
@@ -242,7 +244,7 @@ impl<'a> Simulation<'a> {
 
     /// Energy of motion, J.
     pub fn kinetic_energy(&self) -> f64 {
-        self.state.v.iter().zip(&self.cloth.mass).map(|(v, m)| m * v.norm_squared() / 2.0).sum()
+        self.state.v.iter().zip(&self.cloth.inertia).map(|(v, m)| m * v.norm_squared() / 2.0).sum()
     }
 
     /// Greatest speed of a node, m/s.

@@ -58,8 +58,8 @@ impl Solver for CentralDifferences {
         let strain = forces(state, &mut self.forces);
         for i in 0..cloth.len() {
             let c = (cloth.damping[i] + extra_damping) * dt / 2.0;
-            let push = self.forces[i] * (dt * cloth.inverse_mass[i]);
-            let moves = if cloth.inverse_mass[i] > 0.0 { 1.0 } else { 0.0 };
+            let push = self.forces[i] * (dt * cloth.inverse_inertia[i]);
+            let moves = if cloth.inverse_inertia[i] > 0.0 { 1.0 } else { 0.0 };
             state.v[i] = (state.v[i] * ((1.0 - c) * moves) + push) / (1.0 + c);
         }
         strain
