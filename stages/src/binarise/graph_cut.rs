@@ -12,7 +12,7 @@
 //! Cost: about 0.1 s a round at 400 px. Limits: needs some difference of colour; a strong cast shadow
 //! may be taken for garment.
 
-use super::background::{background, clean, rim_width};
+use super::background::{clean, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
 use super::mixture::Mixture;
@@ -65,12 +65,15 @@ impl GraphCut {
         let small = Small::of(photo, self.size);
         cx.check()?;
         let one_colour = || no_garment(photo, "it has the colours of the frame's rim all over");
-        let mut mask = background(&small, self.modes as usize, self.rim, 0.5).ok_or_else(one_colour)?;
         let links = Links::of(&small, self.gamma);
+        let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(&small, i)).collect();
+        let at_rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(&small, self.rim)).collect();
+        let mask = self.cut(&small, &middle, &at_rim, &links, cx)?;
+        let mut mask = clean(&small, &mask).ok_or_else(one_colour)?;
         for round in 0..self.rounds {
             let share = f64::from(round) / f64::from(self.rounds);
             cx.progress(share, format!("cut {} of {}", round + 1, self.rounds));
-            let next = self.cut(&small, &mask, &links, cx)?;
+            let next = self.cut(&small, &mask, &mask.iter().map(|v| !v).collect::<Vec<_>>(), &links, cx)?;
             let next = clean(&small, &next).ok_or_else(one_colour)?;
             if next == mask {
                 break;
@@ -85,16 +88,17 @@ impl GraphCut {
         &self,
         small: &Small,
         mask: &[bool],
+        other: &[bool],
         links: &Links,
         cx: &Context,
     ) -> Result<Vec<bool>, StageError> {
-        let side = |on: bool| -> Vec<Lab> {
-            let pixels = small.lab.iter().zip(mask).zip(&small.seen);
-            pixels.filter(|((_, m), seen)| **m == on && **seen).map(|((c, _), _)| *c).collect()
+        let side = |of: &[bool]| -> Vec<Lab> {
+            let pixels = small.lab.iter().zip(of).zip(&small.seen);
+            pixels.filter(|((_, m), seen)| **m && **seen).map(|((c, _), _)| *c).collect()
         };
         let models = (
-            Mixture::fit(&side(true), self.modes as usize, 0.0),
-            Mixture::fit(&side(false), self.modes as usize, 0.0),
+            Mixture::fit(&side(mask), self.modes as usize, 0.0),
+            Mixture::fit(&side(other), self.modes as usize, 0.0),
         );
         let (Some(garment), Some(ground)) = models else { return Ok(mask.to_vec()) };
         let rim = rim_width(small, self.rim);
@@ -115,6 +119,11 @@ const RIM_COST: f64 = 10.0;
 /// Costs as whole numbers; the bound keeps sums far below the largest.
 fn units(cost: f64) -> i32 {
     (cost * 1000.0).clamp(-1e8, 1e8) as i32
+}
+
+fn in_middle(small: &Small, i: usize) -> bool {
+    let (x, y) = ((i % small.w) as f64 / small.w as f64 - 0.5, (i / small.w) as f64 / small.h as f64 - 0.5);
+    (x / 0.2).powi(2) + (y / 0.2).powi(2) < 1.0
 }
 
 /// ln of how much likelier garment is than ground at a pixel, by its place alone.
