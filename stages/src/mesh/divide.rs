@@ -45,7 +45,7 @@ pub(crate) struct Division {
 
 impl Division {
     /// Segments of the loops.
-    pub fn loop_segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn loop_segments(&self) -> Vec<[u32; 2]> {
         let closed = |l: &Vec<u32>| {
             let n = l.len();
             (0..n).map(|k| [l[k], l[(k + 1) % n]]).collect::<Vec<_>>()
@@ -54,12 +54,12 @@ impl Division {
     }
 
     /// Segments of the inner lines.
-    pub fn chain_segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn chain_segments(&self) -> Vec<[u32; 2]> {
         self.chains.iter().flat_map(|c| c.vertices.windows(2).map(|w| [w[0], w[1]])).collect()
     }
 
     /// Segments of loops and inner lines.
-    pub fn segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn segments(&self) -> Vec<[u32; 2]> {
         [self.loop_segments(), self.chain_segments()].concat()
     }
 }

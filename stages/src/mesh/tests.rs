@@ -60,11 +60,13 @@ fn table() {
                         let poor =
                             panel.triangles.iter().filter(|t| panel.triangle_least_angle(**t) < 24.9).count();
                         println!(
-                            "{shape:12} {mesher:9} {:5.1} mm {:7} tris {s:7.3} s least {:6.2} poor {poor:4} dev {:6.4} h off {e:.1e}",
+                            "{shape:12} {mesher:9} {:5.1} mm {:7} tris {s:7.3} s least {:6.2} poor {poor:4} dev {:6.4} h off {e:.1e} short {:.3} h, border {:.3} h",
                             h * 1e3,
                             panel.triangles.len(),
                             panel.least_angle(),
-                            d / h
+                            d / h,
+                            shortest(&panel).0 / h,
+                            shortest(&panel).1 / h
                         );
                         draw(&format!("{shape}_{mesher}_{}", h * 1e3), &panel);
                     }
@@ -93,4 +95,15 @@ fn draw(name: &str, panel: &Panel) {
             .unwrap();
     }
     std::fs::write(format!("{dir}/{name}.obj"), s).unwrap();
+}
+
+fn shortest(panel: &Panel) -> (f64, f64) {
+    let d = |a: u32, b: u32| (panel.positions[a as usize] - panel.positions[b as usize]).norm();
+    let all = panel
+        .triangles
+        .iter()
+        .flat_map(|t| [d(t[0], t[1]), d(t[1], t[2]), d(t[2], t[0])])
+        .fold(9.0, f64::min);
+    let n = panel.boundary.len();
+    (all, (0..n).map(|k| d(panel.boundary[k], panel.boundary[(k + 1) % n])).fold(9.0, f64::min))
 }
