@@ -1,6 +1,34 @@
 //! Binarisers: photo to mask.
+//!
+//! | stage | looks at | for |
+//! |---|---|---|
+//! | `Global` | grey levels against a fixed threshold | a studio that never changes |
+//! | `Otsu` | grey levels against the threshold that parts them best | a plain ground |
+//! | `Local` | grey levels against their surroundings | a plain ground in uneven light |
+//!
+//! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
+//! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
+//! picture whose rim is transparent has its mask already.
+
+mod finish;
+mod global;
+mod local;
+mod morphology;
+mod otsu;
+mod regions;
+mod tone;
+
+pub use finish::{FRAME_TOUCH, Finish, cut_out, fill_holes, finish, no_garment};
+pub use global::{Global, global};
+pub use local::{Local, LocalMethod, local};
+pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
+pub use otsu::{Otsu, Split, otsu};
+pub use regions::{Piece, Regions};
+pub use tone::{Polarity, histogram, luma};
 
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<Global>().add::<Otsu>().add::<Local>();
+}
