@@ -1,6 +1,6 @@
 //! Scores the binarisers on real photos with true masks.
 //!
-//!     TOILE_SHARED=... cargo run --release -p toile-stages --example score_masks [OUT_DIR] [STAGE]...
+//!     TOILE_SHARED=... cargo run --release -p toile-stages --example score_masks [OUT_DIR] ["STAGE(...)"]...
 //!
 //! Reads `$TOILE_SHARED/data/photos/*.jpg` and `masks/*.png`, prints the intersection over union of each
 //! photo and stage, and writes the masks beside the photos into OUT_DIR where one is given. Without
@@ -28,32 +28,38 @@ fn main() -> Result<(), Box<dyn Error>> {
     let photos = Path::new(&shared).join("data/photos");
     let mut args = std::env::args().skip(1);
     let out = args.next().map(PathBuf::from);
-    let wanted: Vec<String> = args.collect();
-    // The true masks hold garments that the frame cuts; the products' default refuses those.
-    let set = std::env::var("SET").unwrap_or_default();
-    let set = set.as_str();
-    let mut stages: Vec<(&str, Box<dyn Stage>)> = vec![
-        ("Otsu", stage::<Otsu>(set)?),
-        ("Local", stage::<Local>(set)?),
-        ("Background", stage::<Background>(set)?),
-        ("GraphCut", stage::<GraphCut>(set)?),
-    ];
-    stages.retain(|(name, _)| wanted.is_empty() || wanted.iter().any(|w| w == name));
+    let given: Vec<String> = args.collect();
+    let all = ["Otsu()", "Local()", "Background()", "GraphCut()"].map(str::to_owned);
+    let texts = if given.is_empty() { all.to_vec() } else { given };
+    let stages = texts.into_iter().map(|t| stage(&t).map(|s| (t, s))).collect::<Result<Vec<_>, _>>()?;
     score(&photos, &stages, out.as_deref())
 }
 
-fn stage<S: Stage + serde::de::DeserializeOwned + 'static>(set: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
+/// The stage of a text such as `GraphCut(rounds: 2)`.
+fn stage(text: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
+    let (name, params) = text.trim_end_matches(')').split_once('(').ok_or("write STAGE(...)")?;
+    match name {
+        "Otsu" => parse::<Otsu>(params),
+        "Local" => parse::<Local>(params),
+        "Background" => parse::<Background>(params),
+        "GraphCut" => parse::<GraphCut>(params),
+        _ => Err("no such stage".into()),
+    }
+}
+
+/// Some of the true masks hold garments that the frame cuts, which the default refuses.
+fn parse<S: Stage + serde::de::DeserializeOwned + 'static>(set: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
     Ok(Box::new(ron_options().from_str::<S>(&format!("(touch: 4, {set})"))?))
 }
 
-fn score(photos: &Path, stages: &[(&str, Box<dyn Stage>)], out: Option<&Path>) -> Result<(), Box<dyn Error>> {
+fn score(photos: &Path, stages: &[(String, Box<dyn Stage>)], out: Option<&Path>) -> Result<(), Box<dyn Error>> {
     let mut names: Vec<String> = std::fs::read_dir(photos)?
         .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned()))
         .filter(|n| photos.join(format!("{n}.jpg")).is_file())
         .collect();
     names.sort();
     names.dedup();
-    println!("{:36}{}", "photo", stages.iter().map(|(n, _)| format!("{n:>20}")).collect::<String>());
+    println!("{:36}{}", "photo", stages.iter().map(|(n, _)| format!("{:>20}", n.split('(').next().unwrap_or(n))).collect::<String>());
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); stages.len()];
     for name in &names {
         let file = photos.join(format!("{name}.jpg"));
@@ -88,7 +94,7 @@ fn score(photos: &Path, stages: &[(&str, Box<dyn Stage>)], out: Option<&Path>) -
             };
             line += &format!("{:>20}", format!("{cell} {ms:.0} ms"));
             if let (Some(out), Ok(mask)) = (out, &result) {
-                picture(&photo, mask, truth.as_ref(), &out.join(format!("{name}.{label}.png")))?;
+                picture(&photo, mask, truth.as_ref(), &out.join(format!("{name}.{}.png", label.split('(').next().unwrap_or(label))))?;
             }
         }
         println!("{line}");

@@ -12,7 +12,7 @@
 //! Cost: about 0.1 s a round at 400 px. Limits: needs some difference of colour; a strong cast shadow
 //! may be taken for garment.
 
-use super::background::{clean, rim_width};
+use super::background::{background, clean, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
 use super::mixture::Mixture;
@@ -66,9 +66,8 @@ impl GraphCut {
         cx.check()?;
         let one_colour = || no_garment(photo, "it has the colours of the frame's rim all over");
         let links = Links::of(&small, self.gamma);
-        let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(&small, i)).collect();
-        let at_rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(&small, self.rim)).collect();
-        let mask = self.cut(&small, &middle, &at_rim, &links, cx)?;
+        let (inside, outside) = start(&small, self.modes as usize, self.rim);
+        let mask = self.cut(&small, &inside, &outside, &links, cx)?;
         let mut mask = clean(&small, &mask).ok_or_else(one_colour)?;
         for round in 0..self.rounds {
             let share = f64::from(round) / f64::from(self.rounds);
@@ -119,6 +118,18 @@ const RIM_COST: f64 = 10.0;
 /// Costs as whole numbers; the bound keeps sums far below the largest.
 fn units(cost: f64) -> i32 {
     (cost * 1000.0).clamp(-1e8, 1e8) as i32
+}
+
+fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
+    let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
+    let covers = |mask: &Vec<bool>| {
+        let both = mask.iter().zip(&middle).filter(|(a, b)| **a && **b).count();
+        both as f64 >= 0.8 * middle.iter().filter(|m| **m).count() as f64
+    };
+    match background(small, modes, rim, 0.5).filter(covers) {
+        Some(mask) => (mask.iter().zip(&middle).map(|(a, b)| *a || *b).collect(), mask.iter().map(|on| !on).collect()),
+        None => (middle, (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect()),
+    }
 }
 
 fn in_middle(small: &Small, i: usize) -> bool {
