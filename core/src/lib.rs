@@ -38,16 +38,23 @@ extern crate self as toile_core;
 pub mod artifact;
 mod context;
 mod error;
+pub mod golden;
+mod metrics;
+mod output;
 pub mod param;
 pub mod pipeline;
 mod registry;
+mod run;
 mod stage;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
+pub use metrics::{Metrics, StageMetrics};
+pub use output::write_files;
 pub use param::{Length, ParamDoc, ParamType};
 pub use registry::{Registry, Section, SectionValue};
+pub use run::{RunError, RunOptions, RunResult, add_implicit, plan, run};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PortValue, Role, Set, Stage, StageMeta,
     StageType,

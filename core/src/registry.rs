@@ -3,7 +3,7 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
-use crate::{Card, Role, StageType};
+use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
 
 /// The cards of all known stages, by name, and the sections of pipeline files.
@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 pub struct Registry {
     cards: BTreeMap<&'static str, Card>,
     sections: Vec<Section>,
+    implicit: Vec<fn() -> Box<dyn Stage>>,
 }
 
 /// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
@@ -73,6 +74,17 @@ impl Registry {
     /// The sections, in the order in which they were added.
     pub fn sections(&self) -> &[Section] {
         &self.sections
+    }
+
+    /// Adds a stage type that every pipeline gets where it holds what the stage needs.
+    pub fn add_implicit<S: StageType + 'static>(&mut self) -> &mut Self {
+        self.implicit.push(|| Box::new(S::default()));
+        self.add::<S>()
+    }
+
+    /// Makers of the implicit stages, in the order in which they were added.
+    pub fn implicit(&self) -> &[fn() -> Box<dyn Stage>] {
+        &self.implicit
     }
 
     /// The card of that name.

@@ -30,6 +30,7 @@ mod words;
 pub(crate) mod tests;
 
 pub use fault::{Fault, FaultRecord, Faults, Label};
+pub use near::nearest;
 pub use overrides::Override;
 
 use crate::{Card, Registry, Stage, StageError};

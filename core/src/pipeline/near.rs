@@ -11,7 +11,7 @@ const MAX_NAME: usize = 64;
 const SHORT_LIST: usize = 12;
 
 /// The candidate nearest to `name`, where one is near enough to be a misspelling of it.
-pub(crate) fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let length = name.chars().count();
     if length > MAX_NAME {
         return None;
