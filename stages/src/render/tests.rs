@@ -1,6 +1,6 @@
 //! Pictures of small models whose pixels are known beforehand.
 
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::camera::Projected;
 use super::cover::{Patch, STEPS};
@@ -143,7 +143,8 @@ fn empty_degenerate_and_broken_models_give_a_picture() {
     model.meshes[0].positions.iter_mut().for_each(|p| *p = Point3::origin());
     assert_eq!(render(&model, &flat(32, 24)), background);
     let mut model = red_square();
-    (model.meshes[0].normals.clear(), model.materials.clear());
+    model.meshes[0].normals.clear();
+    model.materials.clear();
     assert_eq!(render(&model, &flat(32, 24)), background);
 }
 
