@@ -1,5 +1,6 @@
 //! Parameters of stages: lengths with units, and the table that documents and checks them.
 
+use crate::pipeline::near;
 use serde::de::{DeserializeOwned, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
@@ -224,8 +225,12 @@ pub struct ParamDoc {
 /// Why a text is no value for a parameter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParamFault {
-    /// The reason, lower case.
+    /// The reason with the parameter's name, lower case.
     pub message: String,
+    /// The reason alone, for a fault deep inside a value.
+    pub reason: String,
+    /// What the user may do about it.
+    pub hint: Option<String>,
     /// Byte offset of the fault in the text, where the parser knows it.
     pub offset: Option<usize>,
 }
@@ -240,12 +245,22 @@ pub fn ron_options() -> ron::Options {
 /// The check behind [`ParamDoc::check`] for a parameter of type `T`.
 #[doc(hidden)]
 pub fn check_param<T: ParamType>(text: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
-    let value: T = ron_options().from_str(text).map_err(|e| ParamFault {
-        message: format!("`{}` wants {}: {}", doc.name, article(&doc.kind), lower_first(&e.code.to_string())),
-        offset: byte_offset(text, &e.span.start),
+    let value: T = ron_options().from_str(text).map_err(|e| {
+        let (reason, offset) = ron_fault(text, &e);
+        let message = match e.code {
+            // The type's own words name the value; those of the parser name what it wanted.
+            ron::Error::Message(_) => format!("`{}`: {reason}", doc.name),
+            _ => format!("`{}` wants {}: {reason}", doc.name, article(&doc.kind)),
+        };
+        ParamFault { message, reason, hint: ron_hint(&e.code), offset }
     })?;
     for x in value.numbers() {
-        check_number(x, doc).map_err(|message| ParamFault { message, offset: None })?;
+        check_number(x, doc).map_err(|message| ParamFault {
+            reason: message.clone(),
+            message,
+            hint: None,
+            offset: None,
+        })?;
     }
     Ok(())
 }
@@ -283,6 +298,27 @@ fn article(kind: &str) -> String {
 fn lower_first(text: &str) -> String {
     let mut chars = text.chars();
     chars.next().map(|c| c.to_lowercase().chain(chars).collect()).unwrap_or_default()
+}
+
+/// What `ron` says is wrong, in lower case, and the byte of the text where it is.
+pub(crate) fn ron_fault(text: &str, e: &ron::error::SpannedError) -> (String, Option<usize>) {
+    let reason = match &e.code {
+        ron::Error::NoSuchEnumVariant { found, .. } => format!("there is no choice `{found}`"),
+        ron::Error::NoSuchStructField { found, .. } => format!("unknown field `{found}`"),
+        ron::Error::MissingStructField { field, .. } => format!("the field `{field}` is missing"),
+        ron::Error::DuplicateStructField { field, .. } => format!("the field `{field}` is given twice"),
+        other => lower_first(&other.to_string()),
+    };
+    (reason, byte_offset(text, &e.span.start))
+}
+
+/// The nearest name, and all of them, where the fault is a name.
+fn ron_hint(e: &ron::Error) -> Option<String> {
+    match e {
+        ron::Error::NoSuchEnumVariant { expected, found, .. } => near::hint(found, "there is", expected),
+        ron::Error::NoSuchStructField { expected, found, .. } => near::hint(found, "there is", expected),
+        _ => None,
+    }
 }
 
 /// The byte at a line and column that ron reports (both from 1, columns in characters).

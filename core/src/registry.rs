@@ -3,13 +3,52 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
-use crate::{Card, Role, StageType};
+use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
 
-/// The cards of all known stages, by name.
+/// The cards of all known stages, by name, and the sections of pipeline files.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
     cards: BTreeMap<&'static str, Card>,
+    sections: Vec<Section>,
+    implicit: Vec<fn() -> Box<dyn Stage>>,
+}
+
+/// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
+///
+/// Its stage runs as early as it can: at the start, or right after what it takes is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Section {
+    /// The field's name.
+    pub field: &'static str,
+    /// What it holds.
+    pub holds: SectionValue,
+}
+
+/// What stands in a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionValue {
+    /// Any stage of that role: `style: Vest()`.
+    Stage(Role),
+    /// The value of one parameter of a given stage: `seams: [...]`.
+    Table {
+        /// The stage.
+        stage: &'static str,
+        /// Its parameter.
+        param: &'static str,
+    },
+}
+
+impl Section {
+    /// A section that holds any stage of a role.
+    pub const fn stage(field: &'static str, role: Role) -> Self {
+        Section { field, holds: SectionValue::Stage(role) }
+    }
+
+    /// A section that holds the parameter `param` of the stage `stage`.
+    pub const fn table(field: &'static str, stage: &'static str, param: &'static str) -> Self {
+        Section { field, holds: SectionValue::Table { stage, param } }
+    }
 }
 
 impl Registry {
@@ -23,6 +62,29 @@ impl Registry {
         let card = S::type_card();
         self.cards.insert(card.name, card);
         self
+    }
+
+    /// Adds a section. A second one of the same field replaces the first.
+    pub fn section(&mut self, section: Section) -> &mut Self {
+        self.sections.retain(|s| s.field != section.field);
+        self.sections.push(section);
+        self
+    }
+
+    /// The sections, in the order in which they were added.
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    /// Adds a stage type that every pipeline gets where it holds what the stage needs.
+    pub fn add_implicit<S: StageType + 'static>(&mut self) -> &mut Self {
+        self.implicit.push(|| Box::new(S::default()));
+        self.add::<S>()
+    }
+
+    /// Makers of the implicit stages, in the order in which they were added.
+    pub fn implicit(&self) -> &[fn() -> Box<dyn Stage>] {
+        &self.implicit
     }
 
     /// The card of that name.

@@ -154,7 +154,7 @@ impl Garment {
 }
 
 /// The value at a share `q` of an ascending list; 0 for an empty one.
-pub(crate) fn quantile(ascending: &[f64], q: f64) -> f64 {
+pub fn quantile(ascending: &[f64], q: f64) -> f64 {
     let last = ascending.len().saturating_sub(1) as f64;
     ascending.get((q * last).round() as usize).copied().unwrap_or(0.0)
 }

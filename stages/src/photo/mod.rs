@@ -1,6 +1,26 @@
 //! Readers of photos.
+//!
+//! | file | what it holds |
+//! |---|---|
+//! | `photos` | the stage `Photos`: reads all photos of a pipeline in parallel |
+//! | `entry` | how a photo is written in a pipeline file |
+//! | `decode` | bytes to upright 8-bit sRGB pixels, with limits against decompression bombs |
+//! | `header` | size and completeness of a JPEG or PNG before anything is decoded |
+
+mod decode;
+mod entry;
+mod header;
+mod photos;
+#[cfg(test)]
+mod tests;
+
+pub use decode::{Decoded, MAX_DECODED_BYTES, MAX_PIXELS, MAX_SIDE_PX, decode};
+pub use entry::{MAX_PX_PER_METRE, MAX_WIDTH_M, MIN_PX_PER_METRE, MIN_WIDTH_M, PhotoEntry, PhotoFile};
+pub use photos::{Photos, read_photos};
 
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<Photos>();
+}

@@ -1,0 +1,126 @@
+//! What every binariser does at its end: clean the mask, keep one garment, and say so when there is
+//! none, more than one, or half of one.
+
+use super::morphology::{close, open};
+use super::regions::{Piece, Regions};
+use super::tone::{OPAQUE, rim_share};
+use image::GrayImage;
+use rayon::prelude::*;
+use toile_core::prelude::*;
+
+/// Settings of the clean-up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finish {
+    /// Radius of the opening, pixels; 0 for none.
+    pub open: u32,
+    /// Radius of the closing, pixels; 0 for none.
+    pub close: u32,
+    /// Holes up to this share of the garment's area are filled.
+    pub holes: f64,
+    /// The garment may touch the frame over this share of the photo's shorter side; where it touches
+    /// more, it is cut.
+    pub touch: f64,
+}
+
+/// The least share of the photo that a garment covers: anything smaller is a speck.
+const LEAST_AREA: f64 = 0.005;
+/// From this share of the largest piece on, a second piece is a second garment and not a stain.
+const SECOND_GARMENT: f64 = 0.5;
+/// A picture whose rim is transparent to this share has had its ground cut away.
+const CUT_OUT_RIM: f64 = 0.9;
+
+/// Cleans a raw mask and checks that it shows one whole garment.
+///
+/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes.
+///
+/// # Errors
+/// [`ErrorCode::InvalidInput`] for no garment, two garments of similar size, and a garment cut by the
+/// frame.
+pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) -> Result<Mask, StageError> {
+    cx.check()?;
+    let mask = without_transparent(mask, photo);
+    let mask = close(&open(&mask, settings.open), settings.close);
+    cx.check()?;
+    let pieces = Regions::of(&mask);
+    let kept = one_garment(&pieces, photo, settings)?;
+    cx.check()?;
+    let mask = fill_holes(pieces.paint(|i, _| i == kept), settings.holes);
+    let mask = Mask { pixels: mask.into() };
+    cx.figure("garment", 100.0 * mask.area_px() as f64 / frame_area(photo), "% of the photo");
+    Ok(mask)
+}
+
+fn frame_area(photo: &Photo) -> f64 {
+    let (w, h) = photo.pixels.dimensions();
+    f64::from(w) * f64::from(h)
+}
+
+fn without_transparent(mut mask: GrayImage, photo: &Photo) -> GrayImage {
+    if let Some(alpha) = &photo.alpha {
+        let pairs = mask.par_iter_mut().zip(alpha.as_raw());
+        pairs.for_each(|(m, a)| *m = if *a < OPAQUE { 0 } else { *m });
+    }
+    mask
+}
+
+/// Fills the holes of a single piece that are no larger than a share of it.
+pub fn fill_holes(mask: GrayImage, share: f64) -> GrayImage {
+    let regions = Regions::of(&mask);
+    let area: u64 = regions.pieces.iter().filter(|p| p.on).map(|p| p.area).sum();
+    let is_hole = |p: &Piece| !p.on && p.frame == 0 && p.area as f64 <= share * area as f64;
+    match regions.pieces.iter().any(is_hole) {
+        true => regions.paint(|_, p| p.on || is_hole(p)),
+        false => mask,
+    }
+}
+
+/// The one garment among the pieces.
+fn one_garment(regions: &Regions, photo: &Photo, settings: Finish) -> Result<usize, StageError> {
+    let order = regions.by_size();
+    let least = LEAST_AREA * frame_area(photo);
+    let Some(&largest) = order.first().filter(|&&i| regions.pieces[i].area as f64 >= least) else {
+        return Err(no_garment(photo, "nothing stands out from the ground along the frame"));
+    };
+    let garment = regions.pieces[largest];
+    let (w, h) = photo.pixels.dimensions();
+    let touch = garment.frame as f64 / f64::from(w.min(h));
+    if touch > settings.touch {
+        return Err(StageError::invalid(format!(
+            "the garment in \"{}\" is cut by the frame: it touches it over {} px",
+            photo.file, garment.frame
+        ))
+        .hint("leave a margin of ground on all sides; where there is one, this binariser took ground for garment, so try `GraphCut()`"));
+    }
+    let second = order.get(1).map_or(0, |&i| regions.pieces[i].area);
+    if second as f64 >= SECOND_GARMENT * garment.area as f64 {
+        return Err(StageError::invalid(format!(
+            "two garments found in \"{}\": {} and {} pixels",
+            photo.file, garment.area, second
+        ))
+        .hint("photograph one garment at a time; where there is only one, try `GraphCut()`"));
+    }
+    Ok(largest)
+}
+
+/// The error for a photo that shows no garment, with the reason.
+pub fn no_garment(photo: &Photo, reason: &str) -> StageError {
+    StageError::invalid(format!("no garment found in \"{}\": {reason}", photo.file))
+        .hint("lay the garment on a ground of another colour, or try `GraphCut()`")
+}
+
+/// Refuses photos of no pixels, which no method can work on.
+pub(super) fn has_pixels(photo: &Photo) -> Result<(), StageError> {
+    match photo.pixels.dimensions() {
+        (0, _) | (_, 0) => Err(StageError::invalid(format!("photo \"{}\" has no pixels", photo.file))),
+        _ => Ok(()),
+    }
+}
+
+/// The garment of a picture whose ground has been cut away already: what is opaque.
+///
+/// `None` for an ordinary photo, and where the rim is opaque (a transparent corner is no cut-out).
+pub fn cut_out(photo: &Photo) -> Option<GrayImage> {
+    let alpha = photo.alpha.as_deref()?;
+    let transparent_rim = rim_share(alpha, None, |a| a < OPAQUE);
+    (transparent_rim >= CUT_OUT_RIM).then(|| super::tone::mark(alpha, |_, a| a >= OPAQUE))
+}

@@ -1,0 +1,39 @@
+//! What every mannequin must be.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use super::*;
+use crate::body::topology::Topology;
+use toile_core::prelude::*;
+
+pub(crate) fn mannequin(ron: &str) -> Result<Body, StageError> {
+    let stage: Mannequin = toile_core::param::ron_options().from_str(ron).unwrap();
+    stage.run(&Context::quiet())
+}
+
+#[test]
+fn the_default_is_one_closed_piece() {
+    let body = mannequin("()").unwrap();
+    let topology = Topology::of(body.positions.len(), &body.triangles);
+    assert!(topology.is_closed(), "{topology:?}");
+    assert_eq!((topology.components, topology.euler()), (1, 2));
+    let litres = body.volume() * 1e3;
+    assert!((50.0..80.0).contains(&litres), "{litres} l");
+    assert!((8_000..24_000).contains(&body.triangles.len()), "{}", body.triangles.len());
+}
+
+#[test]
+fn dump() {
+    if let Ok(path) = std::env::var("TOILE_DUMP") {
+        let t = std::time::Instant::now();
+        let body = mannequin(&std::env::var("TOILE_RON").unwrap_or("()".into())).unwrap();
+        eprintln!(
+            "{:?} {:#?} {:#?} vol {} tri {}",
+            t.elapsed(),
+            body.landmarks,
+            body.measurements,
+            body.volume(),
+            body.triangles.len()
+        );
+        std::fs::write(path, &body.export()[0].1).unwrap();
+    }
+}

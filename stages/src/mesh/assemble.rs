@@ -1,0 +1,102 @@
+//! From vertices and triangles to a panel, with a last look at what was promised.
+
+use super::check::show;
+use super::divide::Division;
+use toile_core::prelude::*;
+use toile_core::{Context, StageError};
+
+/// What a mesher makes: vertices, the division's first and in their order, and triangles.
+#[derive(Debug, Clone)]
+pub(crate) struct Meshed {
+    /// Vertices; some may be in no triangle.
+    pub points: Vec<Point2>,
+    /// Counter-clockwise triangles.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// Puts a panel together and tells its figures.
+pub(crate) fn assemble(
+    outline: &Outline,
+    division: &Division,
+    meshed: Meshed,
+    h: f64,
+    cx: &Context,
+) -> Result<Panel, StageError> {
+    check_chains(division, &meshed)?;
+    let meshed = without_unused(meshed, division.points.len());
+    let photo_px = match &outline.frame {
+        Some(frame) => meshed.points.iter().map(|p| frame.to_px(*p)).collect(),
+        None => Vec::new(),
+    };
+    let panel = Panel {
+        positions: meshed.points,
+        triangles: meshed.triangles,
+        boundary: division.loops[0].clone(),
+        holes: division.loops[1..].to_vec(),
+        edges: division.edges.clone(),
+        inner: division.chains.clone(),
+        photo_px,
+        outline_area: outline.area(),
+        outline_length: outline.perimeter(),
+    };
+    tell(&panel, division, h, cx);
+    Ok(panel)
+}
+
+/// Inner lines must lie in the cloth, and so on mesh edges.
+fn check_chains(division: &Division, meshed: &Meshed) -> Result<(), StageError> {
+    let mut sides: Vec<[u32; 2]> = Vec::new();
+    let on_line = chain_vertices(division, meshed.points.len());
+    for t in &meshed.triangles {
+        for k in 0..3 {
+            let (a, b) = (t[k], t[(k + 1) % 3]);
+            if on_line[a as usize] && on_line[b as usize] {
+                sides.push([a.min(b), a.max(b)]);
+            }
+        }
+    }
+    sides.sort_unstable();
+    for chain in &division.chains {
+        let lies = |w: &[u32]| sides.binary_search(&[w[0].min(w[1]), w[0].max(w[1])]).is_ok();
+        if !chain.vertices.windows(2).all(lies) {
+            return Err(StageError::invalid(format!("inner line \"{}\" lies outside the cloth", chain.name)));
+        }
+    }
+    Ok(())
+}
+
+fn chain_vertices(division: &Division, vertices: usize) -> Vec<bool> {
+    let mut on_line = vec![false; vertices];
+    division.chains.iter().flat_map(|c| &c.vertices).for_each(|&v| on_line[v as usize] = true);
+    on_line
+}
+
+/// The same mesh without vertices that no triangle uses; the first `fixed` keep their numbers.
+fn without_unused(meshed: Meshed, fixed: usize) -> Meshed {
+    let mut used = vec![false; meshed.points.len()];
+    meshed.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
+    used[..fixed].fill(true);
+    let mut number = vec![0; used.len()];
+    let mut points = Vec::with_capacity(used.len());
+    for (v, p) in meshed.points.into_iter().enumerate().filter(|(v, _)| used[*v]) {
+        number[v] = points.len() as u32;
+        points.push(p);
+    }
+    let renumber = |t: &[u32; 3]| t.map(|v| number[v as usize]);
+    Meshed { points, triangles: meshed.triangles.iter().map(renumber).collect() }
+}
+
+fn tell(panel: &Panel, division: &Division, h: f64, cx: &Context) {
+    cx.figure("triangles", panel.triangles.len() as f64, "");
+    cx.figure("least_angle", panel.least_angle(), "deg");
+    cx.figure("outline_deviation", division.deviation * 1e3, "mm");
+    if division.deviation > CHORD_TOLERANCE * h {
+        cx.warn(format!(
+            "{} leaves the outline by {:.2} mm, more than {:.0} % of the edge of {}; a smoother outline or a smaller edge helps",
+            division.deviates,
+            division.deviation * 1e3,
+            CHORD_TOLERANCE * 100.0,
+            show(h)
+        ));
+    }
+}

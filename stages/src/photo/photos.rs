@@ -1,0 +1,140 @@
+//! The stage that reads a pipeline's photos.
+
+use super::entry::{scale_fault, width_fault};
+use super::{Decoded, PhotoEntry, PhotoFile, decode};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_core::prelude::*;
+
+/// Reads the photos of the garment's sides.
+///
+/// JPEG and PNG, 8 or 16 bits, grey or colour, turned upright by their EXIF orientation. `width` is
+/// the real width of the garment's bounding box; the scale is worked out once its mask is known.
+/// Where only one side was taken, `MirrorOf("front")` stands in: its pattern is the mirror image of
+/// that photo.
+///
+/// An opacity channel that is not full everywhere is kept: binarisers take what is transparent as
+/// ground.
+///
+/// At most 30,000 px a side, 200 megapixels and 1 GiB decoded.
+#[stage(
+    role = Reader,
+    source = "ITU-T T.81, 1992; ISO/IEC 15948, 2004",
+    example = "Photos(photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\"), \"back\": MirrorOf(\"front\")})",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty)
+)]
+pub struct Photos {
+    /// The photos by the name of their side, each a file with the garment's real width (or
+    /// `px_per_metre`), or the mirror image of another.
+    photos: BTreeMap<String, PhotoEntry>,
+}
+
+#[stage]
+impl Photos {
+    pub(crate) fn run(&self, cx: &Context) -> Result<Set<Photo>, StageError> {
+        read_photos(&self.photos, cx)
+    }
+}
+
+impl Photos {
+    /// The stage for these photos.
+    pub fn new(photos: BTreeMap<String, PhotoEntry>) -> Self {
+        Photos { photos }
+    }
+}
+
+/// Reads all photos in parallel; a file that is named twice is decoded once.
+///
+/// # Errors
+/// For no photos at all, a width or scale that cannot be, a mirror of nothing or of itself, and what
+/// [`decode`] refuses.
+pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Result<Set<Photo>, StageError> {
+    if entries.is_empty() {
+        return Err(StageError::invalid("there are no photos")
+            .hint("add `photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\")}`")
+            .at("photos"));
+    }
+    let sides = entries
+        .keys()
+        .map(|name| resolve(entries, name).map(|side| (name, side)))
+        .collect::<Result<Vec<_>, _>>()?;
+    let files: BTreeMap<&str, ()> = sides.iter().map(|(_, (file, _))| (file.file.as_str(), ())).collect();
+    let files: Vec<&str> = files.into_keys().collect();
+    cx.progress(0.0, format!("reading {} file(s)", files.len()));
+    let pictures = files.par_iter().map(|file| read_file(file, cx)).collect::<Result<Vec<_>, _>>()?;
+    let pictures: BTreeMap<&str, Picture> = files.iter().copied().zip(pictures).collect();
+    cx.progress(1.0, "photos read");
+    let photo = |(name, (file, mirrored)): (&String, (&PhotoFile, bool))| {
+        let picture = pictures.get(file.file.as_str())?;
+        Some((name.clone(), picture.photo(file, mirrored)))
+    };
+    Ok(sides.into_iter().filter_map(photo).collect())
+}
+
+/// Decoded pixels that several photos may share.
+struct Picture {
+    pixels: Arc<image::RgbImage>,
+    alpha: Option<Arc<image::GrayImage>>,
+}
+
+impl Picture {
+    fn photo(&self, file: &PhotoFile, mirrored: bool) -> Photo {
+        Photo {
+            pixels: self.pixels.clone(),
+            alpha: self.alpha.clone(),
+            px_per_metre: file.px_per_metre,
+            garment_width: file.width.map(Length::metres),
+            mirrored,
+            file: file.file.clone(),
+        }
+    }
+}
+
+fn read_file(file: &str, cx: &Context) -> Result<Picture, StageError> {
+    cx.check()?;
+    let bytes = cx.read(file).map_err(|e| e.at("photos"))?;
+    let Decoded { pixels, alpha } = decode(&bytes, file).map_err(|e| e.at("photos"))?;
+    Ok(Picture { pixels: Arc::new(pixels), alpha: alpha.map(Arc::new) })
+}
+
+/// Follows mirrors to a file; true where the pattern is that file's mirror image.
+fn resolve<'a>(
+    entries: &'a BTreeMap<String, PhotoEntry>,
+    name: &str,
+) -> Result<(&'a PhotoFile, bool), StageError> {
+    let mut at = name;
+    let mut mirrored = false;
+    // A chain longer than the number of entries visits one of them twice.
+    for _ in 0..=entries.len() {
+        match entries.get(at) {
+            Some(PhotoEntry::File(file)) => return checked(name, file).map(|f| (f, mirrored != f.mirror)),
+            Some(PhotoEntry::MirrorOf(other)) => (at, mirrored) = (other, !mirrored),
+            None => return Err(no_such_photo(entries, name, at)),
+        }
+    }
+    Err(StageError::invalid(format!("photo \"{name}\" mirrors itself"))
+        .hint("one of the photos must be a file")
+        .at("photos"))
+}
+
+fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &str) -> StageError {
+    let known: Vec<String> = entries.keys().map(|k| format!("\"{k}\"")).collect();
+    StageError::invalid(format!("photo \"{name}\" is to mirror \"{target}\", which there is not"))
+        .hint(format!("the photos are {}", known.join(", ")))
+        .at("photos")
+}
+
+/// Values set from code have not passed the pipeline reader.
+fn checked<'a>(name: &str, file: &'a PhotoFile) -> Result<&'a PhotoFile, StageError> {
+    let fault = file.width.and_then(width_fault).or(file.px_per_metre.and_then(scale_fault));
+    let fault = fault.or((file.width.is_some() && file.px_per_metre.is_some())
+        .then(|| "both width and px_per_metre are given; one of them fixes the scale".to_owned()));
+    match fault {
+        Some(fault) => {
+            let text = format!("photo \"{name}\": {fault}");
+            Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos"))
+        }
+        None => Ok(file),
+    }
+}
