@@ -31,10 +31,11 @@ pub struct Report {
 
 #[stage]
 impl Report {
-    fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
         super::names::check_name(&self.name)?;
         let page = page(run, self.pictures, cx)?;
-        let html = html(&page).map_err(|e| StageError::internal(format!("the report's template fails: {e}")))?;
+        let html =
+            html(&page).map_err(|e| StageError::internal(format!("the report's template fails: {e}")))?;
         Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
     }
 }

@@ -68,7 +68,7 @@ struct Output {
 /// Gathers the page; `height` is that of the stages' pictures.
 pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, StageError> {
     let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
-    let total: f64 = run.stages.iter().map(|s| s.wall_s).sum();
+    let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
     let views = shown(views(run), &mut budget).0;
     let mut stages = Vec::new();
@@ -104,7 +104,10 @@ fn section(run: &RunLog, index: usize, longest: f64, height: u32, budget: &mut u
         pictures,
         left_out,
         notes: entries(record).flat_map(|(_, a)| notes(a)).take(MOST_NOTES).collect(),
-        outputs: entries(record).map(|(name, a)| output(name, a)).filter(|o| !o.measures.is_empty()).collect(),
+        outputs: entries(record)
+            .map(|(name, a)| output(name, a))
+            .filter(|o| !o.measures.is_empty())
+            .collect(),
     }
 }
 
@@ -207,7 +210,8 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         strains.get((q * last).round() as usize).copied().unwrap_or(0.0) * 100.0
     };
     let open = garment.seams.iter().filter(|s| s.state == toile_core::artifact::SeamState::Open).count();
-    let row = |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
+    let row =
+        |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
     let word = |yes: bool| if yes { "yes" } else { "no" }.to_owned();
     let mut cloth = vec![
         row("vertices", garment.positions.len() as f64, ""),
@@ -226,7 +230,8 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         row("edge strain, greatest", at(1.0), "%"),
     ];
     for panel in &garment.panels {
-        let ((flat, now), (flat_length, length)) = (garment.panel_areas(panel), garment.panel_boundaries(panel));
+        let ((flat, now), (flat_length, length)) =
+            (garment.panel_areas(panel), garment.panel_boundaries(panel));
         let change = |flat: f64, now: f64| if flat > 0.0 { (now - flat) / flat * 100.0 } else { 0.0 };
         cloth.push(row(&format!("{}, change of area", panel.name), change(flat, now), "%"));
         fit.push(row(&format!("{}, change of outline", panel.name), change(flat_length, length), "%"));
