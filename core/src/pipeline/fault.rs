@@ -11,6 +11,9 @@ use std::ops::Range;
 /// The most faults that are drawn with their source; a file with more has one cause for most.
 const MAX_DRAWN: usize = 50;
 
+/// Lines longer than this, bytes, are not drawn: nobody could read them.
+const MAX_LINE: usize = 2000;
+
 /// A place in the pipeline's text, with what is to be said of it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
@@ -114,10 +117,12 @@ impl Faults {
         let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
         let handler = GraphicalReportHandler::new_themed(theme).with_width(100).with_links(false);
         let mut out = String::new();
-        for fault in self.faults.iter().take(MAX_DRAWN) {
-            let drawn = handler.render_report(&mut out, &Drawn { fault, of: self });
-            if drawn.is_err() {
-                let _ = writeln!(out, "{}", fault.message);
+        for (fault, line) in self.faults.iter().zip(self.lines()).take(MAX_DRAWN) {
+            out.push_str(if out.is_empty() { "" } else { "\n" });
+            let drawn =
+                self.can_draw(fault) && handler.render_report(&mut out, &Drawn { fault, of: self }).is_ok();
+            if !drawn {
+                let _ = writeln!(out, "  {line}");
             }
         }
         if self.faults.len() > MAX_DRAWN {
@@ -127,14 +132,30 @@ impl Faults {
     }
 }
 
+impl Faults {
+    /// Each fault as one line: `vest.ron:12:5: message; hint`.
+    fn lines(&self) -> Vec<String> {
+        let line = |r: FaultRecord| {
+            let hint = r.hint.map_or_else(String::new, |h| format!("; {h}"));
+            format!("{}:{}:{}: {}{hint}", r.file, r.line, r.column, r.message)
+        };
+        self.records().into_iter().map(line).collect()
+    }
+
+    fn can_draw(&self, fault: &Fault) -> bool {
+        let fits = |l: &Label| {
+            let before = self.text.get(..l.span.start).and_then(|t| t.rfind('\n')).map_or(0, |i| i + 1);
+            let rest = self.text.get(l.span.end..).unwrap_or("");
+            let after = rest.find('\n').unwrap_or(rest.len());
+            (l.span.end + after).saturating_sub(before) <= MAX_LINE
+        };
+        !self.text.is_empty() && fault.labels.iter().all(fits)
+    }
+}
+
 impl Display for Faults {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        for (i, r) in self.records().iter().enumerate() {
-            let (gap, hint) = (if i == 0 { "" } else { "\n" }, r.hint.as_deref().unwrap_or(""));
-            let join = if hint.is_empty() { "" } else { "; " };
-            write!(f, "{gap}{}:{}:{}: {}{join}{hint}", r.file, r.line, r.column, r.message)?;
-        }
-        Ok(())
+        f.write_str(&self.lines().join("\n"))
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A port is fed by the one *live* maker of its kind. A stage that takes a kind and gives the same
 //! kind supersedes what it took; a port that wants the original goes back to the first maker. Where
-//! two makers are live the file must say `from`. Every clash is a fault with both ends underlined.
+//! two makers are live the file must say `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends underlined.
 //!
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
 //! faulty files.
@@ -144,6 +144,7 @@ impl<'a> Graph<'a> {
                 self.faults.push(fault);
                 Feed::Nothing
             }
+            [.., (node, output)] if self.drafts[i].is_table => Feed::Node { node: *node, port: *output },
             several => {
                 let fault = self.ambiguous(i, port.kind, several);
                 self.faults.push(fault);
@@ -246,15 +247,16 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// A stage that makes a wanted kind out of a given one.
+/// Names the stages that make a wanted kind out of a given one.
 fn between(wanted: &BTreeSet<Kind>, given: &BTreeSet<Kind>, registry: &Registry) -> Option<String> {
-    let fits = |c: &&Card| {
-        let mut needs = required(c).peekable();
-        needs.peek().is_some()
-            && needs.all(|k| given.contains(&k) && !wanted.contains(&k))
-            && c.outputs.iter().any(|o| wanted.contains(&o.kind))
+    let fits = |c: &&Card, kind: Kind| {
+        let needs: BTreeSet<Kind> = required(c).collect();
+        !needs.is_empty() && needs.is_subset(given) && c.outputs.iter().any(|o| o.kind == kind)
     };
-    let card = registry.cards().find(fits)?;
-    let kind = card.outputs.iter().find(|o| wanted.contains(&o.kind))?.kind;
-    Some(format!("`{}()` makes {} from {}; put it between", card.name, a(kind), all_of(required(card))))
+    let kind = *wanted.iter().find(|k| !given.contains(k) && registry.cards().any(|c| fits(&c, **k)))?;
+    let cards: Vec<&Card> = registry.cards().filter(|c| fits(c, kind)).take(MAX_PLACES).collect();
+    let names: Vec<String> = cards.iter().map(|c| format!("`{}()`", c.name)).collect();
+    let (verb, which) = if names.len() == 1 { ("makes", "it") } else { ("make", "one of them") };
+    let from = all_of(cards.iter().flat_map(|c| required(c)));
+    Some(format!("{} {verb} {} from {from}; put {which} between", list(&names, "and"), a(kind)))
 }

@@ -41,6 +41,9 @@ use std::path::{Path, PathBuf};
 /// The largest pipeline file, bytes: a thousand times what a garment needs.
 pub const MAX_BYTES: usize = 4 << 20;
 
+/// The most faults that one load reports; a file with more has one cause for most.
+pub const MAX_FAULTS: usize = 200;
+
 /// The most stages that a pipeline may hold; bounds the work of the graph check.
 pub const MAX_STAGES: usize = 1000;
 
@@ -146,25 +149,27 @@ fn check(
     let mut read = read::file(text, &tree, registry, faults);
     let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
     let feeds = graph::connect(&drafts, registry, faults);
+    // What `ron` alone finds is rare (an unknown extension), and weaker than our own words.
+    if let (true, Some(fault)) = (faults.is_empty(), refused_by_ron(text)) {
+        faults.push(fault);
+    }
     Some((read, drafts, feeds))
 }
 
-/// The syntax tree, once `ron` too has accepted the text.
 fn parse(text: &str) -> Result<tree::Tree, Fault> {
-    let tree = tree::parse(text).map_err(|e| {
+    tree::parse(text).map_err(|e| {
         let fault = Fault::new("syntax", e.message).at(&e.span, "");
-        e.opened.iter().fold(fault, |f, opened| f.at(opened, "opened here"))
-    })?;
+        e.also.iter().fold(fault, |f, (span, what)| f.at(span, *what))
+    })
+}
+
+fn refused_by_ron(text: &str) -> Option<Fault> {
     let bare = text.trim_start_matches('\u{feff}');
-    match crate::param::ron_options().from_str::<serde::de::IgnoredAny>(bare) {
-        Ok(_) => Ok(tree),
-        Err(e) => {
-            let (message, at) = crate::param::ron_fault(bare, &e);
-            let from = text.len() - bare.len() + at.unwrap_or(0);
-            let to = text[from..].chars().next().map_or(from, |c| from + c.len_utf8());
-            Err(Fault::new("syntax", message).at(&(from..to), ""))
-        }
-    }
+    let e = crate::param::ron_options().from_str::<serde::de::IgnoredAny>(bare).err()?;
+    let (message, at) = crate::param::ron_fault(bare, &e);
+    let from = text.len() - bare.len() + at.unwrap_or(0);
+    let to = text[from..].chars().next().map_or(from, |c| from + c.len_utf8());
+    Some(Fault::new("syntax", message).at(&(from..to), ""))
 }
 
 impl Pipeline {

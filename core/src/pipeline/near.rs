@@ -28,7 +28,7 @@ pub(crate) fn hint<'a>(name: &str, known: &str, candidates: &[&'a str]) -> Optio
     let list = (!candidates.is_empty() && candidates.len() <= SHORT_LIST && !known.is_empty())
         .then(|| format!("{known} {}", quoted(candidates)));
     match (near, list) {
-        (Some(near), Some(list)) => Some(format!("{near} {list}")),
+        (Some(near), Some(list)) if candidates.len() > 1 => Some(format!("{near} {list}")),
         (near, list) => near.or(list),
     }
 }

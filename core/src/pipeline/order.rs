@@ -15,13 +15,10 @@ pub(super) fn place(sections: Vec<Draft>, stages: Vec<Draft>) -> Vec<Draft> {
         |d: &Draft| d.from.is_empty() && d.card.as_ref().is_none_or(|c| required(c).next().is_none());
     let (mut placed, mut waiting): (Vec<Draft>, Vec<Draft>) = sections.into_iter().partition(takes_nothing);
     placed.extend(stages);
-    // One section may wait for what another makes, so the list is gone through until nothing moves.
-    while let Some((i, at)) = next(&waiting, &placed) {
+    // One section may wait for what another makes, so the list is gone through until it is empty.
+    while !waiting.is_empty() {
+        let (i, at) = next(&waiting, &placed).unwrap_or_else(|| stuck(&waiting, &placed));
         placed.insert(at, waiting.remove(i));
-    }
-    for draft in waiting {
-        let at = first_use(&draft, &placed);
-        placed.insert(at, draft);
     }
     placed
 }
@@ -45,10 +42,20 @@ fn earliest(draft: &Draft, placed: &[Draft]) -> Option<usize> {
     None
 }
 
-/// Before the first stage that needs what `draft` makes, so that what it lacks is one fault only.
-fn first_use(draft: &Draft, placed: &[Draft]) -> usize {
-    let needs = |card: &Card| required(card).any(|k| makes(draft, k));
-    placed.iter().position(|d| d.card.as_ref().is_some_and(needs)).unwrap_or(placed.len())
+/// Nothing waiting can be fed: takes one that waits for no other, and puts it before the first
+/// stage that needs it, so that what it lacks is one fault only.
+fn stuck(waiting: &[Draft], placed: &[Draft]) -> (usize, usize) {
+    let waits =
+        |d: &&Draft| d.card.iter().flat_map(required).any(|k| waiting.iter().any(|o| is_source(o, k)));
+    let i = waiting.iter().position(|d| !waits(&d)).unwrap_or(0);
+    let needs = |card: &Card| required(card).any(|k| waiting.get(i).is_some_and(|d| makes(d, k)));
+    let at = placed.iter().position(|d| d.card.as_ref().is_some_and(needs)).unwrap_or(placed.len());
+    (i, at)
+}
+
+/// True where the stage makes the kind without taking it.
+fn is_source(draft: &Draft, kind: Kind) -> bool {
+    makes(draft, kind) && !draft.card.iter().flat_map(required).any(|k| k == kind)
 }
 
 fn makes(draft: &Draft, kind: Kind) -> bool {

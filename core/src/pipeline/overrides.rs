@@ -123,12 +123,7 @@ fn bad_value(tree: &Tree, o: &Override, e: &Fault) -> Fault {
     let message = format!("`--set {}`: `{}` is no RON value: {}", o.path, o.value, e.message);
     let hint =
         format!("text stands in quotes: `--set '{}=\"{}\"'`", o.path, o.value.trim_matches(['"', '\'']));
-    Fault::new("bad_override", message).at(&head(tree), "").hint(hint)
-}
-
-/// The first character of a value: enough to point at a long one.
-fn head(tree: &Tree) -> Range<usize> {
-    tree.span.start..(tree.span.start + 1).min(tree.span.end)
+    Fault::new("bad_override", message).at(&tree.head(), "").hint(hint)
 }
 
 /// One override on its way down the tree.
@@ -146,16 +141,16 @@ impl Walk<'_> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
         let Shape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
-            return Err(self.fault(format!("there is no field `{field}`"), &head(tree)));
+            return Err(self.fault(format!("there is no field `{field}`"), &tree.head()));
         };
         if !known.contains(&field) {
-            return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known, &head(tree)));
+            return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known, &tree.head()));
         }
         let Some((key, value)) = self.entry(entries, field) else {
             return match self.segments.len() {
                 1 => Ok(Edit::insert(*inside, entries, field, self.value)),
                 _ => {
-                    let fault = self.fault(format!("the file has no `{field}`"), &head(tree));
+                    let fault = self.fault(format!("the file has no `{field}`"), &tree.head());
                     Err(fault.hint(format!("set all of it: `--set '{field}=...'`")))
                 }
             };

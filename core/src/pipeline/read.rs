@@ -2,7 +2,8 @@
 
 use super::fault::Fault;
 use super::tree::{Bracket, Entry, Shape, Tree};
-use super::{Feed, MAX_STAGES, Node, near, typed};
+use super::words::is_table;
+use super::{Feed, MAX_FAULTS, MAX_STAGES, Node, near, typed};
 use crate::param::ron_options;
 use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue, Stage};
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,6 +32,8 @@ pub(super) struct Draft {
     /// Its card; of an unknown stage, the card of the one that was probably meant, so that the
     /// graph can be checked all the same.
     pub(super) card: Option<Card>,
+    /// True of a table section, which has no place for `from`.
+    pub(super) is_table: bool,
     pub(super) span: Range<usize>,
     pub(super) place: Range<usize>,
     pub(super) params: BTreeMap<String, Range<usize>>,
@@ -61,27 +64,26 @@ pub(super) struct Read {
 pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Vec<Fault>) -> Read {
     let mut r = Reader { text, registry, faults };
     let Shape::Group { name: None, bracket: Bracket::Round, entries, .. } = &tree.shape else {
-        r.fault("not_a_pipeline", "a pipeline file is written `(name: ..., stages: [...])`", &tree.span);
-        return Read::default();
+        r.fault("not_a_pipeline", "a pipeline file is written `(name: ..., stages: [...])`", &tree.head());
+        return Read { stages: vec![Draft::unknown(&tree.span)], ..Read::default() };
     };
-    let fields = r.fields(entries);
-    r.known_fields(&fields);
+    let mut fields = r.fields(entries);
+    r.known_fields(&mut fields);
     let mut read = Read {
         name: fields.get("name").and_then(|(_, v)| r.text_value("name", v)),
         plugins: fields.get("plugins").map(|(_, v)| r.texts("plugins", v)).unwrap_or_default(),
         ..Read::default()
     };
-    read.plugins.dedup();
     let registered = registry.sections().iter().filter_map(|s| Some((s, fields.get(s.field)?)));
-    read.sections = registered.filter_map(|(s, (key, value))| r.section(s, key, value)).collect();
-    match fields.get("stages") {
-        Some((_, list)) => read.stages = r.stages(list),
+    read.sections = registered.map(|(s, (key, value))| r.section(s, key, value)).collect();
+    read.stages = match fields.get("stages") {
+        Some((_, list)) => r.stages(list),
         None => {
-            let here = tree.span.start..tree.span.start + 1;
-            let fault = Fault::new("missing_field", "the field `stages` is missing").at(&here, "");
-            r.faults.push(fault.hint(Some("write `stages: [ ... ]` with the stages in their order".into())));
+            let fault = Fault::new("missing_field", "the field `stages` is missing").at(&tree.head(), "");
+            r.push(fault.hint("write `stages: [ ... ]` with the stages in their order".to_owned()));
+            vec![Draft::unknown(&tree.span)]
         }
-    }
+    };
     name_all(read.sections.iter_mut().chain(&mut read.stages), r.faults);
     read
 }
@@ -123,7 +125,13 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn fault(&mut self, code: &'static str, message: impl Into<String>, span: &Range<usize>) {
-        self.faults.push(Fault::new(code, message).at(span, ""));
+        self.push(Fault::new(code, message).at(span, ""));
+    }
+
+    fn push(&mut self, fault: Fault) {
+        if self.faults.len() < MAX_FAULTS {
+            self.faults.push(fault);
+        }
     }
 
     fn at(&self, span: &Range<usize>) -> &str {
@@ -131,7 +139,7 @@ impl Reader<'_> {
     }
 
     /// Named entries; the first of each name counts, a second one is a fault.
-    fn fields<'t>(&mut self, entries: &'t [Entry]) -> Fields<'t> {
+    fn fields<'t>(&mut self, entries: impl IntoIterator<Item = &'t Entry>) -> Fields<'t> {
         let mut fields = Fields::new();
         for entry in entries {
             let Some(key) = &entry.key else {
@@ -141,7 +149,7 @@ impl Reader<'_> {
             let name = self.at(key).to_owned();
             if let Some((first, _)) = fields.get(&name) {
                 let fault = Fault::new("duplicate_field", format!("the field `{name}` is given twice"));
-                self.faults.push(fault.at(key, "again here").at(first, "first here"));
+                self.push(fault.at(key, "again here").at(first, "first here"));
                 continue;
             }
             fields.insert(name, (key.clone(), &entry.value));
@@ -149,12 +157,19 @@ impl Reader<'_> {
         fields
     }
 
-    fn known_fields(&mut self, fields: &Fields<'_>) {
+    /// Reports unknown fields; one that is a misspelt other is then read as that other, so that the
+    /// faults within it are found in the same run.
+    fn known_fields(&mut self, fields: &mut Fields<'_>) {
         let known = top_level(self.registry);
-        for (name, (key, _)) in fields.iter().filter(|(name, _)| !known.contains(&name.as_str())) {
-            let hint = near::hint(name, "a pipeline has the fields", &known);
-            self.faults
-                .push(Fault::new("unknown_field", format!("unknown field `{name}`")).at(key, "").hint(hint));
+        let unknown = fields.keys().filter(|name| !known.contains(&name.as_str()));
+        let unknown: Vec<String> = unknown.take(MAX_FAULTS).cloned().collect();
+        for name in unknown {
+            let Some((key, value)) = fields.remove(&name) else { continue };
+            let hint = near::hint(&name, "a pipeline has the fields", &known);
+            self.push(Fault::new("unknown_field", format!("unknown field `{name}`")).at(&key, "").hint(hint));
+            if let Some(meant) = near::nearest(&name, known.iter().copied()) {
+                fields.entry(meant.to_owned()).or_insert((key, value));
+            }
         }
     }
 
@@ -181,20 +196,20 @@ impl Reader<'_> {
 
     fn stages(&mut self, list: &Tree) -> Vec<Draft> {
         let Shape::Group { bracket: Bracket::Square, entries, .. } = &list.shape else {
-            self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.span);
-            return Vec::new();
+            self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.head());
+            return vec![Draft::unknown(&list.span)];
         };
         if entries.is_empty() {
             self.fault("bad_value", "`stages` holds no stage", &list.span);
         }
         if let Some(extra) = entries.get(MAX_STAGES) {
             let message = format!("{} stages, the limit is {MAX_STAGES}", entries.len());
-            self.fault("too_large", message, &extra.value.span);
+            self.fault("too_large", message, &extra.value.head());
         }
-        entries.iter().take(MAX_STAGES).filter_map(|e| self.stage(&e.value, None)).collect()
+        entries.iter().take(MAX_STAGES).map(|e| self.stage(&e.value, None)).collect()
     }
 
-    fn section(&mut self, section: &Section, key: &Range<usize>, value: &Tree) -> Option<Draft> {
+    fn section(&mut self, section: &Section, key: &Range<usize>, value: &Tree) -> Draft {
         match section.holds {
             SectionValue::Stage(role) => self.stage(value, Some((section.field, role))),
             SectionValue::Table { stage, param } => self.table(key, value, stage, param),
@@ -202,30 +217,31 @@ impl Reader<'_> {
     }
 
     /// A table section: its whole value is one parameter of its stage.
-    fn table(&mut self, key: &Range<usize>, value: &Tree, stage: &str, param: &'static str) -> Option<Draft> {
-        let Some(card) = self.registry.card(stage).cloned() else {
+    fn table(&mut self, key: &Range<usize>, value: &Tree, stage: &str, param: &'static str) -> Draft {
+        let card = self.registry.card(stage).cloned();
+        let doc = card.as_ref().and_then(|c| c.params.iter().find(|p| p.name == param)).cloned();
+        let mut draft = Draft { is_table: true, ..Draft::new(stage, &value.span, key, card) };
+        let Some(doc) = doc else {
             let message = format!("the stage `{stage}`, which reads this field, is not in this program");
             self.fault("unknown_stage", message, key);
-            return None;
+            return draft;
         };
-        let mut draft = Draft::new(stage, &value.span, key, Some(card.clone()));
-        let clean = card.params.iter().find(|p| p.name == param).is_some_and(|doc| self.check(doc, value));
         draft.params.insert(param.to_owned(), value.span.clone());
-        if clean {
+        if self.check(&doc, value) {
             self.make(&mut draft);
         }
-        Some(draft)
+        draft
     }
 
     /// A stage as it is written, `Name(field: value)`; in a section it must have that section's role.
-    fn stage(&mut self, value: &Tree, section: Option<(&str, Role)>) -> Option<Draft> {
+    fn stage(&mut self, value: &Tree, section: Option<(&str, Role)>) -> Draft {
         let (name_span, entries) = match &value.shape {
             Shape::Group { name: Some(name), entries, .. } => (name, Some(entries)),
             Shape::Name => (&value.span, None),
             _ => {
-                let message = "expected a stage, written `Name(field: value)`";
-                self.fault("not_a_stage", message, &value.span);
-                return None;
+                self.fault("not_a_stage", "expected a stage, written `Name(field: value)`", &value.head());
+                let card = section.and_then(|(_, role)| self.fit(role).next().cloned());
+                return Draft { card, ..Draft::unknown(&value.span) };
             }
         };
         let name = self.at(name_span).to_owned();
@@ -236,43 +252,45 @@ impl Reader<'_> {
             Some(entries) => self.arguments(&mut draft, entries),
             None => {
                 let fault = Fault::new("not_a_stage", format!("`{name}` needs brackets")).at(name_span, "");
-                self.faults.push(fault.hint(format!("write `{name}()`")));
+                self.push(fault.hint(format!("write `{name}()`")));
             }
         }
         if self.faults.len() == before {
             self.make(&mut draft);
         }
-        Some(draft)
+        draft
+    }
+
+    /// The stages that may stand in a section of that role.
+    fn fit(&self, role: Role) -> impl Iterator<Item = &Card> {
+        self.registry.of_role(role).filter(|c| !is_table(c, self.registry))
     }
 
     /// The stage's card, or that of the stage that was probably meant.
     fn card(&mut self, name: &str, span: &Range<usize>, section: Option<(&str, Role)>) -> Option<Card> {
-        let of_role = |c: &&Card| section.is_none_or(|(_, role)| c.role == role);
-        let names: Vec<&str> = self.registry.cards().filter(of_role).map(|c| c.name).collect();
-        match (self.registry.card(name), section) {
-            (Some(card), Some((field, role))) if card.role != role => {
-                let message = format!(
-                    "`{field}` wants a {} stage, `{name}` is a {}",
-                    role.as_str(),
-                    card.role.as_str()
-                );
+        let names: Vec<&str> = match section {
+            Some((_, role)) => self.fit(role).map(|c| c.name).collect(),
+            None => self.registry.cards().map(|c| c.name).collect(),
+        };
+        let (fault, meant) = match (self.registry.card(name), section) {
+            (Some(card), Some((field, role))) if !names.contains(&name) => {
+                let message = format!("`{field}` wants a {}, `{name}` is a {}", noun(role), noun(card.role));
                 let known = (!names.is_empty()).then(|| format!("there is {}", near::quoted(&names)));
-                self.faults.push(Fault::new("wrong_role", message).at(span, "").hint(known));
-                self.registry.of_role(role).next().cloned()
+                (Fault::new("wrong_role", message).hint(known), names.first().copied())
             }
-            (Some(card), _) => Some(card.clone()),
+            (Some(card), _) => return Some(card.clone()),
             (None, _) => {
                 let listing = if section.is_some() { "there is" } else { "" };
                 let hint = near::hint(name, listing, &names)
                     .unwrap_or_else(|| "`toile stages` lists those that there are".into());
-                self.faults.push(
-                    Fault::new("unknown_stage", format!("unknown stage `{name}`")).at(span, "").hint(hint),
-                );
-                let meant =
-                    near::nearest(name, names.iter().copied()).or(section.and(names.first().copied()));
-                meant.and_then(|n| self.registry.card(n)).cloned()
+                let near = near::nearest(name, names.iter().copied());
+                let meant = near.or(section.and(names.first().copied()));
+                (Fault::new("unknown_stage", format!("unknown stage `{name}`")).hint(hint), meant)
             }
-        }
+        };
+        let card = meant.and_then(|n| self.registry.card(n)).cloned();
+        self.push(fault.at(span, ""));
+        card
     }
 
     fn arguments(&mut self, draft: &mut Draft, entries: &[Entry]) {
@@ -288,8 +306,7 @@ impl Reader<'_> {
         if let Some(unnamed) = entries.iter().find(|e| e.key.is_none()) {
             self.unnamed(known.as_ref(), &draft.name, unnamed);
         }
-        let named: Vec<Entry> = entries.iter().filter(|e| e.key.is_some()).cloned().collect();
-        for (name, (key, value)) in self.fields(&named) {
+        for (name, (key, value)) in self.fields(entries.iter().filter(|e| e.key.is_some())) {
             match (name.as_str(), &known) {
                 ("id", _) => draft.given_id = self.id(value),
                 ("from", _) => draft.from = self.from(value),
@@ -309,17 +326,20 @@ impl Reader<'_> {
 
     fn no_params(&mut self, draft: &Draft, span: &Range<usize>) {
         let fault = Fault::new("unknown_param", format!("`{}` has no parameters", draft.name)).at(span, "");
-        self.faults.push(fault.hint(format!("write `{}()`", draft.name)));
+        self.push(fault.hint(format!("write `{}()`", draft.name)));
     }
 
     fn unnamed(&mut self, card: Option<&Card>, name: &str, entry: &Entry) {
         let message = format!("`{name}` takes one value without a name at most, and then no others");
         let first = card.and_then(|c| c.params.first()).map_or("field", |p| p.name);
         let fault = Fault::new("unnamed_value", message).at(&entry.value.span, "");
-        self.faults.push(fault.hint(format!("write `{name}({first}: ..., ...)`")));
+        self.push(fault.hint(format!("write `{name}({first}: ..., ...)`")));
     }
 
     fn unknown_param(&mut self, card: &Card, name: &str, key: &Range<usize>) {
+        if self.faults.len() >= MAX_FAULTS {
+            return;
+        }
         let names: Vec<&str> = card.params.iter().map(|p| p.name).chain(GENERIC).collect();
         let own: Vec<&str> = card.params.iter().map(|p| p.name).collect();
         let near = near::nearest(name, names.iter().copied()).map(|n| format!("did you mean `{n}`?"));
@@ -329,19 +349,18 @@ impl Reader<'_> {
         };
         let hint = near.map_or_else(|| list.clone(), |near| format!("{near} {list}"));
         let message = format!("unknown parameter `{name}`");
-        self.faults.push(Fault::new("unknown_param", message).at(key, "").hint(hint));
+        self.push(Fault::new("unknown_param", message).at(key, "").hint(hint));
     }
 
     /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
         let Err(e) = (doc.check)(self.at(&value.span), doc) else { return true };
-        let at = value.span.start + e.offset.unwrap_or(0);
-        let (inner, key) = if e.offset.is_some() { value.innermost(at) } else { (value, None) };
+        let (span, key) = e.offset.map_or((value.span.clone(), None), |o| value.locate(value.span.start + o));
         let message = match key {
-            Some(key) => format!("`{}` in `{}`: {}", self.at(key).trim_matches('"'), doc.name, e.reason),
+            Some(key) => format!("`{}` in `{}`: {}", self.at(&key).trim_matches('"'), doc.name, e.reason),
             None => e.message,
         };
-        self.faults.push(Fault::new("bad_value", message).at(&inner.span, "").hint(e.hint));
+        self.push(Fault::new("bad_value", message).at(&span, "").hint(e.hint));
         false
     }
 
@@ -381,6 +400,11 @@ impl Reader<'_> {
 }
 
 impl Draft {
+    /// Something in place of a stage, of which nothing is known.
+    fn unknown(span: &Range<usize>) -> Self {
+        Draft::new("", span, span, None)
+    }
+
     fn new(name: &str, span: &Range<usize>, place: &Range<usize>, card: Option<Card>) -> Self {
         Draft {
             id: String::new(),
@@ -388,11 +412,20 @@ impl Draft {
             given_id: None,
             from: Vec::new(),
             card,
+            is_table: false,
             span: span.clone(),
             place: place.clone(),
             params: BTreeMap::new(),
             stage: None,
         }
+    }
+}
+
+/// A stage of that role in words: `mesher`, `body stage`.
+fn noun(role: Role) -> String {
+    match role {
+        Role::Style | Role::Body | Role::Fabric | Role::Placement => format!("{} stage", role.as_str()),
+        _ => role.as_str().to_owned(),
     }
 }
 

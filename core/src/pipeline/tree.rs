@@ -59,8 +59,8 @@ pub(super) struct Entry {
 pub(super) struct SyntaxFault {
     pub(super) message: String,
     pub(super) span: Range<usize>,
-    /// The bracket that it is about.
-    pub(super) opened: Option<Range<usize>>,
+    /// Other places that it is about, with what is there.
+    pub(super) also: Vec<(Range<usize>, &'static str)>,
 }
 
 impl Tree {
@@ -72,14 +72,30 @@ impl Tree {
         }
     }
 
-    /// The smallest value that covers the byte `at`, with the name of the field that holds it.
-    pub(super) fn innermost(&self, at: usize) -> (&Tree, Option<&Range<usize>>) {
+    /// What to underline where a whole group would be too much: its name, or its bracket.
+    pub(super) fn head(&self) -> Range<usize> {
+        match &self.shape {
+            Shape::Group { name: Some(name), .. } => name.clone(),
+            Shape::Group { .. } => self.span.start..self.span.start + 1,
+            _ => self.span.clone(),
+        }
+    }
+
+    /// What a fault at the byte `at` should underline: a field's name where it lies there, else the
+    /// smallest value that covers it (of a named group, the name), with the field that holds it.
+    pub(super) fn locate(&self, at: usize) -> (Range<usize>, Option<Range<usize>>) {
         let (mut tree, mut key) = (self, None);
         while let Some(e) = tree.entries().iter().find(|e| covers(e, at)) {
-            key = e.key.as_ref().or(key);
+            if let Some(k) = e.key.as_ref().filter(|k| k.contains(&at)) {
+                return (k.clone(), None);
+            }
+            key = e.key.clone().or(key);
             tree = &e.value;
         }
-        (tree, key)
+        match &tree.shape {
+            Shape::Group { name: Some(name), .. } if name.contains(&at) => (name.clone(), key),
+            _ => (tree.span.clone(), key),
+        }
     }
 }
 
@@ -109,7 +125,7 @@ impl Bracket {
 
 /// Parses a whole text: one value, with comments and white space around it.
 pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
-    let mut p = Parser { text, at: 0 };
+    let mut p = Parser { text, at: 0, long_text: None };
     p.eat("\u{feff}");
     p.attributes()?;
     if p.rest().is_empty() {
@@ -124,12 +140,15 @@ pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
 }
 
 fn fault(message: impl Into<String>, span: Range<usize>) -> SyntaxFault {
-    SyntaxFault { message: message.into(), span, opened: None }
+    SyntaxFault { message: message.into(), span, also: Vec::new() }
 }
 
 struct Parser<'a> {
     text: &'a str,
     at: usize,
+    /// The opening quote of the last text that runs over a line's end: often one that was to end
+    /// on its line.
+    long_text: Option<Range<usize>>,
 }
 
 impl<'a> Parser<'a> {
@@ -279,7 +298,12 @@ impl<'a> Parser<'a> {
             self.at += c.len_utf8();
             match c {
                 '\\' => self.at = self.here().end,
-                c if c == close => return Ok(()),
+                c if c == close => {
+                    if self.text[from..self.at].contains('\n') {
+                        self.long_text = Some(from..from + open);
+                    }
+                    return Ok(());
+                }
                 '\n' if close == '\'' => break,
                 _ => {}
             }
@@ -334,15 +358,18 @@ impl<'a> Parser<'a> {
         }
     }
 
-    /// At the end of the file the bracket is at fault; else what stands here is.
+    /// At the end of the file the bracket is at fault, else what stands here.
     fn unclosed(&self, opened: &Range<usize>, expected: &str) -> SyntaxFault {
         match self.peek() {
             None => fault(format!("this `{}` is never closed", &self.text[opened.clone()]), opened.clone()),
-            Some(_) => SyntaxFault {
-                message: format!("expected {expected}, found {}", self.found()),
-                span: self.here(),
-                opened: Some(opened.clone()),
-            },
+            Some(_) => {
+                let message = format!("expected {expected}, found {}", self.found());
+                let mut also = vec![(opened.clone(), "opened here")];
+                also.extend(
+                    self.long_text.iter().map(|t| (t.clone(), "this text runs over the end of its line")),
+                );
+                SyntaxFault { message, span: self.here(), also }
+            }
         }
     }
 

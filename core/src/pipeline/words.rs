@@ -1,7 +1,7 @@
 //! Kinds and stages in the words of diagnostics.
 
 use crate::artifact::{ArtifactType, RunLog};
-use crate::{Card, Kind, Registry, SectionValue};
+use crate::{Card, Kind, Registry, Section, SectionValue};
 use std::collections::BTreeSet;
 
 /// The most stages that a hint names.
@@ -45,28 +45,46 @@ pub(super) fn bridge(wanted: Kind, live: &BTreeSet<Kind>, registry: &Registry) -
     let best = if ready.is_empty() { &makers } else { &ready };
     // Stages that start from the same kinds are named together.
     let sources: BTreeSet<Kind> = required(best.first()?).collect();
-    let alike: Vec<String> = best
+    let alike: Vec<&Card> = best
         .iter()
+        .copied()
         .filter(|c| required(c).collect::<BTreeSet<_>>() == sources)
         .take(MAX_NAMED)
-        .map(|c| written(c, registry))
         .collect();
+    let words: Vec<String> = alike.iter().map(|c| written(c, registry)).collect();
     let from = if sources.is_empty() { String::new() } else { format!(" from {}", all_of(sources)) };
-    let advice = match (ready.is_empty(), alike.len()) {
-        (true, _) => "",
-        (false, 1) => "; put it before",
-        (false, _) => "; put one of them before",
+    let is_section = alike.first().is_some_and(|c| section_of(c, registry).is_some());
+    let advice = match (ready.is_empty(), is_section, alike.len()) {
+        (true, ..) => "",
+        (_, true, 1) => "; add it",
+        (_, true, _) => "; add one of them",
+        (_, false, 1) => "; put it before",
+        (_, false, _) => "; put one of them before",
     };
     let verb = if alike.len() == 1 { "makes" } else { "make" };
-    Some(format!("{} {verb} {}{from}{advice}", list(&alike, "and"), a(wanted)))
+    Some(format!("{} {verb} {}{from}{advice}", list(&words, "and"), a(wanted)))
+}
+
+/// The section that holds such a stage.
+fn section_of<'a>(card: &Card, registry: &'a Registry) -> Option<&'a Section> {
+    let of = |s: &&Section| match s.holds {
+        SectionValue::Stage(role) => role == card.role && !is_table(card, registry),
+        SectionValue::Table { stage, .. } => stage == card.name,
+    };
+    registry.sections().iter().find(of)
+}
+
+/// True where a table section stands for this very stage.
+pub(super) fn is_table(card: &Card, registry: &Registry) -> bool {
+    let of = |s: &Section| matches!(s.holds, SectionValue::Table { stage, .. } if stage == card.name);
+    registry.sections().iter().any(of)
 }
 
 /// A stage as the user would write it: `` `Otsu()` ``, `` `body: Mannequin()` ``, `` `photos: ...` ``.
 fn written(card: &Card, registry: &Registry) -> String {
-    let section = registry.sections().iter().find_map(|s| match s.holds {
-        SectionValue::Stage(role) if role == card.role => Some(format!("`{}: {}()`", s.field, card.name)),
-        SectionValue::Table { stage, .. } if stage == card.name => Some(format!("`{}: ...`", s.field)),
-        _ => None,
-    });
-    section.unwrap_or_else(|| format!("`{}()`", card.name))
+    match section_of(card, registry) {
+        Some(Section { field, holds: SectionValue::Stage(_) }) => format!("`{field}: {}()`", card.name),
+        Some(Section { field, .. }) => format!("`{field}: ...`"),
+        None => format!("`{}()`", card.name),
+    }
 }

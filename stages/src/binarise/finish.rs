@@ -17,14 +17,15 @@ pub struct Finish {
     pub close: u32,
     /// Holes up to this share of the garment's area are filled.
     pub holes: f64,
+    /// The garment may touch the frame over this share of the photo's shorter side; where it touches
+    /// more, it is cut.
+    pub touch: f64,
 }
 
 /// The least share of the photo that a garment covers: anything smaller is a speck.
 const LEAST_AREA: f64 = 0.005;
 /// From this share of the largest piece on, a second piece is a second garment and not a stain.
 const SECOND_GARMENT: f64 = 0.5;
-/// The garment may touch the frame over this share of the frame's shorter side; more, and it is cut.
-pub const FRAME_TOUCH: f64 = 0.05;
 /// A picture whose rim is transparent to this share has had its ground cut away.
 const CUT_OUT_RIM: f64 = 0.9;
 
@@ -41,7 +42,7 @@ pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) ->
     let mask = close(&open(&mask, settings.open), settings.close);
     cx.check()?;
     let pieces = Regions::of(&mask);
-    let kept = one_garment(&pieces, photo)?;
+    let kept = one_garment(&pieces, photo, settings)?;
     cx.check()?;
     let mask = fill_holes(pieces.paint(|i, _| i == kept), settings.holes);
     let mask = Mask { pixels: mask.into() };
@@ -74,7 +75,7 @@ pub fn fill_holes(mask: GrayImage, share: f64) -> GrayImage {
 }
 
 /// The one garment among the pieces.
-fn one_garment(regions: &Regions, photo: &Photo) -> Result<usize, StageError> {
+fn one_garment(regions: &Regions, photo: &Photo, settings: Finish) -> Result<usize, StageError> {
     let order = regions.by_size();
     let least = LEAST_AREA * frame_area(photo);
     let Some(&largest) = order.first().filter(|&&i| regions.pieces[i].area as f64 >= least) else {
@@ -83,7 +84,7 @@ fn one_garment(regions: &Regions, photo: &Photo) -> Result<usize, StageError> {
     let garment = regions.pieces[largest];
     let (w, h) = photo.pixels.dimensions();
     let touch = garment.frame as f64 / f64::from(w.min(h));
-    if touch > FRAME_TOUCH {
+    if touch > settings.touch {
         return Err(StageError::invalid(format!(
             "the garment in \"{}\" is cut by the frame: it touches it over {} px",
             photo.file, garment.frame

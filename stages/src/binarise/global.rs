@@ -27,6 +27,9 @@ pub struct Global {
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 0.2, min = 0.0, max = 1.0)]
     holes: f64,
+    /// The garment may touch the frame over this share of the photo's shorter side.
+    #[param(default = 0.05, min = 0.0, max = 4.0)]
+    touch: f64,
     /// Specks and hairs thinner than this radius are taken off.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
     open: u32,
@@ -43,7 +46,7 @@ impl Global {
             Some(mask) => mask,
             None => global(&luma(&photo.pixels), photo, self.threshold, self.garment),
         };
-        let settings = Finish { open: self.open, close: self.close, holes: self.holes };
+        let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
         finish(raw, photo, settings, cx)
     }
 }

@@ -52,6 +52,9 @@ pub struct Local {
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
     holes: f64,
+    /// The garment may touch the frame over this share of the photo's shorter side.
+    #[param(default = 0.05, min = 0.0, max = 4.0)]
+    touch: f64,
     /// Specks and hairs thinner than this radius are taken off.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
     open: u32,
@@ -67,7 +70,7 @@ const MAX_RADIUS_PX: u32 = 2000;
 impl Local {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
         has_pixels(photo)?;
-        let settings = Finish { open: self.open, close: self.close, holes: self.holes };
+        let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
         if let Some(mask) = cut_out(photo) {
             return finish(mask, photo, settings, cx);
         }

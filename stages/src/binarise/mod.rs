@@ -5,21 +5,31 @@
 //! | `Global` | grey levels against a fixed threshold | a studio that never changes |
 //! | `Otsu` | grey levels against the threshold that parts them best | a plain ground |
 //! | `Local` | grey levels against their surroundings | a plain ground in uneven light |
+//! | `Background` | colour against the colours along the frame | rugs, wood, patterns |
+//! | `GraphCut` | colour models and edges together | the hardest photos |
 //!
 //! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
 //! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
 //! picture whose rim is transparent has its mask already.
 
+mod background;
+mod cut;
 mod finish;
 mod global;
+mod graph_cut;
 mod local;
+mod mixture;
 mod morphology;
 mod otsu;
+mod refine;
 mod regions;
+mod small;
 mod tone;
 
-pub use finish::{FRAME_TOUCH, Finish, cut_out, fill_holes, finish, no_garment};
+pub use background::Background;
+pub use finish::{Finish, cut_out, fill_holes, finish, no_garment};
 pub use global::{Global, global};
+pub use graph_cut::GraphCut;
 pub use local::{Local, LocalMethod, local};
 pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
 pub use otsu::{Otsu, Split, otsu};
@@ -30,5 +40,5 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Global>().add::<Otsu>().add::<Local>();
+    registry.add::<Global>().add::<Otsu>().add::<Local>().add::<Background>().add::<GraphCut>();
 }

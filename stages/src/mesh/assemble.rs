@@ -1,7 +1,12 @@
-//! From vertices and triangles to a panel, with a last look at what was promised.
+//! The frame around both meshers: check, divide, mesh, look at the angles, put the panel together.
+//!
+//! Where a panel is thinner than the edge length (a strap, a belt), triangles on the outline are thin
+//! because their sides on it are long. Stretches without a name are then divided twice as fine, and
+//! the panel is meshed anew; counts of named edges are agreed with other panels and stay.
 
-use super::check::show;
-use super::divide::Division;
+use super::check::{check_outline, show};
+use super::divide::{Division, divide};
+use super::predicates::least_angle;
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
 
@@ -14,8 +19,66 @@ pub(crate) struct Meshed {
     pub triangles: Vec<[u32; 3]>,
 }
 
+/// A triangle on the outline below this angle (degrees) asks for a finer division there.
+const THIN: f64 = 20.0;
+
+/// A side on the outline is to blame for a thin triangle if it is this much longer than another.
+const LONG: f64 = 1.5;
+
+/// How often stretches may be divided finer: three times is an eighth of the edge length.
+const FINER: usize = 3;
+
+/// Meshes an outline at an edge length `h` (metres) by a mesher of divided outlines.
+pub(crate) fn mesh_outline(
+    outline: &Outline,
+    h: f64,
+    cx: &Context,
+    mesh: impl Fn(&Division) -> Result<Meshed, StageError>,
+) -> Result<Panel, StageError> {
+    check_outline(outline, h, cx)?;
+    let mut division = divide(outline, h, &[])?;
+    let mut finer = vec![1; division.stretches.len()];
+    let mut meshed = mesh(&division)?;
+    for _ in 0..FINER {
+        let thin = thin_stretches(&division, &meshed);
+        if thin.is_empty() {
+            break;
+        }
+        thin.iter().for_each(|&k| finer[k] *= 2);
+        cx.check()?;
+        division = divide(outline, h, &finer)?;
+        meshed = mesh(&division)?;
+    }
+    assemble(outline, &division, meshed, h, cx)
+}
+
+/// Unnamed stretches on which a thin triangle has a long side.
+fn thin_stretches(division: &Division, meshed: &Meshed) -> Vec<usize> {
+    let mut next = vec![u32::MAX; meshed.points.len()];
+    division.loop_segments().iter().for_each(|s| next[s[0] as usize] = s[1]);
+    let at = |v: u32| meshed.points[v as usize];
+    let mut thin = Vec::new();
+    for t in &meshed.triangles {
+        for k in 0..3 {
+            let (a, b, c) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+            if next[a as usize] != b {
+                continue;
+            }
+            let side = (at(b) - at(a)).norm();
+            let long = side > LONG * (at(c) - at(b)).norm().min((at(c) - at(a)).norm());
+            let stretch = division.stretches.partition_point(|s| s.0 <= a) - 1;
+            if long && division.stretches[stretch].1 && least_angle(at(a), at(b), at(c)) < THIN.to_radians() {
+                thin.push(stretch);
+            }
+        }
+    }
+    thin.sort_unstable();
+    thin.dedup();
+    thin
+}
+
 /// Puts a panel together and tells its figures.
-pub(crate) fn assemble(
+fn assemble(
     outline: &Outline,
     division: &Division,
     meshed: Meshed,

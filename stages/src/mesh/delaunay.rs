@@ -8,9 +8,8 @@
 //! Limits: where segments of very different length meet at a sharp corner, the angle asked for
 //! cannot be had; the figure `least_angle` tells.
 
-use super::assemble::{Meshed, assemble};
-use super::check::check_outline;
-use super::divide::{Division, divide};
+use super::assemble::{Meshed, mesh_outline};
+use super::divide::Division;
 use super::lattice::Lattice;
 use super::refine::{improve, relax};
 use super::triangulate::triangulate;
@@ -51,11 +50,9 @@ pub struct DelaunayMesher {
 impl DelaunayMesher {
     pub(crate) fn run(&self, outline: &Outline, cx: &Context) -> Result<Panel, StageError> {
         let h = self.edge.metres();
-        check_outline(outline, h, cx)?;
-        let division = divide(outline, h)?;
-        cx.check()?;
-        let meshed = delaunay_mesh(outline, &division, h, self.least_angle.to_radians(), cx)?;
-        assemble(outline, &division, meshed, h, cx)
+        mesh_outline(outline, h, cx, |division| {
+            delaunay_mesh(outline, division, h, self.least_angle.to_radians(), cx)
+        })
     }
 }
 

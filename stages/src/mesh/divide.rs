@@ -41,11 +41,13 @@ pub(crate) struct Division {
     pub deviation: f64,
     /// The edge (or `the outline`) where it does.
     pub deviates: String,
+    /// The first vertices of the stretches, ascending, and whether each has no name.
+    pub stretches: Vec<(u32, bool)>,
 }
 
 impl Division {
     /// Segments of the loops.
-    pub fn loop_segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn loop_segments(&self) -> Vec<[u32; 2]> {
         let closed = |l: &Vec<u32>| {
             let n = l.len();
             (0..n).map(|k| [l[k], l[(k + 1) % n]]).collect::<Vec<_>>()
@@ -54,12 +56,12 @@ impl Division {
     }
 
     /// Segments of the inner lines.
-    pub fn chain_segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn chain_segments(&self) -> Vec<[u32; 2]> {
         self.chains.iter().flat_map(|c| c.vertices.windows(2).map(|w| [w[0], w[1]])).collect()
     }
 
     /// Segments of loops and inner lines.
-    pub fn segments(&self) -> Vec<[u32; 2]> {
+    pub(crate) fn segments(&self) -> Vec<[u32; 2]> {
         [self.loop_segments(), self.chain_segments()].concat()
     }
 }
@@ -74,13 +76,14 @@ struct Stretch<'a> {
     closed: bool,
 }
 
-/// Divides an outline that has been checked, at a target edge length `h` (metres).
-pub(crate) fn divide(outline: &Outline, h: f64) -> Result<Division, StageError> {
+/// Divides an outline that has been checked, at a target edge length `h` (metres). The k-th stretch
+/// is cut `finer[k]` times as fine if it has no name (1 where the list is too short).
+pub(crate) fn divide(outline: &Outline, h: f64, finer: &[usize]) -> Result<Division, StageError> {
     let mut loops = stretches(outline);
     let lines = inner_lines(outline, &mut loops, h);
     let mut division = Division { deviates: "the outline".into(), ..Division::default() };
     for stretches in &loops {
-        add_loop(&mut division, stretches, h)?;
+        add_loop(&mut division, stretches, h, finer)?;
     }
     for (line, marks, n) in &lines {
         add_line(&mut division, line, marks, *n, h);
@@ -272,13 +275,20 @@ fn fine_enough(line: &Polyline, marks: &[f64], least: usize, h: f64) -> usize {
     n
 }
 
-fn add_loop(division: &mut Division, stretches: &[Stretch<'_>], h: f64) -> Result<(), StageError> {
+fn add_loop(
+    division: &mut Division,
+    stretches: &[Stretch<'_>],
+    h: f64,
+    finer: &[usize],
+) -> Result<(), StageError> {
     let first = division.points.len() as u32;
     let mut vertices: Vec<u32> = Vec::new();
     let mut chains = Vec::new();
     for s in stretches {
         let start = division.points.len() as u32;
-        let arcs = stretch_arcs(s, h)?;
+        let times = finer.get(division.stretches.len()).copied().unwrap_or(1);
+        division.stretches.push((start, s.name.is_none()));
+        let arcs = stretch_arcs(s, h, times)?;
         let deviation = s.line.deviation(&arcs);
         if deviation > division.deviation {
             division.deviation = deviation;
@@ -300,11 +310,11 @@ fn add_loop(division: &mut Division, stretches: &[Stretch<'_>], h: f64) -> Resul
 }
 
 /// The arc lengths of a stretch's vertices, both ends included.
-fn stretch_arcs(s: &Stretch<'_>, h: f64) -> Result<Vec<f64>, StageError> {
+fn stretch_arcs(s: &Stretch<'_>, h: f64, finer: usize) -> Result<Vec<f64>, StageError> {
     let least = if s.closed { LEAST_CLOSED } else { 1 }.max(s.marks.len() + 1);
     let n = match s.gauge {
         Some(gauge) => gauge.divisions(h),
-        None => fine_enough(&s.line, &s.marks, least, h),
+        None => finer * fine_enough(&s.line, &s.marks, least, h),
     };
     if n < s.marks.len() + 1 {
         let name = s.name.unwrap_or("outline");

@@ -10,9 +10,8 @@
 //! Cost: linear in the triangles, n log n in the outline's vertices.
 //! Limits: the grid is uniform; only the band follows a finely divided edge.
 
-use super::assemble::{Meshed, assemble};
-use super::check::check_outline;
-use super::divide::{Division, divide};
+use super::assemble::{Meshed, mesh_outline};
+use super::divide::Division;
 use super::lattice::Lattice;
 use super::refine::improve;
 use super::triangulate::triangulate;
@@ -50,11 +49,7 @@ pub struct GridMesher {
 impl GridMesher {
     pub(crate) fn run(&self, outline: &Outline, cx: &Context) -> Result<Panel, StageError> {
         let h = self.edge.metres();
-        check_outline(outline, h, cx)?;
-        let division = divide(outline, h)?;
-        cx.check()?;
-        let meshed = grid_mesh(outline, &division, h, cx)?;
-        assemble(outline, &division, meshed, h, cx)
+        mesh_outline(outline, h, cx, |division| grid_mesh(outline, division, h, cx))
     }
 }
 

@@ -22,6 +22,7 @@ mod trimesh;
 
 pub use delaunay::DelaunayMesher;
 pub use grid::GridMesher;
+pub(crate) use predicates::least_angle;
 
 use toile_core::Registry;
 

@@ -60,11 +60,13 @@ fn table() {
                         let poor =
                             panel.triangles.iter().filter(|t| panel.triangle_least_angle(**t) < 24.9).count();
                         println!(
-                            "{shape:12} {mesher:9} {:5.1} mm {:7} tris {s:7.3} s least {:6.2} poor {poor:4} dev {:6.4} h off {e:.1e}",
+                            "{shape:12} {mesher:9} {:5.1} mm {:7} tris {s:7.3} s least {:6.2} poor {poor:4} dev {:6.4} h off {e:.1e} short {:.3} h, border {:.3} h",
                             h * 1e3,
                             panel.triangles.len(),
                             panel.least_angle(),
-                            d / h
+                            d / h,
+                            shortest(&panel).0 / h,
+                            shortest(&panel).1 / h
                         );
                         draw(&format!("{shape}_{mesher}_{}", h * 1e3), &panel);
                     }
@@ -93,4 +95,86 @@ fn draw(name: &str, panel: &Panel) {
             .unwrap();
     }
     std::fs::write(format!("{dir}/{name}.obj"), s).unwrap();
+}
+
+fn shortest(panel: &Panel) -> (f64, f64) {
+    let d = |a: u32, b: u32| (panel.positions[a as usize] - panel.positions[b as usize]).norm();
+    let all = panel
+        .triangles
+        .iter()
+        .flat_map(|t| [d(t[0], t[1]), d(t[1], t[2]), d(t[2], t[0])])
+        .fold(9.0, f64::min);
+    let n = panel.boundary.len();
+    (all, (0..n).map(|k| d(panel.boundary[k], panel.boundary[(k + 1) % n])).fold(9.0, f64::min))
+}
+
+/// A star-shaped panel: corners at random angles and radii, joined by curves that bulge at random.
+fn star_shaped(corners: &[(f64, f64)], bulges: &[f64]) -> Outline {
+    let n = corners.len();
+    let total: f64 = corners.iter().map(|c| c.0).sum();
+    let mut angle = 0.0;
+    let mut at = Vec::new();
+    for c in corners {
+        at.push((angle, c.1));
+        angle += std::f64::consts::TAU * c.0 / total;
+    }
+    at.push((angle, at[0].1));
+    let polar = |a: f64, r: f64| p(r * a.cos(), r * a.sin());
+    let names: Vec<String> = (0..n).map(|k| format!("edge_{k}")).collect();
+    let edges = (0..n)
+        .map(|k| {
+            let ((a0, r0), (a1, r1)) = (at[k], at[k + 1]);
+            let curve = |i: i32| {
+                let t = f64::from(i) / 100.0;
+                let r = r0 + (r1 - r0) * t + bulges[k % bulges.len()] * t * (1.0 - t);
+                polar(a0 + (a1 - a0) * t, r)
+            };
+            (names[k].as_str(), (0..=100).map(curve).collect::<Vec<_>>())
+        })
+        .collect();
+    named(edges)
+}
+
+#[test]
+#[ignore = "prints a table"]
+fn random_table() {
+    use proptest::strategy::{Strategy, ValueTree};
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let strat = (
+        proptest::collection::vec((0.5..1.5f64, 0.12..0.35f64), 3..9),
+        proptest::collection::vec(-0.15..0.2f64, 1..9),
+        0.005..0.06f64,
+    );
+    let mut hist = [0; 12];
+    for i in 0..400 {
+        let (c, b, h) = strat.new_tree(&mut runner).unwrap().current();
+        let outline = star_shaped(&c, &b);
+        for (mesher, run) in MESHERS {
+            match run(&outline, h) {
+                Ok(panel) => {
+                    let a = panel.least_angle();
+                    hist[(a / 4.0) as usize] += 1;
+                    let corner = (0..outline.outer.corners.len())
+                        .map(|k| {
+                            let n = outline.outer.points.len();
+                            let c = outline.outer.corners[k];
+                            let q = |i: usize| outline.outer.points[i % n];
+                            let (u, v) = (q(c + 1) - q(c), q(c + n - 1) - q(c));
+                            u.angle(&v).to_degrees()
+                        })
+                        .fold(180.0, f64::min);
+                    if a < 15.0 {
+                        println!(
+                            "{i} {mesher} h {:.1} mm least {a:.2} corner {corner:.1} {} tris",
+                            h * 1e3,
+                            panel.triangles.len()
+                        );
+                        draw(&format!("r{i}_{mesher}"), &panel);
+                    }
+                }
+                Err(e) => println!("{i} {mesher} {h} {e}"),
+            }
+        }
+    }
+    println!("{hist:?}");
 }

@@ -385,16 +385,6 @@ impl TriMesh {
         self.free[v as usize] = false;
     }
 
-    /// True where a wall or the border ends at `v`.
-    pub(crate) fn on_wall(&self, star: &[u32], v: u32) -> bool {
-        star.iter().any(|&t| {
-            let k = self.corner(t, v);
-            [(k + 1) % 3, (k + 2) % 3]
-                .iter()
-                .any(|&s| self.wall[t as usize][s] || self.adj[t as usize][s] == NONE)
-        })
-    }
-
     /// The living triangles.
     pub(crate) fn living(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.tris.len() as u32).filter(|&t| self.lives(t))
@@ -426,10 +416,5 @@ impl TriMesh {
     fn runs(&self, t: u32, w: [u32; 2]) -> bool {
         let tri = self.tris[t as usize];
         (0..3).any(|k| [tri[k], tri[(k + 1) % 3]] == w)
-    }
-
-    /// True where the mesh has a side between `a` and `b`.
-    pub(crate) fn has_side(&self, a: u32, b: u32) -> bool {
-        self.star(a).into_iter().any(|t| self.tris[t as usize].contains(&b))
     }
 }

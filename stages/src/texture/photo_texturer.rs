@@ -60,7 +60,7 @@ pub struct PhotoTexturer {
 
 #[stage]
 impl PhotoTexturer {
-    fn run(
+    pub(super) fn run(
         &self,
         garment: &Garment,
         #[original] photos: Option<Set<Photo>>,

@@ -33,7 +33,7 @@ pub struct Glb {
 
 #[stage]
 impl Glb {
-    fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         check_model(model)?;
         let images = self.textures.encode_all(model, self.quality)?;

@@ -25,7 +25,7 @@ pub struct Ply {
 
 #[stage]
 impl Ply {
-    fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         check_model(model)?;
         Ok(OutputFiles::one(&format!("{}.ply", self.name), ply(model)))

@@ -24,7 +24,7 @@ pub struct Preview {
 
 #[stage]
 impl Preview {
-    fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
         let scene = Scene::new(model);
         let views = [

@@ -31,7 +31,7 @@ pub struct Report {
 
 #[stage]
 impl Report {
-    fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
         super::names::check_name(&self.name)?;
         let page = page(run, self.pictures, cx)?;
         let html =

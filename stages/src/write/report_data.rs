@@ -68,7 +68,7 @@ struct Output {
 /// Gathers the page; `height` is that of the stages' pictures.
 pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, StageError> {
     let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
-    let total: f64 = run.stages.iter().map(|s| s.wall_s).sum();
+    let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
     let views = shown(views(run), &mut budget).0;
     let mut stages = Vec::new();

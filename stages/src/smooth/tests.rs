@@ -1,0 +1,2 @@
+//! What the smoothers promise.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
