@@ -16,8 +16,10 @@ use super::background::{background, clean, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
 use super::mixture::Mixture;
+use super::morphology::{dilate, erode};
 use super::refine::refine;
 use super::small::{Lab, Small};
+use image::GrayImage;
 use toile_core::prelude::*;
 
 /// Finds the boundary that parts two colour models at the least cost.
@@ -62,54 +64,119 @@ impl GraphCut {
         if let Some(mask) = cut_out(photo) {
             return finish(mask, photo, settings, cx);
         }
+        let mask = self.coarse(photo, cx)?;
         let small = Small::of(photo, self.size);
-        cx.check()?;
-        let one_colour = || no_garment(photo, "it has the colours of the frame's rim all over");
-        let links = Links::of(&small, self.gamma);
-        let (inside, outside) = start(&small, self.modes as usize, self.rim);
-        let mask = self.cut(&small, &inside, &outside, &links, cx)?;
-        let mut mask = clean(&small, &mask).ok_or_else(one_colour)?;
-        for round in 0..self.rounds {
-            let share = f64::from(round) / f64::from(self.rounds);
-            cx.progress(share, format!("cut {} of {}", round + 1, self.rounds));
-            let next = self.cut(&small, &mask, &mask.iter().map(|v| !v).collect::<Vec<_>>(), &links, cx)?;
-            let next = clean(&small, &next).ok_or_else(one_colour)?;
-            if next == mask {
-                break;
-            }
-            mask = next;
-        }
+        let mask = self.fine(&small, &mask, cx)?;
         finish(refine(photo, &small, &mask, cx)?, photo, settings, cx)
     }
 
-    /// One round: both models from the mask, then the cut.
-    fn cut(
-        &self,
-        small: &Small,
-        mask: &[bool],
-        other: &[bool],
-        links: &Links,
-        cx: &Context,
-    ) -> Result<Vec<bool>, StageError> {
+    /// Rounds of fitting and cutting at half the size, until nothing changes.
+    fn coarse(&self, photo: &Photo, cx: &Context) -> Result<Coarse, StageError> {
+        let small = Small::of(photo, self.size / 2);
+        cx.check()?;
+        let links = Links::of(&small, self.gamma);
+        let (inside, outside) = start(&small, self.modes as usize, self.rim);
+        let mut models = self.models(&small, &inside, &outside);
+        let mut mask = inside;
+        for round in 0..=self.rounds {
+            let share = f64::from(round) / f64::from(self.rounds + 2);
+            cx.progress(share, format!("cut {} of {}", round + 1, self.rounds + 2));
+            let Some(m) = &models else { return Err(one_colour(photo)) };
+            let next = cut(&small, m, &links, rim_width(&small, self.rim), None, cx)?;
+            let next = clean(&small, &next).ok_or_else(|| one_colour(photo))?;
+            let settled = next == mask;
+            mask = next;
+            if settled {
+                break;
+            }
+            let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
+            models = self.models(&small, &mask, &outside);
+        }
+        let models = models.ok_or_else(|| one_colour(photo))?;
+        Ok(Coarse { small, mask, models })
+    }
+
+    /// The last cut, at the full size, in a band along the boundary that the coarse rounds found.
+    fn fine(&self, small: &Small, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
+        let mask = coarse.at_size(small);
+        let links = Links::of(small, self.gamma);
+        cut(small, &coarse.models, &links, rim_width(small, self.rim), Some(&mask), cx)
+    }
+
+    fn models(&self, small: &Small, inside: &[bool], outside: &[bool]) -> Option<Models> {
         let side = |of: &[bool]| -> Vec<Lab> {
             let pixels = small.lab.iter().zip(of).zip(&small.seen);
             pixels.filter(|((_, m), seen)| **m && **seen).map(|((c, _), _)| *c).collect()
         };
-        let models = (
-            Mixture::fit(&side(mask), self.modes as usize, 0.0),
-            Mixture::fit(&side(other), self.modes as usize, 0.0),
-        );
-        let (Some(garment), Some(ground)) = models else { return Ok(mask.to_vec()) };
-        let rim = rim_width(small, self.rim);
-        let mut grid = Grid::new(small.w, small.h);
-        for (i, colour) in small.lab.iter().enumerate() {
-            let gain = ground.cost(colour) - garment.cost(colour) + place(small, i);
-            let gain = if !small.seen[i] || small.depth(i) < rim { gain.min(0.0) - RIM_COST } else { gain };
-            grid.set_terminal(i, units(gain));
-        }
-        links.put(&mut grid);
-        grid.solve(|| cx.check())
+        let fit = |of| Mixture::fit(&side(of), self.modes as usize, 0.0);
+        Some(Models { garment: fit(inside)?, ground: fit(outside)? })
     }
+}
+
+fn one_colour(photo: &Photo) -> StageError {
+    no_garment(photo, "it has the colours of the frame's rim all over")
+}
+
+/// Colour models of both sides.
+struct Models {
+    garment: Mixture,
+    ground: Mixture,
+}
+
+/// What the coarse rounds found.
+struct Coarse {
+    small: Small,
+    mask: Vec<bool>,
+    models: Models,
+}
+
+impl Coarse {
+    /// The mask at another size of the same photo.
+    fn at_size(&self, to: &Small) -> Vec<bool> {
+        let (w, h) = (self.small.w, self.small.h);
+        let at = |i: usize| (i / to.w * h / to.h) * w + i % to.w * w / to.w;
+        (0..to.w * to.h).map(|i| self.mask[at(i)]).collect()
+    }
+}
+
+/// Half the width of the band in which the last cut may move the boundary, pixels.
+const BAND: u32 = 6;
+
+/// A pixel that may not change sides.
+const FIXED: i32 = 100_000_000;
+
+/// The cut under two models; where a mask is given, only near its boundary.
+fn cut(
+    small: &Small,
+    models: &Models,
+    links: &Links,
+    rim: usize,
+    near: Option<&[bool]>,
+    cx: &Context,
+) -> Result<Vec<bool>, StageError> {
+    let band = near.and_then(|mask| band(small, mask));
+    let mut grid = Grid::new(small.w, small.h);
+    for (i, colour) in small.lab.iter().enumerate() {
+        let capacity = match &band {
+            Some((inside, _)) if inside[i] != 0 => FIXED,
+            Some((_, reach)) if reach[i] == 0 => -FIXED,
+            _ => {
+                let gain = models.ground.cost(colour) - models.garment.cost(colour) + place(small, i);
+                let ground = !small.seen[i] || small.depth(i) < rim;
+                units(if ground { gain.min(0.0) - RIM_COST } else { gain })
+            }
+        };
+        grid.set_terminal(i, capacity);
+    }
+    links.put(&mut grid);
+    grid.solve(|| cx.check())
+}
+
+/// The mask without and with a band along its boundary.
+fn band(small: &Small, mask: &[bool]) -> Option<(Vec<u8>, Vec<u8>)> {
+    let bytes = mask.iter().map(|on| if *on { 255 } else { 0 }).collect();
+    let mask = GrayImage::from_raw(small.w as u32, small.h as u32, bytes)?;
+    Some((erode(&mask, BAND).into_raw(), dilate(&mask, BAND).into_raw()))
 }
 
 /// What it costs to take a pixel of the rim for garment.
@@ -151,6 +218,8 @@ const KEPT: std::ops::Range<usize> = 4..8;
 
 impl Links {
     fn of(small: &Small, gamma: f64) -> Links {
+        // A boundary grows with the side, the area within with its square.
+        let gamma = gamma * small.w.max(small.h) as f64 / 400.0;
         let difference = |i: usize, d: usize| {
             let (x, y) = ((i % small.w) as isize + STEPS[d].0, (i / small.w) as isize + STEPS[d].1);
             let inside = x >= 0 && (x as usize) < small.w && (y as usize) < small.h;

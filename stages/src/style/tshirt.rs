@@ -1,0 +1,65 @@
+//! The T-shirt whose sleeves belong to its front and back.
+
+use super::naming::{Half, IN, OUT, name_edges};
+use super::sewing::{pairs, place_and_sew};
+use super::shape::{Path, Shape};
+use toile_core::prelude::*;
+
+/// Names the edges of a T-shirt and sews its shoulders, underarms and sides.
+///
+/// The sleeves are part of the front and the back, as the photos show them. Edges, counter-clockwise
+/// on each panel: `side`, `underarm` (armpit to cuff), `cuff`, `shoulder` (neck to cuff, along the top of
+/// the sleeve) with `_left` or `_right` (the wearer's), `neck` and `hem`. Panels: `front` and `back`. A
+/// shirt may lie up to 15 degrees askew; corners that the edge detector missed are found from the shape.
+#[stage(
+    role = Style,
+    source = "3D garment modelling based on image-based rendering, about 2012",
+    example = "TShirt()",
+    contracts(Deterministic, ThreadInvariant, TranslationEquivariant, ScaleEquivariant, RefusesEmpty)
+)]
+pub struct TShirt;
+
+/// What is sewn, in the order of the report.
+const SEWN: [&str; 6] =
+    ["shoulder_left", "shoulder_right", "underarm_left", "underarm_right", "side_left", "side_right"];
+
+#[stage]
+impl TShirt {
+    pub(crate) fn run(
+        &self,
+        outlines: Set<Outline>,
+        cx: &Context,
+    ) -> Result<(Set<Outline>, SewingPlan), StageError> {
+        let named = outlines
+            .iter()
+            .map(|(name, o)| Ok((name.to_owned(), name_edges(name, "a T-shirt", o, find_half, cx)?)))
+            .collect::<Result<Set<Outline>, StageError>>()?;
+        let seams = pairs(&named, &SEWN, cx);
+        place_and_sew(&named, seams, cx)
+    }
+}
+
+/// How far the armpit lies inside the line from hem to cuff at least, as a share of the size.
+const LEAST_ARMPIT: f64 = 0.04;
+/// Shortest underarm seam and cuff, as a share of the size.
+const LEAST_EDGE: f64 = 0.04;
+
+/// The shirt's landmarks between hem and neck.
+fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
+    let tip = shape.extreme(path, Vector2::new(1.0, 0.25), OUT).ok_or("it has no sleeve")?;
+    let below = Path { from: path.from, to: tip };
+    let (armpit, depth) = shape.farthest(below, -1.0, IN).ok_or("it has no armpit")?;
+    if depth < LEAST_ARMPIT * shape.size || armpit == tip {
+        return Err("its sides run up without an armpit; it seems to have no sleeves".into());
+    }
+    let sleeve = Path { from: armpit, to: path.to };
+    let top = shape.extreme(sleeve, Vector2::new(1.0, 0.25), OUT).ok_or("it has no cuff")?;
+    let low = shape
+        .extreme(Path { from: armpit, to: top }, Vector2::new(0.5, -1.0), OUT)
+        .ok_or("it has no cuff")?;
+    let long = |from: usize, to: usize| shape.length(Path { from, to }) > LEAST_EDGE * shape.size;
+    if !long(armpit, low) || !long(low, top) {
+        return Err("its arms end without a cuff; it seems to have no sleeves".into());
+    }
+    Ok(vec![("side", path.from), ("underarm", armpit), ("cuff", low), ("shoulder", top)])
+}
