@@ -243,6 +243,13 @@ impl<'a> Simulation<'a> {
         joined
     }
 
+    /// True where every pair of some seam is joined.
+    pub fn any_closed(&self) -> bool {
+        let weld = &self.garment.weld;
+        let joined = |p: &[u32; 2]| weld[p[0] as usize] == weld[p[1] as usize];
+        self.garment.seams.iter().any(|s| s.pairs.iter().all(joined))
+    }
+
     fn rebuild(&mut self) {
         self.cloth = Cloth::new(&self.garment, self.settings.softening);
         self.state = self.cloth.gather(&self.garment);

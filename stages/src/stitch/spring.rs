@@ -2,7 +2,8 @@
 //!
 //! Method: masses and springs of the cloth engine, seam springs, damping and contacts, stepped by
 //! central differences with an adaptive step [Fan et al. 1999; improved model 2003]; pairs nearer
-//! than the sewing distance are joined. Gravity does not act until every pair is joined.
+//! than the sewing distance are joined. Gravity does not act until every pair is joined, or until
+//! some seams hold the garment and the rest are stuck: then it tugs them into place.
 //! Cost: steps times triangles: about 0.1 ms a step for 4,000 triangles.
 //! Limits: seams that make no progress pull harder, up to [`HARDEST`] times, and are then
 //! reported; nothing is torn or pulled through the body.
@@ -68,6 +69,8 @@ const CHECK_EVERY: usize = 8;
 const PATIENCE: usize = 4;
 /// Progress is a gap sum smaller by this share.
 const PROGRESS: f64 = 0.02;
+/// Downward pull on a garment of which some seams are stuck, m/s2.
+const TUG: f64 = 20.0;
 /// Share of the cloth's thickness that acts while sewing: layers pressed together beside a seam
 /// would hold it open by their full thickness.
 const SELF_THICKNESS: f64 = 0.3;
@@ -210,12 +213,22 @@ impl<'a> Sewing<'a> {
             return Err(self.stuck(over));
         }
         if self.waited > PATIENCE {
-            self.harder *= 2.0;
-            self.waited = 0;
+            self.harder = if self.tug() { 1.0 } else { self.harder * 2.0 };
+            (self.waited, self.best) = (0, left);
             self.simulation.settings.pull = Some(self.stage.pull(self.harder));
             self.simulation.retune();
         }
         Ok(())
+    }
+
+    /// Lets gravity act once a seam is closed and the rest are stuck: the garment hangs by then, and
+    /// an underarm seam that is held up by the arm slips below it. True where it did not act before.
+    fn tug(&mut self) -> bool {
+        let begins = self.simulation.settings.gravity == Vector3::zeros() && self.simulation.any_closed();
+        if begins {
+            self.simulation.settings.gravity = Vector3::new(0.0, -TUG, 0.0);
+        }
+        begins
     }
 
     fn stuck(&self, over: bool) -> StageError {
