@@ -69,6 +69,8 @@ const CHECK_EVERY: usize = 8;
 const PATIENCE: usize = 4;
 /// Progress is a gap sum smaller by this share.
 const PROGRESS: f64 = 0.02;
+/// Stretches of patience that a tug gets before the next help.
+const TUG_PATIENCE: usize = 3;
 /// Downward pull on a garment of which some seams are stuck, m/s2.
 const TUG: f64 = 20.0;
 /// Share of the cloth's thickness that acts while sewing: layers pressed together beside a seam
@@ -125,6 +127,7 @@ struct Sewing<'a> {
     harder: f64,
     best: f64,
     waited: usize,
+    tugs: usize,
     first_gap: f64,
 }
 
@@ -137,6 +140,7 @@ impl<'a> Sewing<'a> {
             max_strain: None,
             friction: stage.friction,
             self_thickness: SELF_THICKNESS,
+            around_flesh: true,
             pull: Some(stage.pull(1.0)),
         };
         let simulation = Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), settings);
@@ -148,6 +152,7 @@ impl<'a> Sewing<'a> {
             harder: 1.0,
             best: f64::INFINITY,
             waited: 0,
+            tugs: 0,
             first_gap,
         }
     }
@@ -162,6 +167,7 @@ impl<'a> Sewing<'a> {
             }
             if self.rest.look(&self.simulation) {
                 self.tell(cx);
+                self.simulation.look_at_ways();
                 self.watch_progress()?;
             }
         }
@@ -213,22 +219,35 @@ impl<'a> Sewing<'a> {
             return Err(self.stuck(over));
         }
         if self.waited > PATIENCE {
-            self.harder = if self.tug() { 1.0 } else { self.harder * 2.0 };
+            self.help();
             (self.waited, self.best) = (0, left);
-            self.simulation.settings.pull = Some(self.stage.pull(self.harder));
-            self.simulation.retune();
         }
         Ok(())
     }
 
-    /// Lets gravity act once a seam is closed and the rest are stuck: the garment hangs by then, and
-    /// an underarm seam that is held up by the arm slips below it. True where it did not act before.
-    fn tug(&mut self) -> bool {
-        let begins = self.simulation.settings.gravity == Vector3::zeros() && self.simulation.any_closed();
-        if begins {
-            self.simulation.settings.gravity = Vector3::new(0.0, -TUG, 0.0);
+    /// What is done when the seams make no progress, one after the other: gravity tugs a garment that
+    /// already hangs from a closed seam, so that an underarm seam held up by the arm slips
+    /// below it; pairs with flesh between them pull as well; all pull harder.
+    fn help(&mut self) {
+        let settings = &mut self.simulation.settings;
+        if settings.gravity == Vector3::zeros() && self.tugs == 0 {
+            self.tugs = 1;
+            if self.simulation.any_closed() {
+                self.simulation.settings.gravity = Vector3::new(0.0, -TUG, 0.0);
+                return;
+            }
         }
-        begins
+        if self.tugs < TUG_PATIENCE && self.simulation.settings.gravity != Vector3::zeros() {
+            self.tugs += 1;
+            return;
+        }
+        if self.simulation.settings.around_flesh {
+            self.simulation.settings.around_flesh = false;
+            return self.simulation.look_at_ways();
+        }
+        self.harder *= 2.0;
+        self.simulation.settings.pull = Some(self.stage.pull(self.harder));
+        self.simulation.retune();
     }
 
     fn stuck(&self, over: bool) -> StageError {
