@@ -8,13 +8,7 @@
 
 use super::cloth::{Cloth, State};
 use nalgebra::Vector3;
-use toile_core::artifact::{Collide, Garment, Point3, SeamState};
-
-/// Points at which the way between the nodes of a pair is looked at.
-const PATH_POINTS: usize = 5;
-
-/// A way deeper in the body than this is blocked, metres: shallower skin gives way to sliding cloth.
-const FLESH: f64 = 8e-3;
+use toile_core::artifact::{Garment, Point3, SeamState};
 
 /// How seams pull.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,8 +27,6 @@ struct Pair {
     nodes: [u32; 2],
     /// Length of seam that it stands for, metres.
     share: f64,
-    /// True while flesh lies between its nodes: it does not pull then.
-    blocked: bool,
 }
 
 /// The open pairs of a garment's seams.
@@ -61,7 +53,7 @@ impl Seams {
                 let before = if k > 0 { length(k - 1) } else { 0.0 };
                 let after = if k + 1 < n { length(k) } else { 0.0 };
                 if nodes[0] != nodes[1] {
-                    pairs.push(Pair { nodes, share: ((before + after) / 2.0).max(1e-4), blocked: false });
+                    pairs.push(Pair { nodes, share: ((before + after) / 2.0).max(1e-4) });
                 }
             }
         }
@@ -76,27 +68,6 @@ impl Seams {
     /// Number of open pairs.
     pub fn open_pairs(&self) -> usize {
         self.pairs.len()
-    }
-
-    /// Lets pairs rest that have flesh between them: pulled straight through an arm, an underarm
-    /// seam would clamp the cloth on it instead of slipping below.
-    pub fn block(&mut self, scheme: &dyn Collide, x: &[Point3]) {
-        let mut places = Vec::with_capacity(PATH_POINTS * self.pairs.len());
-        for p in &self.pairs {
-            let [a, b] = p.nodes.map(|n| x[n as usize]);
-            places.extend((1..=PATH_POINTS).map(|k| a + (b - a) * (k as f64 / (PATH_POINTS + 1) as f64)));
-        }
-        let mut found = Vec::new();
-        scheme.body_contacts(&places, 0.0, &mut found);
-        self.pairs.iter_mut().for_each(|p| p.blocked = false);
-        for c in found.iter().filter(|c| c.distance < -FLESH) {
-            self.pairs[c.vertex as usize / PATH_POINTS].blocked = true;
-        }
-    }
-
-    /// Lets every open pair pull.
-    pub fn unblock(&mut self) {
-        self.pairs.iter_mut().for_each(|p| p.blocked = false);
     }
 
     /// Nodes of open pairs, so that collisions let them come together.
@@ -116,7 +87,7 @@ impl Seams {
 
     /// Adds the seams' forces to their nodes.
     pub fn add_forces(&self, pull: SeamPull, state: &State, forces: &mut [Vector3<f64>]) {
-        for p in self.pairs.iter().filter(|p| !p.blocked) {
+        for p in &self.pairs {
             let [a, b] = p.nodes.map(|n| n as usize);
             let apart = state.x[b] - state.x[a];
             let distance = apart.norm();

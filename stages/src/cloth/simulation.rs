@@ -33,8 +33,6 @@ pub struct Settings {
     /// Cloth is held off itself by this share of the collider's thickness: less lets the two sides of
     /// a seam lie on each other while they are drawn together.
     pub self_thickness: f64,
-    /// True where seam pairs with flesh between them wait.
-    pub around_flesh: bool,
     /// Seam forces; `None` where seams do not pull.
     pub pull: Option<SeamPull>,
 }
@@ -110,7 +108,6 @@ impl<'a> Simulation<'a> {
             time: 0.0,
         };
         simulation.pairs.reset(simulation.cloth.len(), simulation.seams.partners());
-        simulation.look_at_ways();
         simulation.retune();
         simulation.dt = simulation.limit;
         simulation
@@ -246,27 +243,11 @@ impl<'a> Simulation<'a> {
         joined
     }
 
-    /// Looks anew which seam pairs have flesh between them.
-    pub fn look_at_ways(&mut self) {
-        match self.collider {
-            Some(scheme) if self.settings.around_flesh => self.seams.block(scheme, &self.state.x),
-            _ => self.seams.unblock(),
-        }
-    }
-
-    /// True where every pair of some seam is joined.
-    pub fn any_closed(&self) -> bool {
-        let weld = &self.garment.weld;
-        let joined = |p: &[u32; 2]| weld[p[0] as usize] == weld[p[1] as usize];
-        self.garment.seams.iter().any(|s| s.pairs.iter().all(joined))
-    }
-
     fn rebuild(&mut self) {
         self.cloth = Cloth::new(&self.garment, self.settings.softening);
         self.state = self.cloth.gather(&self.garment);
         self.kept.clone_from(&self.state);
         self.seams = Seams::open(&self.garment, &self.cloth);
-        self.look_at_ways();
         self.body.clear();
         self.pairs.reset(self.cloth.len(), self.seams.partners());
         self.retune();

@@ -17,7 +17,6 @@ fn settings(gravity: f64, damping: f64) -> Settings {
         max_strain: None,
         friction: 1.0,
         self_thickness: 1.0,
-        around_flesh: false,
         pull: None,
     }
 }

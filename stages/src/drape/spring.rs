@@ -98,7 +98,6 @@ impl SpringDraper {
             max_strain: Some(self.max_strain),
             friction: 0.0,
             self_thickness: 1.0,
-            around_flesh: false,
             pull: None,
         }
     }

@@ -2,8 +2,7 @@
 //!
 //! Method: masses and springs of the cloth engine, seam springs, damping and contacts, stepped by
 //! central differences with an adaptive step [Fan et al. 1999; improved model 2003]; pairs nearer
-//! than the sewing distance are joined. Gravity does not act until every pair is joined, or until
-//! some seams hold the garment and the rest are stuck: then it tugs them into place.
+//! than the sewing distance are joined. Gravity does not act until every pair is joined.
 //! Cost: steps times triangles: about 0.1 ms a step for 4,000 triangles.
 //! Limits: seams that make no progress pull harder, up to [`HARDEST`] times, and are then
 //! reported; nothing is torn or pulled through the body.
@@ -69,10 +68,6 @@ const CHECK_EVERY: usize = 8;
 const PATIENCE: usize = 4;
 /// Progress is a gap sum smaller by this share.
 const PROGRESS: f64 = 0.02;
-/// Stretches of patience that a tug gets before the next help.
-const TUG_PATIENCE: usize = 3;
-/// Downward pull on a garment of which some seams are stuck, m/s2.
-const TUG: f64 = 20.0;
 /// Share of the cloth's thickness that acts while sewing: layers pressed together beside a seam
 /// would hold it open by their full thickness.
 const SELF_THICKNESS: f64 = 0.3;
@@ -127,7 +122,6 @@ struct Sewing<'a> {
     harder: f64,
     best: f64,
     waited: usize,
-    tugs: usize,
     first_gap: f64,
 }
 
@@ -140,7 +134,6 @@ impl<'a> Sewing<'a> {
             max_strain: None,
             friction: stage.friction,
             self_thickness: SELF_THICKNESS,
-            around_flesh: true,
             pull: Some(stage.pull(1.0)),
         };
         let simulation = Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), settings);
@@ -152,7 +145,6 @@ impl<'a> Sewing<'a> {
             harder: 1.0,
             best: f64::INFINITY,
             waited: 0,
-            tugs: 0,
             first_gap,
         }
     }
@@ -167,7 +159,6 @@ impl<'a> Sewing<'a> {
             }
             if self.rest.look(&self.simulation) {
                 self.tell(cx);
-                self.simulation.look_at_ways();
                 self.watch_progress()?;
             }
         }
@@ -219,35 +210,12 @@ impl<'a> Sewing<'a> {
             return Err(self.stuck(over));
         }
         if self.waited > PATIENCE {
-            self.help();
+            self.harder *= 2.0;
             (self.waited, self.best) = (0, left);
+            self.simulation.settings.pull = Some(self.stage.pull(self.harder));
+            self.simulation.retune();
         }
         Ok(())
-    }
-
-    /// What is done when the seams make no progress, one after the other: gravity tugs a garment that
-    /// already hangs from a closed seam, so that an underarm seam held up by the arm slips
-    /// below it; pairs with flesh between them pull as well; all pull harder.
-    fn help(&mut self) {
-        let settings = &mut self.simulation.settings;
-        if settings.gravity == Vector3::zeros() && self.tugs == 0 {
-            self.tugs = 1;
-            if self.simulation.any_closed() {
-                self.simulation.settings.gravity = Vector3::new(0.0, -TUG, 0.0);
-                return;
-            }
-        }
-        if self.tugs < TUG_PATIENCE && self.simulation.settings.gravity != Vector3::zeros() {
-            self.tugs += 1;
-            return;
-        }
-        if self.simulation.settings.around_flesh {
-            self.simulation.settings.around_flesh = false;
-            return self.simulation.look_at_ways();
-        }
-        self.harder *= 2.0;
-        self.simulation.settings.pull = Some(self.stage.pull(self.harder));
-        self.simulation.retune();
     }
 
     fn stuck(&self, over: bool) -> StageError {
