@@ -6,10 +6,10 @@
 //! settings and stop rules.
 //!
 //! ```text
-//! law ── membrane ─┐
-//! hinge ───────────┼── cloth ── solver ─┐
-//! check ───────────┘                    ├── simulation ── stitch, drape
-//! seams, contacts, overstretch ─────────┘
+//! check      law ── membrane ─┐
+//!            hinge ───────────┼── cloth ── solver ────────┐
+//!            frequency ───────┘                           ├── simulation ── rest ── stitch, drape
+//!            seams, contact, pair, overstretch, skin ─────┘
 //! ```
 
 mod check;
@@ -24,6 +24,7 @@ mod pair;
 mod rest;
 mod seams;
 mod simulation;
+mod skin;
 mod solver;
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use super::contact::Contacts;
 use super::overstretch::limit_stretch;
 use super::pair::SelfPairs;
 use super::seams::{SeamPull, Seams, join, mark_closed};
+use super::skin::lift_off_skin;
 use super::solver::Solver;
 use nalgebra::Vector3;
 use toile_core::prelude::*;
@@ -271,9 +272,11 @@ impl<'a> Simulation<'a> {
         self.state.v.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt()
     }
 
-    /// Brings every node to rest.
-    pub fn stop(&mut self) {
-        self.state.v.fill(Vector3::zeros());
+    /// Lifts edges and triangles that dip into the skin between their nodes.
+    pub fn lift_off_skin(&mut self) {
+        if let Some(scheme) = self.collider {
+            lift_off_skin(scheme, &self.cloth, &mut self.state);
+        }
     }
 
     /// The garment as it is now.

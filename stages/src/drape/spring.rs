@@ -26,7 +26,8 @@ pub struct SpringDraper {
     /// Downward acceleration.
     #[param(default = 9.81, min = 0.0, max = 100.0, unit = "m/s2")]
     pub gravity: f64,
-    /// Edges longer than their flat length by more than this share are shortened.
+    /// Edges longer than their flat length by more than this share are shortened; a knit may
+    /// stretch by as much as 50 N/m stretch it.
     #[param(default = 0.02, min = 0.001, max = 1.0)]
     pub max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
@@ -62,6 +63,26 @@ const CHECK_EVERY: usize = 8;
 /// Damping grows up to this, 1/s: above, cloth creeps.
 const GREATEST_DAMPING: f64 = 120.0;
 
+/// Line force that a worn garment meets where it is tight, N/m: a snug sleeve pulls by about that.
+const WORN_FORCE: f64 = 50.0;
+
+/// The strain that the softest fabric of the garment takes on under [`WORN_FORCE`]: a knit may
+/// stretch by that, whatever the limit.
+fn easy_strain(garment: &Garment) -> f64 {
+    let at_force = |curve: &Curve| {
+        let mut from = (0.0, 0.0);
+        for (i, &to) in curve.0.iter().enumerate() {
+            if to.1 >= WORN_FORCE || i + 1 == curve.0.len() {
+                return from.0 + (WORN_FORCE - from.1) * (to.0 - from.0) / (to.1 - from.1);
+            }
+            from = to;
+        }
+        0.0
+    };
+    let fabrics = garment.panels.iter().map(|p| &p.fabric);
+    fabrics.map(|f| at_force(&f.warp).max(at_force(&f.weft))).fold(0.0, f64::max)
+}
+
 #[stage]
 impl SpringDraper {
     /// Runs the stage.
@@ -74,7 +95,7 @@ impl SpringDraper {
         check_garment(garment)?;
         let scheme = collider.map(|c| c.scheme.as_ref());
         let mut simulation =
-            Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings());
+            Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings(garment));
         let converged = self.fall(&mut simulation, cx)?;
         if !converged {
             cx.warn(format!(
@@ -83,6 +104,7 @@ impl SpringDraper {
                 simulation.time
             ));
         }
+        simulation.lift_off_skin();
         cx.figure("drape_time", simulation.time, "s");
         cx.figure("self_searches", simulation.searches() as f64, "");
         Ok(simulation.finish(converged))
@@ -90,12 +112,12 @@ impl SpringDraper {
 }
 
 impl SpringDraper {
-    fn settings(&self) -> Settings {
+    fn settings(&self, garment: &Garment) -> Settings {
         Settings {
             gravity: Vector3::new(0.0, -self.gravity, 0.0),
             damping: self.damping,
             softening: Softening { steepest: self.stiffest },
-            max_strain: Some(self.max_strain),
+            max_strain: Some(self.max_strain.max(easy_strain(garment))),
             friction: 0.0,
             self_thickness: 1.0,
             pull: None,
