@@ -13,12 +13,12 @@
 //! ```
 
 mod check;
-mod cloth;
 mod contact;
 mod frequency;
 mod hinge;
 mod law;
 mod membrane;
+mod model;
 mod overstretch;
 mod pair;
 mod rest;
@@ -33,11 +33,11 @@ pub(crate) mod fixtures;
 mod tests;
 
 pub use check::check_garment;
-pub use cloth::{Cloth, Edge, Softening, State};
 pub use contact::Contacts;
 pub use hinge::Hinge;
 pub use law::Law;
 pub use membrane::{Material, Membrane};
+pub use model::{Cloth, Edge, Softening, State};
 pub use overstretch::limit_stretch;
 pub use pair::SelfPairs;
 pub use rest::Rest;

@@ -11,8 +11,8 @@
 //! Cost: a search of a few milliseconds for 4,000 triangles, as often as cloth near cloth moves.
 //! Limit: the two sides of an open seam are let through to each other.
 
-use super::cloth::{Cloth, State};
 use super::contact::rub;
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{Collide, Point3, SelfContact};
 

@@ -6,7 +6,7 @@
 //! distance becomes one node with mass-weighted position and velocity: momentum is kept.
 //! Cost: one root a pair.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{Garment, Point3, SeamState};
 

@@ -8,8 +8,8 @@
 //! spring, is halved and the motion taken back where a node moves absurdly fast, and grows
 //! again after a calm stretch.
 
-use super::cloth::{Cloth, Softening, State};
 use super::contact::Contacts;
+use super::model::{Cloth, Softening, State};
 use super::overstretch::limit_stretch;
 use super::pair::SelfPairs;
 use super::seams::{SeamPull, Seams, join, mark_closed};
@@ -165,7 +165,7 @@ impl<'a> Simulation<'a> {
 
     fn look(&mut self) {
         let Some(scheme) = self.collider else { return };
-        if self.steps % LOOK_EVERY == 0 {
+        if self.steps.is_multiple_of(LOOK_EVERY) {
             self.body.refresh(scheme, &self.state.x);
         }
         if scheme.card().self_collision {
@@ -214,7 +214,7 @@ impl<'a> Simulation<'a> {
 
     fn keep(&mut self) {
         self.calm += 1;
-        if self.steps % KEEP_EVERY == 0 {
+        if self.steps.is_multiple_of(KEEP_EVERY) {
             self.kept.clone_from(&self.state);
         }
         if self.calm >= CALM_STEPS && self.dt < self.limit {

@@ -5,7 +5,7 @@
 //! nodes they belong to, a few rounds of fractions of a millimetre. Cost: one query of edges and
 //! triangles a round. Limit: skin that bulges between these points is not seen.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 

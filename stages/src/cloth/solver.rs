@@ -3,7 +3,7 @@
 //! A [`Solver`] turns forces into velocities one step ahead; contacts then correct the velocities,
 //! and positions follow. Other schemes (implicit, projective) stand behind the same trait.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 
 /// Adds the forces in a state to the list; returns the greatest tensile strain.

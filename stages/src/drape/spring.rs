@@ -128,7 +128,7 @@ impl SpringDraper {
     fn fall(&self, simulation: &mut Simulation, cx: &Context) -> Result<bool, StageError> {
         let mut rest = Rest::default();
         while simulation.time < self.time_limit && simulation.steps < self.max_steps {
-            if simulation.steps % CHECK_EVERY == 0 {
+            if simulation.steps.is_multiple_of(CHECK_EVERY) {
                 cx.check()?;
             }
             simulation.step()?;

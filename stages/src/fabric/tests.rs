@@ -38,8 +38,9 @@ fn threads_that_jam_stiffen() {
 }
 
 /// (name, g/m2, secant N/m, shear N/m/rad, bending N m): handbook ranges.
+type Range = [f64; 2];
 #[rustfmt::skip]
-const RANGES: [(&str, [f64; 2], [f64; 2], [f64; 2], [f64; 2]); 12] = [
+const RANGES: [(&str, Range, Range, Range, Range); 12] = [
     ("cotton poplin", [100.0, 130.0], [4903.0, 24520.0], [44.95, 168.6], [4.903e-6, 1.471e-5]),
     ("denim", [370.0, 480.0], [6129.0, 24520.0], [112.4, 337.1], [4.903e-5, 1.961e-4]),
     ("wool suiting", [180.0, 280.0], [4903.0, 16340.0], [28.09, 50.57], [6.865e-6, 1.765e-5]),

@@ -154,7 +154,7 @@ impl<'a> Sewing<'a> {
         self.simulation.join(self.stage.seam_distance.metres());
         while !self.simulation.seams.all_closed() {
             self.step(cx)?;
-            if self.simulation.steps % JOIN_EVERY == 0 {
+            if self.simulation.steps.is_multiple_of(JOIN_EVERY) {
                 self.simulation.join(self.stage.seam_distance.metres());
             }
             if self.rest.look(&self.simulation) {
@@ -184,7 +184,7 @@ impl<'a> Sewing<'a> {
     }
 
     fn step(&mut self, cx: &Context) -> Result<(), StageError> {
-        if self.simulation.steps % CHECK_EVERY == 0 {
+        if self.simulation.steps.is_multiple_of(CHECK_EVERY) {
             cx.check()?;
         }
         self.simulation.step()
