@@ -19,4 +19,4 @@ pub fn register(registry: &mut Registry) {
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -35,7 +35,7 @@ const RELAX_ROUNDS: usize = 6;
     role = Mesher,
     source = "Chew, 1989; Ruppert, 1995; Üngör, 2004",
     example = "DelaunayMesher(edge: \"12 mm\", least_angle: 28)",
-    contracts(Deterministic, ThreadInvariant, TranslationEquivariant, ScaleEquivariant, BoundaryPreserving, RefusesEmpty, Cancellable)
+    contracts(Deterministic, ThreadInvariant, BoundaryPreserving, RefusesEmpty, Cancellable)
 )]
 pub struct DelaunayMesher {
     /// Target length of the triangles' edges; a smaller one gives finer folds and takes longer.

@@ -6,9 +6,10 @@
 //! Limit: sleeves are not turned; they fit arms that leave the trunk at about their own angle.
 
 use super::depth::DepthMap;
-use super::fit::check_girths;
+use super::fit::{Cut, check_girths};
 use super::lift::{Board, Lift, depth_inside, lift, profile};
 use super::sew::{Offsets, seams, unknown_panel};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_core::prelude::*;
 
@@ -81,6 +82,8 @@ struct Placed<'a> {
     name: &'a str,
     panel: &'a Panel,
     board: Board,
+    /// Its first vertex within the garment.
+    first: usize,
     points: Vec<Point3>,
 }
 
@@ -111,10 +114,19 @@ impl<'a> Scene<'a> {
     }
 
     fn placed(&self, raise: f64) -> Result<Vec<Placed<'a>>, StageError> {
-        self.offsets.iter().map(|(name, (_, panel))| self.placed_panel(name, panel, raise)).collect()
+        self.offsets
+            .iter()
+            .map(|(name, (first, panel))| self.placed_panel(name, *first, panel, raise))
+            .collect()
     }
 
-    fn placed_panel(&self, name: &'a str, panel: &'a Panel, raise: f64) -> Result<Placed<'a>, StageError> {
+    fn placed_panel(
+        &self,
+        name: &'a str,
+        first: usize,
+        panel: &'a Panel,
+        raise: f64,
+    ) -> Result<Placed<'a>, StageError> {
         let place = self.plan.placements.get(name).ok_or_else(|| {
             StageError::invalid(format!("nothing says where the panel \"{name}\" goes on the body"))
                 .hint("the style names the panels that it places; choose a style that has this panel")
@@ -122,7 +134,7 @@ impl<'a> Scene<'a> {
         let board = Board::new(place, self.body, raise)?;
         let laid: Vec<Point2> = panel.positions.iter().map(|&p| board.lay(p)).collect();
         let profile = profile(self.place.lift, &laid, &board, self.body, self.place.ease.metres());
-        Ok(Placed { name, panel, board, points: lift(&laid, &board, &profile) })
+        Ok(Placed { name, panel, board, first, points: lift(&laid, &board, &profile) })
     }
 
     /// The height at which the fewest pairs would pass through the body, nearest to the landmarks.
@@ -184,9 +196,15 @@ impl<'a> Scene<'a> {
 
     fn check_size(&self, raise: f64, fabric: &Fabric) -> Result<(), StageError> {
         let trunk = |name: &str| self.plan.placements.get(name).is_some_and(|p| p.limb == Limb::Torso);
+        let sewn: BTreeSet<usize> =
+            self.seams.iter().flat_map(|s| &s.pairs).flatten().map(|v| *v as usize).collect();
         let placed = self.placed(raise)?;
-        let panels: Vec<(Board, &Panel)> =
-            placed.iter().filter(|p| trunk(p.name)).map(|p| (p.board, p.panel)).collect();
+        let cut = |p: &Placed<'a>| {
+            let count = p.panel.positions.len();
+            let own = sewn.range(p.first..p.first + count).map(|v| (v - p.first) as u32);
+            Cut { board: p.board, panel: p.panel, sewn: own.collect() }
+        };
+        let panels: Vec<Cut> = placed.iter().filter(|p| trunk(p.name)).map(cut).collect();
         check_girths(&panels, self.body, fabric)
     }
 
@@ -211,7 +229,7 @@ impl<'a> Scene<'a> {
 
 /// Adds a panel's vertices and triangles at the garment's end.
 fn append(g: &mut Garment, placed: Placed, fabric: &Arc<Fabric>) {
-    let (first, first_triangle) = (g.positions.len(), g.triangles.len());
+    let (first, first_triangle) = (placed.first, g.triangles.len());
     let shift = |v: &u32| v + first as u32;
     g.positions.extend(placed.points);
     g.rest.extend(&placed.panel.positions);
