@@ -4,7 +4,7 @@
 //! after the first stage with which all that it takes has been made. So `style` follows the edge
 //! detector, and `seams` follows `style`.
 
-use super::read::Draft;
+use super::draft::Draft;
 use super::words::required;
 use crate::{Card, Kind};
 use std::collections::BTreeSet;

@@ -137,7 +137,7 @@ proptest! {
     fn what_ron_accepts_the_tree_accepts(text in mutated()) {
         let accepted = crate::param::ron_options().from_str::<serde::de::IgnoredAny>(&text).is_ok();
         if accepted {
-            prop_assert!(super::super::tree::parse(&text).is_ok(), "{text}");
+            prop_assert!(super::super::parser::parse(&text).is_ok(), "{text}");
         }
     }
 }
