@@ -90,9 +90,9 @@ pub fn otsu(bins: &[u64; 256]) -> Option<Split> {
     let sum = bins.iter().zip(0u64..).map(|(&n, v)| (n * v) as f64).sum::<f64>();
     let (mut below, mut below_sum) = (0.0, 0.0);
     let mut best: Option<(f64, f64, usize, usize)> = None;
-    for t in 0..255 {
-        below += bins[t] as f64;
-        below_sum += (bins[t] * t as u64) as f64;
+    for (t, &n) in bins[..255].iter().enumerate() {
+        below += n as f64;
+        below_sum += (n * t as u64) as f64;
         let above = total - below;
         if below == 0.0 || above == 0.0 {
             continue;
