@@ -42,4 +42,4 @@ pub use pair::SelfPairs;
 pub use rest::Rest;
 pub use seams::{SeamPull, Seams};
 pub use simulation::{Settings, Simulation};
-pub use solver::{CentralDifferences, Solver};
+pub use solver::{CentralDifferences, Forces, Solver};

@@ -120,6 +120,12 @@ impl<'a> Simulation<'a> {
         self.dt
     }
 
+    /// Sets the time step, for as long as it is stable.
+    pub fn set_dt(&mut self, dt: f64) {
+        self.limit = dt.min(self.limit);
+        self.dt = self.limit;
+    }
+
     /// Number of pairs of cloth near other cloth.
     pub fn pairs(&self) -> usize {
         self.pairs.len()

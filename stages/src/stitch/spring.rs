@@ -56,7 +56,7 @@ pub struct SpringStitcher {
 }
 
 /// Seams that make no progress pull harder, up to this many times the tension.
-pub const HARDEST: f64 = 16.0;
+const HARDEST: f64 = 16.0;
 /// Steps between two looks for pairs to join.
 const JOIN_EVERY: usize = 16;
 /// Steps between two checks of the stop flag: well under 50 ms for any garment in reach.
