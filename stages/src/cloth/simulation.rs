@@ -28,6 +28,8 @@ pub struct Settings {
     pub softening: Softening,
     /// Strain above which edges are shortened; `None` where springs alone hold the cloth.
     pub max_strain: Option<f64>,
+    /// Share of the collider's friction that acts: less lets cloth slip into place.
+    pub friction: f64,
     /// Seam forces; `None` where seams do not pull.
     pub pull: Option<SeamPull>,
 }
@@ -177,7 +179,8 @@ impl<'a> Simulation<'a> {
 
     fn touch(&mut self) {
         let Some(scheme) = self.collider else { return };
-        let card = scheme.card();
+        let mut card = scheme.card();
+        card.friction *= self.settings.friction;
         if card.self_collision {
             self.pairs.respond(card.thickness, card.friction, &self.cloth, &mut self.state, self.dt);
         }

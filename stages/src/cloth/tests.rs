@@ -15,6 +15,7 @@ fn settings(gravity: f64, damping: f64) -> Settings {
         damping,
         softening: Softening { steepest: f64::INFINITY },
         max_strain: None,
+        friction: 1.0,
         pull: None,
     }
 }

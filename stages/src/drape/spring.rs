@@ -39,6 +39,10 @@ pub struct SpringDraper {
     /// Simulated time after which damping doubles, and again.
     #[param(default = 0.25, min = 0.01, max = 100.0, unit = "s", trades)]
     settle_time: f64,
+    /// Simulated time over which friction grows to its full value, so that cloth slips into
+    /// place as a wearer shakes it.
+    #[param(default = 0.4, min = 0.0, max = 100.0, unit = "s")]
+    slip_time: f64,
     /// At rest, the energy changes by less than this in 20 ms.
     #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades)]
     tolerance: f64,
@@ -91,6 +95,7 @@ impl SpringDraper {
             damping: self.damping,
             softening: Softening { steepest: self.stiffest },
             max_strain: Some(self.max_strain),
+            friction: 0.0,
             pull: None,
         }
     }
@@ -107,8 +112,9 @@ impl SpringDraper {
                 let doublings = simulation.time / self.settle_time;
                 simulation.settings.damping =
                     (self.damping * doublings.exp2()).min(GREATEST_DAMPING.max(self.damping));
+                simulation.settings.friction = (simulation.time / self.slip_time.max(1e-9)).min(1.0);
                 cx.progress(self.share(simulation, &rest), progress_text(simulation, &rest, self.tolerance));
-                if self.at_rest(simulation, &rest) {
+                if self.at_rest(simulation, &rest) && simulation.settings.friction >= 1.0 {
                     return Ok(true);
                 }
             }

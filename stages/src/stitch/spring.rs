@@ -37,6 +37,9 @@ pub struct SpringStitcher {
     /// Damping of all motion while sewing, on top of the fabric's.
     #[param(default = 20.0, min = 0.0, max = 1000.0, unit = "1/s")]
     damping: f64,
+    /// Share of the collider's friction that acts while sewing: hands smooth the cloth as they sew.
+    #[param(default = 0.1, min = 0.0, max = 1.0)]
+    friction: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step, and sewing
     /// needs no stiffer cloth.
     #[param(default = 1000.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
@@ -125,6 +128,7 @@ impl<'a> Sewing<'a> {
             damping: stage.damping,
             softening: Softening { steepest: stage.stiffest },
             max_strain: None,
+            friction: stage.friction,
             pull: Some(stage.pull(1.0)),
         };
         let simulation = Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), settings);
