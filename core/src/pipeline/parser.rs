@@ -302,8 +302,9 @@ impl<'a> Parser<'a> {
     }
 }
 
+/// What may follow in a name; beyond ASCII also marks that join a letter.
 fn is_name(c: char) -> bool {
-    c == '_' || c.is_alphanumeric()
+    c == '_' || c.is_alphanumeric() || !(c.is_ascii() || is_space(c))
 }
 
 /// White space as `ron` has it.
