@@ -40,6 +40,7 @@ pub struct SelfPairs {
     /// Nodes that will be joined have one group.
     group: Vec<u32>,
     steps: usize,
+    searches: usize,
     wanted: bool,
 }
 
@@ -64,6 +65,7 @@ impl SelfPairs {
             return;
         }
         let reach = scheme.card().thickness + WATCH;
+        self.searches += 1;
         self.contacts.clear();
         scheme.self_contacts(x, triangles, reach, &mut self.contacts);
         let group = &self.group;
@@ -84,6 +86,11 @@ impl SelfPairs {
     /// Number of pairs watched.
     pub fn len(&self) -> usize {
         self.contacts.len()
+    }
+
+    /// Searches made so far.
+    pub fn searches(&self) -> usize {
+        self.searches
     }
 
     /// True where no cloth is near other cloth.

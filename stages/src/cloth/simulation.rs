@@ -30,6 +30,9 @@ pub struct Settings {
     pub max_strain: Option<f64>,
     /// Share of the collider's friction that acts: less lets cloth slip into place.
     pub friction: f64,
+    /// Cloth is held off itself by this share of the collider's thickness: less lets the two sides of
+    /// a seam lie on each other while they are drawn together.
+    pub self_thickness: f64,
     /// Seam forces; `None` where seams do not pull.
     pub pull: Option<SeamPull>,
 }
@@ -133,6 +136,11 @@ impl<'a> Simulation<'a> {
         self.pairs.len()
     }
 
+    /// Searches for cloth near cloth made so far.
+    pub fn searches(&self) -> usize {
+        self.pairs.searches()
+    }
+
     /// Advances by one step. Errs when the motion cannot be kept finite.
     pub fn step(&mut self) -> Result<(), StageError> {
         self.look();
@@ -182,7 +190,8 @@ impl<'a> Simulation<'a> {
         let mut card = scheme.card();
         card.friction *= self.settings.friction;
         if card.self_collision {
-            self.pairs.respond(card.thickness, card.friction, &self.cloth, &mut self.state, self.dt);
+            let thickness = card.thickness * self.settings.self_thickness;
+            self.pairs.respond(thickness, card.friction, &self.cloth, &mut self.state, self.dt);
         }
         self.body.respond(&card, &self.cloth, &mut self.state, self.dt);
         if card.self_collision {

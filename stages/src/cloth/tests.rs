@@ -16,6 +16,7 @@ fn settings(gravity: f64, damping: f64) -> Settings {
         softening: Softening { steepest: f64::INFINITY },
         max_strain: None,
         friction: 1.0,
+        self_thickness: 1.0,
         pull: None,
     }
 }

@@ -31,17 +31,17 @@ pub struct SpringDraper {
     max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
     /// of a shirt's front, about 6 N on a metre of shoulder, stretches it by 6/`stiffest`.
-    #[param(default = 1000.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    #[param(default = 600.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
     stiffest: f64,
     /// Damping in the beginning, on top of the fabric's.
     #[param(default = 2.0, min = 0.0, max = 1000.0, unit = "1/s")]
     damping: f64,
     /// Simulated time after which damping doubles, and again.
-    #[param(default = 0.25, min = 0.01, max = 100.0, unit = "s", trades)]
+    #[param(default = 0.2, min = 0.01, max = 100.0, unit = "s", trades)]
     settle_time: f64,
     /// Simulated time over which friction grows to its full value, so that cloth slips into
     /// place as a wearer shakes it.
-    #[param(default = 0.4, min = 0.0, max = 100.0, unit = "s")]
+    #[param(default = 0.3, min = 0.0, max = 100.0, unit = "s")]
     slip_time: f64,
     /// At rest, the energy changes by less than this in 20 ms.
     #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades)]
@@ -60,7 +60,7 @@ pub struct SpringDraper {
 /// Steps between two checks of the stop flag.
 const CHECK_EVERY: usize = 8;
 /// Damping grows up to this, 1/s: above, cloth creeps.
-const GREATEST_DAMPING: f64 = 40.0;
+const GREATEST_DAMPING: f64 = 120.0;
 
 #[stage]
 impl SpringDraper {
@@ -84,6 +84,7 @@ impl SpringDraper {
             ));
         }
         cx.figure("drape_time", simulation.time, "s");
+        cx.figure("self_searches", simulation.searches() as f64, "");
         Ok(simulation.finish(converged))
     }
 }
@@ -96,6 +97,7 @@ impl SpringDraper {
             softening: Softening { steepest: self.stiffest },
             max_strain: Some(self.max_strain),
             friction: 0.0,
+            self_thickness: 1.0,
             pull: None,
         }
     }

@@ -42,7 +42,7 @@ pub struct SpringStitcher {
     friction: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step, and sewing
     /// needs no stiffer cloth.
-    #[param(default = 1000.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    #[param(default = 500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
     stiffest: f64,
     /// The sewn garment is at rest when its energy changes by less than this in 20 ms.
     #[param(default = 1e-4, min = 0.0, max = 1.0, unit = "J", trades)]
@@ -61,13 +61,16 @@ pub struct SpringStitcher {
 /// Seams that make no progress pull harder, up to this many times the tension.
 const HARDEST: f64 = 16.0;
 /// Steps between two looks for pairs to join.
-const JOIN_EVERY: usize = 16;
+const JOIN_EVERY: usize = 32;
 /// Steps between two checks of the stop flag: well under 50 ms for any garment in reach.
 const CHECK_EVERY: usize = 8;
 /// Spans of 20 ms without progress after which seams pull harder.
 const PATIENCE: usize = 4;
 /// Progress is a gap sum smaller by this share.
 const PROGRESS: f64 = 0.02;
+/// Share of the cloth's thickness that acts while sewing: layers pressed together beside a seam
+/// would hold it open by their full thickness.
+const SELF_THICKNESS: f64 = 0.3;
 /// Damping of a closing gap, N s/m2: keeps the last millimetres from ringing.
 const SEAM_DAMPING: f64 = 0.2;
 /// Simulated time that a sewn garment gets to come to rest, seconds; the drape goes on from there.
@@ -89,6 +92,7 @@ impl SpringStitcher {
         sewing.close(cx)?;
         let converged = sewing.settle(cx)?;
         cx.figure("sewing_time", sewing.simulation.time, "s");
+        cx.figure("self_searches", sewing.simulation.searches() as f64, "");
         Ok(sewing.simulation.finish(converged))
     }
 }
@@ -129,6 +133,7 @@ impl<'a> Sewing<'a> {
             softening: Softening { steepest: stage.stiffest },
             max_strain: None,
             friction: stage.friction,
+            self_thickness: SELF_THICKNESS,
             pull: Some(stage.pull(1.0)),
         };
         let simulation = Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), settings);
@@ -240,8 +245,8 @@ impl<'a> Sewing<'a> {
 
 impl SpringStitcher {
     fn pull(&self, harder: f64) -> SeamPull {
-        let tension = self.seam_tension * harder;
-        SeamPull { stiffness: self.seam_stiffness, tension, damping: SEAM_DAMPING }
+        let (stiffness, tension) = (self.seam_stiffness * harder, self.seam_tension * harder);
+        SeamPull { stiffness, tension, damping: SEAM_DAMPING }
     }
 }
 
