@@ -194,7 +194,9 @@ fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
         both as f64 >= 0.8 * middle.iter().filter(|m| **m).count() as f64
     };
     match background(small, modes, rim, 0.5).filter(covers) {
-        Some(mask) => (mask.iter().zip(&middle).map(|(a, b)| *a || *b).collect(), mask.iter().map(|on| !on).collect()),
+        Some(mask) => {
+            (mask.iter().zip(&middle).map(|(a, b)| *a || *b).collect(), mask.iter().map(|on| !on).collect())
+        }
         None => (middle, (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect()),
     }
 }
