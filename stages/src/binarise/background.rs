@@ -36,22 +36,22 @@ use toile_core::prelude::*;
 pub struct Background {
     /// How many colours the ground may have.
     #[param(default = 6, min = 1, max = 16)]
-    modes: u32,
+    pub modes: u32,
     /// Width of the rim that is taken for ground, as a share of the shorter side.
     #[param(default = 0.03, min = 0.005, max = 0.2)]
-    rim: f64,
+    pub rim: f64,
     /// How much of a darkening is put down to shadow: 0 for none, 1 for all.
     #[param(default = 0.0, min = 0.0, max = 1.0)]
-    shadow: f64,
+    pub shadow: f64,
     /// The longer side at which colours are compared.
     #[param(default = 200, min = 64, max = 2000, unit = "px", trades)]
-    size: u32,
+    pub size: u32,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
 }
 
 #[stage]
@@ -83,7 +83,7 @@ pub(super) fn background(small: &Small, modes: usize, rim: f64, shadow: f64) -> 
     let rim: Vec<bool> = (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect();
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let ground = Mixture::fit(&small.colours(&rim), modes, LEAST_MODE)?;
-    let garment = Mixture::fit(&small.colours(&middle), modes, LEAST_MODE)?;
+    let garment = Mixture::fit(&beside(&ground, small.colours(&middle)), modes, LEAST_MODE)?;
     let is_garment =
         |(c, seen): (&Lab, &bool)| *seen && ground.shaded_distance(c, shadow) > garment.distance(c).min(FAR);
     let raw: Vec<bool> = small.lab.iter().zip(&small.seen).map(is_garment).collect();
@@ -92,6 +92,13 @@ pub(super) fn background(small: &Small, modes: usize, rim: f64, shadow: f64) -> 
         mask = settle(small, &mask, modes)?;
     }
     Some(mask)
+}
+
+/// The middle's colours without the ground's, as a narrow garment (trousers) does not fill the middle;
+/// all of them where most look like ground, as garment and ground may share a colour.
+fn beside(ground: &Mixture, middle: Vec<Lab>) -> Vec<Lab> {
+    let other: Vec<Lab> = middle.iter().filter(|c| ground.distance(c) > NEAR).copied().collect();
+    if 2 * other.len() > middle.len() { other } else { middle }
 }
 
 /// One round: colour models of both sides of a mask, and the sides by what is likelier around a pixel.
@@ -118,6 +125,8 @@ const AROUND: f64 = 0.01;
 /// What is further than this from every colour of the ground, in standard deviations, is garment
 /// although the middle does not show its colour (a contrasting sleeve).
 const FAR: f64 = 4.0;
+/// What is nearer than this to a colour of the ground, in standard deviations, looks like ground.
+const NEAR: f64 = 3.0;
 /// Rounds of fitting again. More gain nothing, and may give up a garment's second colour.
 const ROUNDS: usize = 3;
 /// Half the axes of the ellipse in the middle that is taken for garment, as shares of the frame.

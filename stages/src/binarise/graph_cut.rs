@@ -38,25 +38,25 @@ use toile_core::prelude::*;
 pub struct GraphCut {
     /// How many colours garment and ground may have, each.
     #[param(default = 6, min = 1, max = 16)]
-    modes: u32,
+    pub modes: u32,
     /// Rounds of fitting and cutting.
     #[param(default = 4, min = 1, max = 20, trades)]
-    rounds: u32,
+    pub rounds: u32,
     /// What a step of boundary costs, against the colours of a pixel: more gives a smoother outline.
     #[param(default = 50.0, min = 0.0, max = 1000.0)]
-    gamma: f64,
+    pub gamma: f64,
     /// Width of the rim that is taken for ground, as a share of the shorter side.
     #[param(default = 0.03, min = 0.005, max = 0.2)]
-    rim: f64,
+    pub rim: f64,
     /// The longer side at which the cut is made.
     #[param(default = 400, min = 64, max = 2000, unit = "px", trades)]
-    size: u32,
+    pub size: u32,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
 }
 
 #[stage]
