@@ -19,7 +19,7 @@ use toile_core::prelude::*;
 #[stage(
     role = Draper,
     source = "improved spring-mass model, 2003; Provot, 1995",
-    example = "SpringDraper(max_strain: 0.04)",
+    example = "SpringDraper(max_strain: 0.02)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct SpringDraper {
@@ -27,7 +27,7 @@ pub struct SpringDraper {
     #[param(default = 9.81, min = 0.0, max = 100.0, unit = "m/s2")]
     gravity: f64,
     /// Edges longer than their flat length by more than this share are shortened.
-    #[param(default = 0.04, min = 0.001, max = 1.0)]
+    #[param(default = 0.02, min = 0.001, max = 1.0)]
     max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
     /// of a shirt's front, about 6 N on a metre of shoulder, stretches it by 6/`stiffest`.

@@ -211,7 +211,7 @@ impl<'a> Sewing<'a> {
         }
         if self.waited > PATIENCE {
             self.harder *= 2.0;
-            self.waited = 0;
+            (self.waited, self.best) = (0, left);
             self.simulation.settings.pull = Some(self.stage.pull(self.harder));
             self.simulation.retune();
         }
