@@ -24,7 +24,7 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// The box along given axes around `points`, each widened by a box's half lengths projected.
+    /// The box along given axes that spans a range on each, a hair wider.
     fn along(axes: Matrix3<f64>, low: Vector3, high: Vector3) -> Self {
         let center = Point3::from(axes * ((low + high) / 2.0));
         let half = (high - low) / 2.0;
