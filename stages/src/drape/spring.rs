@@ -25,36 +25,36 @@ use toile_core::prelude::*;
 pub struct SpringDraper {
     /// Downward acceleration.
     #[param(default = 9.81, min = 0.0, max = 100.0, unit = "m/s2")]
-    gravity: f64,
+    pub gravity: f64,
     /// Edges longer than their flat length by more than this share are shortened.
     #[param(default = 0.02, min = 0.001, max = 1.0)]
-    max_strain: f64,
+    pub max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
     /// of a shirt's front, about 6 N on a metre of shoulder, stretches it by 6/`stiffest`.
     #[param(default = 600.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
-    stiffest: f64,
+    pub stiffest: f64,
     /// Damping in the beginning, on top of the fabric's.
     #[param(default = 2.0, min = 0.0, max = 1000.0, unit = "1/s")]
-    damping: f64,
+    pub damping: f64,
     /// Simulated time after which damping doubles, and again.
     #[param(default = 0.2, min = 0.01, max = 100.0, unit = "s", trades)]
-    settle_time: f64,
+    pub settle_time: f64,
     /// Simulated time over which friction grows to its full value, so that cloth slips into
     /// place as a wearer shakes it.
     #[param(default = 0.3, min = 0.0, max = 100.0, unit = "s")]
-    slip_time: f64,
+    pub slip_time: f64,
     /// At rest, the energy changes by less than this in 20 ms.
     #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades)]
-    tolerance: f64,
+    pub tolerance: f64,
     /// At rest, no vertex is faster.
     #[param(default = 0.02, min = 0.0, max = 10.0, unit = "m/s", trades)]
-    speed: f64,
+    pub speed: f64,
     /// Simulated time after which the drape stops as it is.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "s", trades)]
-    time_limit: f64,
+    pub time_limit: f64,
     /// Steps after which the drape stops as it is.
     #[param(default = 200000, min = 1, max = 100_000_000, unit = "steps", trades)]
-    max_steps: usize,
+    pub max_steps: usize,
 }
 
 /// Steps between two checks of the stop flag.

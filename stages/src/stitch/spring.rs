@@ -27,35 +27,35 @@ use toile_core::prelude::*;
 pub struct SpringStitcher {
     /// Two points of a seam nearer than this are joined.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.02)]
-    seam_distance: Length,
+    pub seam_distance: Length,
     /// Pull of a seam for each metre of gap and each metre of seam.
     #[param(default = 5000.0, min = 1.0, max = 1e6, unit = "N/m2")]
-    seam_stiffness: f64,
+    pub seam_stiffness: f64,
     /// Greatest pull of a seam for each metre of it, as of a hand that draws it together.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "N/m")]
-    seam_tension: f64,
+    pub seam_tension: f64,
     /// Damping of all motion while sewing, on top of the fabric's.
     #[param(default = 20.0, min = 0.0, max = 1000.0, unit = "1/s")]
-    damping: f64,
+    pub damping: f64,
     /// Share of the collider's friction that acts while sewing: hands smooth the cloth as they sew.
     #[param(default = 0.1, min = 0.0, max = 1.0)]
-    friction: f64,
+    pub friction: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step, and sewing
     /// needs no stiffer cloth.
     #[param(default = 500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
-    stiffest: f64,
+    pub stiffest: f64,
     /// The sewn garment is at rest when its energy changes by less than this in 20 ms.
     #[param(default = 1e-4, min = 0.0, max = 1.0, unit = "J", trades)]
-    tolerance: f64,
+    pub tolerance: f64,
     /// Simulated time after which sewing stops as it is, in seconds.
     #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]
-    time_limit: f64,
+    pub time_limit: f64,
     /// Steps after which sewing stops as it is.
     #[param(default = 200000, min = 1, max = 100_000_000, unit = "steps", trades)]
-    max_steps: usize,
+    pub max_steps: usize,
     /// A start with a vertex deeper in the body than this is refused; shallower ones are moved out.
     #[param(default = Length::cm(4.0), min = 0.0, max = 1.0)]
-    deepest_start: Length,
+    pub deepest_start: Length,
 }
 
 /// Seams that make no progress pull harder, up to this many times the tension.
