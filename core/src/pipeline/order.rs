@@ -40,9 +40,12 @@ fn defers(i: usize, waiting: &[Draft]) -> bool {
         .any(|(d, card)| card.outputs.iter().any(|o| takes(o.kind) && is_source(d, o.kind)))
 }
 
-/// The index after the first stage with which everything that `draft` takes has been made.
+/// The index after the first stage with which everything that `draft` takes has been made: what it
+/// needs, and what it could use where some stage makes that.
 fn earliest(draft: &Draft, placed: &[Draft]) -> Option<usize> {
     let mut kinds: BTreeSet<Kind> = draft.card.iter().flat_map(required).collect();
+    let optional = draft.card.iter().flat_map(|c| &c.inputs).filter(|p| p.optional).map(|p| p.kind);
+    kinds.extend(optional.filter(|k| placed.iter().any(|d| is_source(d, *k))));
     let mut ids: BTreeSet<&str> = draft.from.iter().map(|(id, _)| id.as_str()).collect();
     for (i, before) in placed.iter().enumerate() {
         kinds.retain(|k| !makes(before, *k));
