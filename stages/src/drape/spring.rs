@@ -31,7 +31,7 @@ pub struct SpringDraper {
     pub max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
     /// of a shirt's front, about 6 N on a metre of shoulder, stretches it by 6/`stiffest`.
-    #[param(default = 600.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    #[param(default = 1500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
     pub stiffest: f64,
     /// Damping in the beginning, on top of the fabric's.
     #[param(default = 2.0, min = 0.0, max = 1000.0, unit = "1/s")]
