@@ -53,8 +53,8 @@ const TRUNK: [[f64; 4]; 11] = [
     [0.775, 0.130, 0.103, 0.086],
     [0.828, 0.144, 0.113, 0.099],
     [0.870, 0.146, 0.104, 0.106],
-    [0.910, 0.136, 0.076, 0.101],
-    [0.945, 0.108, 0.050, 0.086],
+    [0.910, 0.138, 0.084, 0.101],
+    [0.945, 0.112, 0.060, 0.088],
     [0.970, 0.070, 0.040, 0.066],
 ];
 /// Where the trunk's sections stop.
@@ -149,9 +149,9 @@ impl Figure {
     fn upper(&self, p: Point3, s: f64) -> f64 {
         let [skull, jaw] = self.head.map(|e| e.value(p));
         let head = smooth_min(skull, jaw, 0.05 * s);
-        let mut trunk = smooth_min(self.trunk.value(p), self.girdle.value(p), 0.09 * s);
+        let mut trunk = smooth_min(self.trunk.value(p), self.girdle.value(p), 0.11 * s);
         if let Some(breast) = self.breast {
-            trunk = smooth_min(trunk, breast.value(p), 0.05 * s);
+            trunk = smooth_min(trunk, breast.value(p), 0.075 * s);
         }
         let trunk = smooth_min(trunk, self.seat.value(p), 0.06 * s);
         smooth_min(trunk, smooth_min(head, self.neck.value(p), 0.04 * s), 0.07 * s)
@@ -175,8 +175,8 @@ impl Field for Figure {
         let right = Point3::new(-p.x.abs(), p.y, p.z);
         let p = Point3::new(p.x.abs(), p.y, p.z);
         // Parts that are far above or below cannot be the nearest.
-        let legs = || smooth_min(self.leg(p, s), self.leg(right, s), 0.05 * s);
-        let body = || smooth_min(self.upper(p, s), self.arm(p, s), 0.06 * s);
+        let legs = || smooth_min(self.leg(p, s), self.leg(right, s), 0.07 * s);
+        let body = || smooth_min(self.upper(p, s), self.arm(p, s), 0.075 * s);
         match p.y / self.chin {
             v if v > 0.72 => body(),
             v if v < 0.35 => legs(),
@@ -229,8 +229,8 @@ impl Shape<'_> {
         let fullness = ((self.size.bust / self.size.waist - 1.08) / 0.18).clamp(0.0, 1.3);
         let bust = self.scale[2];
         (fullness > 0.0).then(|| Ellipsoid {
-            centre: Point3::new(0.072 * bust, self.y(level::BUST - 0.002), (0.076 + 0.012 * fullness) * bust),
-            half_axes: Vector3::new(0.066, 0.068, 0.050) * bust * (0.7 + 0.3 * fullness.min(1.0)),
+            centre: Point3::new(0.072 * bust, self.y(level::BUST - 0.002), (0.062 + 0.012 * fullness) * bust),
+            half_axes: Vector3::new(0.068, 0.072, 0.052) * bust * (0.7 + 0.3 * fullness.min(1.0)),
         })
     }
 

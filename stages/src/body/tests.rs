@@ -37,3 +37,34 @@ fn dump() {
         std::fs::write(path, &body.export()[0].1).unwrap();
     }
 }
+
+#[test]
+fn bodies_of_other_programs_are_read() {
+    let Ok(shared) = std::env::var("TOILE_SHARED") else {
+        eprintln!("skipped: TOILE_SHARED is not set");
+        return;
+    };
+    let names = [
+        "makehuman/mh_female_young_m",
+        "makehuman/mh_male_child_m",
+        "makehuman/mh_female_child_m",
+        "makehuman/mh_male_young_m",
+        "garmentcode/mean_all",
+    ];
+    for name in names {
+        let ron = format!("(file: \"{shared}/data/bodies/{name}.obj\")");
+        let stage: BodyObj = toile_core::param::ron_options().from_str(&ron).unwrap();
+        match stage.run(&Context::quiet()) {
+            Ok(body) => eprintln!(
+                "{name} {:#.3?} {:#.3?} {}",
+                body.landmarks
+                    .iter()
+                    .map(|(n, p)| format!("{n} {:.3} {:.3} {:.3}", p.x, p.y, p.z))
+                    .collect::<Vec<_>>(),
+                body.measurements,
+                body.volume()
+            ),
+            Err(e) => eprintln!("{name} {e:?}"),
+        }
+    }
+}

@@ -1,7 +1,8 @@
 //! Better angles without touching what is fixed.
 //!
 //! Method: triangles whose least angle falls short are mended one by one, worst first in each
-//! pass: a new vertex at the circumcentre or an off-centre (Üngör 2004) is inserted where the
+//! pass: a new vertex at the circumcentre (Ruppert 1995), over a side (as Üngör's off-centres, 2004) or
+//! between two sides is inserted where the
 //! constrained Delaunay cavity around it then has a better least angle than before; a free corner
 //! is moved to where the least angle around it is greatest (pattern search, Freitag and
 //! Ollivier-Gooch 1997); a free corner is drawn onto a neighbour where that is better still.
