@@ -66,15 +66,16 @@ pub(crate) fn vest(side: Side) -> Outline {
     close(&half, &[neck_curve(neck, depth)], &[hem_curve(hem)], side)
 }
 
-/// A T-shirt whose sleeves belong to its front and back, 72 cm from cuff to cuff, 64 cm long.
+/// A T-shirt whose sleeves belong to its front and back, 72 cm from cuff to cuff, 64 cm long. The
+/// armholes are 23 cm deep, for arms that are spread.
 pub(crate) fn tshirt(side: Side) -> Outline {
-    let (neck, armpit, hem) = ([84.0, 640.0], [238.0, 395.0], [255.0, 7.0]);
-    let (cuff_top, cuff_low) = ([360.0, 497.0], [308.0, 338.0]);
+    let (neck, armpit, hem) = ([84.0, 640.0], [240.0, 366.0], [255.0, 7.0]);
+    let (cuff_top, cuff_low) = ([360.0, 497.0], [300.0, 316.0]);
     let seam = vec![
         [hem, [250.0, 85.0], [234.0, 140.0], [233.0, 215.0]],
-        [[233.0, 215.0], [232.5, 280.0], [236.0, 330.0], armpit],
+        [[233.0, 215.0], [232.5, 270.0], [237.0, 312.0], armpit],
     ];
-    let underarm = [armpit, [254.0, 374.0], [280.0, 357.0], cuff_low];
+    let underarm = [armpit, [254.0, 349.0], [276.0, 333.0], cuff_low];
     // The shoulder falls by 20 degrees and bends into the sleeve, which falls by 35.
     let top = vec![
         [cuff_top, [318.0, 526.4], [262.0, 570.0], [205.0, 595.5]],
