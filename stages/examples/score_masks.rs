@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The stage of a text such as `GraphCut(rounds: 2)`.
 fn stage(text: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
-    let (name, params) = text.trim_end_matches(')').split_once('(').ok_or("write STAGE(...)")?;
+    let (name, params) = text.strip_suffix(')').and_then(|t| t.split_once('(')).ok_or("write STAGE(...)")?;
     match name {
         "Otsu" => parse::<Otsu>(params),
         "Local" => parse::<Local>(params),

@@ -8,7 +8,7 @@
 //! not count as velocity. With a penalty stiffness, `f = c_r (d - dist) N` replaces the impulse.
 //! Cost: one product a node and step, a query for nodes that moved.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{BodyContact, Collide, ColliderCard, Point3};
 

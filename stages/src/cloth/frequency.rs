@@ -7,8 +7,8 @@
 //! explicit finite elements do): one sliver would otherwise slow the whole garment.
 //! Cost: [`ITERATIONS`] times one evaluation of forces.
 
-use super::cloth::Cloth;
 use super::membrane::{Material, Membrane};
+use super::model::Cloth;
 use nalgebra::Vector2;
 
 /// Power iterations: the estimate is then within about 3 % below the true value.

@@ -6,7 +6,7 @@
 //! Cost: one root an edge, only in steps where a triangle comes near the limit.
 //! Limit: one sweep; neighbours may be stretched again and are caught in the next step.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 
 /// Shortens every edge that would be longer than `1 + limit` times its flat length after `dt`.
 /// Returns how many were.

@@ -6,7 +6,7 @@
 //! distance becomes one node with mass-weighted position and velocity: momentum is kept.
 //! Cost: one root a pair.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{Garment, Point3, SeamState};
 
@@ -117,7 +117,7 @@ fn gap(p: &Pair, x: &[Point3]) -> f64 {
 
 /// Joins every pair nearer than `distance`: the state of both nodes becomes their common
 /// mass-weighted mean, and the garment's `weld` says so. Returns the number of pairs joined.
-pub fn join(garment: &mut Garment, cloth: &Cloth, state: &mut State, distance: f64) -> usize {
+pub(super) fn join(garment: &mut Garment, cloth: &Cloth, state: &mut State, distance: f64) -> usize {
     let pairs: Vec<[u32; 2]> = garment.seams.iter().flat_map(|s| s.pairs.iter().copied()).collect();
     let mut groups = Groups::new(&garment.weld);
     let mut joined = 0;
@@ -156,7 +156,7 @@ fn merge(weld: &[u32], cloth: &Cloth, state: &mut State) {
 }
 
 /// Marks seams of which every pair is joined.
-pub fn mark_closed(garment: &mut Garment) {
+pub(super) fn mark_closed(garment: &mut Garment) {
     for seam in &mut garment.seams {
         let closed = seam.pairs.iter().all(|p| garment.weld[p[0] as usize] == garment.weld[p[1] as usize]);
         seam.state = if closed { SeamState::Closed } else { SeamState::Open };

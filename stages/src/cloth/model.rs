@@ -8,7 +8,11 @@ use super::frequency::{highest, inertia};
 use super::hinge::{Hinge, Wing};
 use super::membrane::{Material, Membrane};
 use nalgebra::Vector3;
+use std::ops::Range;
 use toile_core::artifact::{Garment, Point3};
+
+/// Cloth with fewer triangles is not worth a second thread.
+const LEAST_PARALLEL: usize = 1000;
 
 /// How far the fabric's measured stiffness is cut for the sake of the time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -118,14 +122,35 @@ impl Cloth {
     }
 
     /// Adds all elastic forces; returns the greatest tensile strain.
+    ///
+    /// Large cloth is worked on by two threads. The halves are the same for any number of
+    /// threads and are added in a fixed order, so the bits are too.
     pub fn add_forces(&self, x: &[Point3], forces: &mut [Vector3<f64>]) -> f64 {
+        let (m, h) = (self.membranes.len() / 2, self.hinges.len() / 2);
+        if self.membranes.len() < LEAST_PARALLEL {
+            return self.add_share(0..self.membranes.len(), 0..self.hinges.len(), x, forces);
+        }
+        let mut other = vec![Vector3::zeros(); forces.len()];
+        let (first, second) = rayon::join(
+            || self.add_share(0..m, 0..h, x, forces),
+            || self.add_share(m..self.membranes.len(), h..self.hinges.len(), x, &mut other),
+        );
+        forces.iter_mut().zip(&other).for_each(|(f, o)| *f += o);
+        first.max(second)
+    }
+
+    fn add_share(
+        &self,
+        membranes: Range<usize>,
+        hinges: Range<usize>,
+        x: &[Point3],
+        forces: &mut [Vector3<f64>],
+    ) -> f64 {
         let mut strain = 0.0f64;
-        for m in &self.membranes {
+        for m in &self.membranes[membranes] {
             strain = strain.max(m.add_forces(&self.materials[m.material as usize], x, forces));
         }
-        for h in &self.hinges {
-            h.add_forces(x, forces);
-        }
+        self.hinges[hinges].iter().for_each(|h| h.add_forces(x, forces));
         strain
     }
 
