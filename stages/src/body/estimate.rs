@@ -20,13 +20,16 @@ const ARM_SHARES: [(&str, f64); 2] = [("elbow", 0.42), ("wrist", 0.755)];
 /// Slope at which the ridge of the shoulder has become the arm: between 20 and 45 degrees.
 const RIDGE_SLOPE: f64 = 0.62;
 
+/// Landmarks and girths by their names.
+type Found = (BTreeMap<String, Landmark>, BTreeMap<String, f64>);
+
 /// Landmarks and girths of a body with its feet at 0 and its middle at x = 0; or the part that was
 /// not found.
 pub(crate) fn estimate(
     positions: &[Point3],
     triangles: &[[u32; 3]],
     height: f64,
-) -> Result<(BTreeMap<String, Landmark>, BTreeMap<String, f64>), &'static str> {
+) -> Result<Found, &'static str> {
     let survey = Survey::take(positions, triangles, height);
     let crotch = survey.crotch().ok_or("crotch")?;
     let armpit = survey.armpit().ok_or("armpits")?;
