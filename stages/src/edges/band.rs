@@ -168,12 +168,16 @@ impl Plane<'_> {
         }
     }
 
-    /// Bilinear interpolation at a point (pixels, y up).
+    /// The value at a point (pixels, y up) by cubic convolution (R. Keys, 1981). Bilinear interpolation
+    /// would draw the top of a ridge towards the nearest pixel, by up to a quarter of one.
     pub(crate) fn sample(&self, p: Point2) -> f64 {
         let (x, y) = (p.x.floor(), (-p.y).floor());
-        let (u, v) = (p.x - x, -p.y - y);
-        let at = |dx: i64, dy: i64| f64::from(self.at(x as i64 + dx, y as i64 + dy));
-        (at(0, 0) * (1.0 - u) + at(1, 0) * u) * (1.0 - v) + (at(0, 1) * (1.0 - u) + at(1, 1) * u) * v
+        let (across, down) = (cubic(p.x - x), cubic(-p.y - y));
+        let row = |j: i64| -> f64 {
+            let at = |i: i64| f64::from(self.at(x as i64 + i - 1, y as i64 + j - 1));
+            (0..4).map(|i| across[i as usize] * at(i)).sum()
+        };
+        (0..4).map(|j| down[j as usize] * row(j)).sum()
     }
 
     /// The greatest value of the 3 x 3 pixels around a point (pixels, y up).
@@ -181,4 +185,14 @@ impl Plane<'_> {
         let (x, y) = (p.x.round() as i64, (-p.y).round() as i64);
         (0..9).map(|k| self.at(x + k % 3 - 1, y + k / 3 - 1)).fold(0.0, f32::max)
     }
+}
+
+/// Keys's weights of the pixels at -1, 0, 1 and 2 for a point at `t` between 0 and 1.
+fn cubic(t: f64) -> [f64; 4] {
+    [
+        ((2.0 - t) * t - 1.0) * t / 2.0,
+        ((3.0 * t - 5.0) * t * t + 2.0) / 2.0,
+        ((4.0 - 3.0 * t) * t + 1.0) * t / 2.0,
+        (t - 1.0) * t * t / 2.0,
+    ]
 }

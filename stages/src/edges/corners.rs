@@ -101,6 +101,9 @@ fn fit(curve: &Closed, s: f64, side: f64, scale: CornerScale) -> Arm {
     Arm { p: row(0, 1.0), v: row(1, side / scale.arm), a: row(2, 1.0 / (scale.arm * scale.arm)) }
 }
 
+/// How far a corner may stand off the curve that rounds it, in gaps: farther ones are curves whose parabolas
+/// happen to cross.
+const MAX_OFF: f64 = 2.5;
 /// How often the arms are fitted anew about the corner they gave.
 const ROUNDS: usize = 3;
 
@@ -117,7 +120,10 @@ fn locate(curve: &Closed, mut s: f64, scale: CornerScale) -> Option<Corner> {
         s += (u + v) / 2.0;
         found = Some(Corner { at: s.rem_euclid(curve.length()), point, turn });
     }
-    found.filter(|c| c.turn.abs() >= 0.8 * scale.least_turn)
+    found.filter(|c| {
+        let off = (curve.at(c.at) - c.point).norm();
+        c.turn.abs() >= 0.8 * scale.least_turn && off <= MAX_OFF * scale.gap
+    })
 }
 
 /// Newton's method for `behind(u) = ahead(v)` from the tangents' crossing; none where they run

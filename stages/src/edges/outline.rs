@@ -32,7 +32,7 @@ impl Lengths {
     fn of(size: f64) -> Self {
         Lengths {
             reach: (size / 420.0).clamp(3.0, 8.0),
-            arm: (size / 25.0).max(12.0),
+            arm: (size / 25.0).max(18.0),
             gap: (size / 330.0).max(3.5),
             window: (size / 62.0).max(5.0),
             step: (size / 1000.0).max(0.5),

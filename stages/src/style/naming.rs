@@ -151,6 +151,23 @@ fn check_neck(shape: &Shape, plus: Point2, minus_mirrored: Point2) -> Result<(),
     Ok(())
 }
 
+/// Heights at which armpits lie, as shares of the garment's.
+const ARMPIT: [f64; 2] = [0.3, 0.9];
+
+/// Refuses armpits at a height where no arm is.
+pub(super) fn check_armpit(shape: &Shape, armpit: usize) -> Result<(), String> {
+    let height = (shape.at(armpit).y - shape.bounds[0].y) / shape.height();
+    if (ARMPIT[0]..=ARMPIT[1]).contains(&height) {
+        return Ok(());
+    }
+    Err(format!(
+        "its armpits would lie at {:.0} % of its height; {:.0} % to {:.0} % is usual",
+        100.0 * height,
+        100.0 * ARMPIT[0],
+        100.0 * ARMPIT[1]
+    ))
+}
+
 /// The corner bend of seams that stick out.
 pub(super) const OUT: Bend = Bend::Convex;
 /// The corner bend of seams that go in.

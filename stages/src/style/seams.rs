@@ -46,13 +46,12 @@ impl Seams {
     pub(crate) fn run(
         &self,
         outlines: Set<Outline>,
-        plan: Option<&SewingPlan>,
+        plan: &SewingPlan,
         cx: &Context,
     ) -> Result<(Set<Outline>, SewingPlan), StageError> {
         let seams = self.seams.iter().map(SeamEntry::seam).collect();
-        let given = plan.map(|p| p.placements.clone()).unwrap_or_default();
         let place = |(name, o): (&str, &Outline)| {
-            let found = given.get(name).copied().unwrap_or_else(|| placement(name, o));
+            let found = plan.placements.get(name).copied().unwrap_or_else(|| placement(name, o));
             (name.to_owned(), found)
         };
         sew(&outlines, seams, outlines.iter().map(place).collect(), cx)

@@ -2,8 +2,8 @@
 //!
 //! Method: an edge's length is that of its polyline, its least radius that of the circle through
 //! points 10 mm apart; both edges of a seam get one [`Gauge`] of the longer length and the lesser radius,
-//! so that meshers divide them alike. A seam's direction is checked by laying both panels face to face:
-//! its threads must be shorter than those of the opposite pairing. Cost: linear in the edges.
+//! so that meshers divide them alike. A seam's direction is checked by laying both panels face to face and
+//! one edge on the other: its threads must not be longer than those of the opposite pairing. Cost: linear in the edges.
 
 use super::naming::is_back;
 use std::collections::BTreeMap;
@@ -17,8 +17,9 @@ const MAX_EASE: f64 = 0.03;
 const EASE_WARNING: f64 = 0.01;
 /// Half the chord over which curvature is measured, metres: shorter ones measure noise.
 const RADIUS_ARM: f64 = 0.01;
-/// Threads of a reversed seam are at least this much longer than those of the right one.
-const REVERSED: f64 = 1.1;
+/// Threads of a reversed seam are at least this much longer than those of the right one; edges that run at
+/// right angles to each other may be sewn either way.
+const REVERSED: f64 = 1.25;
 /// Points on an edge at which its threads are measured.
 const THREADS: usize = 9;
 
@@ -162,8 +163,11 @@ fn check_direction(
         Ok::<_, StageError>(placed.map(|p| evenly(&points).map(|q| on_body(q, p))))
     });
     let (Some(a), Some(b)) = (a?, b?) else { return Ok(()) };
+    // Only the run of the edges counts, not how far the panels lie apart.
+    let centre = |t: &[Point2; THREADS]| t.iter().map(|p| p.coords).sum::<Vector2>() / THREADS as f64;
+    let apart = centre(&b) - centre(&a);
     let threads = |reversed: bool| -> f64 {
-        (0..THREADS).map(|k| (a[k] - b[if reversed { k } else { THREADS - 1 - k }]).norm()).sum()
+        (0..THREADS).map(|k| (b[if reversed { k } else { THREADS - 1 - k }] - a[k] - apart).norm()).sum()
     };
     if threads(seam.reversed) <= REVERSED * threads(!seam.reversed) {
         return Ok(());

@@ -15,6 +15,8 @@ pub(super) const MAX_TILT: f64 = 20.0;
 /// A landmark snaps to a corner within this share of the garment's size (3 cm of a vest): about the
 /// size of a rounded corner.
 const SNAP: f64 = 0.06;
+/// How far behind the extreme point a corner may lie, as a share of its distance from it.
+const MAX_LAG: f64 = 0.5;
 /// Outline points that the search for the axis looks at.
 const AXIS_POINTS: usize = 160;
 /// Length over which the turn of a corner is measured, as a share of the garment's size.
@@ -134,14 +136,26 @@ impl Shape {
     pub(super) fn extreme_right(&self, direction: Vector2) -> Option<usize> {
         let right = (0..self.points.len()).filter(|&i| self.at(i).x > 0.0);
         let found = right.max_by(|&a, &b| self.along(a, direction).total_cmp(&self.along(b, direction)))?;
-        Some(self.snap(found, Bend::Convex, |i| self.at(i).x > 0.0))
+        let ahead = self.ahead(found, direction);
+        Some(self.snap(found, Bend::Convex, |i| self.at(i).x > 0.0 && ahead(i)))
     }
 
     /// The path's extreme point in a direction, snapped to a corner.
     pub(super) fn extreme(&self, path: Path, direction: Vector2, bend: Bend) -> Option<usize> {
         let key = |i: &usize| self.along(*i, direction);
         let found = self.indices(path).max_by(|a, b| key(a).total_cmp(&key(b)))?;
-        Some(self.snap(found, bend, |i| self.holds(path, i)))
+        let ahead = self.ahead(found, direction);
+        Some(self.snap(found, bend, |i| self.holds(path, i) && ahead(i)))
+    }
+
+    /// A corner far behind the extreme point is another landmark: a shoulder's rounded end must not
+    /// snap to the neck.
+    fn ahead(&self, extreme: usize, direction: Vector2) -> impl Fn(usize) -> bool + '_ {
+        let unit = direction.normalize();
+        move |i| {
+            let d = self.at(extreme) - self.at(i);
+            d.dot(&unit) <= MAX_LAG * d.norm()
+        }
     }
 
     /// The path's point farthest to the right (positive) or left (negative) of the chord through its ends,

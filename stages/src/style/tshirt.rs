@@ -1,6 +1,6 @@
 //! The T-shirt whose sleeves belong to its front and back.
 
-use super::naming::{Half, IN, OUT, name_edges};
+use super::naming::{Half, IN, OUT, check_armpit, name_edges};
 use super::sewing::{pairs, place_and_sew};
 use super::shape::{Path, Shape};
 use toile_core::prelude::*;
@@ -41,8 +41,10 @@ impl TShirt {
 
 /// How far the armpit lies inside the line from hem to cuff at least, as a share of the size.
 const LEAST_ARMPIT: f64 = 0.04;
-/// Shortest underarm seam and cuff, as a share of the size.
-const LEAST_EDGE: f64 = 0.04;
+/// Shortest underarm seam, as a share of the size: cap sleeves have next to none.
+const LEAST_UNDERARM: f64 = 0.015;
+/// Shortest cuff, as a share of the size.
+const LEAST_CUFF: f64 = 0.05;
 
 /// The shirt's landmarks between hem and neck.
 fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
@@ -52,13 +54,14 @@ fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
     if depth < LEAST_ARMPIT * shape.size || armpit == tip {
         return Err("its sides run up without an armpit; it seems to have no sleeves".into());
     }
+    check_armpit(shape, armpit)?;
     let sleeve = Path { from: armpit, to: path.to };
     let top = shape.extreme(sleeve, Vector2::new(1.0, 0.25), OUT).ok_or("it has no cuff")?;
     let low = shape
         .extreme(Path { from: armpit, to: top }, Vector2::new(0.5, -1.0), OUT)
         .ok_or("it has no cuff")?;
-    let long = |from: usize, to: usize| shape.length(Path { from, to }) > LEAST_EDGE * shape.size;
-    if !long(armpit, low) || !long(low, top) {
+    let long = |from: usize, to: usize, least: f64| shape.length(Path { from, to }) > least * shape.size;
+    if !long(armpit, low, LEAST_UNDERARM) || !long(low, top, LEAST_CUFF) {
         return Err("its arms end without a cuff; it seems to have no sleeves".into());
     }
     Ok(vec![("side", path.from), ("underarm", armpit), ("cuff", low), ("shoulder", top)])

@@ -1,6 +1,6 @@
 //! The sleeveless vest.
 
-use super::naming::{Half, IN, OUT, name_edges};
+use super::naming::{Half, IN, OUT, check_armpit, name_edges};
 use super::sewing::{pairs, place_and_sew};
 use super::shape::{Path, Shape};
 use toile_core::prelude::*;
@@ -61,6 +61,7 @@ fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
                 .into(),
         );
     }
+    check_armpit(shape, armpit)?;
     let (_, depth) =
         shape.farthest(Path { from: armpit, to: shoulder }, -1.0, IN).ok_or("it has no armhole")?;
     let rise = shape.at(shoulder).y - shape.at(armpit).y;
