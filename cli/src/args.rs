@@ -53,7 +53,7 @@ pub(crate) enum Verb {
 #[derive(Debug, Args, Default)]
 pub(crate) struct Overrides {
     /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
-    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = parse_override)]
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
     pub(crate) set: Vec<Override>,
 }
 
@@ -111,13 +111,4 @@ pub(crate) struct GoldenArgs {
     /// Folder for the pictures of what differs
     #[arg(long, default_value = "out/goldens")]
     pub(crate) out: PathBuf,
-}
-
-fn parse_override(text: &str) -> Result<Override, String> {
-    match text.split_once('=') {
-        Some((path, value)) if !path.trim().is_empty() && !value.trim().is_empty() => {
-            Ok(Override { path: path.trim().to_owned(), value: value.trim().to_owned() })
-        }
-        _ => Err("write PATH=VALUE, like 'stages.GridMesher.edge=\"6 mm\"'".to_owned()),
-    }
 }

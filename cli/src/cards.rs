@@ -44,7 +44,8 @@ pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -
 
 /// Shows one card.
 pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let Some(card) = registry.card(name) else {
+    let cards: Vec<&Card> = registry.named(name).collect();
+    if cards.is_empty() {
         let names: Vec<&str> = registry.cards().map(|c| c.name).collect();
         let hint = match toile_core::pipeline::nearest(name, names.iter().copied()) {
             Some(near) => format!("; did you mean `{near}`?"),
@@ -52,10 +53,10 @@ pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut St
         };
         streams.tell(format!("error: there is no stage `{name}`{hint}"));
         return exit::INVALID;
-    };
+    }
     match json {
-        true => streams.say(card_json(card)),
-        false => streams.say(card_text(card)),
+        true => streams.say(json!({ "stages": cards.into_iter().map(card_json).collect::<Vec<_>>() })),
+        false => cards.into_iter().for_each(|card| streams.say(card_text(card))),
     }
     exit::DONE
 }

@@ -7,11 +7,21 @@ use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
 
 /// The cards of all known stages, by name, and the sections of pipeline files.
+///
+/// Two stages may share a name where their roles differ, as the `Laplacian` that finds edges and
+/// the `Laplacian` that smooths do; a pipeline's loader tells them apart by what they take.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
-    cards: BTreeMap<&'static str, Card>,
+    cards: BTreeMap<(&'static str, Role), Entry>,
     sections: Vec<Section>,
     implicit: Vec<fn() -> Box<dyn Stage>>,
+}
+
+/// A stage type.
+#[derive(Debug, Clone)]
+struct Entry {
+    card: Card,
+    make: fn(&str) -> Result<Box<dyn Stage>, String>,
 }
 
 /// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
@@ -57,10 +67,10 @@ impl Registry {
         Self::default()
     }
 
-    /// Adds a stage type. A second stage of the same name replaces the first.
-    pub fn add<S: StageType>(&mut self) -> &mut Self {
+    /// Adds a stage type. A second stage of the same name and role replaces the first.
+    pub fn add<S: StageType + 'static>(&mut self) -> &mut Self {
         let card = S::type_card();
-        self.cards.insert(card.name, card);
+        self.cards.insert((card.name, card.role), Entry { card, make: make::<S> });
         self
     }
 
@@ -87,18 +97,39 @@ impl Registry {
         &self.implicit
     }
 
-    /// The card of that name.
+    /// The card of that name; of several, the one whose role comes first in a pipeline.
     pub fn card(&self, name: &str) -> Option<&Card> {
-        self.cards.get(name)
+        self.cards().find(|c| c.name == name)
+    }
+
+    /// All cards of that name, in the order of their roles.
+    pub fn named(&self, name: &str) -> impl Iterator<Item = &Card> {
+        self.cards().filter(move |c| c.name == name)
     }
 
     /// All cards, ordered by name.
     pub fn cards(&self) -> impl Iterator<Item = &Card> {
-        self.cards.values()
+        self.cards.values().map(|e| &e.card)
+    }
+
+    /// Makes a stage from its arguments as RON, `(bias: 3.0)`.
+    pub(crate) fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
+        match self.cards.get(&(card.name, card.role)) {
+            // typetag knows a stage by its name alone.
+            Some(entry) if self.named(card.name).count() > 1 => (entry.make)(arguments),
+            _ => crate::pipeline::typed::stage(&format!("{}{arguments}", card.name)),
+        }
     }
 
     /// The cards of one role, ordered by name.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Card> {
         self.cards().filter(move |c| c.role == role)
+    }
+}
+
+fn make<S: StageType + 'static>(arguments: &str) -> Result<Box<dyn Stage>, String> {
+    match crate::param::ron_options().from_str::<S>(arguments) {
+        Ok(stage) => Ok(Box::new(stage)),
+        Err(e) => Err(e.code.to_string()),
     }
 }

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// The stage of a text such as `GraphCut(rounds: 2)`.
 fn stage(text: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
-    let (name, params) = text.trim_end_matches(')').split_once('(').ok_or("write STAGE(...)")?;
+    let (name, params) = text.strip_suffix(')').and_then(|t| t.split_once('(')).ok_or("write STAGE(...)")?;
     match name {
         "Otsu" => parse::<Otsu>(params),
         "Local" => parse::<Local>(params),
@@ -48,18 +48,28 @@ fn stage(text: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
 }
 
 /// Some of the true masks hold garments that the frame cuts, which the default refuses.
-fn parse<S: Stage + serde::de::DeserializeOwned + 'static>(set: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
+fn parse<S: Stage + serde::de::DeserializeOwned + 'static>(
+    set: &str,
+) -> Result<Box<dyn Stage>, Box<dyn Error>> {
     Ok(Box::new(ron_options().from_str::<S>(&format!("(touch: 4, {set})"))?))
 }
 
-fn score(photos: &Path, stages: &[(String, Box<dyn Stage>)], out: Option<&Path>) -> Result<(), Box<dyn Error>> {
+fn score(
+    photos: &Path,
+    stages: &[(String, Box<dyn Stage>)],
+    out: Option<&Path>,
+) -> Result<(), Box<dyn Error>> {
     let mut names: Vec<String> = std::fs::read_dir(photos)?
         .filter_map(|e| Some(e.ok()?.path().file_stem()?.to_str()?.to_owned()))
         .filter(|n| photos.join(format!("{n}.jpg")).is_file())
         .collect();
     names.sort();
     names.dedup();
-    println!("{:36}{}", "photo", stages.iter().map(|(n, _)| format!("{:>20}", n.split('(').next().unwrap_or(n))).collect::<String>());
+    println!(
+        "{:36}{}",
+        "photo",
+        stages.iter().map(|(n, _)| format!("{:>20}", n.split('(').next().unwrap_or(n))).collect::<String>()
+    );
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); stages.len()];
     for name in &names {
         let file = photos.join(format!("{name}.jpg"));
@@ -94,7 +104,12 @@ fn score(photos: &Path, stages: &[(String, Box<dyn Stage>)], out: Option<&Path>)
             };
             line += &format!("{:>20}", format!("{cell} {ms:.0} ms"));
             if let (Some(out), Ok(mask)) = (out, &result) {
-                picture(&photo, mask, truth.as_ref(), &out.join(format!("{name}.{}.png", label.split('(').next().unwrap_or(label))))?;
+                picture(
+                    &photo,
+                    mask,
+                    truth.as_ref(),
+                    &out.join(format!("{name}.{}.png", label.split('(').next().unwrap_or(label))),
+                )?;
             }
         }
         println!("{line}");

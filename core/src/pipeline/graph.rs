@@ -7,8 +7,8 @@
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
 //! faulty files.
 
+use super::draft::Draft;
 use super::fault::Fault;
-use super::read::Draft;
 use super::words::{a, all_of, bridge, list, required};
 use super::{Feed, near};
 use crate::artifact::{ArtifactType, RunLog};
@@ -81,19 +81,19 @@ impl<'a> Graph<'a> {
             return None;
         };
         if maker >= i {
-            self.from_after(i, maker, at);
+            self.reads_later(i, maker, at);
             return None;
         }
         let Some(made) = self.drafts[maker].card.as_ref() else { return Some(maker) };
         let fits = |p: &InPort| made.outputs.iter().any(|o| o.kind == p.kind);
         if !card.inputs.iter().any(fits) {
-            self.from_clash(card, made, maker, at);
+            self.reads_other_kind(card, made, maker, at);
             return None;
         }
         Some(maker)
     }
 
-    fn from_after(&mut self, i: usize, maker: usize, at: &Range<usize>) {
+    fn reads_later(&mut self, i: usize, maker: usize, at: &Range<usize>) {
         let (taker, id) = (&self.drafts[i].id, &self.drafts[maker].id);
         let fault = match maker == i {
             true => Fault::new("order", format!("`{taker}` cannot read from itself")).at(at, ""),
@@ -106,7 +106,7 @@ impl<'a> Graph<'a> {
     }
 
     /// `from` names a stage that makes nothing that this one takes.
-    fn from_clash(&mut self, card: &Card, made: &Card, maker: usize, at: &Range<usize>) {
+    fn reads_other_kind(&mut self, card: &Card, made: &Card, maker: usize, at: &Range<usize>) {
         let taken: BTreeSet<Kind> =
             card.inputs.iter().map(|p| p.kind).filter(|k| *k != RunLog::KIND).collect();
         let given: BTreeSet<Kind> = made.outputs.iter().map(|o| o.kind).collect();

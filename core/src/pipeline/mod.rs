@@ -2,7 +2,7 @@
 //!
 //! [`load`] works in four steps, and collects the faults of all of them:
 //!
-//! 1. `tree`: the text becomes a syntax tree that knows the place of every name and value
+//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value
 //!    (a syntax fault ends the load: nothing after it can be trusted);
 //! 2. `read`: fields, sections and stages are read, every parameter is checked by its own
 //!    [`ParamDoc`](crate::ParamDoc), clean stages are made through typetag;
@@ -16,14 +16,17 @@
 //! Architecture invariant: nothing here knows a stage by name. Which top-level fields there are
 //! is said by the registry's sections.
 
+mod draft;
 mod fault;
 mod graph;
 pub(crate) mod near;
 mod order;
 mod overrides;
+mod parser;
+mod pick;
 mod read;
 mod tree;
-mod typed;
+pub(crate) mod typed;
 mod words;
 
 #[cfg(test)]
@@ -144,7 +147,7 @@ fn check(
     text: &str,
     registry: &Registry,
     faults: &mut Vec<Fault>,
-) -> Option<(read::Read, Vec<read::Draft>, Vec<Vec<Feed>>)> {
+) -> Option<(read::Read, Vec<draft::Draft>, Vec<Vec<Feed>>)> {
     let tree = parse(text).map_err(|fault| faults.push(fault)).ok()?;
     let mut read = read::file(text, &tree, registry, faults);
     let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
@@ -157,7 +160,7 @@ fn check(
 }
 
 fn parse(text: &str) -> Result<tree::Tree, Fault> {
-    tree::parse(text).map_err(|e| {
+    parser::parse(text).map_err(|e| {
         let fault = Fault::new("syntax", e.message).at(&e.span, "");
         e.also.iter().fold(fault, |f, (span, what)| f.at(span, *what))
     })

@@ -4,7 +4,7 @@
 //! after the first stage with which all that it takes has been made. So `style` follows the edge
 //! detector, and `seams` follows `style`.
 
-use super::read::Draft;
+use super::draft::Draft;
 use super::words::required;
 use crate::{Card, Kind};
 use std::collections::BTreeSet;
@@ -23,14 +23,29 @@ pub(super) fn place(sections: Vec<Draft>, stages: Vec<Draft>) -> Vec<Draft> {
     placed
 }
 
-/// The first waiting stage that can be placed, and where.
+/// The first waiting stage that can be placed, and where; one that could use what another makes
+/// lets that one go first.
 fn next(waiting: &[Draft], placed: &[Draft]) -> Option<(usize, usize)> {
-    waiting.iter().enumerate().find_map(|(i, d)| Some((i, earliest(d, placed)?)))
+    let places = || waiting.iter().enumerate().filter_map(|(i, d)| Some((i, earliest(d, placed)?)));
+    let patient = |(i, _): &(usize, usize)| !defers(*i, waiting);
+    places().find(patient).or_else(|| places().next())
 }
 
-/// The index after the first stage with which everything that `draft` takes has been made.
+/// True where another waiting stage is the source of something that this one takes, if only at will.
+fn defers(i: usize, waiting: &[Draft]) -> bool {
+    let takes = |k: Kind| waiting[i].card.iter().any(|c| c.inputs.iter().any(|p| p.kind == k));
+    let others = waiting.iter().enumerate().filter(|(j, _)| *j != i);
+    others
+        .filter_map(|(_, d)| Some((d, d.card.as_ref()?)))
+        .any(|(d, card)| card.outputs.iter().any(|o| takes(o.kind) && is_source(d, o.kind)))
+}
+
+/// The index after the first stage with which everything that `draft` takes has been made: what it
+/// needs, and what it could use where some stage makes that.
 fn earliest(draft: &Draft, placed: &[Draft]) -> Option<usize> {
     let mut kinds: BTreeSet<Kind> = draft.card.iter().flat_map(required).collect();
+    let optional = draft.card.iter().flat_map(|c| &c.inputs).filter(|p| p.optional).map(|p| p.kind);
+    kinds.extend(optional.filter(|k| placed.iter().any(|d| is_source(d, *k))));
     let mut ids: BTreeSet<&str> = draft.from.iter().map(|(id, _)| id.as_str()).collect();
     for (i, before) in placed.iter().enumerate() {
         kinds.retain(|k| !makes(before, *k));

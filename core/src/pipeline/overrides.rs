@@ -4,8 +4,9 @@
 //! text: `photos.front.file`, `body.height`, `stages.Canny2.low`, `stages.GridMesher`. What is
 //! there is replaced; a field that is not there is put in as the first of its group.
 
+use super::draft::Draft;
 use super::fault::Fault;
-use super::read::{self, Draft, GENERIC};
+use super::read::{self, GENERIC};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::{near, parse};
 use crate::Registry;

@@ -1,11 +1,13 @@
 //! Fields, sections and stages of a pipeline's syntax tree.
 
+use super::draft::{Draft, name_all};
 use super::fault::Fault;
+use super::pick::{Before, pick};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
-use super::{Feed, MAX_FAULTS, MAX_STAGES, Node, near, typed};
+use super::{MAX_FAULTS, MAX_STAGES, near};
 use crate::param::ron_options;
-use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue, Stage};
+use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -17,37 +19,6 @@ pub(super) const PLAIN: [&str; 3] = ["name", "stages", "plugins"];
 
 /// The longest id: it becomes a folder's name.
 const MAX_ID: usize = 64;
-
-/// A stage as far as it could be read.
-#[derive(Debug)]
-pub(super) struct Draft {
-    /// Its id; set by [`name_all`].
-    pub(super) id: String,
-    /// The name that the file gives it.
-    pub(super) name: String,
-    /// The `id` that the file gives it.
-    pub(super) given_id: Option<(String, Range<usize>)>,
-    /// The ids that its `from` names.
-    pub(super) from: Vec<(String, Range<usize>)>,
-    /// Its card; of an unknown stage, the card of the one that was probably meant, so that the
-    /// graph can be checked all the same.
-    pub(super) card: Option<Card>,
-    /// True of a table section, which has no place for `from`.
-    pub(super) is_table: bool,
-    pub(super) span: Range<usize>,
-    pub(super) place: Range<usize>,
-    pub(super) params: BTreeMap<String, Range<usize>>,
-    /// None where it has a fault.
-    pub(super) stage: Option<Box<dyn Stage>>,
-}
-
-impl Draft {
-    /// The finished node; none where the stage has a fault.
-    pub(super) fn finish(self, inputs: Vec<Feed>) -> Option<Node> {
-        let Draft { id, card, span, place, params, stage, .. } = self;
-        Some(Node { id, stage: stage?, card: card?, span, place, params, inputs })
-    }
-}
 
 /// What the file holds.
 #[derive(Debug, Default)]
@@ -62,7 +33,7 @@ pub(super) struct Read {
 
 /// Reads a whole file.
 pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Vec<Fault>) -> Read {
-    let mut r = Reader { text, registry, faults };
+    let mut r = Reader { text, registry, faults, before: Vec::new() };
     let Shape::Group { name: None, bracket: Bracket::Round, entries, .. } = &tree.shape else {
         r.fault("not_a_pipeline", "a pipeline file is written `(name: ..., stages: [...])`", &tree.head());
         return Read { stages: vec![Draft::unknown(&tree.span)], ..Read::default() };
@@ -76,6 +47,7 @@ pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Ve
     };
     let registered = registry.sections().iter().filter_map(|s| Some((s, fields.get(s.field)?)));
     read.sections = registered.map(|(s, (key, value))| r.section(s, key, value)).collect();
+    r.before = read.sections.iter().map(Before::of).collect();
     read.stages = match fields.get("stages") {
         Some((_, list)) => r.stages(list),
         None => {
@@ -88,39 +60,14 @@ pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Ve
     read
 }
 
-/// Gives every stage its id: the one it asks for, else its name with a number where that is taken.
-fn name_all<'a>(drafts: impl Iterator<Item = &'a mut Draft>, faults: &mut Vec<Fault>) {
-    let mut drafts: Vec<&mut Draft> = drafts.collect();
-    let mut taken: BTreeMap<String, Range<usize>> = BTreeMap::new();
-    for draft in &mut drafts {
-        let Some((id, span)) = &draft.given_id else { continue };
-        draft.id = id.clone();
-        if let Some(first) = taken.get(id) {
-            let message = format!("two stages have the id `{id}`");
-            faults.push(Fault::new("duplicate_id", message).at(span, "second").at(first, "first"));
-        }
-        taken.entry(id.clone()).or_insert_with(|| span.clone());
-    }
-    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
-    for draft in drafts.into_iter().filter(|d| d.given_id.is_none()) {
-        let count = counts.entry(draft.name.clone()).or_insert(0);
-        loop {
-            *count += 1;
-            draft.id = if *count == 1 { draft.name.clone() } else { format!("{}{count}", draft.name) };
-            if !taken.contains_key(&draft.id) {
-                break;
-            }
-        }
-        taken.insert(draft.id.clone(), draft.place.clone());
-    }
-}
-
 type Fields<'t> = BTreeMap<String, (Range<usize>, &'t Tree)>;
 
 struct Reader<'a> {
     text: &'a str,
     registry: &'a Registry,
     faults: &'a mut Vec<Fault>,
+    /// The stages read so far, by which those of one name are told apart.
+    before: Vec<Before>,
 }
 
 impl Reader<'_> {
@@ -206,7 +153,13 @@ impl Reader<'_> {
             let message = format!("{} stages, the limit is {MAX_STAGES}", entries.len());
             self.fault("too_large", message, &extra.value.head());
         }
-        entries.iter().take(MAX_STAGES).map(|e| self.stage(&e.value, None)).collect()
+        let mut stages = Vec::new();
+        for entry in entries.iter().take(MAX_STAGES) {
+            let draft = self.stage(&entry.value, None);
+            self.before.push(Before::of(&draft));
+            stages.push(draft);
+        }
+        stages
     }
 
     fn section(&mut self, section: &Section, key: &Range<usize>, value: &Tree) -> Draft {
@@ -246,7 +199,8 @@ impl Reader<'_> {
         };
         let name = self.at(name_span).to_owned();
         let before = self.faults.len();
-        let card = self.card(&name, name_span, section);
+        let from = self.named_sources(value.entries());
+        let card = self.card(&name, name_span, section, &from);
         let mut draft = Draft::new(&name, &value.span, name_span, card);
         match entries {
             Some(entries) => self.arguments(&mut draft, entries),
@@ -267,12 +221,21 @@ impl Reader<'_> {
     }
 
     /// The stage's card, or that of the stage that was probably meant.
-    fn card(&mut self, name: &str, span: &Range<usize>, section: Option<(&str, Role)>) -> Option<Card> {
+    fn card(
+        &mut self,
+        name: &str,
+        span: &Range<usize>,
+        section: Option<(&str, Role)>,
+        from: &[String],
+    ) -> Option<Card> {
         let names: Vec<&str> = match section {
             Some((_, role)) => self.fit(role).map(|c| c.name).collect(),
             None => self.registry.cards().map(|c| c.name).collect(),
         };
-        let (fault, meant) = match (self.registry.card(name), section) {
+        let in_place = |c: &&Card| section.is_none_or(|(_, role)| c.role == role);
+        let fitting: Vec<&Card> = self.registry.named(name).filter(in_place).collect();
+        let picked = pick(&fitting, &self.before, from).or_else(|| self.registry.card(name));
+        let (fault, meant) = match (picked, section) {
             (Some(card), Some((field, role))) if !names.contains(&name) => {
                 let message = format!("`{field}` wants a {}, `{name}` is a {}", noun(role), noun(card.role));
                 let known = (!names.is_empty()).then(|| format!("there is {}", near::quoted(&names)));
@@ -291,6 +254,14 @@ impl Reader<'_> {
         let card = meant.and_then(|n| self.registry.card(n)).cloned();
         self.push(fault.at(span, ""));
         card
+    }
+
+    /// The ids in a stage's `from`, as far as they can be read; their faults come out later.
+    fn named_sources(&self, entries: &[Entry]) -> Vec<String> {
+        let is_from = |e: &&Entry| e.key.as_ref().is_some_and(|k| self.at(k) == "from");
+        let Some(from) = entries.iter().find(is_from) else { return Vec::new() };
+        let items = from.value.entries().iter().map(|e| &e.value).chain([&from.value]);
+        items.filter_map(|t| ron_options().from_str(self.at(&t.span)).ok()).collect()
     }
 
     fn arguments(&mut self, draft: &mut Draft, entries: &[Entry]) {
@@ -389,34 +360,13 @@ impl Reader<'_> {
 
     /// Makes the typed stage of a draft whose parameters are clean.
     fn make(&mut self, draft: &mut Draft) {
+        let Some(card) = &draft.card else { return };
         let args: Vec<String> = draft.params.iter().map(|(k, v)| format!("{k}: {}", self.at(v))).collect();
-        match typed::stage(&format!("{}({})", draft.name, args.join(", "))) {
+        match self.registry.make(card, &format!("({})", args.join(", "))) {
             Ok(stage) => draft.stage = Some(stage),
             Err(reason) => {
                 self.fault("bad_value", format!("`{}` cannot be made: {reason}", draft.name), &draft.place);
             }
-        }
-    }
-}
-
-impl Draft {
-    /// Something in place of a stage, of which nothing is known.
-    fn unknown(span: &Range<usize>) -> Self {
-        Draft::new("", span, span, None)
-    }
-
-    fn new(name: &str, span: &Range<usize>, place: &Range<usize>, card: Option<Card>) -> Self {
-        Draft {
-            id: String::new(),
-            name: name.to_owned(),
-            given_id: None,
-            from: Vec::new(),
-            card,
-            is_table: false,
-            span: span.clone(),
-            place: place.clone(),
-            params: BTreeMap::new(),
-            stage: None,
         }
     }
 }

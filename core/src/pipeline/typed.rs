@@ -10,7 +10,7 @@ use serde::{Deserialize, forward_to_deserialize_any};
 use std::fmt;
 
 /// Makes the stage that `text` writes: `Otsu(bias: 3)`.
-pub(super) fn stage(text: &str) -> Result<Box<dyn Stage>, String> {
+pub(crate) fn stage(text: &str) -> Result<Box<dyn Stage>, String> {
     struct Any(Box<dyn Stage>);
     impl<'de> Deserialize<'de> for Any {
         fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {

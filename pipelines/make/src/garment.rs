@@ -66,19 +66,20 @@ pub(crate) fn vest(side: Side) -> Outline {
     close(&half, &[neck_curve(neck, depth)], &[hem_curve(hem)], side)
 }
 
-/// A T-shirt whose sleeves belong to its front and back, 72 cm from cuff to cuff, 64 cm long.
+/// A T-shirt whose sleeves belong to its front and back, 76 cm from cuff to cuff, 68 cm long. The
+/// armholes are 24 cm deep, for arms that are spread.
 pub(crate) fn tshirt(side: Side) -> Outline {
-    let (neck, armpit, hem) = ([84.0, 640.0], [238.0, 395.0], [255.0, 7.0]);
-    let (cuff_top, cuff_low) = ([360.0, 497.0], [308.0, 338.0]);
+    let (neck, armpit, hem) = ([88.7, 675.6], [253.3, 386.3], [269.2, 7.0]);
+    let (cuff_top, cuff_low) = ([380.0, 524.6], [316.7, 333.6]);
     let seam = vec![
-        [hem, [250.0, 85.0], [234.0, 140.0], [233.0, 215.0]],
-        [[233.0, 215.0], [232.5, 280.0], [236.0, 330.0], armpit],
+        [hem, [263.9, 89.7], [247.0, 147.8], [245.9, 226.9]],
+        [[245.9, 226.9], [245.4, 285.0], [250.2, 329.3], armpit],
     ];
-    let underarm = [armpit, [254.0, 374.0], [280.0, 357.0], cuff_low];
+    let underarm = [armpit, [268.1, 368.4], [291.3, 351.5], cuff_low];
     // The shoulder falls by 20 degrees and bends into the sleeve, which falls by 35.
     let top = vec![
-        [cuff_top, [318.0, 526.4], [262.0, 570.0], [205.0, 595.5]],
-        [[205.0, 595.5], [168.0, 612.0], [126.0, 624.8], neck],
+        [cuff_top, [335.7, 555.6], [276.6, 601.7], [216.4, 628.6]],
+        [[216.4, 628.6], [177.3, 646.0], [133.0, 659.5], neck],
     ];
     let half: Half = vec![
         ("side", "hem", seam),

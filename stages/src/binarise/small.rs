@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// A colour in CIE Lab.
-pub type Lab = Vector3<f64>;
+pub(super) type Lab = Vector3<f64>;
 
 /// A photo at a reduced size.
 #[derive(Debug, Clone)]
-pub struct Small {
+pub(super) struct Small {
     /// Pixels across.
     pub w: usize,
     /// Pixels down.
@@ -31,7 +31,7 @@ pub struct Small {
 
 impl Small {
     /// The photo brought down to at most `side` pixels on its longer side.
-    pub fn of(photo: &Photo, side: u32) -> Small {
+    pub(super) fn of(photo: &Photo, side: u32) -> Small {
         let (pw, ph) = photo.pixels.dimensions();
         let factor = (f64::from(side) / f64::from(pw.max(ph))).min(1.0);
         let fit = |n: u32| ((f64::from(n) * factor).round() as usize).clamp(1, n.max(1) as usize);
@@ -43,13 +43,14 @@ impl Small {
         Small { w, h, lab, seen, scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64) }
     }
 
-    /// The pixels within `rim` of the frame that are not transparent.
-    pub fn rim(&self, rim: usize) -> Vec<usize> {
-        (0..self.w * self.h).filter(|&i| self.seen[i] && self.depth(i) < rim).collect()
+    /// The colours of the marked pixels that are not transparent.
+    pub(super) fn colours(&self, marked: &[bool]) -> Vec<Lab> {
+        let pixels = self.lab.iter().zip(marked).zip(&self.seen);
+        pixels.filter(|((_, m), seen)| **m && **seen).map(|((c, _), _)| *c).collect()
     }
 
     /// How many pixels lie between a pixel and the frame.
-    pub fn depth(&self, i: usize) -> usize {
+    pub(super) fn depth(&self, i: usize) -> usize {
         let (x, y) = (i % self.w, i / self.w);
         x.min(y).min(self.w - 1 - x).min(self.h - 1 - y)
     }
@@ -80,7 +81,7 @@ fn block(photo: &Photo, (x0, x1): (u32, u32), (y0, y1): (u32, u32)) -> (Lab, boo
 }
 
 /// sRGB (0 to 255) to CIE Lab.
-pub fn lab(rgb: [f64; 3]) -> Lab {
+pub(super) fn lab(rgb: [f64; 3]) -> Lab {
     let [r, g, b] = rgb.map(|v| {
         let v = v / 255.0;
         if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }

@@ -67,11 +67,6 @@ pub(super) fn rim_px(w: u32, h: u32) -> u32 {
     ((f64::from(w.min(h)) * RIM) as u32).max(1)
 }
 
-/// Whether the pixel lies on the frame's rim of that width.
-pub(super) fn on_rim(x: u32, y: u32, (w, h): (u32, u32), rim: u32) -> bool {
-    x < rim || y < rim || x + rim >= w || y + rim >= h
-}
-
 /// The share of the rim's pixels that `is` holds for; transparent pixels are left out. Zero where
 /// no pixel is left.
 pub(super) fn rim_share(mask: &GrayImage, alpha: Option<&GrayImage>, is: impl Fn(u8) -> bool) -> f64 {

@@ -53,8 +53,8 @@ const TRUNK: [[f64; 4]; 11] = [
     [0.775, 0.130, 0.103, 0.086],
     [0.828, 0.144, 0.113, 0.099],
     [0.870, 0.146, 0.104, 0.106],
-    [0.910, 0.136, 0.076, 0.101],
-    [0.945, 0.108, 0.050, 0.086],
+    [0.910, 0.138, 0.084, 0.101],
+    [0.945, 0.112, 0.060, 0.088],
     [0.970, 0.070, 0.040, 0.066],
 ];
 /// Where the trunk's sections stop.
@@ -149,9 +149,9 @@ impl Figure {
     fn upper(&self, p: Point3, s: f64) -> f64 {
         let [skull, jaw] = self.head.map(|e| e.value(p));
         let head = smooth_min(skull, jaw, 0.05 * s);
-        let mut trunk = smooth_min(self.trunk.value(p), self.girdle.value(p), 0.09 * s);
+        let mut trunk = smooth_min(self.trunk.value(p), self.girdle.value(p), 0.11 * s);
         if let Some(breast) = self.breast {
-            trunk = smooth_min(trunk, breast.value(p), 0.05 * s);
+            trunk = smooth_min(trunk, breast.value(p), 0.075 * s);
         }
         let trunk = smooth_min(trunk, self.seat.value(p), 0.06 * s);
         smooth_min(trunk, smooth_min(head, self.neck.value(p), 0.04 * s), 0.07 * s)
@@ -169,19 +169,35 @@ impl Figure {
     }
 }
 
-impl Field for Figure {
-    fn value(&self, p: Point3) -> f64 {
-        let s = self.size.height / ADULT.height;
+impl Figure {
+    /// This figure's height against the adult's: widths of smoothing go with it.
+    fn size_factor(&self) -> f64 {
+        self.size.height / ADULT.height
+    }
+
+    /// The field of trunk, head and legs; it is symmetric, so x may have either sign.
+    pub(crate) fn without_arms(&self, p: Point3) -> f64 {
+        self.joined(p, |p, s| self.upper(p, s))
+    }
+
+    /// `upper` above, the legs below, both joined smoothly around the hips.
+    fn joined(&self, p: Point3, upper: impl Fn(Point3, f64) -> f64) -> f64 {
+        let s = self.size_factor();
         let right = Point3::new(-p.x.abs(), p.y, p.z);
         let p = Point3::new(p.x.abs(), p.y, p.z);
+        let legs = || smooth_min(self.leg(p, s), self.leg(right, s), 0.07 * s);
         // Parts that are far above or below cannot be the nearest.
-        let legs = || smooth_min(self.leg(p, s), self.leg(right, s), 0.05 * s);
-        let body = || smooth_min(self.upper(p, s), self.arm(p, s), 0.06 * s);
         match p.y / self.chin {
-            v if v > 0.72 => body(),
+            v if v > 0.72 => upper(p, s),
             v if v < 0.35 => legs(),
-            _ => smooth_min(body(), legs(), 0.07 * s),
+            _ => smooth_min(upper(p, s), legs(), 0.07 * s),
         }
+    }
+}
+
+impl Field for Figure {
+    fn value(&self, p: Point3) -> f64 {
+        self.joined(p, |p, s| smooth_min(self.upper(p, s), self.arm(p, s), 0.06 * s))
     }
 }
 
@@ -200,7 +216,12 @@ impl Shape<'_> {
         level * self.chin
     }
 
-    /// Thickness of the limbs: half by stature, half by girth.
+    /// Thickness of the arms: mostly by stature, so that the armpits of stout figures stay open.
+    fn arm_build(&self) -> f64 {
+        self.stature.powf(0.65) * self.scale[2].powf(0.35)
+    }
+
+    /// Thickness of the other limbs: half by stature, half by girth.
     fn build(&self, scale: f64) -> f64 {
         (self.stature * scale).sqrt()
     }
@@ -224,13 +245,14 @@ impl Shape<'_> {
         }
     }
 
-    /// Breasts grow with the difference of bust and waist; a straight figure has none.
+    /// Breasts grow with the difference of bust and waist; straight figures and children have none.
     fn breast(&self) -> Option<Ellipsoid> {
-        let fullness = ((self.size.bust / self.size.waist - 1.08) / 0.18).clamp(0.0, 1.3);
+        let grown = ((self.size.height - 1.35) / 0.2).clamp(0.0, 1.0);
+        let fullness = grown * ((self.size.bust / self.size.waist - 1.08) / 0.18).clamp(0.0, 1.3);
         let bust = self.scale[2];
         (fullness > 0.0).then(|| Ellipsoid {
-            centre: Point3::new(0.072 * bust, self.y(level::BUST - 0.002), (0.076 + 0.012 * fullness) * bust),
-            half_axes: Vector3::new(0.066, 0.068, 0.050) * bust * (0.7 + 0.3 * fullness.min(1.0)),
+            centre: Point3::new(0.072 * bust, self.y(level::BUST - 0.002), (0.062 + 0.012 * fullness) * bust),
+            half_axes: Vector3::new(0.068, 0.072, 0.052) * bust * (0.7 + 0.3 * fullness.min(1.0)),
         })
     }
 
@@ -245,7 +267,7 @@ impl Shape<'_> {
 
     /// The shoulder line: from the neck down to the shoulder joint at about 20 degrees.
     fn girdle(&self) -> Limb {
-        let [inner, outer] = [0.052 * self.stature, 0.049 * self.build(self.scale[2])];
+        let [inner, outer] = [0.052 * self.stature, 0.049 * self.arm_build()];
         let half = self.size.shoulder_width / 2.0;
         let slope = 21.0_f64.to_radians();
         let neck = Point3::new(0.02 * self.stature, self.y(level::NECK) - inner * 0.9, -0.022 * self.stature);
@@ -262,7 +284,7 @@ impl Shape<'_> {
 
     fn arm_axis(&self) -> [Point3; 3] {
         let girdle = self.girdle();
-        let joint = girdle.axis[1] + Vector3::new(-0.006, -0.006, 0.0) * self.stature;
+        let joint = girdle.axis[1] + Vector3::new(-0.006, -0.002, 0.0) * self.stature;
         let (sin, cos) = self.size.arm_angle.sin_cos();
         let upper = Vector3::new(sin, -cos, 0.0) * (0.285 * self.stature);
         let bend = 12.0_f64.to_radians();
@@ -271,7 +293,7 @@ impl Shape<'_> {
     }
 
     fn arm(&self, axis: &[Point3; 3]) -> Limb {
-        let r = self.build(self.scale[2]);
+        let r = self.arm_build();
         let profile = [
             (0.0, 0.050),
             (0.10, 0.0475),

@@ -73,13 +73,13 @@ fn armpit(cut: impl Fn(f64) -> Vec<SliceLoop>, chin: f64) -> Option<Point3> {
     gap(y)
 }
 
-/// The highest point of the skin, below the chin, in the plane of a given x.
-fn ridge(positions: &[Point3], triangles: &[[u32; 3]], x: f64, chin: f64) -> Option<Point3> {
+/// The highest point of the skin below `top` in the plane of a given x.
+pub(crate) fn ridge(positions: &[Point3], triangles: &[[u32; 3]], x: f64, top: f64) -> Option<Point3> {
     let crossing = |&(a, b): &(u32, u32)| {
         let (p, q) = (positions[a as usize], positions[b as usize]);
         ((p.x < x) != (q.x < x)).then(|| p + (q - p) * ((x - p.x) / (q.x - p.x)))
     };
     let sides = triangles.iter().flat_map(|t| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])]);
-    let points = sides.filter_map(|s| crossing(&s)).filter(|p| p.y < chin);
+    let points = sides.filter_map(|s| crossing(&s)).filter(|p| p.y < top);
     points.reduce(|a, b| if b.y > a.y { b } else { a })
 }

@@ -5,7 +5,6 @@
 //! it misses, the aim is corrected and the figure meshed again. Cost: mostly one meshing, some
 //! tenths of a second. Limits: see [`Figure`].
 
-use super::field::Field;
 use super::figure::{Figure, Size, level};
 use super::isosurface::{Grid, TriMesh, mesh};
 use super::landmarks::landmarks;
@@ -59,8 +58,8 @@ pub struct Mannequin {
     /// Girth of the neck; follows from height and bust where it is not given.
     #[param(default = None, min = 0.18, max = 0.6)]
     neck: Option<Length>,
-    /// Angle between the arms and the vertical.
-    #[param(default = 45.0, min = 30.0, max = 70.0, unit = "degrees")]
+    /// Angle between the arms and the vertical; 60 suits sleeves of shirts laid flat.
+    #[param(default = 60.0, min = 30.0, max = 75.0, unit = "degrees")]
     arm_angle: f64,
     /// Length of the mesh's edges; small bodies get shorter ones.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades)]
@@ -77,6 +76,13 @@ impl Mannequin {
 }
 
 impl Mannequin {
+    /// A mannequin of that height with bust, waist and hip, meshed at an edge length, all in metres.
+    #[cfg(test)]
+    pub(crate) fn of(height: f64, [bust, waist, hip]: [f64; 3], edge: f64) -> Self {
+        let [height, bust, waist, hip, edge] = [height, bust, waist, hip, edge].map(Length::m);
+        Mannequin { height, bust, waist, hip, edge, ..Mannequin::default() }
+    }
+
     fn size(&self) -> Size {
         let [height, bust, waist, hip] = [self.height, self.bust, self.waist, self.hip].map(Length::metres);
         let given = |l: Option<Length>, or: f64| l.map_or(or, Length::metres);
@@ -105,7 +111,7 @@ fn check(size: &Size) -> Result<(), StageError> {
         ("hip", size.hip, "a waist", size.waist, (0.85, 1.75)),
         ("shoulder_width", size.shoulder_width, "a bust", size.bust, (0.34, 0.56)),
         ("neck", size.neck, "a bust", size.bust, (0.30, 0.52)),
-        ("arm_angle", size.arm_angle.to_degrees(), "", 1.0, (30.0, 70.0)),
+        ("arm_angle", size.arm_angle.to_degrees(), "", 1.0, (30.0, 75.0)),
     ];
     rules.into_iter().try_for_each(|(name, value, to, base, (lo, hi))| {
         let share = value / base;
@@ -165,8 +171,8 @@ fn fit(size: &Size, edge: f64, cx: &Context) -> Result<Body, StageError> {
 fn fitted(size: &Size, aim: [f64; 3], scale: &mut [f64; 3]) -> Option<Figure> {
     for _ in 0..MAX_FITS {
         let figure = Figure::new(size, *scale);
-        let ratio = [level::HIP, level::WAIST, level::BUST].map(|l| trunk_girth(&figure, l * figure.chin));
-        let ratio = [0, 1, 2].map(|k| aim[k] / ratio[k]);
+        let girths = [level::HIP, level::WAIST, level::BUST].map(|l| trunk_girth(&figure, l * figure.chin));
+        let ratio = [0, 1, 2].map(|k| aim[k] / girths[k]);
         if ratio.iter().all(|r| (r - 1.0).abs() < FIT_TOLERANCE) {
             return Some(figure);
         }
@@ -175,17 +181,17 @@ fn fitted(size: &Size, aim: [f64; 3], scale: &mut [f64; 3]) -> Option<Figure> {
     None
 }
 
-/// The length of a tape around the figure at height `y`: rays from the axis meet the skin.
+/// The length of a tape around the trunk at height `y`: rays from the axis meet the skin.
 fn trunk_girth(figure: &Figure, y: f64) -> f64 {
     let ring = (0..RAYS).map(|i| {
         let (sin, cos) = ((i as f64 + 0.5) * std::f64::consts::TAU / RAYS as f64).sin_cos();
         let at = |r: f64| Point3::new(r * sin, y, r * cos);
         let (mut near, mut far) = (0.01, 0.5);
-        for _ in 0..3 {
-            // The first skin on the way out: beyond may lie an arm.
-            let step = (far - near) / 16.0;
-            let first = (1..=16).find(|&k| figure.value(at(near + step * f64::from(k))) > 0.0).unwrap_or(16);
-            near += step * f64::from(first - 1);
+        for parts in [16, 8, 8, 8, 8] {
+            // The first skin on the way out: beyond may lie the other leg.
+            let step = (far - near) / f64::from(parts);
+            let outside = |k: &i32| figure.without_arms(at(near + step * f64::from(*k))) > 0.0;
+            near += step * f64::from((1..parts).find(outside).unwrap_or(parts) - 1);
             far = near + step;
         }
         Point2::new((near + far) / 2.0 * sin, (near + far) / 2.0 * cos)

@@ -42,11 +42,6 @@ impl SliceLoop {
         self.bounds[1] - self.bounds[0]
     }
 
-    /// Extent along z.
-    pub(crate) fn depth(&self) -> f64 {
-        self.bounds[3] - self.bounds[2]
-    }
-
     /// Greatest (front) and least (back) z where the loop crosses a given x; `None` beside it.
     pub(crate) fn depths_at(&self, x: f64) -> Option<(f64, f64)> {
         let n = self.points.len();

@@ -3,7 +3,7 @@
 use toile_core::prelude::*;
 
 /// Triangles thinner than this share of their longest edge squared count as of no area.
-pub const LEAST_SHAPE: f64 = 1e-9;
+const LEAST_SHAPE: f64 = 1e-9;
 
 /// Refuses a garment that no solver can work on: empty, with numbers that are not finite, with
 /// triangles or edges of no size, with cloth that weighs nothing.

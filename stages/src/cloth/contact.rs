@@ -8,7 +8,7 @@
 //! not count as velocity. With a penalty stiffness, `f = c_r (d - dist) N` replaces the impulse.
 //! Cost: one product a node and step, a query for nodes that moved.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{BodyContact, Collide, ColliderCard, Point3};
 
@@ -88,7 +88,7 @@ impl Contacts {
     /// Corrects velocities for contact over the step `dt`, and positions of nodes too near.
     pub fn respond(&self, card: &ColliderCard, cloth: &Cloth, state: &mut State, dt: f64) {
         for (i, skin) in self.skins.iter().enumerate() {
-            if !skin.near || cloth.inverse_mass[i] <= 0.0 {
+            if !skin.near || cloth.inverse_inertia[i] <= 0.0 {
                 continue;
             }
             let spare = skin.normal.dot(&state.x[i].coords) - skin.base - card.thickness;
@@ -101,8 +101,8 @@ impl Contacts {
                     }
                 }
                 Some(k) if spare < 0.0 => {
-                    let k = k.min(PENALTY_SHARE * cloth.mass[i] / (dt * dt));
-                    let push = -spare * k * dt * cloth.inverse_mass[i];
+                    let k = k.min(PENALTY_SHARE * cloth.inertia[i] / (dt * dt));
+                    let push = -spare * k * dt * cloth.inverse_inertia[i];
                     *v = rub(*v + n * push, n, card.friction * push);
                 }
                 Some(_) => {}

@@ -10,7 +10,7 @@
 //! Limit: warp and weft are not coupled (Poisson ratio 0).
 
 use super::law::Law;
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 use toile_core::artifact::{Fabric, Point2, Point3};
 
 /// The laws of one fabric.
@@ -99,6 +99,18 @@ impl Membrane {
         let t = self.threads(x);
         let tensile = material.weft.energy(t.u_length - 1.0) + material.warp.energy(t.v_length - 1.0);
         self.area * (tensile + material.shear.energy(t.shear.abs()))
+    }
+
+    /// Adds what its springs, lying flat and each at its steepest slope, make of a small displacement.
+    pub fn add_flat_stiffness(&self, material: &Material, x: &[Vector2<f64>], y: &mut [Vector2<f64>]) {
+        let sum = |w: &[f64; 3]| (0..3).fold(Vector2::zeros(), |s, k| s + x[self.nodes[k] as usize] * w[k]);
+        let (u, v) = (sum(&self.weft), sum(&self.warp));
+        let tau = (u.y + v.x) * material.shear.steepest() * self.area;
+        let along_u = Vector2::new(u.x * material.weft.steepest() * self.area, tau);
+        let along_v = Vector2::new(tau, v.y * material.warp.steepest() * self.area);
+        for k in 0..3 {
+            y[self.nodes[k] as usize] += along_u * self.weft[k] + along_v * self.warp[k];
+        }
     }
 
     /// A bound on the greatest eigenvalue of its stiffness matrix, N/m.

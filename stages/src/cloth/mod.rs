@@ -6,23 +6,25 @@
 //! settings and stop rules.
 //!
 //! ```text
-//! law ── membrane ─┐
-//! hinge ───────────┼── cloth ── solver ─┐
-//! check ───────────┘                    ├── simulation ── stitch, drape
-//! seams, contacts, overstretch ─────────┘
+//! check      law ── membrane ─┐
+//!            hinge ───────────┼── cloth ── solver ────────┐
+//!            frequency ───────┘                           ├── simulation ── rest ── stitch, drape
+//!            seams, contact, pair, overstretch, skin ─────┘
 //! ```
 
 mod check;
-mod cloth;
 mod contact;
+mod frequency;
 mod hinge;
 mod law;
 mod membrane;
+mod model;
 mod overstretch;
 mod pair;
 mod rest;
 mod seams;
 mod simulation;
+mod skin;
 mod solver;
 
 #[cfg(test)]
@@ -31,14 +33,14 @@ pub(crate) mod fixtures;
 mod tests;
 
 pub use check::check_garment;
-pub use cloth::{Cloth, Edge, Softening, State};
 pub use contact::Contacts;
 pub use hinge::Hinge;
 pub use law::Law;
 pub use membrane::{Material, Membrane};
+pub use model::{Cloth, Edge, Softening, State};
 pub use overstretch::limit_stretch;
 pub use pair::SelfPairs;
 pub use rest::Rest;
 pub use seams::{SeamPull, Seams};
 pub use simulation::{Settings, Simulation};
-pub use solver::{CentralDifferences, Solver};
+pub use solver::{CentralDifferences, Forces, Solver};

@@ -6,7 +6,7 @@
 //! Cost: one root an edge, only in steps where a triangle comes near the limit.
 //! Limit: one sweep; neighbours may be stretched again and are caught in the next step.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 
 /// Shortens every edge that would be longer than `1 + limit` times its flat length after `dt`.
 /// Returns how many were.
@@ -14,7 +14,7 @@ pub fn limit_stretch(cloth: &Cloth, state: &mut State, limit: f64, dt: f64) -> u
     let mut corrected = 0;
     for e in &cloth.edges {
         let [a, b] = e.nodes.map(|n| n as usize);
-        let free = cloth.inverse_mass[a] + cloth.inverse_mass[b];
+        let free = cloth.inverse_inertia[a] + cloth.inverse_inertia[b];
         let apart = (state.x[b] + state.v[b] * dt) - (state.x[a] + state.v[a] * dt);
         let longest = e.length * (1.0 + limit);
         let square = apart.norm_squared();
@@ -23,8 +23,8 @@ pub fn limit_stretch(cloth: &Cloth, state: &mut State, limit: f64, dt: f64) -> u
         }
         let length = square.sqrt();
         let impulse = apart * ((length - longest) / (length * dt * free));
-        state.v[a] += impulse * cloth.inverse_mass[a];
-        state.v[b] -= impulse * cloth.inverse_mass[b];
+        state.v[a] += impulse * cloth.inverse_inertia[a];
+        state.v[b] -= impulse * cloth.inverse_inertia[b];
         corrected += 1;
     }
     corrected

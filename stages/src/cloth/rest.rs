@@ -7,7 +7,7 @@
 use super::simulation::Simulation;
 
 /// Simulated time between two looks, seconds.
-pub const SPAN: f64 = 0.02;
+const SPAN: f64 = 0.02;
 
 /// The energy's last changes.
 #[derive(Debug, Clone, Default)]

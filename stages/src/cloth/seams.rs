@@ -6,7 +6,7 @@
 //! distance becomes one node with mass-weighted position and velocity: momentum is kept.
 //! Cost: one root a pair.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{Garment, Point3, SeamState};
 
@@ -107,7 +107,7 @@ impl Seams {
         for p in &self.pairs {
             p.nodes.iter().for_each(|&n| sum[n as usize] += 2.0 * pull.stiffness * p.share);
         }
-        (0..cloth.len()).map(|i| sum[i] * cloth.inverse_mass[i]).fold(0.0, f64::max)
+        (0..cloth.len()).map(|i| sum[i] * cloth.inverse_inertia[i]).fold(0.0, f64::max)
     }
 }
 
@@ -117,7 +117,7 @@ fn gap(p: &Pair, x: &[Point3]) -> f64 {
 
 /// Joins every pair nearer than `distance`: the state of both nodes becomes their common
 /// mass-weighted mean, and the garment's `weld` says so. Returns the number of pairs joined.
-pub fn join(garment: &mut Garment, cloth: &Cloth, state: &mut State, distance: f64) -> usize {
+pub(super) fn join(garment: &mut Garment, cloth: &Cloth, state: &mut State, distance: f64) -> usize {
     let pairs: Vec<[u32; 2]> = garment.seams.iter().flat_map(|s| s.pairs.iter().copied()).collect();
     let mut groups = Groups::new(&garment.weld);
     let mut joined = 0;
@@ -144,19 +144,19 @@ fn merge(weld: &[u32], cloth: &Cloth, state: &mut State) {
     }
     let mut sums = vec![(0.0, Vector3::zeros(), Vector3::zeros()); cloth.len()];
     for (i, &r) in root.iter().enumerate() {
-        let (m, s) = (cloth.mass[i], &mut sums[r]);
+        let (m, s) = (cloth.inertia[i], &mut sums[r]);
         *s = (s.0 + m, s.1 + state.x[i].coords * m, s.2 + state.v[i] * m);
     }
     for (i, &r) in root.iter().enumerate() {
         let (m, x, v) = sums[r];
-        if m > cloth.mass[i] {
+        if m > cloth.inertia[i] {
             (state.x[i], state.v[i]) = (Point3::from(x / m), v / m);
         }
     }
 }
 
 /// Marks seams of which every pair is joined.
-pub fn mark_closed(garment: &mut Garment) {
+pub(super) fn mark_closed(garment: &mut Garment) {
     for seam in &mut garment.seams {
         let closed = seam.pairs.iter().all(|p| garment.weld[p[0] as usize] == garment.weld[p[1] as usize]);
         seam.state = if closed { SeamState::Closed } else { SeamState::Open };

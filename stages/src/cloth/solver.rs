@@ -3,7 +3,7 @@
 //! A [`Solver`] turns forces into velocities one step ahead; contacts then correct the velocities,
 //! and positions follow. Other schemes (implicit, projective) stand behind the same trait.
 
-use super::cloth::{Cloth, State};
+use super::model::{Cloth, State};
 use nalgebra::Vector3;
 
 /// Adds the forces in a state to the list; returns the greatest tensile strain.
@@ -35,6 +35,8 @@ pub trait Solver: Send + std::fmt::Debug {
 #[derive(Debug, Default)]
 pub struct CentralDifferences {
     forces: Vec<Vector3<f64>>,
+    /// The step before; 0 at the start, whose velocities are those of the positions' own time.
+    last: f64,
 }
 
 /// Share of the theoretical limit that is used: contacts and large turns eat the rest.
@@ -56,10 +58,13 @@ impl Solver for CentralDifferences {
         self.forces.clear();
         self.forces.resize(cloth.len(), Vector3::zeros());
         let strain = forces(state, &mut self.forces);
+        // From the middle of the last step to the middle of this one.
+        let span = (self.last + dt) / 2.0;
+        self.last = dt;
         for i in 0..cloth.len() {
-            let c = (cloth.damping[i] + extra_damping) * dt / 2.0;
-            let push = self.forces[i] * (dt * cloth.inverse_mass[i]);
-            let moves = if cloth.inverse_mass[i] > 0.0 { 1.0 } else { 0.0 };
+            let c = (cloth.damping[i] + extra_damping) * span / 2.0;
+            let push = self.forces[i] * (span * cloth.inverse_inertia[i]);
+            let moves = if cloth.inverse_inertia[i] > 0.0 { 1.0 } else { 0.0 };
             state.v[i] = (state.v[i] * ((1.0 - c) * moves) + push) / (1.0 + c);
         }
         strain

@@ -91,15 +91,17 @@ impl<V: BoundingVolume> Bvh<V> {
 
     /// Fits all volumes to moved triangles.
     pub fn refit(&mut self, corners: impl Fn(u32) -> Corners + Sync) {
-        let leaf = |node: &Node| match node.count {
+        let leaf = |points: &mut Vec<Point3>, node: &Node| match node.count {
             0 => None,
             n => {
                 let items = &self.items[node.first as usize..(node.first + n) as usize];
-                let first = V::fit(&corners(items[0]));
-                Some(items[1..].iter().fold(first, |v, &i| v.merge(&V::fit(&corners(i)))))
+                points.clear();
+                points.extend(items.iter().flat_map(|&i| corners(i)));
+                Some(V::fit(points))
             }
         };
-        let mut volumes: Vec<Option<V>> = self.nodes.par_iter().with_min_len(REFIT_CHUNK).map(leaf).collect();
+        let mut volumes: Vec<Option<V>> =
+            self.nodes.par_iter().with_min_len(REFIT_CHUNK).map_init(Vec::new, leaf).collect();
         for (i, node) in self.nodes.iter().enumerate().rev().filter(|(_, n)| n.count == 0) {
             volumes[i] = match (&volumes[i + 1], &volumes[node.right as usize]) {
                 (Some(a), Some(b)) => Some(a.merge(b)),

@@ -19,14 +19,16 @@ const MOST_STEPS: usize = 10_000;
 
 /// The time, 0 to 1, at which a vertex and a triangle come within `gap`; `None` where they do not.
 ///
-/// `from` and `to` hold the vertex, then the triangle's corners. Zero where they start within `gap`.
+/// `from` and `to` hold the vertex, then the triangle's corners. Zero where they start within `gap`
+/// or a coordinate is no finite number.
 pub fn vertex_triangle_impact(from: &[Point3; 4], to: &[Point3; 4], gap: f64) -> Option<f64> {
     impact(from, to, 1, gap, |[p, a, b, c]| (p - on_triangle(p, &[*a, *b, *c]).point).norm())
 }
 
 /// The time, 0 to 1, at which two edges come within `gap`; `None` where they do not.
 ///
-/// `from` and `to` hold the first edge's ends, then the second's. Zero where they start within `gap`.
+/// `from` and `to` hold the first edge's ends, then the second's. Zero where they start within `gap`
+/// or a coordinate is no finite number.
 pub fn edge_edge_impact(from: &[Point3; 4], to: &[Point3; 4], gap: f64) -> Option<f64> {
     impact(from, to, 2, gap, |[a, b, c, d]| {
         let (s, t) = between_segments(&[*a, *b], &[*c, *d]);
@@ -48,10 +50,8 @@ fn impact(
     let fastest = |moves: &[Vector3]| moves.iter().map(|m| (m - shared).norm()).fold(0.0, f64::max);
     let approach = fastest(&moves[..side]) + fastest(&moves[side..]);
     let start = distance(from) - gap;
-    if start <= 0.0 {
-        return Some(0.0);
-    }
-    if !(approach.is_finite() && start.is_finite()) {
+    let known = from.iter().chain(to).all(|p| p.iter().all(|x| x.is_finite()));
+    if start <= 0.0 || !known {
         return Some(0.0);
     }
     if approach == 0.0 {

@@ -23,13 +23,13 @@ use toile_core::prelude::*;
 pub struct Bilateral {
     /// Half the side of the square that is averaged.
     #[param(default = 3, min = 1, max = 15, unit = "px", trades)]
-    radius: u32,
+    pub radius: u32,
     /// Standard deviation of the weight over distance.
     #[param(default = 1.5, min = 0.3, max = 20.0, unit = "px")]
-    sigma_space: f64,
+    pub sigma_space: f64,
     /// Standard deviation of the weight over colour difference.
     #[param(default = 25.0, min = 1.0, max = 255.0, unit = "grey levels")]
-    sigma_colour: f64,
+    pub sigma_colour: f64,
 }
 
 #[stage]

@@ -22,7 +22,7 @@ use toile_core::prelude::*;
 pub struct Gaussian {
     /// Standard deviation.
     #[param(default = 1.0, min = 0.3, max = 20.0, unit = "px")]
-    sigma: f64,
+    pub sigma: f64,
 }
 
 #[stage]

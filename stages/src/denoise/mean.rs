@@ -39,10 +39,10 @@ pub enum Neighbours {
 pub struct NeighbourhoodMean {
     /// Which pixels count as neighbours.
     #[param(default = Neighbours::Eight)]
-    mask: Neighbours,
+    pub mask: Neighbours,
     /// How many steps over neighbours the mean reaches.
     #[param(default = 1, min = 1, max = 50, unit = "px")]
-    radius: u32,
+    pub radius: u32,
 }
 
 #[stage]

@@ -27,7 +27,7 @@ use toile_core::prelude::*;
 pub struct Median {
     /// Half the side of the square, its centre not counted.
     #[param(default = 1, min = 1, max = 50, unit = "px")]
-    radius: u32,
+    pub radius: u32,
 }
 
 #[stage]

@@ -19,44 +19,69 @@ use toile_core::prelude::*;
 #[stage(
     role = Draper,
     source = "improved spring-mass model, 2003; Provot, 1995",
-    example = "SpringDraper(max_strain: 0.04)",
+    example = "SpringDraper(max_strain: 0.02)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct SpringDraper {
     /// Downward acceleration.
     #[param(default = 9.81, min = 0.0, max = 100.0, unit = "m/s2")]
-    gravity: f64,
-    /// Edges longer than their flat length by more than this share are shortened.
-    #[param(default = 0.04, min = 0.001, max = 1.0)]
-    max_strain: f64,
+    pub gravity: f64,
+    /// Edges longer than their flat length by more than this share are shortened; a knit may
+    /// stretch by as much as 50 N/m stretch it.
+    #[param(default = 0.02, min = 0.001, max = 1.0)]
+    pub max_strain: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step. The weight
     /// of a shirt's front, about 6 N on a metre of shoulder, stretches it by 6/`stiffest`.
-    #[param(default = 1000.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
-    stiffest: f64,
+    #[param(default = 1500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    pub stiffest: f64,
     /// Damping in the beginning, on top of the fabric's.
     #[param(default = 2.0, min = 0.0, max = 1000.0, unit = "1/s")]
-    damping: f64,
+    pub damping: f64,
     /// Simulated time after which damping doubles, and again.
-    #[param(default = 0.25, min = 0.01, max = 100.0, unit = "s", trades)]
-    settle_time: f64,
+    #[param(default = 0.2, min = 0.01, max = 100.0, unit = "s", trades)]
+    pub settle_time: f64,
+    /// Simulated time over which friction grows to its full value, so that cloth slips into
+    /// place as a wearer shakes it.
+    #[param(default = 0.3, min = 0.0, max = 100.0, unit = "s")]
+    pub slip_time: f64,
     /// At rest, the energy changes by less than this in 20 ms.
     #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades)]
-    tolerance: f64,
+    pub tolerance: f64,
     /// At rest, no vertex is faster.
     #[param(default = 0.02, min = 0.0, max = 10.0, unit = "m/s", trades)]
-    speed: f64,
+    pub speed: f64,
     /// Simulated time after which the drape stops as it is.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "s", trades)]
-    time_limit: f64,
+    pub time_limit: f64,
     /// Steps after which the drape stops as it is.
     #[param(default = 200000, min = 1, max = 100_000_000, unit = "steps", trades)]
-    max_steps: usize,
+    pub max_steps: usize,
 }
 
 /// Steps between two checks of the stop flag.
 const CHECK_EVERY: usize = 8;
 /// Damping grows up to this, 1/s: above, cloth creeps.
-const GREATEST_DAMPING: f64 = 40.0;
+const GREATEST_DAMPING: f64 = 120.0;
+
+/// Line force that a worn garment meets where it is tight, N/m: a snug sleeve pulls by about that.
+const WORN_FORCE: f64 = 50.0;
+
+/// The strain that the softest fabric of the garment takes on under [`WORN_FORCE`]: a knit may
+/// stretch by that, whatever the limit.
+fn easy_strain(garment: &Garment) -> f64 {
+    let at_force = |curve: &Curve| {
+        let mut from = (0.0, 0.0);
+        for (i, &to) in curve.0.iter().enumerate() {
+            if to.1 >= WORN_FORCE || i + 1 == curve.0.len() {
+                return from.0 + (WORN_FORCE - from.1) * (to.0 - from.0) / (to.1 - from.1);
+            }
+            from = to;
+        }
+        0.0
+    };
+    let fabrics = garment.panels.iter().map(|p| &p.fabric);
+    fabrics.map(|f| at_force(&f.warp).max(at_force(&f.weft))).fold(0.0, f64::max)
+}
 
 #[stage]
 impl SpringDraper {
@@ -70,7 +95,7 @@ impl SpringDraper {
         check_garment(garment)?;
         let scheme = collider.map(|c| c.scheme.as_ref());
         let mut simulation =
-            Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings());
+            Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings(garment));
         let converged = self.fall(&mut simulation, cx)?;
         if !converged {
             cx.warn(format!(
@@ -79,18 +104,22 @@ impl SpringDraper {
                 simulation.time
             ));
         }
+        simulation.lift_off_skin();
         cx.figure("drape_time", simulation.time, "s");
+        cx.figure("self_searches", simulation.searches() as f64, "");
         Ok(simulation.finish(converged))
     }
 }
 
 impl SpringDraper {
-    fn settings(&self) -> Settings {
+    fn settings(&self, garment: &Garment) -> Settings {
         Settings {
             gravity: Vector3::new(0.0, -self.gravity, 0.0),
             damping: self.damping,
             softening: Softening { steepest: self.stiffest },
-            max_strain: Some(self.max_strain),
+            max_strain: Some(self.max_strain.max(easy_strain(garment))),
+            friction: 0.0,
+            self_thickness: 1.0,
             pull: None,
         }
     }
@@ -99,7 +128,7 @@ impl SpringDraper {
     fn fall(&self, simulation: &mut Simulation, cx: &Context) -> Result<bool, StageError> {
         let mut rest = Rest::default();
         while simulation.time < self.time_limit && simulation.steps < self.max_steps {
-            if simulation.steps % CHECK_EVERY == 0 {
+            if simulation.steps.is_multiple_of(CHECK_EVERY) {
                 cx.check()?;
             }
             simulation.step()?;
@@ -107,8 +136,9 @@ impl SpringDraper {
                 let doublings = simulation.time / self.settle_time;
                 simulation.settings.damping =
                     (self.damping * doublings.exp2()).min(GREATEST_DAMPING.max(self.damping));
+                simulation.settings.friction = (simulation.time / self.slip_time.max(1e-9)).min(1.0);
                 cx.progress(self.share(simulation, &rest), progress_text(simulation, &rest, self.tolerance));
-                if self.at_rest(simulation, &rest) {
+                if self.at_rest(simulation, &rest) && simulation.settings.friction >= 1.0 {
                     return Ok(true);
                 }
             }

@@ -18,6 +18,7 @@ pub(crate) fn check_outline(outline: &Outline, h: f64, cx: &Context) -> Result<(
     check_size(outline, h)?;
     cx.check()?;
     check_crossings(outline)?;
+    check_direction(outline)?;
     check_holes(outline)
 }
 
@@ -69,16 +70,12 @@ fn check_size(outline: &Outline, h: f64) -> Result<(), StageError> {
         return Err(degenerate("the outline encloses no area")
             .hint("is the outline a line that runs forth and back?"));
     }
-    if area < 0.0 {
-        return Err(StageError::invalid("the outline runs clockwise")
-            .hint("outer outlines run counter-clockwise, y up"));
-    }
     if h > span.x.max(span.y) {
         return Err(too_long(h, span));
     }
-    let triangles = 4.0 / 3f64.sqrt() * area / (h * h);
+    let triangles = 4.0 / 3f64.sqrt() * area.abs() / (h * h);
     if triangles > MAX_TRIANGLES {
-        let least = (4.0 / 3f64.sqrt() * area / MAX_TRIANGLES).sqrt();
+        let least = (4.0 / 3f64.sqrt() * area.abs() / MAX_TRIANGLES).sqrt();
         return Err(StageError::invalid(format!(
             "an edge of {} would make {:.0} million triangles, the limit is 5 million",
             show(h),
@@ -128,6 +125,14 @@ fn check_crossings(outline: &Outline) -> Result<(), StageError> {
         p.y * 1e3
     ))
     .hint("look at the outline's picture; a smoother mask or a larger denoiser radius helps"))
+}
+
+fn check_direction(outline: &Outline) -> Result<(), StageError> {
+    match polygon_area(&outline.outer.points) > 0.0 {
+        true => Ok(()),
+        false => Err(StageError::invalid("the outline runs clockwise")
+            .hint("outer outlines run counter-clockwise, y up")),
+    }
 }
 
 fn check_holes(outline: &Outline) -> Result<(), StageError> {

@@ -1,9 +1,9 @@
 //! Near-equilateral triangles by constrained Delaunay triangulation with refinement.
 //!
 //! Method: the outline is divided first and never touched again; a lattice of equilateral triangles
-//! (Fabri and Pion's and many others' seed) fills the inside; the constrained Delaunay
+//! fills the inside; the constrained Delaunay
 //! triangulation of both (Chew 1989) is relaxed near the outline and its angles are mended by
-//! refinement after Ruppert (1995) and Üngör (2004), without splitting segments.
+//! refinement after Ruppert (1995), without splitting segments (see `refine`).
 //! Cost: n log n.
 //! Limits: where segments of very different length meet at a sharp corner, the angle asked for
 //! cannot be had; the figure `least_angle` tells.
@@ -33,9 +33,9 @@ const RELAX_ROUNDS: usize = 6;
 /// get equal counts. Darts, pleats and folds lie on mesh edges.
 #[stage(
     role = Mesher,
-    source = "Chew, 1989; Ruppert, 1995; Üngör, 2004",
+    source = "Chew, 1989; Ruppert, 1995",
     example = "DelaunayMesher(edge: \"12 mm\", least_angle: 28)",
-    contracts(Deterministic, ThreadInvariant, TranslationEquivariant, ScaleEquivariant, BoundaryPreserving, RefusesEmpty, Cancellable)
+    contracts(Deterministic, ThreadInvariant, BoundaryPreserving, RefusesEmpty, Cancellable)
 )]
 pub struct DelaunayMesher {
     /// Target length of the triangles' edges; a smaller one gives finer folds and takes longer.

@@ -230,10 +230,10 @@ fn land_on_loops(p: Point2, loops: &mut [Vec<Stretch<'_>>], h: f64) -> Option<Po
     Some(stretch.line.at(arc))
 }
 
-/// Sharp corners of an inner line, and the places where other lines end on it.
+/// Corners of an inner line, and the places where other lines end on it.
 fn line_marks(lines: &[Polyline], i: usize, h: f64) -> Vec<f64> {
     let line = &lines[i];
-    let mut marks = line.sharp(INNER_CORNER.to_radians());
+    let mut marks = line.joints(INNER_CORNER.to_radians(), h / 2.0);
     let others = lines.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, l)| l);
     for end in others.flat_map(|l| [l.points[0], l.points[l.points.len() - 1]]) {
         let (distance, arc) = line.nearest(end);

@@ -133,7 +133,7 @@ pub(crate) fn rectangle(width: f64, height: f64) -> Outline {
 pub(crate) fn star() -> Outline {
     let at = |k: usize| {
         let a = std::f64::consts::TAU * k as f64 / 10.0 + 0.1;
-        let r = if k % 2 == 0 { 0.3 } else { 0.3 * 0.381_966 };
+        let r = if k.is_multiple_of(2) { 0.3 } else { 0.3 * 0.381_966 };
         p(r * a.cos(), r * a.sin())
     };
     plain((0..10).map(at).collect(), (0..10).collect())

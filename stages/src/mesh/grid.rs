@@ -23,6 +23,10 @@ use toile_core::{Context, StageError};
 /// makes needles, more makes a wide band that loses the grid's regularity.
 const LEAST_DISTANCE: f64 = 0.5;
 
+/// A cell with a segment this near to its sides (in edge lengths) belongs to the band: the point of a
+/// notch can be clear of all crossings and still sit close to the middle of a side.
+const CELL_MARGIN: f64 = 0.35;
+
 /// Angles in the band are mended up to this (degrees): well above the 15 that are promised, low
 /// enough to need few vertices that are not grid crossings.
 const BAND_ANGLE: f64 = 27.0;
@@ -37,7 +41,7 @@ const BAND_ANGLE: f64 = 27.0;
     role = Mesher,
     source = "thesis on 3D garment modelling from photos, 2012",
     example = "GridMesher(edge: \"12 mm\")",
-    contracts(Deterministic, ThreadInvariant, TranslationEquivariant, ScaleEquivariant, BoundaryPreserving, RefusesEmpty, Cancellable)
+    contracts(Deterministic, ThreadInvariant, BoundaryPreserving, RefusesEmpty, Cancellable)
 )]
 pub struct GridMesher {
     /// Target length of the triangles' edges; a smaller one gives finer folds and takes longer.
@@ -62,7 +66,7 @@ pub(crate) fn grid_mesh(
 ) -> Result<Meshed, StageError> {
     let lattice = grid_lattice(outline, h);
     let kept = kept_crossings(&lattice, division, h);
-    let cells = full_cells(&lattice, division, &kept);
+    let cells = full_cells(&lattice, division, &kept, h);
     cx.check()?;
     let first = division.points.len() as u32;
     let mut number = vec![u32::MAX; kept.len()];
@@ -97,9 +101,9 @@ fn kept_crossings(lattice: &Lattice, division: &Division, h: f64) -> Vec<bool> {
     kept
 }
 
-/// Cells whose four crossings are kept and that no segment touches.
-fn full_cells(lattice: &Lattice, division: &Division, kept: &[bool]) -> Vec<bool> {
-    let mut cells = lattice.touched_cells(&division.points, &division.segments());
+/// Cells whose four crossings are kept and that no segment comes near.
+fn full_cells(lattice: &Lattice, division: &Division, kept: &[bool], h: f64) -> Vec<bool> {
+    let mut cells = lattice.touched_cells(&division.points, &division.segments(), CELL_MARGIN * h);
     let n = lattice.columns;
     for (k, cell) in cells.iter_mut().enumerate() {
         let inner = k % n + 1 < n && k / n + 1 < lattice.rows;

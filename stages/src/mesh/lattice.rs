@@ -7,7 +7,7 @@
 //! Cost: linear in points and segments.
 
 use super::predicates::{distance_to_segment, orient};
-use toile_core::artifact::Point2;
+use toile_core::artifact::{Point2, Vector2};
 
 /// A rectangular lattice, or a triangular one where odd rows are shifted.
 #[derive(Debug, Clone)]
@@ -92,15 +92,19 @@ impl Lattice {
         }
     }
 
-    /// For every cell (named by its lower left point), whether a segment touches it.
-    pub(crate) fn touched_cells(&self, points: &[Point2], segments: &[[u32; 2]]) -> Vec<bool> {
+    /// For every cell (named by its lower left point), whether a segment comes into it, or as near
+    /// as `margin` to its sides.
+    pub(crate) fn touched_cells(&self, points: &[Point2], segments: &[[u32; 2]], margin: f64) -> Vec<bool> {
         let mut touched = vec![false; self.columns * self.rows];
         for s in segments {
             let (a, b) = (points[s[0] as usize], points[s[1] as usize]);
             let (low, high) = (a.inf(&b), a.sup(&b));
-            for j in self.row_span(low.y - self.dy, high.y) {
-                for i in self.span(j, low.x - self.dx, high.x) {
-                    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(u, v)| self.point(i + u, j + v));
+            for j in self.row_span(low.y - self.dy - margin, high.y + margin) {
+                for i in self.span(j, low.x - self.dx - margin, high.x + margin) {
+                    let near = self.point(i, j) - Vector2::new(margin, margin);
+                    let size = Vector2::new(self.dx, self.dy).add_scalar(2.0 * margin);
+                    let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)]
+                        .map(|(u, v)| near + Vector2::new(u * size.x, v * size.y));
                     let sides = corners.map(|c| orient(a, b, c));
                     let apart = sides.iter().all(|&s| s > 0.0) || sides.iter().all(|&s| s < 0.0);
                     touched[j * self.columns + i] |= !apart;

@@ -49,13 +49,14 @@ impl Polyline {
         segments.fold((f64::INFINITY, 0.0), |best, d| if d.0 < best.0 { d } else { best })
     }
 
-    /// Arc lengths of the inner points where it turns more than `angle` (radians).
-    pub(crate) fn sharp(&self, angle: f64) -> Vec<f64> {
-        let turn = |k: &usize| {
+    /// Arc lengths of the inner points where it turns more than `angle` (radians), or that stand at
+    /// least `apart` (metres) from both neighbours: a polygon's corners, however blunt.
+    pub(crate) fn joints(&self, angle: f64, apart: f64) -> Vec<f64> {
+        let joint = |k: &usize| {
             let (u, v) = (self.points[*k] - self.points[k - 1], self.points[k + 1] - self.points[*k]);
-            u.perp(&v).atan2(u.dot(&v)).abs() > angle
+            u.perp(&v).atan2(u.dot(&v)).abs() > angle || u.norm().min(v.norm()) >= apart
         };
-        (1..self.points.len() - 1).filter(turn).map(|k| self.arc[k]).collect()
+        (1..self.points.len() - 1).filter(joint).map(|k| self.arc[k]).collect()
     }
 
     /// The farthest that it leaves the chords between the given arc lengths.

@@ -1,7 +1,8 @@
 //! Better angles without touching what is fixed.
 //!
 //! Method: triangles whose least angle falls short are mended one by one, worst first in each
-//! pass: a new vertex at the circumcentre or an off-centre (Üngör 2004) is inserted where the
+//! pass: a new vertex at the circumcentre (Ruppert 1995), over a side (as Üngör's off-centres, 2004) or
+//! between two sides is inserted where the
 //! constrained Delaunay cavity around it then has a better least angle than before; a free corner
 //! is moved to where the least angle around it is greatest (pattern search, Freitag and
 //! Ollivier-Gooch 1997); a free corner is drawn onto a neighbour where that is better still.
@@ -140,10 +141,10 @@ fn add(mesh: &mut TriMesh, t: u32) -> bool {
     true
 }
 
-/// Where a new vertex may help: the circumcentre, and points on the bisector of each side whose
-/// triangle over that side has good angles.
+/// Where a new vertex may help: the circumcentre, points over the middle of each side whose
+/// triangle over that side has good angles, and points between two sides.
 fn candidates(corners: [Point2; 3]) -> Vec<Point2> {
-    let mut out = Vec::with_capacity(10);
+    let mut out = Vec::with_capacity(13);
     out.extend(circumcentre(corners));
     for k in 0..3 {
         let (a, b) = (corners[k], corners[(k + 1) % 3]);
@@ -151,8 +152,17 @@ fn candidates(corners: [Point2; 3]) -> Vec<Point2> {
         let middle = nalgebra::center(&a, &b);
         // Heights of triangles with apex angles of 90, 60 and 40 degrees.
         out.extend([0.5, 0.87, 1.37].map(|height| middle + inward * height));
+        out.extend(between(a, b, corners[(k + 2) % 3]));
     }
     out
+}
+
+/// Between the sides from `a` to `b` and `c`: the point on their bisector at their geometric mean, which
+/// bridges sides of very different lengths best.
+fn between(a: Point2, b: Point2, c: Point2) -> Option<Point2> {
+    let (u, v) = (b - a, c - a);
+    let way = (u.try_normalize(0.0)? + v.try_normalize(0.0)?).try_normalize(0.0)?;
+    Some(a + way * (u.norm() * v.norm()).sqrt())
 }
 
 fn circumcentre([a, b, c]: [Point2; 3]) -> Option<Point2> {

@@ -1,1 +1,266 @@
+#![allow(clippy::unwrap_used, clippy::expect_used)]
 
+use super::*;
+use image::{DynamicImage, GrayImage, ImageFormat, Luma, Rgb, RgbImage, Rgba, RgbaImage};
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::Arc;
+use toile_core::Cancel;
+use toile_core::param::ron_options;
+use toile_core::prelude::*;
+
+fn encode(image: impl Into<DynamicImage>, format: ImageFormat) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    image.into().write_to(&mut bytes, format).unwrap();
+    bytes.into_inner()
+}
+
+/// Red on the left, blue on the right.
+fn red_blue(w: u32, h: u32) -> RgbImage {
+    RgbImage::from_fn(w, h, |x, _| Rgb(if x < w / 2 { [255, 0, 0] } else { [0, 0, 255] }))
+}
+
+/// A JPEG with the EXIF orientation `value`.
+fn with_orientation(jpeg: &[u8], value: u8) -> Vec<u8> {
+    let mut exif = b"Exif\0\0MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".to_vec();
+    exif.extend([value, 0, 0, 0, 0, 0, 0]);
+    let length = (exif.len() + 2) as u16;
+    let mut bytes = vec![0xFF, 0xD8, 0xFF, 0xE1];
+    bytes.extend(length.to_be_bytes());
+    bytes.extend(exif);
+    bytes.extend(&jpeg[2..]);
+    bytes
+}
+
+/// A folder of its own for one test, with these files.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str, files: &[(&str, Vec<u8>)]) -> Self {
+        let path = std::env::temp_dir().join(format!("toile-photo-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        files.iter().for_each(|(file, bytes)| std::fs::write(path.join(file), bytes).unwrap());
+        Folder(path)
+    }
+
+    fn read(&self, photos: &str) -> Result<Set<Photo>, StageError> {
+        let cx = Context::new("Photos", &self.0, Cancel::new(), Arc::new(()));
+        Photos::new(entries(photos)).run(&cx)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn entries(text: &str) -> BTreeMap<String, PhotoEntry> {
+    ron_options().from_str(text).unwrap()
+}
+
+fn fault(text: &str) -> (String, usize, usize) {
+    let error = ron_options().from_str::<BTreeMap<String, PhotoEntry>>(text).unwrap_err();
+    (error.code.to_string(), error.span.start.line, error.span.start.col)
+}
+
+#[test]
+fn a_front_with_its_mirror_image() {
+    let folder = Folder::new("mirror", &[("a.png", encode(red_blue(6, 4), ImageFormat::Png))]);
+    let set =
+        folder.read(r#"{"front": (file: "a.png", width: "52 cm"), "back": MirrorOf("front")}"#).unwrap();
+    let (front, back) = (set.get("front").unwrap(), set.get("back").unwrap());
+    assert_eq!((front.mirrored, back.mirrored), (false, true));
+    assert_eq!((front.garment_width, back.garment_width), (Some(0.52), Some(0.52)));
+    assert!(Arc::ptr_eq(&front.pixels, &back.pixels), "a mirror costs no memory");
+    assert_eq!(front.file, "a.png");
+}
+
+#[test]
+fn a_mirror_of_a_mirror_is_the_photo_itself() {
+    let folder = Folder::new("twice", &[("a.png", encode(red_blue(6, 4), ImageFormat::Png))]);
+    let text =
+        r#"{"a": (file: "a.png", px_per_metre: 900, mirror: true), "b": MirrorOf("a"), "c": MirrorOf("b")}"#;
+    let set = folder.read(text).unwrap();
+    let mirrored: Vec<bool> = set.iter().map(|(_, p)| p.mirrored).collect();
+    assert_eq!(mirrored, [true, false, true]);
+    assert_eq!(set.get("c").unwrap().px_per_metre, Some(900.0));
+}
+
+#[test]
+fn entries_are_written_as_they_are_read() {
+    let text = r#"{"back":MirrorOf("front"),"front":(file:"a.jpg",width:"52 cm")}"#;
+    assert_eq!(ron_options().to_string(&entries(text)).unwrap(), text);
+}
+
+#[test]
+fn a_fault_in_an_entry_keeps_its_place() {
+    let cases = [
+        (
+            "{\"a\": (file: \"x\",\n  width: \"-3 cm\")}",
+            "the garment's width is -30 mm, which is not positive",
+            2,
+        ),
+        ("{\"a\": (file: \"x\", width: \"0 m\")}", "the garment's width is 0 m, which is not positive", 1),
+        ("{\"a\": (file: \"x\", width: \"52 m\")}", "the garment's width is 52 m, outside 5 mm to 10 m", 1),
+        ("{\"a\": (file: \"x\", width: 52)}", "the length 52 has no unit; write \"52 mm\" or \"52 cm\"", 1),
+        (
+            "{\"a\": (file: \"x\", px_per_metre: NaN)}",
+            "px_per_metre is NaN, outside 100 to 100000 pixels per metre",
+            1,
+        ),
+    ];
+    for (text, message, line) in cases {
+        let (found, at, _) = fault(text);
+        assert_eq!((found.as_str(), at), (message, line), "{text}");
+    }
+    assert!(fault("{\"a\": (file: \"x\", height: \"2 cm\")}").0.contains("`height`"));
+    assert!(fault("{\"a\": (width: \"2 cm\")}").0.contains("`file`"));
+    assert_eq!(fault("{\"a\": (file: \"x\"),\n \"b\": Mirror(\"a\")}").1, 2);
+}
+
+#[test]
+fn wrong_sets_are_refused() {
+    let folder = Folder::new("wrong", &[("a.png", encode(red_blue(2, 2), ImageFormat::Png))]);
+    let text = |photos: &str| folder.read(photos).unwrap_err();
+    assert_eq!(text("{}").to_string(), "there are no photos");
+    let error = text(r#"{"back": MirrorOf("fornt"), "front": (file: "a.png")}"#);
+    assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which there is not");
+    assert_eq!(error.hint.unwrap(), "the photos are \"back\", \"front\"");
+    let error = text(r#"{"back": MirrorOf("front"), "front": MirrorOf("back")}"#);
+    assert_eq!(error.to_string(), "photo \"back\" mirrors itself");
+    assert_eq!(error.hint.unwrap(), "one of the photos must be a file");
+    let error = text(r#"{"front": (file: "a.png", width: "5 cm", px_per_metre: 900)}"#);
+    assert_eq!(
+        error.to_string(),
+        "photo \"front\": both width and px_per_metre are given; one of them fixes the scale"
+    );
+    let error = text(r#"{"front": (file: "b.png")}"#);
+    assert_eq!(error.code, ErrorCode::PatternLoading);
+    assert_eq!(error.to_string(), "cannot read \"b.png\": no such file");
+}
+
+#[test]
+fn a_width_set_from_code_is_checked_too() {
+    let file = PhotoFile::new("a.png", Length::m(f64::NAN));
+    let photos = BTreeMap::from([("front".to_owned(), PhotoEntry::File(file))]);
+    let error = Photos::new(photos).run(&Context::quiet()).unwrap_err();
+    assert_eq!(error.code, ErrorCode::InvalidParameter);
+    assert_eq!(error.to_string(), "photo \"front\": the garment's width is not a finite number");
+}
+
+#[test]
+fn a_photo_is_turned_upright() {
+    let jpeg = encode(red_blue(64, 32), ImageFormat::Jpeg);
+    // Turned by a quarter, clockwise: what was left is on top.
+    let turned = decode(&with_orientation(&jpeg, 6), "a.jpg").unwrap().pixels;
+    assert_eq!(turned.dimensions(), (32, 64));
+    assert!(turned.get_pixel(16, 4).0[0] > 200 && turned.get_pixel(16, 60).0[2] > 200);
+    // Upside down.
+    let turned = decode(&with_orientation(&jpeg, 3), "a.jpg").unwrap().pixels;
+    assert!(turned.get_pixel(4, 16).0[2] > 200);
+    // A value that does not exist.
+    assert_eq!(decode(&with_orientation(&jpeg, 77), "a.jpg").unwrap().pixels.dimensions(), (64, 32));
+}
+
+#[test]
+fn deep_and_grey_pictures_become_eight_bit_colour() {
+    let deep = image::ImageBuffer::from_pixel(3, 2, Rgb([65535u16, 32896, 0]));
+    let out = decode(&encode(deep, ImageFormat::Png), "a.png").unwrap();
+    assert_eq!(out.pixels.get_pixel(0, 0).0, [255, 128, 0]);
+    let grey = GrayImage::from_pixel(3, 2, Luma([77]));
+    assert_eq!(decode(&encode(grey, ImageFormat::Png), "a.png").unwrap().pixels.get_pixel(2, 1).0, [77; 3]);
+}
+
+#[test]
+fn alpha_is_kept_where_it_says_something() {
+    let opaque = RgbaImage::from_pixel(3, 3, Rgba([9, 8, 7, 255]));
+    assert_eq!(decode(&encode(opaque, ImageFormat::Png), "a.png").unwrap().alpha, None);
+    // A dark garment is laid on white, a light one on black.
+    for (tone, ground) in [(40, 255), (220, 0)] {
+        let cut = RgbaImage::from_fn(4, 4, |x, _| Rgba([tone, tone, tone, if x < 2 { 255 } else { 0 }]));
+        let out = decode(&encode(cut, ImageFormat::Png), "a.png").unwrap();
+        assert_eq!(out.alpha.unwrap().get_pixel(3, 0).0, [0]);
+        assert_eq!((out.pixels.get_pixel(0, 0).0, out.pixels.get_pixel(3, 0).0), ([tone; 3], [ground; 3]));
+    }
+}
+
+/// The header of a PNG of that size, without its pixels.
+fn png_header(w: u32, h: u32) -> Vec<u8> {
+    let mut bytes = encode(red_blue(2, 2), ImageFormat::Png);
+    bytes[16..20].copy_from_slice(&w.to_be_bytes());
+    bytes[20..24].copy_from_slice(&h.to_be_bytes());
+    bytes
+}
+
+#[test]
+fn what_is_no_photo_gets_a_clear_error() {
+    let jpeg = encode(red_blue(200, 100), ImageFormat::Jpeg);
+    let png = encode(red_blue(200, 100), ImageFormat::Png);
+    let cases: [(&[u8], ErrorCode, &str); 9] = [
+        (b"", ErrorCode::PatternLoading, "photo \"a.jpg\" is empty"),
+        (b"a recipe for soup", ErrorCode::PatternLoading, "photo \"a.jpg\" is not a JPEG or PNG picture"),
+        (&jpeg[..jpeg.len() / 2], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
+        (&jpeg[..20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
+        (&png[..png.len() - 20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
+        (&png_header(0, 0), ErrorCode::InvalidInput, "photo \"a.jpg\" has no pixels (0 x 0)"),
+        (&png_header(100_000, 4), ErrorCode::InvalidInput, "photo \"a.jpg\" is too large: 100000 x 4 px"),
+        (
+            &png_header(20_000, 20_000),
+            ErrorCode::InvalidInput,
+            "photo \"a.jpg\" is too large: 20000 x 20000 px",
+        ),
+        (
+            &png_header(u32::MAX, u32::MAX),
+            ErrorCode::InvalidInput,
+            "photo \"a.jpg\" is too large: 4294967295 x 4294967295 px",
+        ),
+    ];
+    for (bytes, code, message) in cases {
+        let error = decode(bytes, "a.jpg").unwrap_err();
+        assert_eq!((error.code, error.to_string().as_str()), (code, message));
+    }
+    let hint = decode(&png_header(100_000, 4), "a.jpg").unwrap_err().hint.unwrap();
+    assert_eq!(hint, "at most 30000 px a side, 200 megapixels and 1024 MiB decoded; scale it down first");
+}
+
+#[test]
+fn a_damaged_picture_is_an_error() {
+    let mut png = encode(red_blue(200, 100), ImageFormat::Png);
+    let middle = png.len() / 2;
+    png[middle] ^= 0xFF;
+    let error = decode(&png, "a.png").unwrap_err();
+    assert_eq!(error.code, ErrorCode::PatternLoading);
+    assert!(error.to_string().starts_with("photo \"a.png\" is damaged ("), "{error}");
+    assert_eq!(error.hint.unwrap(), "export it again as JPEG or PNG");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn no_bytes_make_the_reader_panic(
+        jpeg in any::<bool>(),
+        cut in 0usize..900,
+        changes in prop::collection::vec((0usize..900, any::<u8>()), 0..8),
+    ) {
+        let format = if jpeg { ImageFormat::Jpeg } else { ImageFormat::Png };
+        let mut bytes = encode(red_blue(24, 17), format);
+        for (at, value) in changes {
+            let length = bytes.len();
+            bytes[at % length] = value;
+        }
+        let whole = cut % 3 == 0;
+        bytes.truncate(if whole { bytes.len() } else { cut });
+        if let Ok(out) = decode(&bytes, "a") {
+            prop_assert!(out.pixels.width() > 0 && out.pixels.height() > 0);
+        }
+    }
+
+    #[test]
+    fn no_text_makes_the_entry_reader_panic(text in "[(){}:,\"a-z0-9 .MirrorOfilewdth]{0,40}") {
+        let _ = ron_options().from_str::<PhotoEntry>(&text);
+    }
+}

@@ -3,11 +3,11 @@
 mod depth;
 mod fit;
 mod lift;
-mod place;
+mod panels;
 mod sew;
 
 pub use lift::Lift;
-pub use place::Place;
+pub use panels::Place;
 
 use toile_core::Registry;
 

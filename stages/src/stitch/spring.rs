@@ -27,44 +27,50 @@ use toile_core::prelude::*;
 pub struct SpringStitcher {
     /// Two points of a seam nearer than this are joined.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.02)]
-    seam_distance: Length,
+    pub seam_distance: Length,
     /// Pull of a seam for each metre of gap and each metre of seam.
     #[param(default = 5000.0, min = 1.0, max = 1e6, unit = "N/m2")]
-    seam_stiffness: f64,
+    pub seam_stiffness: f64,
     /// Greatest pull of a seam for each metre of it, as of a hand that draws it together.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "N/m")]
-    seam_tension: f64,
+    pub seam_tension: f64,
     /// Damping of all motion while sewing, on top of the fabric's.
     #[param(default = 20.0, min = 0.0, max = 1000.0, unit = "1/s")]
-    damping: f64,
+    pub damping: f64,
+    /// Share of the collider's friction that acts while sewing: hands smooth the cloth as they sew.
+    #[param(default = 0.1, min = 0.0, max = 1.0)]
+    pub friction: f64,
     /// Tensile curves are cut at this slope: the stiffest spring decides the time step, and sewing
     /// needs no stiffer cloth.
-    #[param(default = 1000.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
-    stiffest: f64,
+    #[param(default = 500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    pub stiffest: f64,
     /// The sewn garment is at rest when its energy changes by less than this in 20 ms.
     #[param(default = 1e-4, min = 0.0, max = 1.0, unit = "J", trades)]
-    tolerance: f64,
+    pub tolerance: f64,
     /// Simulated time after which sewing stops as it is, in seconds.
     #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]
-    time_limit: f64,
+    pub time_limit: f64,
     /// Steps after which sewing stops as it is.
     #[param(default = 200000, min = 1, max = 100_000_000, unit = "steps", trades)]
-    max_steps: usize,
+    pub max_steps: usize,
     /// A start with a vertex deeper in the body than this is refused; shallower ones are moved out.
     #[param(default = Length::cm(4.0), min = 0.0, max = 1.0)]
-    deepest_start: Length,
+    pub deepest_start: Length,
 }
 
 /// Seams that make no progress pull harder, up to this many times the tension.
-pub const HARDEST: f64 = 16.0;
+const HARDEST: f64 = 64.0;
 /// Steps between two looks for pairs to join.
-const JOIN_EVERY: usize = 16;
+const JOIN_EVERY: usize = 32;
 /// Steps between two checks of the stop flag: well under 50 ms for any garment in reach.
 const CHECK_EVERY: usize = 8;
 /// Spans of 20 ms without progress after which seams pull harder.
 const PATIENCE: usize = 4;
 /// Progress is a gap sum smaller by this share.
 const PROGRESS: f64 = 0.02;
+/// Share of the cloth's thickness that acts while sewing: layers pressed together beside a seam
+/// would hold it open by their full thickness.
+const SELF_THICKNESS: f64 = 0.3;
 /// Damping of a closing gap, N s/m2: keeps the last millimetres from ringing.
 const SEAM_DAMPING: f64 = 0.2;
 /// Simulated time that a sewn garment gets to come to rest, seconds; the drape goes on from there.
@@ -86,6 +92,7 @@ impl SpringStitcher {
         sewing.close(cx)?;
         let converged = sewing.settle(cx)?;
         cx.figure("sewing_time", sewing.simulation.time, "s");
+        cx.figure("self_searches", sewing.simulation.searches() as f64, "");
         Ok(sewing.simulation.finish(converged))
     }
 }
@@ -125,6 +132,8 @@ impl<'a> Sewing<'a> {
             damping: stage.damping,
             softening: Softening { steepest: stage.stiffest },
             max_strain: None,
+            friction: stage.friction,
+            self_thickness: SELF_THICKNESS,
             pull: Some(stage.pull(1.0)),
         };
         let simulation = Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), settings);
@@ -145,7 +154,7 @@ impl<'a> Sewing<'a> {
         self.simulation.join(self.stage.seam_distance.metres());
         while !self.simulation.seams.all_closed() {
             self.step(cx)?;
-            if self.simulation.steps % JOIN_EVERY == 0 {
+            if self.simulation.steps.is_multiple_of(JOIN_EVERY) {
                 self.simulation.join(self.stage.seam_distance.metres());
             }
             if self.rest.look(&self.simulation) {
@@ -175,7 +184,7 @@ impl<'a> Sewing<'a> {
     }
 
     fn step(&mut self, cx: &Context) -> Result<(), StageError> {
-        if self.simulation.steps % CHECK_EVERY == 0 {
+        if self.simulation.steps.is_multiple_of(CHECK_EVERY) {
             cx.check()?;
         }
         self.simulation.step()
@@ -202,7 +211,7 @@ impl<'a> Sewing<'a> {
         }
         if self.waited > PATIENCE {
             self.harder *= 2.0;
-            self.waited = 0;
+            (self.waited, self.best) = (0, left);
             self.simulation.settings.pull = Some(self.stage.pull(self.harder));
             self.simulation.retune();
         }
@@ -236,8 +245,8 @@ impl<'a> Sewing<'a> {
 
 impl SpringStitcher {
     fn pull(&self, harder: f64) -> SeamPull {
-        let tension = self.seam_tension * harder;
-        SeamPull { stiffness: self.seam_stiffness, tension, damping: SEAM_DAMPING }
+        let (stiffness, tension) = (self.seam_stiffness * harder, self.seam_tension * harder);
+        SeamPull { stiffness, tension, damping: SEAM_DAMPING }
     }
 }
 

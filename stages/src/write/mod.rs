@@ -15,7 +15,7 @@ mod texture_file;
 pub use glb::Glb;
 pub use obj::Obj;
 pub use ply::Ply;
-pub use preview::Preview;
+pub use preview::{Framing, Preview};
 pub use report::Report;
 pub use texture_file::TextureFormat;
 

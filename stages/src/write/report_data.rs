@@ -7,7 +7,10 @@ use base64::engine::general_purpose::STANDARD;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::any::Any;
-use toile_core::artifact::{Artifact, Body, Garment, Measure, Model, OutputFiles, RunLog, StageRecord};
+use toile_core::artifact::{
+    Artifact, Body, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
+    StageRecord, quantile,
+};
 use toile_core::{Context, StageError};
 
 /// Height of the three views at the head, px.
@@ -22,6 +25,7 @@ pub(super) struct Page {
     version: &'static str,
     total: String,
     views: Vec<Shown>,
+    shortfalls: Vec<String>,
     figures: Vec<Vec<Figure>>,
     stages: Vec<Section>,
     skipped: Vec<Figure>,
@@ -83,6 +87,7 @@ pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, Stag
         version: env!("CARGO_PKG_VERSION"),
         total: seconds(total),
         views,
+        shortfalls: shortfalls(run),
         figures: key_figures(run),
         stages,
         skipped: skipped.collect(),
@@ -187,7 +192,7 @@ fn notes(artifact: &dyn Artifact) -> Vec<String> {
         let line = |f: &toile_core::artifact::OutputFile| format!("{} ({})", f.path, bytes(f.bytes.len()));
         return files.0.iter().map(line).collect();
     }
-    if is::<toile_core::artifact::SewingPlan>(artifact).is_none() {
+    if is::<SewingPlan>(artifact).is_none() {
         return Vec::new();
     }
     let text = artifact.export().into_iter().find(|(kind, _)| *kind == "txt");
@@ -205,11 +210,8 @@ fn output(name: &str, artifact: &dyn Artifact) -> Output {
 fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
     let Some(garment) = last::<Garment>(run, run.stages.len()) else { return Vec::new() };
     let strains = garment.edge_strains();
-    let at = |q: f64| {
-        let last = strains.len().saturating_sub(1) as f64;
-        strains.get((q * last).round() as usize).copied().unwrap_or(0.0) * 100.0
-    };
-    let open = garment.seams.iter().filter(|s| s.state == toile_core::artifact::SeamState::Open).count();
+    let at = |q: f64| quantile(&strains, q) * 100.0;
+    let open = garment.seams.iter().filter(|s| s.state == SeamState::Open).count();
     let row =
         |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
     let word = |yes: bool| if yes { "yes" } else { "no" }.to_owned();
@@ -236,7 +238,21 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         cloth.push(row(&format!("{}, change of area", panel.name), change(flat, now), "%"));
         fit.push(row(&format!("{}, change of outline", panel.name), change(flat_length, length), "%"));
     }
+    let judged = last::<Figures>(run, run.stages.len()).map(|f| &f.garment);
+    if let Some(inside) = judged.and_then(|g| g.body_penetration) {
+        cloth.push(row("vertices inside the body", inside.vertices as f64, ""));
+        fit.push(row("deepest in the body", inside.max_m * 1e3, "mm"));
+    }
+    if let Some(crossings) = judged.and_then(|g| g.self_crossings) {
+        cloth.push(row("pairs of triangles that cross", crossings as f64, ""));
+    }
     vec![cloth, fit]
+}
+
+/// The quality limits that the result misses.
+fn shortfalls(run: &RunLog) -> Vec<String> {
+    let figures = last::<Figures>(run, run.stages.len());
+    figures.map(|f| f.shortfalls.iter().map(|s| s.message.clone()).collect()).unwrap_or_default()
 }
 
 fn figure(m: &Measure) -> Figure {

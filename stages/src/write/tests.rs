@@ -333,6 +333,19 @@ fn file_names_stay_in_their_folder() {
     assert_eq!(error.param, Some("name"));
 }
 
+#[test]
+fn preview_shows_the_whole_body_on_request() {
+    let redness = |text: &str| {
+        let files = params::<Preview>(text).run(&model(), &Context::quiet()).unwrap().0;
+        let picture = image::load_from_memory(&files[0].bytes).unwrap().to_rgb8();
+        picture.pixels().filter(|p| i32::from(p.0[0]) > i32::from(p.0[2]) + 40).count()
+    };
+    assert!(
+        redness("(size: 100, frame: Whole)") * 3 < redness("(size: 100)"),
+        "the garment is small in the whole"
+    );
+}
+
 /// A run with every kind of picture, some of it hostile.
 fn run_log() -> RunLog {
     let record = |id: &str, role: Role, outputs: Vec<PortValue>| StageRecord {
@@ -350,6 +363,13 @@ fn run_log() -> RunLog {
         }],
         warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()],
     };
+    let mut figures = Figures::default();
+    figures.garment.body_penetration =
+        Some(toile_core::artifact::PenetrationFigures { vertices: 3, max_m: 0.0025 });
+    figures.shortfalls = vec![toile_core::artifact::Shortfall {
+        code: ErrorCode::BodyIntersection,
+        message: "3 vertices are <inside> the body".to_owned(),
+    }];
     RunLog {
         pipeline: "vest <script>".to_owned(),
         stages: vec![
@@ -358,6 +378,7 @@ fn run_log() -> RunLog {
             record("Drape#2", Role::Draper, vec![one(fixture::garment(6))]),
             record("PhotoTexturer", Role::Texturer, vec![one(model())]),
             record("Glb", Role::Writer, vec![one(OutputFiles::one("garment.glb", vec![0; 2048]))]),
+            record("Measure", Role::Writer, vec![one(figures)]),
             record("Empty", Role::Style, Vec::new()),
         ],
         skipped: vec![("Flatten".to_owned(), "nothing asked for <needs> it".to_owned())],
@@ -393,9 +414,15 @@ fn the_report_tells_of_every_stage() {
     for stage in &run.stages {
         assert!(html.contains(&format!("<h3>{}</h3>", stage.id)), "{}", stage.id);
     }
-    for text in
-        ["(bias: 3.0)", "131 grey levels", "garment.glb (2 kB)", "Flatten", "250 ms", "widest seam gap"]
-    {
+    for text in [
+        "(bias: 3.0)",
+        "131 grey levels",
+        "garment.glb (2 kB)",
+        "Flatten",
+        "250 ms",
+        "widest seam gap",
+        "2.500 mm",
+    ] {
         assert!(html.contains(text), "{text}");
     }
     // Three views, two photos, two pictures each of body, garment and model.
@@ -406,7 +433,8 @@ fn the_report_tells_of_every_stage() {
 #[test]
 fn the_report_escapes_what_others_wrote() {
     let html = report(&run_log(), "(pictures: 32)");
-    assert!(!html.contains("<script>"));
+    assert!(!html.contains("<script>") && !html.contains("<inside>"));
+    assert!(html.contains("Misses a limit: 3 vertices are &lt;inside&gt; the body"));
     assert!(html.contains("vest &lt;script&gt;") && html.contains("nothing asked for &lt;needs&gt; it"));
 }
 

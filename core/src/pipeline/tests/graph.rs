@@ -97,6 +97,26 @@ fn ids_are_names_with_numbers_that_nobody_took() {
 }
 
 #[test]
+fn stages_of_one_name_are_told_apart_by_what_they_take() {
+    let roles = |stages: &[&str]| {
+        let nodes = good(&with(stages)).nodes.into_iter().filter(|n| n.card.name == "Laplacian");
+        nodes.map(|n| format!("{} {}{}", n.id, n.card.role.as_str(), n.stage.params())).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        roles(&["Otsu()", "Laplacian(threshold: 7)", "GridMesher()", "Laplacian(lambda: 0.25)"]),
+        ["Laplacian edge detector(threshold: 7.0)", "Laplacian2 smoother(lambda: 0.25)"]
+    );
+    // Behind the mesher `from` tells that edges are meant once more.
+    let twice =
+        ["Otsu()", "Canny()", "GridMesher()", "Laplacian(from: \"Otsu\")", "Taubin(from: \"GridMesher\")"];
+    assert_eq!(roles(&twice), ["Laplacian edge detector(threshold: 6.0)"]);
+    assert_eq!(
+        faults(&with(&["Otsu()", "Laplacian(lambda: 0.25)"])),
+        "vest.ron:4:11: unknown parameter `lambda`; `Laplacian` has `threshold`"
+    );
+}
+
+#[test]
 fn nothing_makes_it() {
     clash(
         &["Canny()"],
@@ -125,7 +145,7 @@ fn nothing_makes_it() {
 fn what_a_section_lacks_is_one_fault() {
     let text = kit::VEST.replace("        Canny(low: 20, high: 60),\n", "");
     let expected = "vest.ron:8:12: `Vest` takes an outline, but nothing before it makes one; \
-                    `Canny()` makes an outline from a mask and a photo; put it before";
+                    `Canny()` and `Laplacian()` make an outline from a mask and a photo; put one of them before";
     assert_eq!(faults(&text), expected);
 }
 

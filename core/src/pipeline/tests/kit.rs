@@ -131,6 +131,32 @@ pub(crate) struct Fit {}
 #[stage(role = Texturer)]
 pub(crate) struct Painter {}
 
+/// One of two stages of the same name.
+pub(crate) mod edges {
+    use crate::prelude::*;
+
+    /// Finds edges.
+    #[stage(role = EdgeDetector)]
+    pub(crate) struct Laplacian {
+        /// Weak edges.
+        #[param(default = 6.0, min = 0, max = 255)]
+        threshold: f64,
+    }
+}
+
+/// The other of two stages of the same name.
+pub(crate) mod smooth {
+    use crate::prelude::*;
+
+    /// Smooths.
+    #[stage(role = Smoother)]
+    pub(crate) struct Laplacian {
+        /// How far.
+        #[param(default = 0.5, min = 0, max = 1)]
+        lambda: f64,
+    }
+}
+
 /// Writes.
 #[stage(role = Writer)]
 pub(crate) struct Glb {}
@@ -162,6 +188,8 @@ idle! {
     Seams: (_outlines: Set<Outline>, _plan: &SewingPlan) -> (Set<Outline>, SewingPlan);
     GridMesher: (_outline: &Outline) -> Panel;
     DelaunayMesher: (_outline: &Outline) -> Panel;
+    edges::Laplacian: (_photo: &Photo, _mask: &Mask) -> Outline;
+    smooth::Laplacian: (_panel: &Panel) -> Panel;
     Taubin: (_panel: &Panel) -> Panel;
     Merge: (_panels: Set<Panel>) -> Panel;
     Fit: (_panel: &Panel, _body: &Body) -> Body;
@@ -176,6 +204,7 @@ pub(crate) fn registry() -> Registry {
     r.add::<Photos>().add::<Mannequin>().add::<Preset>().add::<Mean>().add::<Otsu>().add::<Local>();
     r.add::<Canny>().add::<Vest>().add::<Seams>().add::<GridMesher>().add::<DelaunayMesher>().add::<Taubin>();
     r.add::<Merge>().add::<Fit>().add::<Painter>().add::<Glb>().add::<Report>();
+    r.add::<edges::Laplacian>().add::<smooth::Laplacian>();
     r.section(Section::table("photos", "Photos", "photos"));
     r.section(Section::stage("style", Role::Style));
     r.section(Section::stage("body", Role::Body));

@@ -62,10 +62,8 @@ impl<const D: usize> BoundingVolume for KDop<D> {
         let mut k = KDop { min: [f64::INFINITY; D], max: [f64::NEG_INFINITY; D] };
         for p in points {
             let s = Self::project(p);
-            for i in 0..D {
-                k.min[i] = k.min[i].min(s[i]);
-                k.max[i] = k.max[i].max(s[i]);
-            }
+            k.min = std::array::from_fn(|i| k.min[i].min(s[i]));
+            k.max = std::array::from_fn(|i| k.max[i].max(s[i]));
         }
         // Along the axes nothing is rounded.
         let size = (0..3).map(|i| k.min[i].abs().max(k.max[i].abs())).sum::<f64>();

@@ -1,8 +1,8 @@
 //! The oriented box.
 //!
 //! Gottschalk, Lin, Manocha 1996: axes from the covariance of the points, overlap by the
-//! separating-axis test of 15 axes. A single triangle takes its own frame. Two boxes are merged in
-//! the frame of the one that gives the smaller result, which is cheap enough for a refit.
+//! separating-axis test of 15 axes. A single triangle takes its own frame. Two boxes are merged
+//! in the best of three frames: each one's own, and the principal axes of the two filled boxes.
 
 use super::{BoundingVolume, PAD};
 use nalgebra::{Matrix3, SymmetricEigen};
@@ -24,7 +24,7 @@ pub struct Obb {
 }
 
 impl Obb {
-    /// The box along given axes around `points`, each widened by a box's half lengths projected.
+    /// The box along given axes that spans a range on each, a hair wider.
     fn along(axes: Matrix3<f64>, low: Vector3, high: Vector3) -> Self {
         let center = Point3::from(axes * ((low + high) / 2.0));
         let half = (high - low) / 2.0;
@@ -53,6 +53,11 @@ impl Obb {
         Self::along(axes, la.inf(&lb), ha.sup(&hb))
     }
 
+    /// Three times the covariance of a box evenly filled.
+    fn spread(&self) -> Matrix3<f64> {
+        self.axes * Matrix3::from_diagonal(&self.half.component_mul(&self.half)) * self.axes.transpose()
+    }
+
     fn half_area(&self) -> f64 {
         let h = self.half;
         h.x * h.y + h.y * h.z + h.z * h.x
@@ -71,10 +76,16 @@ fn triangle_frame(points: &[Point3]) -> Matrix3<f64> {
         sides.iter().fold(sides[0], |a, b| if b.norm_squared() > a.norm_squared() { *b } else { a });
     let Some(x) = longest.try_normalize(0.0) else { return Matrix3::identity() };
     let n = sides[0].cross(&sides[1]);
-    let z = n.try_normalize(0.0).unwrap_or_else(|| across(&x));
-    // Made exactly square to x: the cross product of a thin triangle is rounded.
-    let z = (z - x * z.dot(&x)).try_normalize(0.5).unwrap_or_else(|| across(&x));
-    Matrix3::from_columns(&[x, z.cross(&x), z])
+    frame(&x, &n).unwrap_or_else(|| Matrix3::from_columns(&[x, across(&x).cross(&x), across(&x)]))
+}
+
+/// The frame of a unit vector and of another vector, made square to it; `None` for parallel ones.
+fn frame(x: &Vector3, towards: &Vector3) -> Option<Matrix3<f64>> {
+    let z = towards.try_normalize(0.0)?;
+    // Twice, because the first time leaves the rounding of a small remainder.
+    let z = (z - x * z.dot(x)).try_normalize(1e-3)?;
+    let z = (z - x * z.dot(x)).normalize();
+    Some(Matrix3::from_columns(&[*x, z.cross(x), z]))
 }
 
 /// A unit vector square to a unit vector.
@@ -84,11 +95,14 @@ fn across(x: &Vector3) -> Vector3 {
     x.cross(&least).normalize()
 }
 
-/// The principal axes of points.
-fn principal_axes(points: &[Point3]) -> Matrix3<f64> {
+/// The covariance of points.
+fn covariance(points: &[Point3]) -> Matrix3<f64> {
     let mean = points.iter().map(|p| p.coords).sum::<Vector3>() / points.len() as f64;
-    let covariance: Matrix3<f64> =
-        points.iter().map(|p| p.coords - mean).map(|d| d * d.transpose()).sum::<Matrix3<f64>>();
+    points.iter().map(|p| p.coords - mean).map(|d| d * d.transpose()).sum()
+}
+
+/// The eigenvectors of a covariance, as columns.
+fn principal_axes(covariance: &Matrix3<f64>) -> Matrix3<f64> {
     let axes = SymmetricEigen::new(covariance / covariance.amax().max(f64::MIN_POSITIVE)).eigenvectors;
     let square = (axes.tr_mul(&axes) - Matrix3::identity()).amax() < 1e-12;
     if square { axes } else { Matrix3::identity() }
@@ -96,12 +110,19 @@ fn principal_axes(points: &[Point3]) -> Matrix3<f64> {
 
 impl BoundingVolume for Obb {
     fn fit(points: &[Point3]) -> Self {
-        let axes = if points.len() > 3 { principal_axes(points) } else { triangle_frame(points) };
+        let axes =
+            if points.len() > 3 { principal_axes(&covariance(points)) } else { triangle_frame(points) };
         Obb::around(Matrix3::identity(), points).smaller(Obb::around(axes, points))
     }
 
     fn merge(&self, other: &Self) -> Self {
-        Obb::merged(self.axes, self, other).smaller(Obb::merged(other.axes, self, other))
+        let apart = (other.center - self.center) / 2.0;
+        let spread = self.spread() + other.spread() + apart * apart.transpose() * 6.0;
+        [self.axes, other.axes]
+            .into_iter()
+            .fold(Obb::merged(principal_axes(&spread), self, other), |best, axes| {
+                best.smaller(Obb::merged(axes, self, other))
+            })
     }
 
     fn near(&self, other: &Self, reach: f64) -> bool {

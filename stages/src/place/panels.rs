@@ -1,20 +1,21 @@
 //! `Place`: panels into space around the body, with their seams.
 //!
-//! Each panel is anchored by a landmark, then all are raised or lowered together until as few
-//! seams as possible would have to pass through flesh (a shoulder seam starts above the shoulder, an
-//! underarm seam below the arm), then lifted off the skin. Cost: some milliseconds.
-//! Limit: sleeves are not turned; they fit arms that leave the trunk at about their own angle.
+//! Each panel is anchored by a landmark, then all are raised or lowered together until the shoulder
+//! seams just clear the shoulders, then lifted off the skin. Cost: some tens of milliseconds.
+//! Limit: sleeves are not turned; they fit arms that leave the trunk at about their own angle, and a
+//! warning names the seams that start with an arm between their sides.
 
 use super::depth::DepthMap;
-use super::fit::check_girths;
+use super::fit::{Cut, check_girths};
 use super::lift::{Board, Lift, depth_inside, lift, profile};
 use super::sew::{Offsets, seams, unknown_panel};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_core::prelude::*;
 
 /// Seam pairs that start farther apart than this are not sewn but dragged across the room, metres.
 const MAX_GAP: f64 = 0.8;
-/// Heights above the landmark that are tried, metres; the nearest of the best is taken.
+/// Heights above the landmark that are tried, upwards: first, last, step in metres.
 const RAISES: (i32, i32, f64) = (-10, 30, 0.005);
 /// Distance that a seam should keep from the skin on its way, metres.
 const CLEARANCE: f64 = 0.006;
@@ -81,6 +82,8 @@ struct Placed<'a> {
     name: &'a str,
     panel: &'a Panel,
     board: Board,
+    /// Its first vertex within the garment.
+    first: usize,
     points: Vec<Point3>,
 }
 
@@ -111,10 +114,19 @@ impl<'a> Scene<'a> {
     }
 
     fn placed(&self, raise: f64) -> Result<Vec<Placed<'a>>, StageError> {
-        self.offsets.iter().map(|(name, (_, panel))| self.placed_panel(name, panel, raise)).collect()
+        self.offsets
+            .iter()
+            .map(|(name, (first, panel))| self.placed_panel(name, *first, panel, raise))
+            .collect()
     }
 
-    fn placed_panel(&self, name: &'a str, panel: &'a Panel, raise: f64) -> Result<Placed<'a>, StageError> {
+    fn placed_panel(
+        &self,
+        name: &'a str,
+        first: usize,
+        panel: &'a Panel,
+        raise: f64,
+    ) -> Result<Placed<'a>, StageError> {
         let place = self.plan.placements.get(name).ok_or_else(|| {
             StageError::invalid(format!("nothing says where the panel \"{name}\" goes on the body"))
                 .hint("the style names the panels that it places; choose a style that has this panel")
@@ -122,19 +134,37 @@ impl<'a> Scene<'a> {
         let board = Board::new(place, self.body, raise)?;
         let laid: Vec<Point2> = panel.positions.iter().map(|&p| board.lay(p)).collect();
         let profile = profile(self.place.lift, &laid, &board, self.body, self.place.ease.metres());
-        Ok(Placed { name, panel, board, points: lift(&laid, &board, &profile) })
+        Ok(Placed { name, panel, board, first, points: lift(&laid, &board, &profile) })
     }
 
-    /// The height at which the fewest pairs would pass through the body, nearest to the landmarks.
+    /// The least height at which the shoulder seams clear the shoulders; else that of the fewest
+    /// pairs with flesh between them; 0 where no seam crosses the shoulders.
     fn best_raise(&self, cx: &Context) -> Result<f64, StageError> {
         let (from, to, step) = RAISES;
-        let mut best = (usize::MAX, i32::MAX, 0);
+        let mut best = (usize::MAX, 0);
         for k in from..=to {
             cx.check()?;
-            let blocked: usize = self.blocked(f64::from(k) * step)?.into_iter().sum();
-            best = best.min((blocked, k.abs(), k));
+            let Some(blocked) = self.blocked_shoulders(f64::from(k) * step)? else { return Ok(0.0) };
+            best = best.min((blocked, k));
+            if blocked == 0 {
+                break;
+            }
         }
-        Ok(f64::from(best.2) * step)
+        Ok(f64::from(best.1) * step)
+    }
+
+    /// How many pairs over the shoulders have flesh between them; `None` where there are no such pairs.
+    fn blocked_shoulders(&self, raise: f64) -> Result<Option<usize>, StageError> {
+        let [shoulder, armpit] = ["shoulder_left", "armpit_left"].map(|name| self.body.landmarks.get(name));
+        let (Some(shoulder), Some(armpit)) = (shoulder, armpit) else { return Ok(None) };
+        let points: Vec<Point3> = self.placed(raise)?.into_iter().flat_map(|p| p.points).collect();
+        let over = |pair: &&[u32; 2]| {
+            let middle = nalgebra::center(&points[pair[0] as usize], &points[pair[1] as usize]);
+            middle.x.abs() <= shoulder.x.abs() && middle.y > armpit.y
+        };
+        let pairs: Vec<&[u32; 2]> = self.seams.iter().flat_map(|s| &s.pairs).filter(over).collect();
+        let blocked = pairs.iter().filter(|p| self.is_blocked(&points, ***p)).count();
+        Ok((!pairs.is_empty()).then_some(blocked))
     }
 
     /// For each seam the number of pairs with flesh between them.
@@ -173,7 +203,8 @@ impl<'a> Scene<'a> {
         for (seam, blocked) in self.seams.iter().zip(self.blocked(raise)?) {
             if blocked as f64 > MAX_BLOCKED * seam.pairs.len() as f64 {
                 cx.warn(format!(
-                    "the seam {} starts with the body between {blocked} of its {} pairs",
+                    "the seam {} starts with the body between {blocked} of its {} pairs; arms spread like the \
+                     sleeves would free it (the mannequin's `arm_angle`)",
                     seam.name,
                     seam.pairs.len()
                 ));
@@ -184,9 +215,15 @@ impl<'a> Scene<'a> {
 
     fn check_size(&self, raise: f64, fabric: &Fabric) -> Result<(), StageError> {
         let trunk = |name: &str| self.plan.placements.get(name).is_some_and(|p| p.limb == Limb::Torso);
+        let sewn: BTreeSet<usize> =
+            self.seams.iter().flat_map(|s| &s.pairs).flatten().map(|v| *v as usize).collect();
         let placed = self.placed(raise)?;
-        let panels: Vec<(Board, &Panel)> =
-            placed.iter().filter(|p| trunk(p.name)).map(|p| (p.board, p.panel)).collect();
+        let cut = |p: &Placed<'a>| {
+            let count = p.panel.positions.len();
+            let own = sewn.range(p.first..p.first + count).map(|v| (v - p.first) as u32);
+            Cut { board: p.board, panel: p.panel, sewn: own.collect() }
+        };
+        let panels: Vec<Cut> = placed.iter().filter(|p| trunk(p.name)).map(cut).collect();
         check_girths(&panels, self.body, fabric)
     }
 
@@ -211,7 +248,7 @@ impl<'a> Scene<'a> {
 
 /// Adds a panel's vertices and triangles at the garment's end.
 fn append(g: &mut Garment, placed: Placed, fabric: &Arc<Fabric>) {
-    let (first, first_triangle) = (g.positions.len(), g.triangles.len());
+    let (first, first_triangle) = (placed.first, g.triangles.len());
     let shift = |v: &u32| v + first as u32;
     g.positions.extend(placed.points);
     g.rest.extend(&placed.panel.positions);

@@ -4,10 +4,15 @@
 //! fabric's density goes to each corner. The lists are flat and built once; they are rebuilt only
 //! when pairs are joined, which costs about a millisecond for 4,000 triangles.
 
+use super::frequency::{highest, inertia};
 use super::hinge::{Hinge, Wing};
 use super::membrane::{Material, Membrane};
 use nalgebra::Vector3;
+use std::ops::Range;
 use toile_core::artifact::{Garment, Point3};
+
+/// Cloth with fewer triangles is not worth a second thread.
+const LEAST_PARALLEL: usize = 1000;
 
 /// How far the fabric's measured stiffness is cut for the sake of the time step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,10 +44,13 @@ pub struct State {
 pub struct Cloth {
     /// The node of every garment vertex.
     pub node_of: Vec<u32>,
-    /// Mass of every node, kg.
+    /// Mass of every node, kg: what gravity pulls.
     pub mass: Vec<f64>,
-    /// Its inverse; 0 for a node that is held.
-    pub inverse_mass: Vec<f64>,
+    /// Inertia of every node, kg: its mass, raised where a tiny triangle would force a tiny time
+    /// step on the whole garment. The shape at rest does not depend on it.
+    pub inertia: Vec<f64>,
+    /// One over the inertia; 0 for a node that is held.
+    pub inverse_inertia: Vec<f64>,
     /// Velocity damping of every node, 1/s.
     pub damping: Vec<f64>,
     /// Triangles as nodes, in the garment's order.
@@ -77,13 +85,25 @@ impl Cloth {
             })
             .collect();
         let cut = softening.steepest;
-        let materials = garment.panels.iter().map(|p| Material::new(&p.fabric, cut)).collect();
+        let materials: Vec<Material> = garment.panels.iter().map(|p| Material::new(&p.fabric, cut)).collect();
         let (mass, damping) = masses(garment, &membranes, node_count(&node_of));
         let sides = sides(&triangles);
         let hinges = hinges(garment, &triangles, &panel_of, &sides);
         let edges = edges(garment, &node_of, &sides);
-        let inverse_mass = mass.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
-        Cloth { node_of, mass, inverse_mass, damping, triangles, membranes, materials, hinges, edges }
+        let inertia = inertia(&mass, &membranes, &materials);
+        let inverse_inertia = inertia.iter().map(|&m| if m > 0.0 { 1.0 / m } else { 0.0 }).collect();
+        Cloth {
+            node_of,
+            mass,
+            inertia,
+            inverse_inertia,
+            damping,
+            triangles,
+            membranes,
+            materials,
+            hinges,
+            edges,
+        }
     }
 
     /// Number of nodes.
@@ -98,18 +118,39 @@ impl Cloth {
 
     /// Holds a node where it is.
     pub fn hold(&mut self, node: usize) {
-        self.inverse_mass[node] = 0.0;
+        self.inverse_inertia[node] = 0.0;
     }
 
     /// Adds all elastic forces; returns the greatest tensile strain.
+    ///
+    /// Large cloth is worked on by two threads. The halves are the same for any number of
+    /// threads and are added in a fixed order, so the bits are too.
     pub fn add_forces(&self, x: &[Point3], forces: &mut [Vector3<f64>]) -> f64 {
+        let (m, h) = (self.membranes.len() / 2, self.hinges.len() / 2);
+        if self.membranes.len() < LEAST_PARALLEL {
+            return self.add_share(0..self.membranes.len(), 0..self.hinges.len(), x, forces);
+        }
+        let mut other = vec![Vector3::zeros(); forces.len()];
+        let (first, second) = rayon::join(
+            || self.add_share(0..m, 0..h, x, forces),
+            || self.add_share(m..self.membranes.len(), h..self.hinges.len(), x, &mut other),
+        );
+        forces.iter_mut().zip(&other).for_each(|(f, o)| *f += o);
+        first.max(second)
+    }
+
+    fn add_share(
+        &self,
+        membranes: Range<usize>,
+        hinges: Range<usize>,
+        x: &[Point3],
+        forces: &mut [Vector3<f64>],
+    ) -> f64 {
         let mut strain = 0.0f64;
-        for m in &self.membranes {
+        for m in &self.membranes[membranes] {
             strain = strain.max(m.add_forces(&self.materials[m.material as usize], x, forces));
         }
-        for h in &self.hinges {
-            h.add_forces(x, forces);
-        }
+        self.hinges[hinges].iter().for_each(|h| h.add_forces(x, forces));
         strain
     }
 
@@ -120,30 +161,9 @@ impl Cloth {
         membranes + self.hinges.iter().map(|h| h.energy(x)).sum::<f64>()
     }
 
-    /// A bound on the highest angular frequency, rad/s (Gershgorin: each node's elements' greatest
-    /// eigenvalues, summed over its elements, over its mass).
-    pub fn frequency_bound(&self) -> f64 {
-        // Element by element: the assembled system vibrates no faster than its fastest element
-        // with its share of the nodes' mass (Irons, Treharne 1972).
-        let mut share = vec![0.0; self.len()];
-        for h in &self.hinges {
-            let k = h.stiffness_bound();
-            h.nodes.iter().for_each(|&n| share[n as usize] += k);
-        }
-        let hinge = share.iter().zip(&self.mass).filter(|(_, m)| **m > 0.0).map(|(k, m)| k / m);
-        let hinges = hinge.fold(0.0, f64::max);
-        let mut worst = 0.0f64;
-        let mut area = vec![0.0; self.len()];
-        for m in &self.membranes {
-            m.nodes.iter().for_each(|&n| area[n as usize] += m.area / 3.0);
-        }
-        for m in &self.membranes {
-            let least = m.nodes.iter().fold(f64::INFINITY, |least, &n| {
-                least.min(self.mass[n as usize] * (m.area / 3.0) / area[n as usize])
-            });
-            worst = worst.max(m.stiffness_bound(&self.materials[m.material as usize]) / least);
-        }
-        (worst + hinges).sqrt()
+    /// The highest angular frequency of its springs, rad/s.
+    pub fn frequency(&self) -> f64 {
+        highest(self)
     }
 
     /// The nodes' state in a garment: that of each node's least vertex.
