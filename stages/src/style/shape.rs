@@ -127,6 +127,11 @@ impl Shape {
         self.steps(Path { from: path.from, to: i }) <= self.steps(path)
     }
 
+    /// True where `i` lies on the path and is none of its ends, which are landmarks already.
+    fn within(&self, path: Path, i: usize) -> bool {
+        i != path.from && i != path.to && self.holds(path, i)
+    }
+
     pub(super) fn length(&self, path: Path) -> f64 {
         let i: Vec<usize> = self.indices(path).collect();
         i.windows(2).map(|w| (self.at(w[1]) - self.at(w[0])).norm()).sum()
@@ -145,7 +150,7 @@ impl Shape {
         let key = |i: &usize| self.along(*i, direction);
         let found = self.indices(path).max_by(|a, b| key(a).total_cmp(&key(b)))?;
         let ahead = self.ahead(found, direction);
-        Some(self.snap(found, bend, |i| self.holds(path, i) && ahead(i)))
+        Some(self.snap(found, bend, |i| self.within(path, i) && ahead(i)))
     }
 
     /// A corner far behind the extreme point is another landmark: a shoulder's rounded end must not
@@ -165,7 +170,7 @@ impl Shape {
         let chord = (b - a).try_normalize(1e-12)?;
         let off = |i: &usize| -side * chord.perp(&(self.at(*i) - a));
         let found = self.indices(path).max_by(|a, b| off(a).total_cmp(&off(b)))?;
-        Some((self.snap(found, bend, |i| self.holds(path, i)), off(&found)))
+        Some((self.snap(found, bend, |i| self.within(path, i)), off(&found)))
     }
 
     fn along(&self, i: usize, direction: Vector2) -> f64 {
@@ -179,7 +184,19 @@ impl Shape {
         self.corners.iter().copied().filter(fits).min_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(i)
     }
 
+    /// The sharpest corner of that bend on a path, and its turn in degrees.
+    pub(super) fn sharpest(&self, path: Path, bend: Bend) -> Option<(usize, f64)> {
+        let fits = |c: &usize| self.within(path, *c) && self.bend(*c) == bend;
+        let turn = |c: usize| (c, self.turn(c).abs().to_degrees());
+        self.corners.iter().copied().filter(fits).map(turn).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     fn bend(&self, i: usize) -> Bend {
+        if self.turn(i) >= 0.0 { Bend::Convex } else { Bend::Concave }
+    }
+
+    /// The turn of the loop at a point, radians, positive to the left.
+    fn turn(&self, i: usize) -> f64 {
         let n = self.points.len();
         let walk = |step: usize| {
             let mut j = i;
@@ -191,9 +208,8 @@ impl Shape {
             }
             self.at(j)
         };
-        let (before, after) = (walk(n - 1), walk(1));
-        let turn = (self.at(i) - before).perp(&(after - self.at(i)));
-        if turn >= 0.0 { Bend::Convex } else { Bend::Concave }
+        let (before, after) = (self.at(i) - walk(n - 1), walk(1) - self.at(i));
+        before.perp(&after).atan2(before.dot(&after))
     }
 
     /// The greatest height of the loop at u = 0, or the least.

@@ -41,6 +41,8 @@ impl TShirt {
 
 /// How far the armpit lies inside the line from hem to cuff at least, as a share of the size.
 const LEAST_ARMPIT: f64 = 0.04;
+/// Turn of a corner that is an armpit wherever it lies, degrees.
+const SHARP: f64 = 40.0;
 /// Shortest underarm seam, as a share of the size: cap sleeves have next to none.
 const LEAST_UNDERARM: f64 = 0.015;
 /// Shortest cuff, as a share of the size.
@@ -48,18 +50,19 @@ const LEAST_CUFF: f64 = 0.05;
 
 /// The shirt's landmarks between hem and neck.
 fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
-    let tip = shape.extreme(path, Vector2::new(1.0, 0.25), OUT).ok_or("it has no sleeve")?;
-    let below = Path { from: path.from, to: tip };
-    let (armpit, depth) = shape.farthest(below, -1.0, IN).ok_or("it has no armpit")?;
-    if depth < LEAST_ARMPIT * shape.size || armpit == tip {
+    let top = shape.extreme(path, Vector2::new(1.0, 0.25), OUT).ok_or("it has no sleeve")?;
+    let below = Path { from: path.from, to: top };
+    let (farthest, depth) = shape.farthest(below, -1.0, IN).ok_or("it has no armpit")?;
+    if depth < LEAST_ARMPIT * shape.size {
         return Err("its sides run up without an armpit; it seems to have no sleeves".into());
     }
+    // A sleeve that hangs down leaves the side with little depth but with a sharp corner.
+    let armpit = match shape.sharpest(below, IN) {
+        Some((corner, turn)) if turn > SHARP && check_armpit(shape, corner).is_ok() => corner,
+        _ => farthest,
+    };
     check_armpit(shape, armpit)?;
-    let sleeve = Path { from: armpit, to: path.to };
-    let top = shape.extreme(sleeve, Vector2::new(1.0, 0.25), OUT).ok_or("it has no cuff")?;
-    let low = shape
-        .extreme(Path { from: armpit, to: top }, Vector2::new(0.5, -1.0), OUT)
-        .ok_or("it has no cuff")?;
+    let (low, _) = shape.farthest(Path { from: armpit, to: top }, 1.0, OUT).ok_or("it has no cuff")?;
     let long = |from: usize, to: usize, least: f64| shape.length(Path { from, to }) > least * shape.size;
     if !long(armpit, low, LEAST_UNDERARM) || !long(low, top, LEAST_CUFF) {
         return Err("its arms end without a cuff; it seems to have no sleeves".into());
