@@ -17,7 +17,7 @@ struct Sample {
 }
 
 const SAMPLES: [(&str, &str, f64); 4] =
-    [("vest", "front", 0.52), ("vest", "back", 0.52), ("tshirt", "front", 0.72), ("tshirt", "back", 0.72)];
+    [("vest", "front", 0.52), ("vest", "back", 0.52), ("tshirt", "front", 0.76), ("tshirt", "back", 0.76)];
 
 fn sample((garment, side, width): (&str, &str, f64)) -> Sample {
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines/samples").join(garment);
