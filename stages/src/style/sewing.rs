@@ -134,7 +134,7 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
     let words = format!("{} is {:.1} mm long, {} {:.1} mm", seam.a, a * 1e3, seam.b, b * 1e3);
     match seam.kind {
         SeamKind::Gathered => Ok(()),
-        SeamKind::Matched if !(difference <= MAX_EASE) => Err(stitching(format!(
+        SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(stitching(format!(
             "{words}: they differ by {:.1} %, too much to be sewn flat",
             100.0 * difference
         ))
@@ -230,7 +230,7 @@ fn agree(outlines: &mut BTreeMap<String, Outline>, seam: &Seam) {
 fn least_radius(points: &[Point2]) -> f64 {
     let total = polyline_length(points);
     let arm = RADIUS_ARM.min(total / 4.0);
-    if !(arm > 0.0) {
+    if arm.is_nan() || arm <= 0.0 {
         return f64::INFINITY;
     }
     let mut along = vec![0.0];
