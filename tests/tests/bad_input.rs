@@ -27,10 +27,16 @@ fn refused(set: &str) -> Answer {
     answer
 }
 
-/// The error's text without its drawing, in one line.
+/// The error's text without its drawing of the file, in one line.
 fn words(answer: &Answer) -> String {
-    let text: String =
-        answer.err.lines().map(|l| l.trim().trim_start_matches('│').trim()).collect::<Vec<_>>().join(" ");
+    let (mut text, mut in_drawing) = (String::new(), false);
+    for line in answer.err.lines().map(str::trim) {
+        in_drawing |= line.starts_with("╭─[");
+        if !in_drawing {
+            text += &format!("{} ", line.trim_start_matches('│'));
+        }
+        in_drawing &= !line.starts_with("╰────");
+    }
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 

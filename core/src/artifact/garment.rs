@@ -53,7 +53,8 @@ pub struct SolveStatus {
     pub converged: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
-    /// Greatest speed of a vertex at the end, m/s.
+    /// Greatest speed of a vertex at the end, m/s; of a solver that waits for rest, by its way over the
+    /// solver's last look.
     pub max_speed: f64,
 }
 

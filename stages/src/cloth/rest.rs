@@ -2,9 +2,12 @@
 //!
 //! Method: the total energy (elastic, gravitational, of motion) is looked at in equal spans of
 //! simulated time; the motion is over when it changes by less than a tolerance over a span
-//! [METHODS 2]. The rate at which the change shrinks tells how long rest is away.
+//! [METHODS 2], and when no vertex got far in that span: a vertex that trembles on a contact is fast
+//! at any one step and yet goes nowhere. The rate at which the change shrinks tells how long rest is
+//! away.
 
 use super::simulation::Simulation;
+use toile_core::artifact::Point3;
 
 /// Simulated time between two looks, seconds.
 const SPAN: f64 = 0.02;
@@ -16,6 +19,9 @@ pub struct Rest {
     energy: Option<f64>,
     change: Option<f64>,
     shrink: f64,
+    places: Vec<Point3>,
+    looked: f64,
+    drift: Option<f64>,
 }
 
 impl Rest {
@@ -32,7 +38,23 @@ impl Rest {
             self.shrink = if self.shrink > 0.0 { 0.8 * self.shrink + 0.2 * ratio } else { ratio };
         }
         (self.energy, self.change) = (Some(energy), change);
+        self.measure_drift(simulation);
         true
+    }
+
+    fn measure_drift(&mut self, simulation: &Simulation) {
+        let (x, time) = (&simulation.state.x, simulation.time - self.looked);
+        self.drift = (self.places.len() == x.len() && time > 0.0).then(|| {
+            let ways = self.places.iter().zip(x).map(|(a, b)| (b - a).norm_squared());
+            ways.fold(0.0, f64::max).sqrt() / time
+        });
+        self.places.clone_from(x);
+        self.looked = simulation.time;
+    }
+
+    /// Greatest speed of a vertex, as its way over the last span, m/s.
+    pub fn drift(&self) -> Option<f64> {
+        self.drift
     }
 
     /// The energy at the last look, J.

@@ -8,7 +8,6 @@
 //! it, of Wu et al. 2020: two pieces at distance d cannot meet while all their vertices move by
 //! less than d/2.
 
-use super::closest::Feature;
 use super::cloth_tree::ClothTree;
 use super::proximity::{Proximity, edge_edge, vertex_triangle};
 use super::volume::{Aabb, BoundingVolume};
@@ -23,7 +22,7 @@ struct Pair {
 
 #[derive(Clone, Copy)]
 enum PairKind {
-    VertexTriangle(Feature),
+    VertexTriangle,
     /// True where both closest points lie between the ends.
     EdgeEdge(bool),
 }
@@ -77,26 +76,19 @@ pub(super) fn count_tests<V: BoundingVolume>(
     (tests, pairs.len())
 }
 
-/// What makes a vertex-triangle pair the same as another: the closest features, whichever
-/// triangle they were seen in and from whichever side.
+/// What makes a vertex-triangle pair the same as another: the nodes that carry weight, whichever
+/// triangle they were seen in and from whichever side. A side's end that carries none does not
+/// count, or a vertex nearest to a corner would be found both there and on the side.
 fn key(pair: &Pair) -> Option<[u32; 4]> {
-    let PairKind::VertexTriangle(feature) = pair.kind else { return None };
+    let PairKind::VertexTriangle = pair.kind else { return None };
     const NONE: u32 = u32::MAX;
     let [v, t @ ..] = pair.nodes;
-    Some(match feature {
-        Feature::Face => {
-            let mut t = t;
-            t.sort_unstable();
-            [v, t[0], t[1], t[2]]
-        }
-        Feature::Side(k) => {
-            let (i, j) = (t[k as usize], t[(k as usize + 1) % 3]);
-            [v, i.min(j), i.max(j), NONE]
-        }
-        Feature::Corner(k) => {
-            let w = t[k as usize];
-            [v.min(w), v.max(w), NONE, NONE]
-        }
+    let weight = |k: usize| pair.found.weights[k + 1];
+    let mut near = [0, 1, 2].map(|k| if weight(k) == 0.0 { NONE } else { t[k] });
+    near.sort_unstable();
+    Some(match near {
+        [w, NONE, NONE] => [v.min(w), v.max(w), NONE, NONE],
+        [i, j, k] => [v, i, j, k],
     })
 }
 
@@ -135,8 +127,8 @@ impl<V> Narrow<'_, V> {
             if !Aabb::fit(&t).near(&Aabb { min: p, max: p }, self.reach) {
                 continue;
             }
-            let (found, feature) = vertex_triangle(&p, &t);
-            self.keep([v, tb[0], tb[1], tb[2]], found, PairKind::VertexTriangle(feature));
+            let (found, _) = vertex_triangle(&p, &t);
+            self.keep([v, tb[0], tb[1], tb[2]], found, PairKind::VertexTriangle);
         }
     }
 

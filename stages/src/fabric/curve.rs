@@ -9,10 +9,10 @@
 use toile_core::artifact::Curve;
 
 /// The line force at which the Kawabata tensile test ends, N/m (500 gf/cm).
-pub const KES_FORCE: f64 = 490.332_5;
+pub(crate) const KES_FORCE: f64 = 490.332_5;
 
 /// Linearities that two rising pieces can show.
-pub const LINEARITY: (f64, f64) = (0.55, 1.0);
+pub(crate) const LINEARITY: (f64, f64) = (0.55, 1.0);
 
 /// Shear angle at which threads jam and stiffen, and the angle where the curve's given part ends.
 const JAM: (f64, f64) = (0.5, 0.8);
@@ -32,7 +32,7 @@ pub fn tensile_curve(strain: f64, force: f64, linearity: f64) -> Curve {
 }
 
 /// The shear curve with stiffness `k` (N/m per rad) up to the angle where threads jam.
-pub fn shear_curve(k: f64) -> Curve {
+pub(crate) fn shear_curve(k: f64) -> Curve {
     let jam = k * JAM.0;
     Curve(vec![(JAM.0, jam), (JAM.1, jam + JAMMED * k * (JAM.1 - JAM.0))])
 }
