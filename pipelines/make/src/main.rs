@@ -87,3 +87,29 @@ fn write(folder: &Path, side: Side, shot: &Shot, outline: &Outline) -> Result<()
     std::fs::write(folder.join(format!("{name}.outline.json")), truth::outline_json(shot, outline))?;
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn the_committed_outlines_are_those_of_this_program() {
+        for side in [Side::Front, Side::Back] {
+            let name = if side == Side::Front { "front" } else { "back" };
+            for (garment, shot, outline) in [
+                ("vest", vest_shot(side), garment::vest(side)),
+                ("tshirt", tshirt_shot(side), garment::tshirt(side)),
+            ] {
+                let file = Path::new(env!("CARGO_MANIFEST_DIR"))
+                    .join(format!("../samples/{garment}/{name}.outline.json"));
+                let committed = std::fs::read_to_string(file).unwrap();
+                assert!(
+                    truth::outline_json(&shot, &outline) == committed,
+                    "{garment} {name}: run the program"
+                );
+            }
+        }
+    }
+}

@@ -16,20 +16,23 @@ struct Sample {
     corners: Vec<(String, Point2)>,
 }
 
-const SAMPLES: [(&str, &str, f64); 4] =
-    [("vest", "front", 0.52), ("vest", "back", 0.52), ("tshirt", "front", 0.76), ("tshirt", "back", 0.76)];
+const SAMPLES: [(&str, &str); 4] =
+    [("vest", "front"), ("vest", "back"), ("tshirt", "front"), ("tshirt", "back")];
 
-fn sample((garment, side, width): (&str, &str, f64)) -> Sample {
+fn sample((garment, side): (&str, &str)) -> Sample {
     let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines/samples").join(garment);
     let open = |name: String| image::open(base.join(name)).unwrap();
     let text = std::fs::read_to_string(base.join(format!("{side}.outline.json"))).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
     let point =
         |v: &serde_json::Value| Point2::new(v[0].as_f64().unwrap() / 1e3, v[1].as_f64().unwrap() / 1e3);
+    let outline: Vec<Point2> = truth["outline"].as_array().unwrap().iter().map(point).collect();
+    // The samples are symmetric about x = 0.
+    let width = 2.0 * outline.iter().map(|p| p.x).fold(0.0, f64::max);
     Sample {
         photo: photo(open(format!("{side}.jpg")).to_rgb8(), Some(width)),
         mask: mask(open(format!("{side}.mask.png")).to_luma8()),
-        outline: truth["outline"].as_array().unwrap().iter().map(point).collect(),
+        outline,
         corners: truth["corners"].as_object().unwrap().iter().map(|(k, v)| (k.clone(), point(v))).collect(),
     }
 }
