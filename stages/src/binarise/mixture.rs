@@ -61,13 +61,10 @@ impl Mixture {
         self.modes.iter().map(|m| m.distance2(colour)).fold(f64::INFINITY, f64::min).sqrt()
     }
 
-    /// The distance where a darker colour of the same hue counts as a shadow: of what it is darker
-    /// than the mode, the share `shadow` is not counted.
-    pub(super) fn shaded_distance(&self, colour: &Lab, shadow: f64) -> f64 {
-        let distance2 = |m: &Mode| {
-            let dark = (m.mean.x - colour.x).max(0.0);
-            m.distance2(&Lab::new(colour.x + shadow * dark, colour.y, colour.z))
-        };
+    /// The distance where a shadow of a mode counts as that mode. A shadow is darker and has the
+    /// same hue; `depth` is the share of the mode's lightness that it may take.
+    pub(super) fn shaded_distance(&self, colour: &Lab, depth: f64) -> f64 {
+        let distance2 = |m: &Mode| m.distance2(&m.lit(colour, depth));
         self.modes.iter().map(distance2).fold(f64::INFINITY, f64::min).sqrt()
     }
 }
@@ -79,6 +76,16 @@ impl Mode {
         let inverse = covariance.try_inverse()?;
         let offset = covariance.determinant().ln() / 2.0 - (colours.len() as f64 / total).ln();
         Some(Mode { mean: spread.mean, inverse, offset })
+    }
+
+    /// A colour in this mode's light, if it may be a shadow. Less light scales all of a surface's X, Y, Z
+    /// alike, and L + 16, a and b by the cube root of that.
+    fn lit(&self, colour: &Lab, depth: f64) -> Lab {
+        if colour.x >= self.mean.x || colour.x < (1.0 - depth) * self.mean.x {
+            return *colour;
+        }
+        let scale = (self.mean.x + 16.0) / (colour.x + 16.0);
+        Lab::new(self.mean.x, colour.y * scale, colour.z * scale)
     }
 
     fn distance2(&self, colour: &Lab) -> f64 {
