@@ -1,6 +1,8 @@
-//! `toile`, the command.
+//! `toile`, the command. It holds no algorithm: see the library beside it.
 
-fn main() {
-    let mut registry = toile_core::Registry::new();
-    toile_stages::register(&mut registry);
+use std::io::{stderr, stdout};
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(toile::command(std::env::args_os(), &mut stdout(), &mut stderr()))
 }

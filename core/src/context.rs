@@ -152,6 +152,14 @@ impl Context {
         std::fs::read(&full).map_err(|e| fail(io_words(&e)))
     }
 
+    /// Takes over what one entry of a set noted, under the entry's name.
+    pub(crate) fn absorb(&self, entry: &str, figures: Vec<Measure>, warnings: Vec<String>) {
+        let named = figures.into_iter().map(|m| Measure { name: format!("{entry}.{}", m.name), ..m });
+        self.figures.lock().unwrap_or_else(PoisonError::into_inner).extend(named);
+        let named = warnings.into_iter().map(|w| format!("{entry}: {w}"));
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).extend(named);
+    }
+
     /// The figures and warnings given so far.
     pub fn take_notes(&self) -> (Vec<Measure>, Vec<String>) {
         let take = |e: PoisonError<_>| e.into_inner();

@@ -31,18 +31,30 @@
 //! assert_eq!(registry.card("Invert").map(|c| c.params.len()), Some(1));
 //! ```
 
+// The macros' expansion names this crate; the tests of this crate use them too.
+#[cfg(test)]
+extern crate self as toile_core;
+
 pub mod artifact;
 mod context;
 mod error;
+pub mod golden;
+mod metrics;
+mod output;
 pub mod param;
+pub mod pipeline;
 mod registry;
+mod run;
 mod stage;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
+pub use metrics::{Metrics, StageMetrics};
+pub use output::write_files;
 pub use param::{Length, ParamDoc, ParamType};
-pub use registry::Registry;
+pub use registry::{Registry, Section, SectionValue};
+pub use run::{RunError, RunOptions, RunResult, add_implicit, plan, run};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PortValue, Role, Set, Stage, StageMeta,
     StageType,
@@ -56,7 +68,7 @@ pub use {ron, serde, typetag};
 pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
-        Context, Contract, ErrorCode, Length, ParamType, Registry, Role, Set, Stage, StageError, StageType,
-        choice, stage,
+        Context, Contract, ErrorCode, Length, ParamType, Registry, Role, Section, SectionValue, Set, Stage,
+        StageError, StageType, choice, stage,
     };
 }

@@ -3,13 +3,62 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
-use crate::{Card, Role, StageType};
+use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
 
-/// The cards of all known stages, by name.
+/// The cards of all known stages, by name, and the sections of pipeline files.
+///
+/// Two stages may share a name where their roles differ, as the `Laplacian` that finds edges and
+/// the `Laplacian` that smooths do; a pipeline's loader tells them apart by what they take.
 #[derive(Debug, Clone, Default)]
 pub struct Registry {
-    cards: BTreeMap<&'static str, Card>,
+    cards: BTreeMap<(&'static str, Role), Entry>,
+    sections: Vec<Section>,
+    implicit: Vec<fn() -> Box<dyn Stage>>,
+}
+
+/// A stage type.
+#[derive(Debug, Clone)]
+struct Entry {
+    card: Card,
+    make: fn(&str) -> Result<Box<dyn Stage>, String>,
+}
+
+/// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
+///
+/// Its stage runs as early as it can: at the start, or right after what it takes is made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Section {
+    /// The field's name.
+    pub field: &'static str,
+    /// What it holds.
+    pub holds: SectionValue,
+}
+
+/// What stands in a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SectionValue {
+    /// Any stage of that role: `style: Vest()`.
+    Stage(Role),
+    /// The value of one parameter of a given stage: `seams: [...]`.
+    Table {
+        /// The stage.
+        stage: &'static str,
+        /// Its parameter.
+        param: &'static str,
+    },
+}
+
+impl Section {
+    /// A section that holds any stage of a role.
+    pub const fn stage(field: &'static str, role: Role) -> Self {
+        Section { field, holds: SectionValue::Stage(role) }
+    }
+
+    /// A section that holds the parameter `param` of the stage `stage`.
+    pub const fn table(field: &'static str, stage: &'static str, param: &'static str) -> Self {
+        Section { field, holds: SectionValue::Table { stage, param } }
+    }
 }
 
 impl Registry {
@@ -18,25 +67,69 @@ impl Registry {
         Self::default()
     }
 
-    /// Adds a stage type. A second stage of the same name replaces the first.
-    pub fn add<S: StageType>(&mut self) -> &mut Self {
+    /// Adds a stage type. A second stage of the same name and role replaces the first.
+    pub fn add<S: StageType + 'static>(&mut self) -> &mut Self {
         let card = S::type_card();
-        self.cards.insert(card.name, card);
+        self.cards.insert((card.name, card.role), Entry { card, make: make::<S> });
         self
     }
 
-    /// The card of that name.
+    /// Adds a section. A second one of the same field replaces the first.
+    pub fn section(&mut self, section: Section) -> &mut Self {
+        self.sections.retain(|s| s.field != section.field);
+        self.sections.push(section);
+        self
+    }
+
+    /// The sections, in the order in which they were added.
+    pub fn sections(&self) -> &[Section] {
+        &self.sections
+    }
+
+    /// Adds a stage type that every pipeline gets where it holds what the stage needs.
+    pub fn add_implicit<S: StageType + 'static>(&mut self) -> &mut Self {
+        self.implicit.push(|| Box::new(S::default()));
+        self.add::<S>()
+    }
+
+    /// Makers of the implicit stages, in the order in which they were added.
+    pub fn implicit(&self) -> &[fn() -> Box<dyn Stage>] {
+        &self.implicit
+    }
+
+    /// The card of that name; of several, the one whose role comes first in a pipeline.
     pub fn card(&self, name: &str) -> Option<&Card> {
-        self.cards.get(name)
+        self.cards().find(|c| c.name == name)
+    }
+
+    /// All cards of that name, in the order of their roles.
+    pub fn named(&self, name: &str) -> impl Iterator<Item = &Card> {
+        self.cards().filter(move |c| c.name == name)
     }
 
     /// All cards, ordered by name.
     pub fn cards(&self) -> impl Iterator<Item = &Card> {
-        self.cards.values()
+        self.cards.values().map(|e| &e.card)
+    }
+
+    /// Makes a stage from its arguments as RON, `(bias: 3.0)`.
+    pub(crate) fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
+        match self.cards.get(&(card.name, card.role)) {
+            // typetag knows a stage by its name alone.
+            Some(entry) if self.named(card.name).count() > 1 => (entry.make)(arguments),
+            _ => crate::pipeline::typed::stage(&format!("{}{arguments}", card.name)),
+        }
     }
 
     /// The cards of one role, ordered by name.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = &Card> {
         self.cards().filter(move |c| c.role == role)
+    }
+}
+
+fn make<S: StageType + 'static>(arguments: &str) -> Result<Box<dyn Stage>, String> {
+    match crate::param::ron_options().from_str::<S>(arguments) {
+        Ok(stage) => Ok(Box::new(stage)),
+        Err(e) => Err(e.code.to_string()),
     }
 }

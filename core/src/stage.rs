@@ -23,7 +23,7 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
 }
 
 /// What a stage type says of itself, apart from any parameters.
-pub trait StageType: Stage + StageMeta + Default {
+pub trait StageType: Stage + StageMeta + Default + serde::de::DeserializeOwned {
     /// Its card.
     fn type_card() -> Card;
 }

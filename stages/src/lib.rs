@@ -8,16 +8,18 @@ pub mod denoise;
 pub mod drape;
 pub mod edges;
 pub mod fabric;
+pub mod measure;
 pub mod mesh;
 pub mod photo;
 pub mod place;
+pub mod render;
 pub mod smooth;
 pub mod stitch;
 pub mod style;
 pub mod texture;
 pub mod write;
 
-use toile_core::Registry;
+use toile_core::{Registry, Role, Section};
 
 /// Adds every built-in stage: the one line by which a program gets them all.
 pub fn register(registry: &mut Registry) {
@@ -34,6 +36,17 @@ pub fn register(registry: &mut Registry) {
     collide::register(registry);
     stitch::register(registry);
     drape::register(registry);
+    measure::register(registry);
     texture::register(registry);
     write::register(registry);
+    sections(registry);
+}
+
+/// The top-level fields of pipeline files that stand for stages.
+fn sections(registry: &mut Registry) {
+    registry.section(Section::table("photos", "Photos", "photos"));
+    registry.section(Section::stage("style", Role::Style));
+    registry.section(Section::table("seams", "Seams", "seams"));
+    registry.section(Section::stage("body", Role::Body));
+    registry.section(Section::stage("fabric", Role::Fabric));
 }

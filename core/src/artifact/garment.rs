@@ -53,7 +53,8 @@ pub struct SolveStatus {
     pub converged: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
-    /// Greatest speed of a vertex at the end, m/s.
+    /// Greatest speed of a vertex at the end, m/s; of a solver that waits for rest, by its way over the
+    /// solver's last look.
     pub max_speed: f64,
 }
 
@@ -154,7 +155,7 @@ impl Garment {
 }
 
 /// The value at a share `q` of an ascending list; 0 for an empty one.
-pub(crate) fn quantile(ascending: &[f64], q: f64) -> f64 {
+pub fn quantile(ascending: &[f64], q: f64) -> f64 {
     let last = ascending.len().saturating_sub(1) as f64;
     ascending.get((q * last).round() as usize).copied().unwrap_or(0.0)
 }

@@ -1,6 +1,13 @@
 //! Drapers: the sewn garment under gravity.
 
+mod spring;
+#[cfg(test)]
+mod tests;
+
+pub use spring::SpringDraper;
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<SpringDraper>();
+}

@@ -1,6 +1,33 @@
 //! Meshers: outline to panel.
+//!
+//! Both share all but the inside: [`check`](self) of the outline, its division into segments that
+//! no mesher may change, constrained triangulation, mending of angles, assembly.
+
+mod assemble;
+mod check;
+mod crossing;
+mod delaunay;
+mod divide;
+#[cfg(test)]
+pub(crate) mod fixtures;
+mod grid;
+mod lattice;
+mod polyline;
+mod predicates;
+mod refine;
+#[cfg(test)]
+mod tests;
+mod triangulate;
+mod trimesh;
+
+pub use delaunay::DelaunayMesher;
+pub use grid::GridMesher;
+pub(crate) use predicates::least_angle;
 
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<GridMesher>();
+    registry.add::<DelaunayMesher>();
+}

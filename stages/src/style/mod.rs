@@ -1,6 +1,27 @@
 //! Styles: name the outline's edges and keep the seams.
+//!
+//! A style looks at the shape ([`shape`]) and not only at the corners that were found, so that a missing
+//! or an extra corner does no harm ([`naming`]); seams are checked and their edges agree on their
+//! divisions in [`sewing`].
+
+mod naming;
+mod seams;
+mod sewing;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod tshirt;
+mod vest;
+
+pub use seams::{SeamEntry, Seams};
+pub use tshirt::TShirt;
+pub use vest::Vest;
 
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<Vest>();
+    registry.add::<TShirt>();
+    registry.add::<Seams>();
+}

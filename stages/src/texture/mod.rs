@@ -1,6 +1,20 @@
 //! Texturers: garment and photos to a textured model.
 
+mod bleed;
+mod crop;
+#[cfg(test)]
+pub(crate) mod fixture;
+mod inside;
+pub(crate) mod parts;
+mod photo_texturer;
+#[cfg(test)]
+mod tests;
+
+pub use photo_texturer::{BodyShown, Light, PhotoTexturer};
+
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<PhotoTexturer>();
+}

@@ -1,6 +1,31 @@
 //! Writers: model and run to files.
 
+mod check;
+mod glb;
+mod names;
+mod obj;
+mod ply;
+mod preview;
+mod report;
+mod report_data;
+#[cfg(test)]
+mod tests;
+mod texture_file;
+
+pub use glb::Glb;
+pub use obj::Obj;
+pub use ply::Ply;
+pub use preview::{Framing, Preview};
+pub use report::Report;
+pub use texture_file::TextureFormat;
+
 use toile_core::Registry;
 
 /// Adds this folder's stages.
-pub fn register(_registry: &mut Registry) {}
+pub fn register(registry: &mut Registry) {
+    registry.add::<Glb>();
+    registry.add::<Obj>();
+    registry.add::<Ply>();
+    registry.add::<Preview>();
+    registry.add::<Report>();
+}

@@ -1,0 +1,114 @@
+//! The arguments of every sub-command.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use toile_core::pipeline::Override;
+
+/// Photos of a garment laid flat in, a sewn and draped 3D garment out.
+#[derive(Debug, Parser)]
+#[command(name = "toile", version, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a pipeline and write its files
+    Run(RunArgs),
+    /// Check pipelines without running them
+    Validate(ValidateArgs),
+    /// List every stage
+    Stages {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Show one stage's card: what it does, its ports, parameters and promises
+    Stage {
+        /// The stage's name, like Otsu
+        name: String,
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Say what a run would do, what it would leave out, and why
+    Explain(ExplainArgs),
+    /// Keep goldens: text sheets of measures for every edge of a pipeline
+    Golden {
+        #[command(subcommand)]
+        verb: Verb,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Run pipelines and name the first stage that differs from the golden
+    Check(GoldenArgs),
+    /// Record new goldens, each from two equal runs
+    Accept(GoldenArgs),
+}
+
+/// Arguments that change a pipeline before it is loaded.
+#[derive(Debug, Args, Default)]
+pub(crate) struct Overrides {
+    /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
+    pub(crate) set: Vec<Override>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// The pipeline file
+    pub(crate) pipeline: PathBuf,
+    /// Folder for the results [default: out/NAME]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Stop after this stage and write what it made
+    #[arg(long, value_name = "STAGE")]
+    pub(crate) until: Option<String>,
+    /// Write every stage's artifacts as files as well
+    #[arg(long)]
+    pub(crate) keep: bool,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Number of threads [default: one for each core]; the result is the same for any number
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Print the metrics as one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ValidateArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArgs {
+    /// The pipeline file
+    pub(crate) pipeline: PathBuf,
+    /// Explain a run that stops after this stage
+    #[arg(long, value_name = "STAGE")]
+    pub(crate) until: Option<String>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GoldenArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    /// Folder for the pictures of what differs
+    #[arg(long, default_value = "out/goldens")]
+    pub(crate) out: PathBuf,
+}

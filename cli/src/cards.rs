@@ -1,0 +1,141 @@
+//! `toile stages` and `toile stage NAME`: what the registry knows.
+
+use crate::{Streams, exit};
+use serde_json::{Value, json};
+use toile_core::{Arity, Card, InPort, ParamDoc, Registry, Role};
+
+/// The roles in the order of a pipeline.
+const ROLES: [Role; 15] = [
+    Role::Reader,
+    Role::Denoiser,
+    Role::Binariser,
+    Role::EdgeDetector,
+    Role::Style,
+    Role::Mesher,
+    Role::Smoother,
+    Role::Body,
+    Role::Fabric,
+    Role::Placement,
+    Role::Collider,
+    Role::Stitcher,
+    Role::Draper,
+    Role::Texturer,
+    Role::Writer,
+];
+
+/// Lists all stages, role by role.
+pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if json {
+        let cards: Vec<Value> = registry.cards().map(card_json).collect();
+        streams.say(json!({ "stages": cards }));
+        return exit::DONE;
+    }
+    for role in ROLES {
+        let mut cards = registry.of_role(role).peekable();
+        if cards.peek().is_some() {
+            streams.say(role.as_str());
+        }
+        for card in cards {
+            streams.say(format!("  {:<22} {}", card.name, card.summary()));
+        }
+    }
+    exit::DONE
+}
+
+/// Shows one card.
+pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let cards: Vec<&Card> = registry.named(name).collect();
+    if cards.is_empty() {
+        let names: Vec<&str> = registry.cards().map(|c| c.name).collect();
+        let hint = match toile_core::pipeline::nearest(name, names.iter().copied()) {
+            Some(near) => format!("; did you mean `{near}`?"),
+            None => String::from("; `toile stages` lists them"),
+        };
+        streams.tell(format!("error: there is no stage `{name}`{hint}"));
+        return exit::INVALID;
+    }
+    match json {
+        true => streams.say(json!({ "stages": cards.into_iter().map(card_json).collect::<Vec<_>>() })),
+        false => cards.into_iter().for_each(|card| streams.say(card_text(card))),
+    }
+    exit::DONE
+}
+
+fn card_text(card: &Card) -> String {
+    let mut s = format!("{} ({}, version {})\n\n{}\n", card.name, card.role.as_str(), card.version, card.doc);
+    if !card.source.is_empty() {
+        s += &format!("\nSource: {}\n", card.source);
+    }
+    s += "\nTakes:\n";
+    for port in &card.inputs {
+        s += &format!("  {:<12} {}\n", port.name, port_words(port));
+    }
+    s += "Gives:\n";
+    for port in &card.outputs {
+        let set = card.is_mapped() || port.arity == Arity::All;
+        s += &format!("  {}{}\n", port.kind, if set { ", one for each panel" } else { "" });
+    }
+    s += if card.params.is_empty() { "\nNo parameters.\n" } else { "\nParameters:\n" };
+    for p in &card.params {
+        s += &param_text(p);
+    }
+    let contracts: Vec<String> = card.contracts.iter().map(|c| format!("{c:?}")).collect();
+    if !contracts.is_empty() {
+        s += &format!("\nPromises: {}\n", contracts.join(", "));
+    }
+    s + &format!("\nExample:\n  {}", card.example)
+}
+
+fn port_words(port: &InPort) -> String {
+    let arity = match port.arity {
+        Arity::One => "",
+        Arity::Each => ", each panel's in turn",
+        Arity::All => ", all panels' together",
+    };
+    let optional = if port.optional { ", may be missing" } else { "" };
+    let original = if port.original { ", as first made" } else { "" };
+    format!("{}{arity}{original}{optional}", port.kind)
+}
+
+fn param_text(p: &ParamDoc) -> String {
+    let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
+    let doc = p.doc.replace('\n', "\n      ");
+    format!("  {}: {}{unit}{}, default {}\n      {doc}\n", p.name, p.kind, range_words(p), p.default)
+}
+
+fn range_words(p: &ParamDoc) -> String {
+    let show = |x: f64| match p.kind.contains("length") {
+        true => toile_core::Length::m(x).to_string(),
+        false => x.to_string(),
+    };
+    match (p.min, p.max) {
+        (Some(lo), Some(hi)) => format!(", {} to {}", show(lo), show(hi)),
+        (Some(lo), None) => format!(", at least {}", show(lo)),
+        (None, Some(hi)) => format!(", at most {}", show(hi)),
+        (None, None) => String::new(),
+    }
+}
+
+fn card_json(card: &Card) -> Value {
+    let params: Vec<Value> = card
+        .params
+        .iter()
+        .map(|p| {
+            json!({ "name": p.name, "doc": p.doc, "type": p.kind, "unit": p.unit, "min": p.min, "max": p.max,
+                "default": p.default, "trades": p.trades })
+        })
+        .collect();
+    let inputs: Vec<Value> = card
+        .inputs
+        .iter()
+        .map(|p| {
+            json!({ "name": p.name, "kind": p.kind.0, "arity": format!("{:?}", p.arity).to_lowercase(),
+                "optional": p.optional, "original": p.original })
+        })
+        .collect();
+    let outputs: Vec<Value> = card.outputs.iter().map(|p| json!({ "kind": p.kind.0 })).collect();
+    let contracts: Vec<String> = card.contracts.iter().map(|c| format!("{c:?}")).collect();
+    json!({ "name": card.name, "role": card.role.as_str(), "doc": card.doc, "source": card.source,
+        "version": card.version, "example": card.example, "contracts": contracts, "params": params,
+        "inputs": inputs, "outputs": outputs })
+}

@@ -1,0 +1,50 @@
+//! `toile explain`: what a run would do, what it would leave out, and why.
+
+use crate::args::ExplainArgs;
+use crate::validate::open;
+use crate::{Streams, exit};
+use toile_core::pipeline::{Feed, Node, Pipeline};
+use toile_core::{Registry, RunOptions, plan};
+
+/// Prints one line a stage: what feeds it, and whether it runs.
+pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let pipeline = match open(&args.pipeline, &args.overrides.set, registry) {
+        Ok(pipeline) => pipeline,
+        Err(faults) => {
+            streams.fault(&faults);
+            return exit::INVALID;
+        }
+    };
+    let options = RunOptions { until: args.until.clone(), keep: false };
+    let plan = match plan(&pipeline, &options) {
+        Ok(plan) => plan,
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            return exit::INVALID;
+        }
+    };
+    streams.say(format!("{}: {} stages", pipeline.name, pipeline.nodes.len()));
+    for (node, skipped) in pipeline.nodes.iter().zip(&plan) {
+        streams.say(line(&pipeline, node, skipped.as_deref()));
+    }
+    exit::DONE
+}
+
+fn line(pipeline: &Pipeline, node: &Node, skipped: Option<&str>) -> String {
+    let feeds: Vec<String> = node
+        .card
+        .inputs
+        .iter()
+        .zip(&node.inputs)
+        .map(|(port, feed)| match feed {
+            Feed::Node { node, .. } => format!("{} from {}", port.kind, pipeline.nodes[*node].id),
+            Feed::RunLog => "the run so far".to_owned(),
+            Feed::Nothing => format!("no {}: left out, the pipeline makes none", port.kind),
+        })
+        .collect();
+    let takes = if feeds.is_empty() { "nothing".to_owned() } else { feeds.join(", ") };
+    match skipped {
+        None => format!("  run   {:<20} takes {takes}", node.id),
+        Some(reason) => format!("  skip  {:<20} {reason}", node.id),
+    }
+}

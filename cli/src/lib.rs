@@ -1,0 +1,98 @@
+//! The command line of Toile as a function, so that tests call it without a process.
+//!
+//! Exit codes: 0 done; 2 usage; 3 invalid input; 4 the result fails its own quality limits; 5 out
+//! of time or stopped; 70 a bug.
+
+mod args;
+mod cards;
+mod explain;
+mod golden;
+mod interrupt;
+mod progress;
+mod run;
+mod validate;
+
+use args::{Arguments, Command, Verb};
+use clap::Parser;
+use std::ffi::OsString;
+use std::io::{IsTerminal, Write};
+use toile_core::Registry;
+use toile_core::pipeline::Faults;
+
+/// Exit codes of the command.
+pub mod exit {
+    /// Done.
+    pub const DONE: u8 = 0;
+    /// The arguments are wrong.
+    pub const USAGE: u8 = 2;
+    /// The input is wrong.
+    pub const INVALID: u8 = 3;
+    /// The result misses its quality limits.
+    pub const QUALITY: u8 = 4;
+    /// Out of time or stopped.
+    pub const STOPPED: u8 = 5;
+}
+
+/// Where a command writes: `out` for its answer, `err` for progress and messages.
+pub(crate) struct Streams<'a> {
+    pub(crate) out: &'a mut dyn Write,
+    pub(crate) err: &'a mut dyn Write,
+}
+
+impl Streams<'_> {
+    /// Writes a line of the answer. A closed pipe is the reader's choice, not an error.
+    pub(crate) fn say(&mut self, line: impl std::fmt::Display) {
+        let _ = writeln!(self.out, "{line}");
+    }
+
+    /// Shows what is wrong with a pipeline file.
+    pub(crate) fn fault(&mut self, faults: &Faults) {
+        let text = faults.render(std::io::stderr().is_terminal());
+        self.tell(text.trim_end());
+    }
+
+    /// Writes a line for the person at the terminal.
+    pub(crate) fn tell(&mut self, line: impl std::fmt::Display) {
+        let _ = writeln!(self.err, "{line}");
+    }
+}
+
+/// Runs the command with its arguments (the program's name first) and returns the exit code.
+pub fn command<A, T>(arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    let mut streams = Streams { out, err };
+    match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => dispatch(arguments.command, &mut streams),
+        Err(e) if e.use_stderr() => {
+            streams.tell(e.render());
+            exit::USAGE
+        }
+        Err(e) => {
+            streams.say(e.render());
+            exit::DONE
+        }
+    }
+}
+
+/// Every built-in stage.
+pub fn registry() -> Registry {
+    let mut registry = Registry::new();
+    toile_stages::register(&mut registry);
+    registry
+}
+
+fn dispatch(command: Command, streams: &mut Streams<'_>) -> u8 {
+    let registry = registry();
+    match command {
+        Command::Run(args) => run::run(&args, &registry, streams),
+        Command::Validate(args) => validate::validate(&args, &registry, streams),
+        Command::Stages { json } => cards::list(json, &registry, streams),
+        Command::Stage { name, json } => cards::show(&name, json, &registry, streams),
+        Command::Explain(args) => explain::explain(&args, &registry, streams),
+        Command::Golden { verb: Verb::Check(args) } => golden::check(&args, &registry, streams),
+        Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, &registry, streams),
+    }
+}

@@ -1,0 +1,128 @@
+//! `toile run`.
+
+use crate::args::RunArgs;
+use crate::progress::Bar;
+use crate::validate::open;
+use crate::{Streams, exit, interrupt};
+use serde_json::json;
+use std::path::PathBuf;
+use std::sync::Arc;
+use toile_core::artifact::OutputFile;
+use toile_core::pipeline::{Fault, Faults, Pipeline};
+use toile_core::{
+    Cancel, ErrorCode, Listener, Metrics, Registry, RunError, RunOptions, RunResult, StageError,
+    run as run_stages, write_files,
+};
+
+/// Runs a pipeline, writes its files and says what came of it.
+pub(crate) fn run(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let pipeline = match open(&args.pipeline, &args.overrides.set, registry) {
+        Ok(pipeline) => pipeline,
+        Err(faults) => return fail_load(&faults, args.json, streams),
+    };
+    let bar = Arc::new(Bar::new(&pipeline));
+    let outcome = on_threads(args.threads, || {
+        let options = RunOptions { until: args.until.clone(), keep: args.keep };
+        let listener: Arc<dyn Listener> = bar.clone();
+        run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener)
+    });
+    for warning in bar.finish() {
+        streams.tell(format!("warning: {warning}"));
+    }
+    match outcome {
+        Err(e) => fail_run(&pipeline, &e, args.json, streams),
+        Ok(result) => finish(args, &pipeline, result, streams),
+    }
+}
+
+/// Runs `work` in a pool of so many threads.
+pub(crate) fn on_threads<T: Send>(
+    threads: Option<u16>,
+    work: impl FnOnce() -> Result<T, RunError> + Send,
+) -> Result<T, RunError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
+    match pool {
+        Ok(pool) => pool.install(work),
+        Err(_) => work(),
+    }
+}
+
+/// Runs a pipeline without a progress line, for commands that look at the record of the run.
+pub(crate) fn run_quietly(pipeline: &Pipeline, cancel: &Cancel) -> Result<RunResult, RunError> {
+    let listener: Arc<dyn Listener> = Arc::new(());
+    on_threads(None, || run_stages(pipeline, &RunOptions::default(), cancel, &listener))
+}
+
+fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut Streams<'_>) -> u8 {
+    let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem(args)));
+    let mut files = result.files;
+    files.push(OutputFile { path: "metrics.json".into(), bytes: result.metrics.to_json().into_bytes() });
+    interrupt::begin_writing();
+    if let Err(error) = write_files(&dir, &files) {
+        let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
+        return fail_run(pipeline, &e, args.json, streams);
+    }
+    match args.json {
+        true => streams.say(result.metrics.to_json()),
+        false => summary(&result.metrics, &dir, &files, streams),
+    }
+    for (code, message) in &result.metrics.shortfalls {
+        streams.tell(format!("quality: {code}: {message}"));
+    }
+    if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY }
+}
+
+fn stem(args: &RunArgs) -> String {
+    args.pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
+}
+
+fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {
+    for stage in metrics.stages.iter().filter(|s| s.skipped.is_none()) {
+        streams.say(format!("  {:<20} {:>8.3} s", stage.id, stage.wall_s));
+    }
+    if let Some(g) = &metrics.garment {
+        let f = &g.figures;
+        streams.say(format!(
+            "{} triangles, seam gap {:.2} mm, strain p99 {:.1} %, {} steps",
+            f.triangles,
+            f.seam_gap_max_m * 1e3,
+            f.edge_strain.p99 * 1e2,
+            f.steps
+        ));
+    }
+    streams.say(format!("{:.2} s, {} files in {}", metrics.wall_s, files.len(), dir.display()));
+}
+
+fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
+    match json {
+        true => streams.say(json!({ "valid": false, "faults": faults.records() })),
+        false => streams.fault(faults),
+    }
+    exit::INVALID
+}
+
+/// Shows a stage's error at its place in the pipeline file.
+pub(crate) fn fail_run(pipeline: &Pipeline, e: &RunError, json: bool, streams: &mut Streams<'_>) -> u8 {
+    let faults = as_faults(pipeline, e);
+    match json {
+        true => streams.say(json!({ "error": e.error.code.as_str(), "stage": e.stage, "panel": e.entry,
+            "message": e.error.message, "hint": e.error.hint, "faults": faults.records() })),
+        false => streams.fault(&faults),
+    }
+    e.error.code.exit_code()
+}
+
+fn as_faults(pipeline: &Pipeline, e: &RunError) -> Faults {
+    let StageError { code, hint, .. } = &e.error;
+    let fault = Fault::new(code.as_str(), e.to_string()).hint(hint.clone());
+    let fault = if e.span.is_empty() { fault } else { fault.at(&e.span, code_words(*code)) };
+    Faults::new(&pipeline.file, &pipeline.text, vec![fault])
+}
+
+fn code_words(code: ErrorCode) -> &'static str {
+    match code {
+        ErrorCode::Cancelled => "stopped here",
+        ErrorCode::Timeout => "ran out of time here",
+        _ => "failed here",
+    }
+}

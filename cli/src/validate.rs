@@ -1,0 +1,48 @@
+//! `toile validate`, and the loading that all commands share.
+
+use crate::args::ValidateArgs;
+use crate::{Streams, exit};
+use serde_json::json;
+use std::path::Path;
+use toile_core::pipeline::{Fault, Faults, Override, Pipeline, load};
+use toile_core::{Registry, add_implicit};
+
+/// Loads a pipeline with its overrides and the stages that every pipeline gets.
+pub(crate) fn open(
+    path: &Path,
+    overrides: &[Override],
+    registry: &Registry,
+) -> Result<Pipeline, Box<Faults>> {
+    let file = path.display().to_string();
+    let text = std::fs::read(path).map_err(|e| unreadable(&file, &e.to_string()))?;
+    let text = String::from_utf8(text).map_err(|_| unreadable(&file, "it is not UTF-8 text"))?;
+    let base = path.parent().unwrap_or(Path::new("."));
+    let mut pipeline = load(&text, &file, base, registry, overrides).map_err(Box::new)?;
+    add_implicit(&mut pipeline, registry);
+    Ok(pipeline)
+}
+
+fn unreadable(file: &str, why: &str) -> Box<Faults> {
+    let fault = Fault::new("pattern_loading", format!("cannot read the pipeline \"{file}\": {why}"));
+    Box::new(Faults::new(file, "", vec![fault]))
+}
+
+/// Checks every pipeline and shows all faults of all of them.
+pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let mut faults = Vec::new();
+    for path in &args.pipelines {
+        match open(path, &args.overrides.set, registry) {
+            Ok(_) if args.json => {}
+            Ok(p) => streams.say(format!("{}: valid, {} stages", path.display(), p.nodes.len())),
+            Err(e) => faults.push(e),
+        }
+    }
+    match args.json {
+        true => {
+            let list: Vec<_> = faults.iter().flat_map(|f| f.records()).collect();
+            streams.say(json!({ "valid": faults.is_empty(), "faults": list }));
+        }
+        false => faults.iter().for_each(|f| streams.fault(f)),
+    }
+    if faults.is_empty() { exit::DONE } else { exit::INVALID }
+}

@@ -1,0 +1,218 @@
+//! Pipeline files: from RON text to a checked graph of stages.
+//!
+//! [`load`] works in four steps, and collects the faults of all of them:
+//!
+//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value
+//!    (a syntax fault ends the load: nothing after it can be trusted);
+//! 2. `read`: fields, sections and stages are read, every parameter is checked by its own
+//!    [`ParamDoc`](crate::ParamDoc), clean stages are made through typetag;
+//! 3. `order`: stages get their ids, sections their place among the stages;
+//! 4. `graph`: each input port finds the stage that feeds it.
+//!
+//! `--set` overrides are spliced into the text before step 1, so that they pass the same checks.
+//!
+//! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
+//!
+//! Architecture invariant: nothing here knows a stage by name. Which top-level fields there are
+//! is said by the registry's sections.
+
+mod draft;
+mod fault;
+mod graph;
+pub(crate) mod near;
+mod order;
+mod overrides;
+mod parser;
+mod pick;
+mod read;
+mod tree;
+pub(crate) mod typed;
+mod words;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use fault::{Fault, FaultRecord, Faults, Label};
+pub use near::nearest;
+pub use overrides::Override;
+
+use crate::{Card, Registry, Stage, StageError};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+/// The largest pipeline file, bytes: a thousand times what a garment needs.
+pub const MAX_BYTES: usize = 4 << 20;
+
+/// The most faults that one load reports; a file with more has one cause for most.
+pub const MAX_FAULTS: usize = 200;
+
+/// The most stages that a pipeline may hold; bounds the work of the graph check.
+pub const MAX_STAGES: usize = 1000;
+
+/// A pipeline file that has passed every check.
+#[derive(Debug)]
+pub struct Pipeline {
+    /// Its `name`; the file's stem where it gives none.
+    pub name: String,
+    /// The file's name as the user gave it.
+    pub file: String,
+    /// The text that all places refer to (with overrides applied).
+    pub text: String,
+    /// The folder that paths in the file are relative to.
+    pub base: PathBuf,
+    /// Its stages; each stands after all that feed it.
+    pub nodes: Vec<Node>,
+    /// Plugins that the file asks for.
+    pub plugins: Vec<String>,
+}
+
+/// A stage in its place.
+#[derive(Debug)]
+pub struct Node {
+    /// Its id: unique, fit for a folder's name.
+    pub id: String,
+    /// The stage with its parameters.
+    pub stage: Box<dyn Stage>,
+    /// Its card.
+    pub card: Card,
+    /// The stage as written: `Otsu(bias: 3)`; of a table section, its value.
+    pub span: Range<usize>,
+    /// Its name as written, which diagnostics underline; of a table section, the field's name.
+    pub place: Range<usize>,
+    /// The value of each parameter that the file gives.
+    pub params: BTreeMap<String, Range<usize>>,
+    /// What feeds each of the card's inputs.
+    pub inputs: Vec<Feed>,
+}
+
+/// What feeds an input port.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Feed {
+    /// Nothing: the port is optional and no stage makes its kind.
+    Nothing,
+    /// The runner's own log.
+    RunLog,
+    /// An output port of another stage.
+    Node {
+        /// Its index in [`Pipeline::nodes`].
+        node: usize,
+        /// Its index in the card's outputs.
+        port: usize,
+    },
+}
+
+/// Loads a pipeline file: `text` is its content, `file` the name to show, `base` the folder that
+/// its paths are relative to.
+///
+/// Errs with every fault of the file at once.
+pub fn load(
+    text: &str,
+    file: &str,
+    base: &Path,
+    registry: &Registry,
+    overrides: &[Override],
+) -> Result<Pipeline, Faults> {
+    if text.len() > MAX_BYTES {
+        let message = format!("the file has {} bytes, the limit is {MAX_BYTES}", text.len());
+        return Err(Faults::new(file, text, vec![Fault::new("too_large", message).at(&(0..0), "")]));
+    }
+    let mut applied = overrides::apply(text, registry, overrides);
+    let mut faults = std::mem::take(&mut applied.faults);
+    let checked = check(&applied.text, registry, &mut faults);
+    match checked {
+        Some((read, drafts, feeds)) if faults.is_empty() => {
+            let nodes = drafts.into_iter().zip(feeds).filter_map(|(d, inputs)| d.finish(inputs)).collect();
+            let stem =
+                || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+            let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
+            Ok(Pipeline {
+                name,
+                file: file.to_owned(),
+                text: applied.text,
+                base: base.to_owned(),
+                nodes,
+                plugins,
+            })
+        }
+        _ => {
+            applied.name_origin(&mut faults);
+            Err(Faults::new(file, &applied.text, faults))
+        }
+    }
+}
+
+/// Reads and connects the stages; none where the text is no RON.
+fn check(
+    text: &str,
+    registry: &Registry,
+    faults: &mut Vec<Fault>,
+) -> Option<(read::Read, Vec<draft::Draft>, Vec<Vec<Feed>>)> {
+    let tree = parse(text).map_err(|fault| faults.push(fault)).ok()?;
+    let mut read = read::file(text, &tree, registry, faults);
+    let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
+    let feeds = graph::connect(&drafts, registry, faults);
+    // What `ron` alone finds is rare (an unknown extension), and weaker than our own words.
+    if let (true, Some(fault)) = (faults.is_empty(), refused_by_ron(text)) {
+        faults.push(fault);
+    }
+    Some((read, drafts, feeds))
+}
+
+fn parse(text: &str) -> Result<tree::Tree, Fault> {
+    parser::parse(text).map_err(|e| {
+        let fault = Fault::new("syntax", e.message).at(&e.span, "");
+        e.also.iter().fold(fault, |f, (span, what)| f.at(span, *what))
+    })
+}
+
+fn refused_by_ron(text: &str) -> Option<Fault> {
+    let bare = text.trim_start_matches('\u{feff}');
+    let e = crate::param::ron_options().from_str::<serde::de::IgnoredAny>(bare).err()?;
+    let (message, at) = crate::param::ron_fault(bare, &e);
+    let from = text.len() - bare.len() + at.unwrap_or(0);
+    let to = text[from..].chars().next().map_or(from, |c| from + c.len_utf8());
+    Some(Fault::new("syntax", message).at(&(from..to), ""))
+}
+
+impl Pipeline {
+    /// The index of the stage with that id.
+    pub fn find(&self, id: &str) -> Option<usize> {
+        self.nodes.iter().position(|n| n.id == id)
+    }
+
+    /// The stages that read from a stage, in order.
+    pub fn consumers(&self, node: usize) -> Vec<usize> {
+        let reads =
+            |n: &Node| n.inputs.iter().any(|f| matches!(f, Feed::Node { node: from, .. } if *from == node));
+        self.nodes.iter().enumerate().filter(|(_, n)| reads(n)).map(|(i, _)| i).collect()
+    }
+
+    /// For each stage, whether it is one of `sinks` or feeds one, near or far.
+    pub fn needed_for(&self, sinks: &[usize]) -> Vec<bool> {
+        let mut needed: Vec<bool> = (0..self.nodes.len()).map(|i| sinks.contains(&i)).collect();
+        // Producers stand before their consumers, so one pass from the end reaches all.
+        for (i, node) in self.nodes.iter().enumerate().rev() {
+            for feed in &node.inputs {
+                if let (true, Feed::Node { node, .. }) = (needed[i], feed) {
+                    needed[*node] = true;
+                }
+            }
+        }
+        needed
+    }
+
+    /// Puts a stage's error at its place in the file: at the parameter that it names, if the file
+    /// gives it, else at the stage.
+    pub fn locate(&self, node: &Node, error: &StageError) -> Faults {
+        let place = error.param.and_then(|p| node.params.get(p)).unwrap_or(&node.place);
+        let message = format!("{}: {}", node.id, error.message);
+        let fault = Fault::new(error.code.as_str(), message).at(place, "").hint(error.hint.clone());
+        Faults::new(&self.file, &self.text, vec![fault])
+    }
+
+    /// The line of the file on which a stage stands, from 1.
+    pub fn line(&self, node: &Node) -> usize {
+        fault::Lines::of(&self.text).position(&self.text, node.place.start).0
+    }
+}

@@ -1,0 +1,264 @@
+//! `--set PATH=VALUE`: changes to a pipeline file, spliced into its text before it is loaded.
+//!
+//! So a value from the command line passes the same checks as one in the file. A path walks the
+//! text: `photos.front.file`, `body.height`, `stages.Canny2.low`, `stages.GridMesher`. What is
+//! there is replaced; a field that is not there is put in as the first of its group.
+
+use super::draft::Draft;
+use super::fault::Fault;
+use super::read::{self, GENERIC};
+use super::tree::{Bracket, Entry, Shape, Tree};
+use super::{near, parse};
+use crate::Registry;
+use std::ops::Range;
+
+/// One `--set PATH=VALUE`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Override {
+    /// Names with dots between them: `stages.GridMesher.edge`.
+    pub path: String,
+    /// A RON value: `"6 mm"`.
+    pub value: String,
+}
+
+impl std::str::FromStr for Override {
+    type Err = String;
+
+    /// Splits `PATH=VALUE` at its first `=`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.split_once('=') {
+            Some((path, value)) if !path.trim().is_empty() && !value.trim().is_empty() => {
+                Ok(Override { path: path.trim().to_owned(), value: value.trim().to_owned() })
+            }
+            _ => Err(format!("`{text}` is not PATH=VALUE, like `body.height=\"1.8 m\"`")),
+        }
+    }
+}
+
+/// A text with overrides applied.
+#[derive(Debug, Default)]
+pub(super) struct Applied {
+    pub(super) text: String,
+    /// Where each override's value stands now, with its path.
+    regions: Vec<(Range<usize>, String)>,
+    /// Overrides that could not be applied; places refer to `text`.
+    pub(super) faults: Vec<Fault>,
+}
+
+/// Applies overrides in their order.
+pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Override]) -> Applied {
+    let mut applied = Applied { text: text.to_owned(), ..Applied::default() };
+    for o in overrides {
+        // A text that is no RON is reported by the load itself.
+        let Ok(tree) = parse(&applied.text) else { break };
+        match edit(&applied.text, &tree, registry, o) {
+            Ok(edit) => applied.splice(&edit, &o.path),
+            Err(fault) => applied.faults.push(fault),
+        }
+    }
+    applied
+}
+
+impl Applied {
+    /// Says of faults that lie in an override's value where that value comes from.
+    pub(super) fn name_origin(&self, faults: &mut [Fault]) {
+        for fault in faults {
+            let start = fault.start();
+            if let Some((_, path)) = self.regions.iter().find(|(r, _)| r.contains(&start)) {
+                fault.message.push_str(&format!(" (from `--set {path}`)"));
+            }
+        }
+    }
+
+    fn splice(&mut self, edit: &Edit, path: &str) {
+        let Edit { at, before, value, after } = edit;
+        self.text.replace_range(at.clone(), &format!("{before}{value}{after}"));
+        let added = before.len() + value.len() + after.len();
+        let shift = |span: &mut Range<usize>| {
+            let moved = |x: usize| if x >= at.end { x + added - at.len() } else { x.min(at.start) };
+            *span = moved(span.start)..moved(span.end);
+        };
+        self.regions.iter_mut().for_each(|(span, _)| shift(span));
+        self.faults.iter_mut().flat_map(|f| &mut f.labels).for_each(|l| shift(&mut l.span));
+        let start = at.start + before.len();
+        self.regions.retain(|(span, _)| !span.is_empty());
+        self.regions.push((at.start..start + value.len(), path.to_owned()));
+    }
+}
+
+/// A change of the text.
+struct Edit {
+    at: Range<usize>,
+    before: String,
+    value: String,
+    after: String,
+}
+
+impl Edit {
+    fn replace(at: &Range<usize>, value: &str) -> Self {
+        Edit { at: at.clone(), before: String::new(), value: value.to_owned(), after: String::new() }
+    }
+
+    /// Puts `key: value` first into a group.
+    fn insert(inside: usize, entries: &[Entry], key: &str, value: &str) -> Self {
+        let after = if entries.is_empty() { "" } else { ", " };
+        Edit {
+            at: inside..inside,
+            before: format!("{key}: "),
+            value: value.to_owned(),
+            after: after.to_owned(),
+        }
+    }
+}
+
+/// What one override does to the text.
+fn edit(text: &str, tree: &Tree, registry: &Registry, o: &Override) -> Result<Edit, Fault> {
+    let value = parse(&o.value).map_err(|e| bad_value(tree, o, &e))?;
+    let read = read::file(text, tree, registry, &mut Vec::new());
+    let segments: Vec<&str> = o.path.split('.').collect();
+    let walk = Walk { text, registry, o, value: &o.value[value.span], segments: &segments };
+    walk.top(tree, &read.sections, &read.stages)
+}
+
+fn bad_value(tree: &Tree, o: &Override, e: &Fault) -> Fault {
+    let message = format!("`--set {}`: `{}` is no RON value: {}", o.path, o.value, e.message);
+    let hint =
+        format!("text stands in quotes: `--set '{}=\"{}\"'`", o.path, o.value.trim_matches(['"', '\'']));
+    Fault::new("bad_override", message).at(&tree.head(), "").hint(hint)
+}
+
+/// One override on its way down the tree.
+struct Walk<'a> {
+    text: &'a str,
+    registry: &'a Registry,
+    o: &'a Override,
+    value: &'a str,
+    segments: &'a [&'a str],
+}
+
+impl Walk<'_> {
+    /// The first segment: a field of the file.
+    fn top(&self, tree: &Tree, sections: &[Draft], stages: &[Draft]) -> Result<Edit, Fault> {
+        let field = self.segments.first().copied().unwrap_or("");
+        let known = read::top_level(self.registry);
+        let Shape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
+            return Err(self.fault(format!("there is no field `{field}`"), &tree.head()));
+        };
+        if !known.contains(&field) {
+            return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known, &tree.head()));
+        }
+        let Some((key, value)) = self.entry(entries, field) else {
+            return match self.segments.len() {
+                1 => Ok(Edit::insert(*inside, entries, field, self.value)),
+                _ => {
+                    let fault = self.fault(format!("the file has no `{field}`"), &tree.head());
+                    Err(fault.hint(format!("set all of it: `--set '{field}=...'`")))
+                }
+            };
+        };
+        let section = sections.iter().find(|d| d.span == value.span && d.place != *key);
+        match (field, section) {
+            _ if self.segments.len() == 1 => Ok(Edit::replace(&value.span, self.value)),
+            ("stages", _) => self.in_list(value, key, stages),
+            (_, Some(draft)) => self.in_stage(1, value, draft),
+            _ => self.inside(1, value, key),
+        }
+    }
+
+    /// `stages.ID...`
+    fn in_list(&self, list: &Tree, key: &Range<usize>, stages: &[Draft]) -> Result<Edit, Fault> {
+        let id = self.segments[1];
+        let Some(draft) = stages.iter().find(|d| d.id == id) else {
+            let ids: Vec<&str> = stages.iter().map(|d| d.id.as_str()).collect();
+            return Err(self.no_path(1, &format!("no stage in `stages` has the id `{id}`"), &ids, key));
+        };
+        let item = list.entries().iter().find(|e| e.value.span == draft.span);
+        match item {
+            Some(item) if self.segments.len() > 2 => self.in_stage(2, &item.value, draft),
+            _ => Ok(Edit::replace(&draft.span, self.value)),
+        }
+    }
+
+    /// A parameter of a stage, at segment `i`.
+    fn in_stage(&self, i: usize, tree: &Tree, draft: &Draft) -> Result<Edit, Fault> {
+        let field = self.segments[i];
+        let params: Vec<&str> =
+            draft.card.iter().flat_map(|c| &c.params).map(|p| p.name).chain(GENERIC).collect();
+        let Shape::Group { inside, entries, .. } = &tree.shape else {
+            return Err(self.fault(format!("`{}` has no brackets", draft.name), &draft.place));
+        };
+        if !params.contains(&field) {
+            let message = format!("`{}` has no parameter `{field}`", draft.name);
+            return Err(self.no_path(i, &message, &params, &draft.place));
+        }
+        if let ([Entry { key: None, value }], Some(first)) = (entries.as_slice(), params.first()) {
+            return match first == &field {
+                true => self.inside(i + 1, value, &draft.place),
+                // The one value without a name gets its name.
+                false => {
+                    let after = format!(", {first}: ");
+                    Ok(Edit { after, ..Edit::insert(*inside, &[], field, self.value) })
+                }
+            };
+        }
+        match self.entry(entries, field) {
+            Some((key, value)) => self.inside(i + 1, value, key),
+            None if i + 1 == self.segments.len() => Ok(Edit::insert(*inside, entries, field, self.value)),
+            None => {
+                let whole = self.segments[..=i].join(".");
+                let fault =
+                    self.fault(format!("the file gives no `{field}` to change a part of"), &draft.place);
+                Err(fault.hint(format!("set all of it: `--set '{whole}=...'`")))
+            }
+        }
+    }
+
+    /// A value, and what is in it, at segment `i`.
+    fn inside(&self, i: usize, tree: &Tree, at: &Range<usize>) -> Result<Edit, Fault> {
+        let Some(segment) = self.segments.get(i) else { return Ok(Edit::replace(&tree.span, self.value)) };
+        let Shape::Group { bracket, inside, entries, .. } = &tree.shape else {
+            return Err(self.fault(format!("`{}` has no parts", self.segments[i - 1]), at));
+        };
+        if let Some((key, value)) = self.entry(entries, segment) {
+            return self.inside(i + 1, value, key);
+        }
+        let named = *bracket == Bracket::Curly || entries.iter().any(|e| e.key.is_some());
+        if named && i + 1 == self.segments.len() {
+            let key = if *bracket == Bracket::Curly { format!("{segment:?}") } else { (*segment).to_owned() };
+            return Ok(Edit::insert(*inside, entries, &key, self.value));
+        }
+        let keys = self.keys(entries);
+        let known: Vec<&str> = keys.iter().map(String::as_str).collect();
+        Err(self.no_path(i, &format!("`{}` has no `{segment}`", self.segments[i - 1]), &known, at))
+    }
+
+    /// The entry of that name, or of that number in a list.
+    fn entry<'t>(&self, entries: &'t [Entry], name: &str) -> Option<(&'t Range<usize>, &'t Tree)> {
+        let i = self.keys(entries).iter().position(|k| k == name)?;
+        let entry = entries.get(i)?;
+        Some((entry.key.as_ref().unwrap_or(&entry.value.span), &entry.value))
+    }
+
+    fn keys(&self, entries: &[Entry]) -> Vec<String> {
+        let key = |(i, e): (usize, &Entry)| match &e.key {
+            Some(key) => self.text.get(key.clone()).unwrap_or("").trim_matches('"').to_owned(),
+            None => i.to_string(),
+        };
+        entries.iter().enumerate().map(key).collect()
+    }
+
+    fn fault(&self, message: impl AsRef<str>, at: &Range<usize>) -> Fault {
+        Fault::new("bad_override", format!("`--set {}`: {}", self.o.path, message.as_ref())).at(at, "")
+    }
+
+    /// Segment `i` names nothing: proposes the path with the nearest name in its place.
+    fn no_path(&self, i: usize, message: &str, known: &[&str], at: &Range<usize>) -> Fault {
+        let near = near::nearest(self.segments[i], known.iter().copied()).map(|near| {
+            let path: Vec<&str> =
+                self.segments.iter().enumerate().map(|(j, s)| if i == j { near } else { s }).collect();
+            format!("did you mean `{}`?", path.join("."))
+        });
+        let list = (!known.is_empty()).then(|| format!("there is {}", near::quoted(known)));
+        self.fault(message, at).hint(near.or(list))
+    }
+}

@@ -1,0 +1,325 @@
+//! From RON text to its syntax tree.
+//!
+//! The parser knows brackets, names, literals and comments, and leaves the meaning of literals to
+//! `ron`. It exists because `ron` forgets places once a value is read, and because its own
+//! messages cannot name the bracket that was never closed. Cost: one pass over the text. Limits:
+//! nesting up to [`MAX_DEPTH`].
+
+use super::tree::{Bracket, Entry, Shape, Tree};
+use std::ops::Range;
+
+/// The deepest nesting; far beyond any pipeline, and safe for the stack.
+pub(super) const MAX_DEPTH: usize = 60;
+
+/// Why a text is no RON.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct SyntaxFault {
+    pub(super) message: String,
+    pub(super) span: Range<usize>,
+    /// Other places that it is about, with what is there.
+    pub(super) also: Vec<(Range<usize>, &'static str)>,
+}
+
+/// Parses a whole text: one value, with comments and white space around it.
+pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
+    let mut p = Parser { text, at: 0, long_text: None };
+    p.eat("\u{feff}");
+    p.attributes()?;
+    if p.rest().is_empty() {
+        return Err(fault("there is nothing in it", p.at..p.at));
+    }
+    let tree = p.value(0)?;
+    p.space()?;
+    match p.peek() {
+        None => Ok(tree),
+        Some(_) => Err(fault(format!("expected the end, found {}", p.found()), p.here())),
+    }
+}
+
+fn fault(message: impl Into<String>, span: Range<usize>) -> SyntaxFault {
+    SyntaxFault { message: message.into(), span, also: Vec::new() }
+}
+
+struct Parser<'a> {
+    text: &'a str,
+    at: usize,
+    /// The opening quote of the last text that runs over a line's end: often one that was to end
+    /// on its line.
+    long_text: Option<Range<usize>>,
+}
+
+impl<'a> Parser<'a> {
+    fn rest(&self) -> &'a str {
+        self.text.get(self.at..).unwrap_or("")
+    }
+
+    fn peek(&self) -> Option<char> {
+        self.rest().chars().next()
+    }
+
+    fn eat(&mut self, prefix: &str) -> bool {
+        let found = self.rest().starts_with(prefix);
+        self.at += if found { prefix.len() } else { 0 };
+        found
+    }
+
+    fn eat_while(&mut self, keep: impl Fn(char) -> bool) -> Range<usize> {
+        let from = self.at;
+        self.at += self.rest().find(|c| !keep(c)).unwrap_or(self.rest().len());
+        from..self.at
+    }
+
+    /// The place of the next character.
+    fn here(&self) -> Range<usize> {
+        self.at..self.at + self.peek().map_or(0, char::len_utf8)
+    }
+
+    fn found(&self) -> String {
+        self.peek().map_or("the end of the file".into(), |c| format!("`{}`", c.escape_debug()))
+    }
+
+    /// Skips white space and comments.
+    fn space(&mut self) -> Result<(), SyntaxFault> {
+        loop {
+            self.eat_while(is_space);
+            if self.eat("//") {
+                self.eat_while(|c| c != '\n');
+            } else if self.rest().starts_with("/*") {
+                self.block_comment()?;
+            } else {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Block comments nest.
+    fn block_comment(&mut self) -> Result<(), SyntaxFault> {
+        let (from, mut depth) = (self.at, 0usize);
+        loop {
+            if self.eat("/*") {
+                depth += 1;
+            } else if self.eat("*/") {
+                depth -= 1;
+                if depth == 0 {
+                    return Ok(());
+                }
+            } else if self.peek().is_none() {
+                return Err(fault("this comment is never closed", from..from + 2));
+            } else {
+                self.at = self.here().end;
+            }
+        }
+    }
+
+    /// Skips `#![enable(...)]` at the head of a file, which `ron` reads.
+    fn attributes(&mut self) -> Result<(), SyntaxFault> {
+        self.space()?;
+        while self.rest().starts_with("#![") {
+            self.eat_while(|c| c != ']');
+            self.eat("]");
+            self.space()?;
+        }
+        Ok(())
+    }
+
+    fn value(&mut self, depth: usize) -> Result<Tree, SyntaxFault> {
+        self.space()?;
+        let from = self.at;
+        if depth > MAX_DEPTH {
+            return Err(fault(format!("nested deeper than {MAX_DEPTH} brackets"), self.here()));
+        }
+        let Some(c) = self.peek() else {
+            return Err(fault("expected a value, found the end of the file", self.here()));
+        };
+        if let Some(bracket) = Bracket::open(c) {
+            return self.group(None, from, bracket, depth);
+        }
+        if self.literal(c)? {
+            return Ok(Tree { span: from..self.at, shape: Shape::Literal });
+        }
+        let Some(name) = self.name() else {
+            return Err(fault(format!("expected a value, found {}", self.found()), self.here()));
+        };
+        self.space()?;
+        match self.peek() {
+            Some('(') => self.group(Some(name), from, Bracket::Round, depth),
+            _ => {
+                self.at = name.end;
+                Ok(Tree { span: name, shape: Shape::Name })
+            }
+        }
+    }
+
+    fn name(&mut self) -> Option<Range<usize>> {
+        let from = self.at;
+        if self.rest().starts_with("r#")
+            && !self.rest().starts_with("r#\"")
+            && !self.rest().starts_with("r##")
+        {
+            self.at += 2;
+            self.eat_while(|c| is_name(c) || matches!(c, '.' | '+' | '-'));
+            return Some(from..self.at);
+        }
+        let first = self.peek().filter(|c| *c == '_' || c.is_alphabetic());
+        first.map(|_| self.eat_while(is_name))
+    }
+
+    /// Skips a number, text or character, if there is one.
+    fn literal(&mut self, c: char) -> Result<bool, SyntaxFault> {
+        let rest = self.rest();
+        let quote = ["b\"", "b'", "\"", "'"].into_iter().find(|q| rest.starts_with(q));
+        if let Some(quote) = quote {
+            return self.quoted(quote.len()).map(|()| true);
+        }
+        let hashes =
+            rest.trim_start_matches('b').strip_prefix('r').map(|r| r.len() - r.trim_start_matches('#').len());
+        if let Some(hashes) = hashes {
+            let open = rest.find('r').unwrap_or(0) + 1 + hashes;
+            if open <= hashes + 2 && rest[open..].starts_with('"') {
+                return self.raw(open + 1, hashes).map(|()| true);
+            }
+        }
+        let number = c.is_ascii_digit() || matches!(c, '+' | '-' | '.');
+        if number {
+            self.eat_while(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '+' | '-'));
+        }
+        Ok(number)
+    }
+
+    /// A text or character; its closing quote is the last of `open`'s characters.
+    fn quoted(&mut self, open: usize) -> Result<(), SyntaxFault> {
+        let from = self.at;
+        self.at += open;
+        let close = self.text[from..self.at].chars().last().unwrap_or('"');
+        while let Some(c) = self.peek() {
+            self.at += c.len_utf8();
+            match c {
+                '\\' => self.at = self.here().end,
+                c if c == close => {
+                    if self.text[from..self.at].contains('\n') {
+                        self.long_text = Some(from..from + open);
+                    }
+                    return Ok(());
+                }
+                '\n' if close == '\'' => break,
+                _ => {}
+            }
+        }
+        Err(fault("this text is never closed", from..from + open))
+    }
+
+    fn raw(&mut self, open: usize, hashes: usize) -> Result<(), SyntaxFault> {
+        let from = self.at;
+        let close = format!("\"{}", "#".repeat(hashes));
+        match self.rest()[open..].find(&close) {
+            Some(length) => {
+                self.at += open + length + close.len();
+                Ok(())
+            }
+            None => Err(fault("this text is never closed", from..from + open)),
+        }
+    }
+
+    fn group(
+        &mut self,
+        name: Option<Range<usize>>,
+        from: usize,
+        bracket: Bracket,
+        depth: usize,
+    ) -> Result<Tree, SyntaxFault> {
+        let opened = self.here();
+        self.at = opened.end;
+        let (inside, mut entries) = (self.at, Vec::new());
+        loop {
+            self.space()?;
+            if self.close(bracket, &opened)? {
+                break;
+            }
+            entries.push(self.entry(bracket, depth)?);
+            self.space()?;
+            if !self.eat(",") && self.peek() != Some(bracket.close()) {
+                return Err(self.unclosed(&opened, &format!("`,` or `{}`", bracket.close())));
+            }
+        }
+        Ok(Tree { span: from..self.at, shape: Shape::Group { name, bracket, inside, entries } })
+    }
+
+    fn close(&mut self, bracket: Bracket, opened: &Range<usize>) -> Result<bool, SyntaxFault> {
+        match self.peek() {
+            Some(c) if c == bracket.close() => {
+                self.at += c.len_utf8();
+                Ok(true)
+            }
+            None | Some(')' | ']' | '}') => Err(self.unclosed(opened, &format!("`{}`", bracket.close()))),
+            Some(_) => Ok(false),
+        }
+    }
+
+    /// At the end of the file the bracket is at fault, else what stands here.
+    fn unclosed(&self, opened: &Range<usize>, expected: &str) -> SyntaxFault {
+        match self.peek() {
+            None => fault(format!("this `{}` is never closed", &self.text[opened.clone()]), opened.clone()),
+            Some(_) => {
+                let message = format!("expected {expected}, found {}", self.found());
+                let mut also = vec![(opened.clone(), "opened here")];
+                also.extend(
+                    self.long_text.iter().map(|t| (t.clone(), "this text runs over the end of its line")),
+                );
+                SyntaxFault { message, span: self.here(), also }
+            }
+        }
+    }
+
+    fn entry(&mut self, bracket: Bracket, depth: usize) -> Result<Entry, SyntaxFault> {
+        let key = match bracket {
+            Bracket::Square => None,
+            Bracket::Round => self.field()?,
+            Bracket::Curly => Some(self.key(depth)?),
+        };
+        Ok(Entry { key, value: self.value(depth + 1)? })
+    }
+
+    /// `name:`, if that is what comes.
+    fn field(&mut self) -> Result<Option<Range<usize>>, SyntaxFault> {
+        let from = self.at;
+        if let Some(name) = self.name() {
+            self.space()?;
+            if self.eat(":") {
+                return Ok(Some(name));
+            }
+        }
+        self.at = from;
+        Ok(None)
+    }
+
+    fn key(&mut self, depth: usize) -> Result<Range<usize>, SyntaxFault> {
+        let key = self.value(depth + 1)?.span;
+        self.space()?;
+        match self.eat(":") {
+            true => Ok(key),
+            false => Err(fault(format!("expected `:` after the key, found {}", self.found()), self.here())),
+        }
+    }
+}
+
+/// What may follow in a name; beyond ASCII also marks that join a letter.
+fn is_name(c: char) -> bool {
+    c == '_' || c.is_alphanumeric() || !(c.is_ascii() || is_space(c))
+}
+
+/// White space as `ron` has it.
+fn is_space(c: char) -> bool {
+    matches!(
+        c,
+        ' ' | '\t'
+            | '\n'
+            | '\r'
+            | '\x0B'
+            | '\x0C'
+            | '\u{85}'
+            | '\u{200E}'
+            | '\u{200F}'
+            | '\u{2028}'
+            | '\u{2029}'
+    )
+}

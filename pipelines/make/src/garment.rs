@@ -1,0 +1,216 @@
+//! The sample garments as exact curves, millimetres.
+//!
+//! Both are drafted for a figure of height 172 cm, bust 88, waist 70 and hip 96 cm. The frame is that
+//! of the pattern: x to the right as seen from outside, y up, the origin below the middle of the
+//! garment at its lowest point. Front and back share shoulders, sides (and sleeves), so that what is
+//! sewn together has the same length; necks and armholes differ as a tailor cuts them.
+
+/// A point or a vector, millimetres.
+pub(crate) type P = [f64; 2];
+
+/// Distance between neighbouring points of a flattened curve, mm; a chord this long leaves the
+/// tightest curve here (radius 40 mm) by 0.01 mm.
+const STEP: f64 = 1.8;
+
+/// A named edge from one corner to the next, counter-clockwise.
+#[derive(Debug, Clone)]
+pub(crate) struct Edge {
+    pub(crate) name: String,
+    /// Index of its first point in the outline.
+    pub(crate) start: usize,
+    /// Index of its last point.
+    pub(crate) end: usize,
+    pub(crate) length: f64,
+}
+
+/// A closed outline, counter-clockwise, with its edges and corners named.
+#[derive(Debug, Clone)]
+pub(crate) struct Outline {
+    pub(crate) points: Vec<P>,
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) corners: Vec<(String, P)>,
+}
+
+/// Which side of the wearer a piece covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    Front,
+    Back,
+}
+
+/// A cubic Bézier curve.
+type Cubic = [P; 4];
+
+/// One half of a garment: edges from the hem upwards to the neck, each with the name of the corner
+/// at its start.
+type Half = Vec<(&'static str, &'static str, Vec<Cubic>)>;
+
+/// A sleeveless vest, 52 cm wide at the hem, 60 cm long.
+pub(crate) fn vest(side: Side) -> Outline {
+    let (neck, shoulder, armpit, hem) = ([90.0, 600.0], [184.0, 565.8], [245.0, 351.0], [260.0, 9.0]);
+    let seam = vec![
+        [hem, [250.0, 75.0], [228.0, 130.0], [228.0, 205.0]],
+        [[228.0, 205.0], [228.0, 260.0], [241.0, 305.0], armpit],
+    ];
+    // The front armhole is scooped deeper than the back one.
+    let armhole = match side {
+        Side::Front => [armpit, [180.0, 347.0], [146.0, 462.0], shoulder],
+        Side::Back => [armpit, [196.0, 349.0], [158.0, 474.0], shoulder],
+    };
+    let half: Half = vec![
+        ("side", "hem", seam),
+        ("armhole", "armpit", vec![armhole]),
+        ("shoulder", "shoulder", vec![line(shoulder, neck)]),
+    ];
+    let depth = if side == Side::Front { 122.0 } else { 36.0 };
+    close(&half, &[neck_curve(neck, depth)], &[hem_curve(hem)], side)
+}
+
+/// A T-shirt whose sleeves belong to its front and back, 76 cm from cuff to cuff, 68 cm long. The
+/// armholes are 24 cm deep, for arms that are spread.
+pub(crate) fn tshirt(side: Side) -> Outline {
+    let (neck, armpit, hem) = ([88.7, 675.6], [253.3, 386.3], [269.2, 7.0]);
+    let (cuff_top, cuff_low) = ([380.0, 524.6], [316.7, 333.6]);
+    let seam = vec![
+        [hem, [263.9, 89.7], [247.0, 147.8], [245.9, 226.9]],
+        [[245.9, 226.9], [245.4, 285.0], [250.2, 329.3], armpit],
+    ];
+    let underarm = [armpit, [268.1, 368.4], [291.3, 351.5], cuff_low];
+    // The shoulder falls by 20 degrees and bends into the sleeve, which falls by 35.
+    let top = vec![
+        [cuff_top, [335.7, 555.6], [276.6, 601.7], [216.4, 628.6]],
+        [[216.4, 628.6], [177.3, 646.0], [133.0, 659.5], neck],
+    ];
+    let half: Half = vec![
+        ("side", "hem", seam),
+        ("underarm", "armpit", vec![underarm]),
+        ("cuff", "cuff_low", vec![line(cuff_low, cuff_top)]),
+        ("shoulder", "cuff_top", top),
+    ];
+    let depth = if side == Side::Front { 98.0 } else { 28.0 };
+    close(&half, &[neck_curve(neck, depth)], &[hem_curve(hem)], side)
+}
+
+fn line(a: P, b: P) -> Cubic {
+    [a, mix(a, b, 1.0 / 3.0), mix(a, b, 2.0 / 3.0), b]
+}
+
+/// The right half of a neckline: it leaves the shoulder at a right angle and is level in the middle.
+fn neck_curve(neck: P, depth: f64) -> Cubic {
+    let low = [0.0, neck[1] - depth];
+    [neck, [neck[0] - 0.18 * depth, neck[1] - 0.62 * depth], [neck[0] * 0.55, low[1]], low]
+}
+
+/// The left half of the hem, from its corner to its middle.
+fn hem_curve(corner: P) -> Cubic {
+    [[-corner[0], corner[1]], [-0.8 * corner[0], 0.35 * corner[1]], [-0.45 * corner[0], 0.0], [0.0, 0.0]]
+}
+
+/// Both halves, the neck and the hem as one loop from the wearer's hem corner at +x.
+fn close(half: &Half, neck: &[Cubic], hem: &[Cubic], side: Side) -> Outline {
+    let (plus, minus) = match side {
+        Side::Front => ("left", "right"),
+        Side::Back => ("right", "left"),
+    };
+    let mut outline = Outline { points: Vec::new(), edges: Vec::new(), corners: Vec::new() };
+    for (name, corner, curves) in half {
+        push(&mut outline, &format!("{name}_{plus}"), &format!("{corner}_{plus}"), &flatten(curves));
+    }
+    let right = flatten(neck);
+    push(&mut outline, "neck", &format!("neck_{plus}"), &join(&right, &mirrored(&right)));
+    for (i, (name, _, curves)) in half.iter().enumerate().rev() {
+        let corner = half.get(i + 1).map_or("neck", |next| next.1);
+        push(
+            &mut outline,
+            &format!("{name}_{minus}"),
+            &format!("{corner}_{minus}"),
+            &mirrored(&flatten(curves)),
+        );
+    }
+    let bottom = flatten(hem);
+    push(&mut outline, "hem", &format!("hem_{minus}"), &join(&bottom, &mirrored(&bottom)));
+    let first = outline.edges.len() - 1;
+    outline.edges[first].end = 0;
+    outline
+}
+
+/// Appends an edge without its last point, which is the next edge's first.
+fn push(outline: &mut Outline, name: &str, corner: &str, points: &[P]) {
+    let start = outline.points.len();
+    outline.points.extend(&points[..points.len() - 1]);
+    let length = points.windows(2).map(|w| distance(w[0], w[1])).sum();
+    outline.edges.push(Edge { name: name.to_owned(), start, end: outline.points.len(), length });
+    outline.corners.push((corner.to_owned(), points[0]));
+}
+
+fn flatten(curves: &[Cubic]) -> Vec<P> {
+    let mut points = vec![curves[0][0]];
+    for c in curves {
+        let chords: f64 = c.windows(2).map(|w| distance(w[0], w[1])).sum();
+        let n = (chords / STEP).ceil();
+        points.extend((1..=n as usize).map(|i| at(c, i as f64 / n)));
+    }
+    points
+}
+
+/// De Casteljau.
+fn at(c: &Cubic, t: f64) -> P {
+    let (a, b, d) = (mix(c[0], c[1], t), mix(c[1], c[2], t), mix(c[2], c[3], t));
+    mix(mix(a, b, t), mix(b, d, t), t)
+}
+
+fn mirrored(points: &[P]) -> Vec<P> {
+    points.iter().rev().map(|p| [-p[0], p[1]]).collect()
+}
+
+fn join(a: &[P], b: &[P]) -> Vec<P> {
+    [a, &b[1..]].concat()
+}
+
+pub(crate) fn mix(a: P, b: P, t: f64) -> P {
+    [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+}
+
+pub(crate) fn distance(a: P, b: P) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn length(o: &Outline, name: &str) -> f64 {
+        o.edges.iter().find(|e| e.name == name).map_or(f64::NAN, |e| e.length)
+    }
+
+    #[test]
+    fn what_is_sewn_together_has_one_length() {
+        for (make, names) in [
+            (vest as fn(Side) -> Outline, vec!["side", "shoulder"]),
+            (tshirt, vec!["side", "underarm", "shoulder", "cuff"]),
+        ] {
+            let (front, back) = (make(Side::Front), make(Side::Back));
+            for name in names.iter().flat_map(|n| [format!("{n}_left"), format!("{n}_right")]) {
+                assert!((length(&front, &name) - length(&back, &name)).abs() < 1e-9, "{name}");
+            }
+        }
+    }
+
+    #[test]
+    fn outlines_are_closed_symmetric_and_counter_clockwise() {
+        for o in [vest(Side::Front), vest(Side::Back), tshirt(Side::Front), tshirt(Side::Back)] {
+            let n = o.points.len();
+            let step = (0..n).map(|i| distance(o.points[i], o.points[(i + 1) % n])).fold(0.0, f64::max);
+            let area: f64 = (0..n)
+                .map(|i| {
+                    let (a, b) = (o.points[i], o.points[(i + 1) % n]);
+                    (a[0] * b[1] - b[0] * a[1]) / 2.0
+                })
+                .sum();
+            assert!(step < 2.0 * STEP, "a gap of {step} mm");
+            assert!(area > 2e5, "{area}");
+            assert!((length(&o, "side_left") - length(&o, "side_right")).abs() < 1e-9);
+            assert_eq!(o.edges.last().map(|e| e.end), Some(0));
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! Makes the sample photos under `pipelines/samples`, each with its true mask and outline.
+//!
+//! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
+//! run. Another folder may be given as the only argument.
+
+mod cloth;
+mod colour;
+mod garment;
+mod ground;
+mod near;
+mod noise;
+mod print;
+mod render;
+mod truth;
+
+use cloth::{Finish, Structure};
+use colour::srgb;
+use garment::{Outline, Side};
+use ground::Ground;
+use image::codecs::jpeg::JpegEncoder;
+use render::{Shot, render};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+
+/// JPEG quality; the files stay below 300 kB each.
+const QUALITY: u8 = 80;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples");
+    let folder = std::env::args_os().nth(1).map_or(default, PathBuf::from);
+    for side in [Side::Front, Side::Back] {
+        write(&folder.join("vest"), side, &vest_shot(side), &garment::vest(side))?;
+        write(&folder.join("tshirt"), side, &tshirt_shot(side), &garment::tshirt(side))?;
+    }
+    Ok(())
+}
+
+fn vest_shot(side: Side) -> Shot {
+    let front = side == Side::Front;
+    Shot {
+        seed: if front { 11 } else { 12 },
+        size: [1400, 1600],
+        px_per_mm: 2.35,
+        origin: if front { [703.3, 1517.6] } else { [694.8, 1512.2] },
+        ground: Ground::Oak,
+        structure: Structure::Woven,
+        base: srgb(40, 53, 86),
+        thread: srgb(96, 112, 140),
+        print: if front { print::vest_front } else { print::vest_back },
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(16.0),
+            "neck" | "armhole_left" | "armhole_right" => Finish::Bound(9.0, srgb(30, 40, 66)),
+            _ => Finish::Seam,
+        },
+    }
+}
+
+fn tshirt_shot(side: Side) -> Shot {
+    let front = side == Side::Front;
+    Shot {
+        seed: if front { 21 } else { 22 },
+        size: [1800, 1600],
+        px_per_mm: 2.1,
+        origin: if front { [896.4, 1526.3] } else { [905.7, 1521.5] },
+        ground: Ground::Linen,
+        structure: Structure::Knit,
+        base: srgb(50, 78, 64),
+        thread: srgb(92, 118, 104),
+        print: if front { print::tshirt_front } else { print::tshirt_back },
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(22.0),
+            "cuff_left" | "cuff_right" => Finish::Hemmed(19.0),
+            "neck" => Finish::Bound(17.0, srgb(42, 66, 55)),
+            _ => Finish::Seam,
+        },
+    }
+}
+
+fn write(folder: &Path, side: Side, shot: &Shot, outline: &Outline) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder)?;
+    let name = if side == Side::Front { "front" } else { "back" };
+    let (photo, mask) = render(shot, outline);
+    let mut jpeg = Vec::new();
+    JpegEncoder::new_with_quality(&mut jpeg, QUALITY).encode_image(&photo)?;
+    std::fs::write(folder.join(format!("{name}.jpg")), jpeg)?;
+    std::fs::write(folder.join(format!("{name}.mask.png")), truth::mask_png(&mask)?)?;
+    std::fs::write(folder.join(format!("{name}.outline.json")), truth::outline_json(shot, outline))?;
+    Ok(())
+}

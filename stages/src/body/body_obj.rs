@@ -1,0 +1,214 @@
+//! `BodyObj`: a body from a Wavefront OBJ file.
+//!
+//! Equal vertices are joined, the largest closed piece is kept, turned outwards, upright and
+//! scaled; landmarks and girths are estimated from its slices. Cost: some hundred slices.
+
+use super::estimate::estimate;
+use super::isosurface::TriMesh;
+use super::obj::parse;
+use super::topology::{Pieces, Topology};
+use std::collections::BTreeMap;
+use toile_core::prelude::*;
+
+/// Heights of people, metres.
+const HEIGHTS: (f64, f64) = (0.5, 2.5);
+
+/// The unit of a file's numbers.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Units {
+    /// The one in which the body is as tall as a person.
+    Guess,
+    /// Metres.
+    Metres,
+    /// Decimetres.
+    Decimetres,
+    /// Centimetres.
+    Centimetres,
+    /// Millimetres.
+    Millimetres,
+    /// Inches.
+    Inches,
+}
+
+/// The axis that points up in a file.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Up {
+    /// Y, as in most modelling programs.
+    Y,
+    /// Z, as in CAD and scanners.
+    Z,
+}
+
+/// Reads the body from a Wavefront OBJ file.
+///
+/// The body must be closed, stand upright with its feet apart and hold its arms away from the trunk.
+/// Landmarks are estimated from its shape; `turn` brings its face to the front (+Z).
+#[stage(
+    role = Body,
+    source = "shares of the arm: Drillis and Contini, 1966",
+    example = "BodyObj(file: \"body.obj\", up: Z)",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct BodyObj {
+    /// The file, relative to the pipeline.
+    #[param(default = String::new())]
+    file: String,
+    /// The unit of its numbers.
+    #[param(default = Units::Guess)]
+    units: Units,
+    /// The axis that points up.
+    #[param(default = Up::Y)]
+    up: Up,
+    /// Turn about the vertical, counter-clockwise from above, after which the body faces +Z.
+    #[param(default = 0.0, min = -360.0, max = 360.0, unit = "degrees")]
+    turn: f64,
+}
+
+#[stage]
+impl BodyObj {
+    pub(crate) fn run(&self, cx: &Context) -> Result<Body, StageError> {
+        if self.file.is_empty() {
+            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the body from");
+            return Err(e.hint("write `file: \"body.obj\"`").at("file"));
+        }
+        let bytes = cx.read(&self.file)?;
+        let text = std::str::from_utf8(&bytes).map_err(|_| {
+            StageError::new(ErrorCode::PatternLoading, format!("\"{}\" is not a text", self.file))
+                .hint("the body must be a Wavefront OBJ file")
+        })?;
+        cx.check()?;
+        self.body(parse(text)?, cx)
+    }
+}
+
+impl BodyObj {
+    /// A body from the file's vertices and triangles.
+    fn body(&self, (points, triangles): TriMesh, cx: &Context) -> Result<Body, StageError> {
+        let (points, triangles) = join_equal(&points, &triangles);
+        let (pieces, points, triangles) = largest_piece(&points, &triangles);
+        if pieces > 1 {
+            cx.warn(format!("the body's file holds {pieces} pieces; the largest is taken"));
+        }
+        closed(&Topology::of(points.len(), &triangles))?;
+        let mut points: Vec<Point3> = points.iter().map(|p| self.upright(p)).collect();
+        let height = self.stand(&mut points)?;
+        let triangles = turned_outwards(&points, triangles);
+        cx.check()?;
+        let (landmarks, measurements) = estimate(&points, &triangles, height).map_err(|part| {
+            StageError::invalid(format!("the body's {part} cannot be found from its shape"))
+                .hint("it must stand upright and face +Z, arms away from the trunk, feet apart; see `up` and `turn`")
+        })?;
+        Ok(Body { positions: points, triangles, landmarks, measurements })
+    }
+
+    fn upright(&self, p: &Point3) -> Point3 {
+        let p = match self.up {
+            Up::Y => *p,
+            Up::Z => Point3::new(p.x, p.z, -p.y),
+        };
+        let (sin, cos) = self.turn.to_radians().sin_cos();
+        Point3::new(p.x * cos + p.z * sin, p.y, p.z * cos - p.x * sin)
+    }
+
+    /// Scales to metres, puts the feet to 0 and the middle to x = 0 and z = 0; returns the height.
+    fn stand(&self, points: &mut [Point3]) -> Result<f64, StageError> {
+        let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
+        for p in points.iter() {
+            (lo, hi) = (lo.inf(p), hi.sup(p));
+        }
+        let unit = self.unit(hi.y - lo.y)?;
+        let base = Point3::new((lo.x + hi.x) / 2.0, lo.y, (lo.z + hi.z) / 2.0);
+        points.iter_mut().for_each(|p| *p = Point3::from((*p - base) * unit));
+        Ok((hi.y - lo.y) * unit)
+    }
+
+    /// Metres of the file's unit.
+    fn unit(&self, tall: f64) -> Result<f64, StageError> {
+        let fits = |u: &f64| tall * u >= HEIGHTS.0 && tall * u <= HEIGHTS.1;
+        let units = match self.units {
+            Units::Guess => vec![1.0, 0.01, 0.001, 0.1],
+            Units::Metres => vec![1.0],
+            Units::Decimetres => vec![0.1],
+            Units::Centimetres => vec![0.01],
+            Units::Millimetres => vec![0.001],
+            Units::Inches => vec![0.0254],
+        };
+        units.iter().copied().find(|u| fits(u)).ok_or_else(|| {
+            let as_said = units.first().map_or(tall, |u| tall * u);
+            StageError::invalid(format!("the body would be {as_said:.3} m tall"))
+                .hint(format!("people are {} to {} m tall; check `units` and `up`", HEIGHTS.0, HEIGHTS.1))
+                .at("units")
+        })
+    }
+}
+
+/// Refuses a mesh with holes or turned triangles.
+fn closed(t: &Topology) -> Result<(), StageError> {
+    if t.open > 0 {
+        return Err(StageError::invalid(format!("the body is not closed: {} edges are open", t.open))
+            .hint("fill its holes in the program that made it; cloth would fall through them"));
+    }
+    if t.faulty > 0 {
+        let message =
+            format!("the body's triangles are not turned alike or meet wrongly at {} edges", t.faulty);
+        return Err(
+            StageError::invalid(message).hint("make its normals consistent in the program that made it")
+        );
+    }
+    Ok(())
+}
+
+/// Joins vertices of equal position and drops triangles that lose their area by it.
+fn join_equal(points: &[Point3], triangles: &[[u32; 3]]) -> TriMesh {
+    let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
+    let mut joined: Vec<Point3> = Vec::new();
+    let mut map = Vec::with_capacity(points.len());
+    for p in points {
+        // Adding zero makes the two zeros one.
+        let key = [p.x + 0.0, p.y + 0.0, p.z + 0.0].map(f64::to_bits);
+        map.push(*first.entry(key).or_insert_with(|| {
+            joined.push(*p);
+            joined.len() as u32 - 1
+        }));
+    }
+    let moved = triangles.iter().map(|t| t.map(|v| map[v as usize]));
+    (joined, moved.filter(|[a, b, c]| a != b && b != c && c != a).collect())
+}
+
+/// The piece with the most triangles, without unused vertices, and the number of pieces.
+fn largest_piece(points: &[Point3], triangles: &[[u32; 3]]) -> (usize, Vec<Point3>, Vec<[u32; 3]>) {
+    let mut pieces = Pieces::new(points.len());
+    for t in triangles {
+        pieces.join(t[0], t[1]);
+        pieces.join(t[0], t[2]);
+    }
+    let mut sizes: BTreeMap<u32, usize> = BTreeMap::new();
+    triangles.iter().for_each(|t| *sizes.entry(pieces.root(t[0])).or_default() += 1);
+    let largest =
+        sizes.iter().max_by_key(|(root, size)| (**size, std::cmp::Reverse(**root))).map(|(r, _)| *r);
+    let mut map = BTreeMap::new();
+    let mut kept = Vec::new();
+    let mut own = |v: u32| {
+        *map.entry(v).or_insert_with(|| {
+            kept.push(points[v as usize]);
+            kept.len() as u32 - 1
+        })
+    };
+    let mine = triangles.iter().filter(|t| Some(pieces.root(t[0])) == largest);
+    let triangles = mine.map(|t| t.map(&mut own)).collect();
+    (sizes.len(), kept, triangles)
+}
+
+/// Turns all triangles where they enclose a negative volume.
+fn turned_outwards(points: &[Point3], mut triangles: Vec<[u32; 3]>) -> Vec<[u32; 3]> {
+    let six = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| points[i as usize].coords);
+        a.dot(&b.cross(&c))
+    };
+    if triangles.iter().map(six).sum::<f64>() < 0.0 {
+        triangles.iter_mut().for_each(|t| t.swap(1, 2));
+    }
+    triangles
+}

@@ -1,0 +1,258 @@
+//! What every mannequin must be.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr)]
+
+use super::*;
+use crate::body::topology::Topology;
+use proptest::prelude::*;
+use toile_core::prelude::*;
+
+pub(crate) fn mannequin(ron: &str) -> Result<Body, StageError> {
+    let stage: Mannequin = toile_core::param::ron_options().from_str(ron).unwrap();
+    stage.run(&Context::quiet())
+}
+
+#[test]
+fn the_default_is_one_closed_piece() {
+    let body = mannequin("()").unwrap();
+    let topology = Topology::of(body.positions.len(), &body.triangles);
+    assert!(topology.is_closed(), "{topology:?}");
+    assert_eq!((topology.components, topology.euler()), (1, 2));
+    let litres = body.volume() * 1e3;
+    assert!((50.0..80.0).contains(&litres), "{litres} l");
+    assert!((8_000..24_000).contains(&body.triangles.len()), "{}", body.triangles.len());
+}
+
+/// Every landmark that placement relies on.
+const LANDMARKS: [&str; 19] = [
+    "neck_base_front",
+    "neck_base_back",
+    "neck_left",
+    "neck_right",
+    "shoulder_left",
+    "shoulder_right",
+    "armpit_left",
+    "armpit_right",
+    "elbow_left",
+    "elbow_right",
+    "wrist_left",
+    "wrist_right",
+    "bust_front",
+    "bust_back",
+    "waist_front",
+    "waist_back",
+    "hip_front",
+    "hip_back",
+    "crotch",
+];
+
+/// The distance to the nearest vertex.
+fn nearest(body: &Body, p: &Point3) -> f64 {
+    body.positions.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn landmarks_lie_on_the_skin_and_joints_inside() {
+    let body = mannequin("()").unwrap();
+    for name in LANDMARKS {
+        let p = body.landmarks[name];
+        let joint = name.starts_with("elbow") || name.starts_with("wrist");
+        let reach = if joint { 0.05 } else { 0.016 };
+        assert!(nearest(&body, &p) < reach || name.starts_with("armpit"), "{name} {p}");
+        if joint {
+            let loops = slice::slice(&body.positions, &body.triangles, p.y);
+            let holds = |l: &slice::SliceLoop| {
+                l.bounds[0] < p.x && p.x < l.bounds[1] && l.bounds[2] < p.z && p.z < l.bounds[3]
+            };
+            assert!(loops.iter().any(holds), "{name} {p}");
+        }
+    }
+    let y = |name: &str| body.landmarks[name].y;
+    let upwards =
+        ["crotch", "hip_front", "waist_front", "bust_front", "armpit_left", "shoulder_left", "neck_left"];
+    assert!(upwards.windows(2).all(|w| y(w[0]) < y(w[1])), "{:?}", body.landmarks);
+}
+
+#[test]
+fn shoulders_slope_like_a_persons() {
+    let body = mannequin("()").unwrap();
+    let (neck, shoulder) = (body.landmarks["neck_left"], body.landmarks["shoulder_left"]);
+    let slope = ((neck.y - shoulder.y) / (shoulder.x - neck.x)).atan().to_degrees();
+    assert!((17.0..36.0).contains(&slope), "{slope} degrees");
+    assert!((shoulder.x - 0.193).abs() < 0.002);
+}
+
+#[test]
+fn left_and_right_are_mirror_images_to_the_last_bit() {
+    let body = mannequin("()").unwrap();
+    let key = |p: Point3| [p.x + 0.0, p.y, p.z].map(f64::to_bits);
+    let all: std::collections::BTreeSet<[u64; 3]> = body.positions.iter().map(|p| key(*p)).collect();
+    assert!(body.positions.iter().all(|p| all.contains(&key(Point3::new(-p.x, p.y, p.z)))));
+}
+
+#[test]
+fn triangles_are_even() {
+    let body = mannequin("()").unwrap();
+    let area = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| body.positions[i as usize]);
+        (b - a).cross(&(c - a)).norm() / 2.0
+    };
+    let mut areas: Vec<f64> = body.triangles.iter().map(area).collect();
+    areas.sort_by(f64::total_cmp);
+    let at = |share: f64| areas[(share * (areas.len() - 1) as f64) as usize];
+    assert!(at(0.02) > 0.3 * at(0.5) && at(0.98) < 2.0 * at(0.5), "{} {} {}", at(0.02), at(0.5), at(0.98));
+}
+
+#[test]
+fn the_number_of_threads_changes_no_bit() {
+    let digest = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let body = pool.install(|| mannequin("()").unwrap());
+        let mut d = Digester::new();
+        body.digest(&mut d);
+        d.finish()
+    };
+    assert_eq!(digest(1), digest(2));
+}
+
+#[test]
+fn measures_that_nobody_has_are_refused() {
+    let refused = |ron: &str| {
+        let e = mannequin(ron).expect_err("no such person");
+        assert_eq!((e.code, e.param.is_some()), (ErrorCode::InvalidParameter, true));
+        (e.message, e.hint.unwrap())
+    };
+    assert_eq!(
+        refused("(waist: \"3 m\")"),
+        (
+            "nobody has a waist of 300 cm beside a height of 172 cm".into(),
+            "a waist of 51.6 cm to 134.2 cm would fit; check the units as well".into()
+        )
+    );
+    assert_eq!(refused("(height: \"17 m\")").0, "nobody has a height of 1700 cm");
+    assert_eq!(
+        refused("(hip: \"75 cm\", waist: \"89 cm\")").0,
+        "nobody has a hip of 75 cm beside a waist of 89 cm"
+    );
+    assert_eq!(refused("(arm_angle: 5)").0, "nobody has an arm angle of 5 degrees");
+}
+
+#[test]
+fn a_length_that_is_no_number_is_refused() {
+    let stage = Mannequin::of(f64::NAN, [0.88, 0.7, 0.96], 0.016);
+    assert!(stage.run(&Context::quiet()).is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+    #[test]
+    fn girths_are_those_asked_for(
+        height in 0.85..2.05f64, bust in 0.46..0.66f64, waist in 0.76..0.98f64, hip in 0.94..1.16f64,
+    ) {
+        let (bust, edge) = (bust * height, 0.022);
+        let wanted = [("bust", bust), ("waist", waist * bust), ("hip", hip * bust)];
+        let stage = Mannequin::of(height, wanted.map(|w| w.1), edge);
+        // Short and very stout figures may be refused, by name.
+        let body = match stage.run(&Context::quiet()) {
+            Ok(body) => body,
+            Err(e) => {
+                prop_assert_eq!(e.code, ErrorCode::InvalidParameter);
+                prop_assert!(bust > 0.58 * height, "{}", e.message);
+                return Ok(());
+            }
+        };
+        for (name, girth) in wanted {
+            let y = body.landmarks[&format!("{name}_front")].y;
+            let loops = slice::slice(&body.positions, &body.triangles, y);
+            let tape = slice::trunk(&loops, 0.0).unwrap().girth;
+            prop_assert!((tape / girth - 1.0).abs() < 0.005, "{name}: {tape} for {girth}");
+            prop_assert!((body.measurements[name] / girth - 1.0).abs() < 0.005);
+        }
+        let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+        prop_assert!((top - height).abs() < 1e-9);
+    }
+}
+
+/// The body as the text of a file in millimetres with Z up.
+fn z_up_millimetres(body: &Body) -> String {
+    let vertex = |p: &Point3| format!("v {} {} {}\n", p.x * 1e3, -p.z * 1e3, p.y * 1e3);
+    let face = |t: &[u32; 3]| format!("f {}/1 {}/1 {}/1\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    body.positions.iter().map(vertex).chain(body.triangles.iter().map(face)).collect()
+}
+
+/// Reads a body from a text by way of a file.
+fn read(name: &str, text: &str, rest: &str) -> Result<Body, StageError> {
+    let path = std::env::temp_dir().join(format!("toile-body-{}-{name}.obj", std::process::id()));
+    std::fs::write(&path, text).unwrap();
+    let ron = format!("(file: {:?}{rest})", path.to_str().unwrap());
+    let stage: BodyObj = toile_core::param::ron_options().from_str(&ron).unwrap();
+    let result = stage.run(&Context::quiet());
+    std::fs::remove_file(path).unwrap();
+    result
+}
+
+#[test]
+fn a_mannequin_written_and_read_has_its_landmarks_again() {
+    let made = mannequin("()").unwrap();
+    let found = read("again", &z_up_millimetres(&made), ", up: Z").unwrap();
+    assert_eq!(found.triangles.len(), made.triangles.len());
+    assert!((found.volume() / made.volume() - 1.0).abs() < 1e-6);
+    for (name, tolerance) in [("bust", 0.03), ("waist", 0.03), ("hip", 0.03), ("shoulder_width", 0.15)] {
+        let (a, b) = (found.measurements[name], made.measurements[name]);
+        assert!((a / b - 1.0).abs() < tolerance, "{name}: {a} for {b}");
+    }
+    // The file's middle in depth is another, so heights and widths are compared.
+    let away = |a: &Point3, b: &Point3| (a.x - b.x).hypot(a.y - b.y);
+    for name in LANDMARKS {
+        let (a, b) = (found.landmarks[name], made.landmarks[name]);
+        assert!(away(&a, &b) < 0.05, "{name}: {a} for {b}");
+    }
+}
+
+#[test]
+fn bodies_with_holes_or_of_odd_shape_are_refused() {
+    let made = mannequin("(edge: \"20 mm\")").unwrap();
+    let mut holed = made.clone();
+    holed.triangles.truncate(made.triangles.len() - 1);
+    let message = |name: &str, text: &str, rest: &str| read(name, text, rest).expect_err("refused").message;
+    assert_eq!(
+        message("hole", &z_up_millimetres(&holed), ", up: Z"),
+        "the body is not closed: 3 edges are open"
+    );
+    assert_eq!(
+        message("units", &z_up_millimetres(&made), ", up: Z, units: Metres"),
+        "the body would be 1720.000 m tall"
+    );
+    let mut turned = made.clone();
+    turned.triangles[0].swap(0, 1);
+    assert_eq!(
+        message("turned", &z_up_millimetres(&turned), ", up: Z"),
+        "the body's triangles are not turned alike or meet wrongly at 3 edges"
+    );
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    assert_eq!(message("shape", tetrahedron, ""), "the body's crotch cannot be found from its shape");
+    let empty: BodyObj = BodyObj::default();
+    assert_eq!(empty.run(&Context::quiet()).unwrap_err().message, "no file is named to read the body from");
+}
+
+#[test]
+fn bodies_of_other_programs_are_read() {
+    let Ok(shared) = std::env::var("TOILE_SHARED") else {
+        eprintln!("skipped: TOILE_SHARED is not set");
+        return;
+    };
+    // Bust, waist and hip, from the tables that come with the bodies or taken by hand.
+    let known = [
+        ("makehuman/mh_female_young_m", [0.85, 0.66, 0.96]),
+        ("garmentcode/mean_all", [0.998, 0.843, 1.035]),
+    ];
+    for (name, girths) in known {
+        let ron = format!("(file: \"{shared}/data/bodies/{name}.obj\")");
+        let stage: BodyObj = toile_core::param::ron_options().from_str(&ron).unwrap();
+        let body = stage.run(&Context::quiet()).unwrap();
+        for (part, girth) in ["bust", "waist", "hip"].into_iter().zip(girths) {
+            let found = body.measurements[part];
+            assert!((found / girth - 1.0).abs() < 0.02, "{name} {part}: {found}");
+        }
+        assert!(LANDMARKS.iter().all(|l| body.landmarks.contains_key(*l)));
+    }
+}

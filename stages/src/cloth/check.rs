@@ -1,0 +1,85 @@
+//! What a solver refuses before it starts.
+
+use toile_core::prelude::*;
+
+/// Triangles thinner than this share of their longest edge squared count as of no area.
+const LEAST_SHAPE: f64 = 1e-9;
+
+/// Refuses a garment that no solver can work on: empty, with numbers that are not finite, with
+/// triangles or edges of no size, with cloth that weighs nothing.
+pub fn check_garment(garment: &Garment) -> Result<(), StageError> {
+    if garment.positions.is_empty() || garment.triangles.is_empty() {
+        return Err(StageError::invalid("the garment is empty: it has no triangles")
+            .hint("see what the mesher and the placement made of the panels"));
+    }
+    let n = garment.positions.len();
+    if garment.rest.len() != n || garment.velocities.len() != n || garment.weld.len() != n {
+        return Err(StageError::internal("the garment's vertex lists differ in length"));
+    }
+    let seams = garment.seams.iter().flat_map(|s| s.pairs.iter().flatten());
+    if garment.triangles.iter().flatten().chain(seams).chain(&garment.weld).any(|&i| i as usize >= n) {
+        return Err(StageError::invalid(format!("the garment names a vertex beyond its {n} vertices")));
+    }
+    check_finite(garment)?;
+    check_fabrics(garment)?;
+    check_triangles(garment)
+}
+
+fn check_finite(garment: &Garment) -> Result<(), StageError> {
+    let finite = |i: usize| {
+        let flat = garment.rest[i].iter().all(|x| x.is_finite());
+        flat && garment.positions[i].iter().chain(garment.velocities[i].iter()).all(|x| x.is_finite())
+    };
+    match (0..garment.positions.len()).find(|&i| !finite(i)) {
+        Some(i) => {
+            Err(StageError::invalid(format!("vertex {i} has a coordinate that is not a finite number")))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
+    let covered: usize = garment.panels.iter().map(|p| p.triangles.len()).sum();
+    if covered != garment.triangles.len() {
+        return Err(StageError::internal("some triangles belong to no panel"));
+    }
+    for panel in &garment.panels {
+        let (density, name) = (panel.fabric.area_density, &panel.name);
+        if !(density.is_finite() && density > 0.0) {
+            let text = format!("panel \"{name}\" has a mass of {density} kg/m2, it must be above 0");
+            return Err(StageError::invalid(text).hint("see the fabric's area density"));
+        }
+        for (curve, word) in
+            [(&panel.fabric.warp, "warp"), (&panel.fabric.weft, "weft"), (&panel.fabric.shear, "shear")]
+        {
+            if !rises(curve) {
+                let text =
+                    format!("the {word} curve of \"{}\" does not rise from the origin", panel.fabric.name);
+                return Err(StageError::invalid(text).hint("give points (strain, N/m) that rise in both"));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn rises(curve: &Curve) -> bool {
+    let steps = std::iter::once(&(0.0, 0.0)).chain(&curve.0).zip(&curve.0);
+    !curve.0.is_empty() && steps.into_iter().all(|(a, b)| b.0 > a.0 && b.1 > a.1 && b.1.is_finite())
+}
+
+fn check_triangles(garment: &Garment) -> Result<(), StageError> {
+    for (i, t) in garment.triangles.iter().enumerate() {
+        let [a, b, c] = t.map(|k| garment.rest[k as usize]);
+        let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
+        if let Some(k) = sides.iter().position(|&s| s <= 0.0) {
+            let text = format!("the edge between vertices {} and {} has no length", t[k], t[(k + 1) % 3]);
+            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
+        }
+        let longest = sides.iter().fold(0.0, |m: f64, s| m.max(*s));
+        if (b - a).perp(&(c - a)).abs() <= LEAST_SHAPE * longest * longest {
+            let text = format!("triangle {i} has no area");
+            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,12 @@
+//! The judgement of a finished garment, behind `metrics.json`.
+
+mod quality;
+
+pub use quality::Measure;
+
+use toile_core::Registry;
+
+/// Adds the judgement to every pipeline that makes a garment.
+pub fn register(registry: &mut Registry) {
+    registry.add_implicit::<Measure>();
+}

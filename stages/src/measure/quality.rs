@@ -1,0 +1,172 @@
+//! Figures of the garment against its quality limits.
+//!
+//! Area and outline errors are those of Fan et al. 1999, `(S2 - S3) / S2` and `(L2 - L3) / L2`;
+//! strain is that of the mesh edges. Body and self-contact are asked of the pipeline's collider;
+//! without one they are not measured, and `metrics.json` says so with a null.
+
+use std::collections::BTreeMap;
+use toile_core::artifact::{
+    BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,
+};
+use toile_core::prelude::*;
+
+/// Depth below which a vertex on the skin does not count as inside the body, metres.
+const SKIN_TOLERANCE: f64 = 1e-4;
+
+/// Measures the garment and holds it against its quality limits.
+///
+/// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
+/// misses a limit is written all the same, with exit code 4.
+#[stage(
+    role = Writer,
+    source = "Fan, Zhou, Wang, Yuen 1999",
+    contracts(Deterministic, ThreadInvariant),
+    example = "Measure(max_strain: 0.08)"
+)]
+pub struct Measure {
+    /// Greatest seam gap.
+    #[param(default = Length::mm(1.0), min = 0.0, max = 1.0)]
+    max_gap: Length,
+    /// Greatest area error of a panel, as a share.
+    #[param(default = 0.01, min = 0.0, max = 1.0)]
+    max_area_error: f64,
+    /// Greatest outline error of a panel, as a share.
+    #[param(default = 0.01, min = 0.0, max = 1.0)]
+    max_outline_error: f64,
+    /// Greatest 99th percentile of the edge strain, as a share.
+    #[param(default = 0.05, min = 0.0, max = 10.0)]
+    max_strain: f64,
+}
+
+#[stage]
+impl Measure {
+    fn run(
+        &self,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        _cx: &Context,
+    ) -> Result<Figures, StageError> {
+        let mut figures = Figures {
+            panels: panel_figures(garment),
+            garment: garment_figures(garment, collider),
+            shortfalls: Vec::new(),
+        };
+        figures.shortfalls = self.shortfalls(&figures);
+        Ok(figures)
+    }
+
+    fn shortfalls(&self, figures: &Figures) -> Vec<Shortfall> {
+        let g = &figures.garment;
+        let mut list = Vec::new();
+        let mut miss = |is_missed: bool, code, message: String| {
+            if is_missed {
+                list.push(Shortfall { code, message });
+            }
+        };
+        let gap = Length::m(g.seam_gap_max_m);
+        miss(
+            g.seam_gap_max_m > self.max_gap.metres(),
+            ErrorCode::StitchingError,
+            format!("a seam gapes by {gap}, the limit is {}", self.max_gap),
+        );
+        for (name, panel) in &figures.panels {
+            let area = percent(panel.area_error);
+            miss(
+                panel.area_error.abs() > self.max_area_error,
+                ErrorCode::StaticEquilibrium,
+                format!(
+                    "panel \"{name}\" changed its area by {area}, the limit is {}",
+                    percent(self.max_area_error)
+                ),
+            );
+            let outline = percent(panel.outline_error);
+            miss(
+                panel.outline_error.abs() > self.max_outline_error,
+                ErrorCode::StaticEquilibrium,
+                format!(
+                    "panel \"{name}\" changed its outline by {outline}, the limit is {}",
+                    percent(self.max_outline_error)
+                ),
+            );
+        }
+        miss(
+            g.edge_strain.p99 > self.max_strain,
+            ErrorCode::StaticEquilibrium,
+            format!(
+                "1 % of the edges strain more than {}, the limit is {}",
+                percent(g.edge_strain.p99),
+                percent(self.max_strain)
+            ),
+        );
+        let inside = g.body_penetration.unwrap_or_default();
+        miss(
+            inside.vertices > 0,
+            ErrorCode::BodyIntersection,
+            format!(
+                "{} vertices lie in the body, the deepest by {}",
+                inside.vertices,
+                Length::m(inside.max_m)
+            ),
+        );
+        let crossings = g.self_crossings.unwrap_or(0);
+        miss(
+            crossings > 0,
+            ErrorCode::SelfIntersection,
+            format!("{crossings} pairs of triangles cross each other"),
+        );
+        miss(
+            g.steps > 0 && !g.converged,
+            ErrorCode::StaticEquilibrium,
+            "the cloth had not come to rest when the solver stopped".into(),
+        );
+        list
+    }
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.2} %", share * 1e2)
+}
+
+fn panel_figures(garment: &Garment) -> BTreeMap<String, PanelFigures> {
+    let figures = |p| {
+        let ((s2, s3), (l2, l3)) = (garment.panel_areas(p), garment.panel_boundaries(p));
+        PanelFigures { area_error: (s2 - s3) / s2, outline_error: (l2 - l3) / l2 }
+    };
+    garment.panels.iter().map(|p| (p.name.clone(), figures(p))).collect()
+}
+
+fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFigures {
+    let strains = garment.edge_strains();
+    GarmentFigures {
+        vertices: garment.positions.len(),
+        triangles: garment.triangles.len(),
+        seam_gap_max_m: garment.seam_gap_max(),
+        edge_strain: StrainFigures {
+            p50: quantile(&strains, 0.5),
+            p99: quantile(&strains, 0.99),
+            max: strains.last().copied().unwrap_or(0.0),
+        },
+        body_penetration: collider.map(|c| penetration(garment, c)),
+        self_crossings: collider.map(|c| crossings(garment, c)),
+        energy_j: garment.status.energy,
+        max_speed_m_s: garment.status.max_speed,
+        steps: garment.status.steps,
+        converged: garment.status.converged,
+    }
+}
+
+fn penetration(garment: &Garment, collider: &Collider) -> PenetrationFigures {
+    let mut contacts: Vec<BodyContact> = Vec::new();
+    collider.scheme.body_contacts(&garment.positions, 0.0, &mut contacts);
+    let depths = contacts.iter().map(|c| -c.distance);
+    PenetrationFigures {
+        vertices: depths.clone().filter(|&d| d > SKIN_TOLERANCE).count(),
+        max_m: depths.fold(0.0, f64::max),
+    }
+}
+
+fn crossings(garment: &Garment, collider: &Collider) -> usize {
+    let welded: Vec<[u32; 3]> =
+        garment.triangles.iter().map(|t| t.map(|i| garment.weld[i as usize])).collect();
+    collider.scheme.self_crossings(&garment.positions, &welded).len()
+}

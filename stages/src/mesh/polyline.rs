@@ -1,0 +1,100 @@
+//! Open polylines measured by arc length.
+
+use super::predicates::distance_to_segment;
+use toile_core::artifact::Point2;
+
+/// A polyline with the arc length of each of its points.
+#[derive(Debug, Clone)]
+pub(crate) struct Polyline {
+    /// Points from start to end.
+    pub points: Vec<Point2>,
+    /// Arc length of each point, from 0.
+    pub arc: Vec<f64>,
+}
+
+impl Polyline {
+    /// From at least two points.
+    pub(crate) fn new(points: Vec<Point2>) -> Self {
+        let mut arc = Vec::with_capacity(points.len());
+        let mut length = 0.0;
+        for (k, p) in points.iter().enumerate() {
+            length += if k > 0 { (p - points[k - 1]).norm() } else { 0.0 };
+            arc.push(length);
+        }
+        Polyline { points, arc }
+    }
+
+    /// Its whole length.
+    pub(crate) fn length(&self) -> f64 {
+        self.arc[self.arc.len() - 1]
+    }
+
+    /// The point at an arc length; the polyline's own point, bit for bit, where there is one.
+    pub(crate) fn at(&self, arc: f64) -> Point2 {
+        let k = self.arc.partition_point(|&a| a < arc).min(self.arc.len() - 1);
+        if k == 0 || self.arc[k] == arc {
+            return self.points[k];
+        }
+        let t = (arc - self.arc[k - 1]) / (self.arc[k] - self.arc[k - 1]);
+        self.points[k - 1] + (self.points[k] - self.points[k - 1]) * t
+    }
+
+    /// Distance and arc length of its point closest to `p`.
+    pub(crate) fn nearest(&self, p: Point2) -> (f64, f64) {
+        let on = |k: usize| {
+            let (distance, t) = distance_to_segment(p, self.points[k], self.points[k + 1]);
+            (distance, self.arc[k] + t * (self.arc[k + 1] - self.arc[k]))
+        };
+        let segments = (0..self.points.len() - 1).map(on);
+        segments.fold((f64::INFINITY, 0.0), |best, d| if d.0 < best.0 { d } else { best })
+    }
+
+    /// Arc lengths of the inner points where it turns more than `angle` (radians), or that stand at
+    /// least `apart` (metres) from both neighbours: a polygon's corners, however blunt.
+    pub(crate) fn joints(&self, angle: f64, apart: f64) -> Vec<f64> {
+        let joint = |k: &usize| {
+            let (u, v) = (self.points[*k] - self.points[k - 1], self.points[k + 1] - self.points[*k]);
+            u.perp(&v).atan2(u.dot(&v)).abs() > angle || u.norm().min(v.norm()) >= apart
+        };
+        (1..self.points.len() - 1).filter(joint).map(|k| self.arc[k]).collect()
+    }
+
+    /// The farthest that it leaves the chords between the given arc lengths.
+    pub(crate) fn deviation(&self, arcs: &[f64]) -> f64 {
+        let mut k = 0;
+        let mut worst: f64 = 0.0;
+        for w in arcs.windows(2) {
+            let (a, b) = (self.at(w[0]), self.at(w[1]));
+            while k < self.arc.len() && self.arc[k] <= w[0] {
+                k += 1;
+            }
+            while k < self.arc.len() && self.arc[k] < w[1] {
+                worst = worst.max(distance_to_segment(self.points[k], a, b).0);
+                k += 1;
+            }
+        }
+        worst
+    }
+}
+
+/// Arc lengths that cut `length` into `n` parts, both ends included: equal parts, but that the
+/// division nearest to each mark slides onto it and its neighbours follow evenly.
+///
+/// `n` must exceed the number of marks, which are ascending and inside.
+pub(crate) fn place(length: f64, n: usize, marks: &[f64]) -> Vec<f64> {
+    let mut stops = vec![(0, 0.0)];
+    for (k, &mark) in marks.iter().enumerate() {
+        let (least, most) = (stops[k].0 + 1, n - (marks.len() - k));
+        let nearest = (mark / length * n as f64).round() as usize;
+        stops.push((nearest.clamp(least, most), mark));
+    }
+    stops.push((n, length));
+    let mut arcs = vec![0.0];
+    for w in stops.windows(2) {
+        let ((i, a), (j, b)) = (w[0], w[1]);
+        let parts = (j - i) as f64;
+        arcs.extend((1..j - i).map(|k| a + (b - a) * (k as f64 / parts)));
+        arcs.push(b);
+    }
+    arcs
+}

@@ -1,0 +1,88 @@
+//! Whether the garment is large enough for the body.
+
+use super::lift::Board;
+use std::collections::BTreeSet;
+use toile_core::prelude::*;
+
+/// Line force at which cloth counts as stretched to its limit, N/m: a tight but wearable garment.
+const TIGHT: f64 = 150.0;
+/// Bounds of the stretch that is granted whatever the fabric's curve says.
+const STRETCH: (f64, f64) = (0.02, 0.6);
+
+/// An armhole that ends below a level opens the garment there: its girth is then taken this much
+/// lower at most, in steps, metres.
+const LOWER: (u32, f64) = (20, 0.005);
+
+/// A panel on its board with those of its vertices that are sewn.
+pub(crate) struct Cut<'a> {
+    /// Where it hangs.
+    pub board: Board,
+    /// The panel.
+    pub panel: &'a Panel,
+    /// Its sewn vertices.
+    pub sewn: BTreeSet<u32>,
+}
+
+/// Compares the garment's girth with the body's at bust, waist and hip, where it reaches them.
+pub(crate) fn check_girths(panels: &[Cut], body: &Body, fabric: &Fabric) -> Result<(), StageError> {
+    for level in ["bust", "waist", "hip"] {
+        let Some(mark) = body.landmarks.get(&format!("{level}_front")) else { continue };
+        let Some(&around) = body.measurements.get(level) else { continue };
+        let lower = (0..LOWER.0).map(|k| mark.y - f64::from(k) * LOWER.1);
+        let Some(girth) = lower.filter_map(|y| garment_girth(panels, y)).next() else { continue };
+        if girth * (1.0 + stretch(fabric)) < around {
+            return Err(too_small(level, girth, around));
+        }
+    }
+    Ok(())
+}
+
+fn too_small(level: &str, girth: f64, around: f64) -> StageError {
+    let cm = |m: f64| (m * 100.0).round();
+    let message = format!(
+        "the garment is too small: at the {level} it measures {} cm around, the body {} cm",
+        cm(girth),
+        cm(around)
+    );
+    StageError::invalid(message).hint("check the photos' scale (`width`), or take a smaller body")
+}
+
+/// The strain at which the fabric is tight across.
+fn stretch(fabric: &Fabric) -> f64 {
+    let (mut lo, mut hi) = STRETCH;
+    for _ in 0..30 {
+        let middle = (lo + hi) / 2.0;
+        if fabric.weft.at(middle).0 < TIGHT { lo = middle } else { hi = middle }
+    }
+    lo
+}
+
+/// Front and back chord together at height `y`; `None` where the garment does not close there.
+fn garment_girth(panels: &[Cut], y: f64) -> Option<f64> {
+    let side = |sign: f64| {
+        let chords = panels.iter().filter(|c| c.board.side == sign).filter_map(|c| chord(c, y));
+        chords.reduce(|a, b| a + b)
+    };
+    Some(side(1.0)? + side(-1.0)?)
+}
+
+/// The width of the panel's trunk at height `y`: the stretch of its row nearest to its middle, so
+/// that hanging sleeves do not count; `None` where its ends are not sewn.
+fn chord(cut: &Cut, y: f64) -> Option<f64> {
+    let Cut { board, panel, sewn } = cut;
+    let lay = |v: u32| board.lay(panel.positions[v as usize]);
+    let boundary = &panel.boundary;
+    let sides = (0..boundary.len()).map(|i| (boundary[i], boundary[(i + 1) % boundary.len()]));
+    let crossing = |(v, w): (u32, u32)| {
+        let (a, b) = (lay(v), lay(w));
+        let x = a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y);
+        ((a.y >= y) != (b.y >= y)).then_some((x, sewn.contains(&v) && sewn.contains(&w)))
+    };
+    let mut crossings: Vec<(f64, bool)> = sides.filter_map(crossing).collect();
+    crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let xs = || panel.positions.iter().map(|p| board.lay(*p).x);
+    let middle = (xs().fold(f64::INFINITY, f64::min) + xs().fold(f64::NEG_INFINITY, f64::max)) / 2.0;
+    let away = |c: &[(f64, bool)]| (c[0].0 - middle).max(middle - c[1].0).max(0.0);
+    let trunk = crossings.chunks_exact(2).min_by(|a, b| away(a).total_cmp(&away(b)))?;
+    (trunk[0].1 && trunk[1].1).then_some(trunk[1].0 - trunk[0].0)
+}

@@ -1,0 +1,36 @@
+//! Pictures of models without a window or a graphics card.
+//!
+//! A z-buffer rasteriser with four samples a pixel, mip-mapped textures and a soft studio light
+//! whose shadows come from depth maps. [`render`] makes one picture; a [`Scene`] prepared once
+//! makes several of the same model, which saves the part of the light that no view changes.
+//!
+//! Every picture is the same to the last bit for any number of threads: rows are shared out in
+//! bands, and no band reads what another writes.
+
+mod camera;
+mod cover;
+mod light;
+mod mips;
+mod overlay;
+mod pictures;
+mod scene;
+mod shade;
+#[cfg(test)]
+mod tests;
+
+pub use camera::{Frame, View};
+pub(crate) use mips::{LINEAR, Mips, encode};
+pub use overlay::Line;
+pub(crate) use pictures::jpeg;
+pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
+pub use scene::Scene;
+
+use image::RgbImage;
+use toile_core::artifact::Model;
+
+/// One picture of a model.
+///
+/// An empty model gives the bare background; triangles that are degenerate or not finite are left out.
+pub fn render(model: &Model, view: &View) -> RgbImage {
+    Scene::new(model).render(view)
+}

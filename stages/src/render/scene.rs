@@ -1,0 +1,274 @@
+//! A model prepared for pictures, and the picture itself.
+//!
+//! Visibility first (which triangle every sample sees), colour second: a pixel is coloured once for each
+//! triangle that it shows, at the middle of the samples which show it, so that the edges are smoothed at a
+//! quarter of the cost of colouring every sample.
+
+use super::camera::{Camera, Projected, View};
+use super::cover::{Patch, STEPS};
+use super::light::{self, Fineness, Region};
+use super::mips::{Mips, encode};
+use super::shade::{Lights, wall};
+use super::{Line, overlay};
+use image::RgbImage;
+use rayon::prelude::*;
+use toile_core::artifact::{Mesh, Model, Point3, Vector3};
+
+/// The name of the mesh that is the body.
+pub(crate) const BODY: &str = "body";
+/// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that nearly
+/// level edges are smoothed as well.
+const SAMPLES: [[i64; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
+/// Rows that one task draws: large enough to keep the set-up small, small enough to share out.
+const BAND_ROWS: usize = 16;
+/// No triangle.
+const NONE: u32 = u32::MAX;
+
+/// A model with its textures reduced and its ambient light found.
+#[derive(Debug)]
+pub struct Scene<'a> {
+    model: &'a Model,
+    textures: Vec<Mips>,
+    region: Region,
+    fineness: Fineness,
+    ambient: Vec<Vec<[f32; 2]>>,
+}
+
+impl<'a> Scene<'a> {
+    /// Prepares a model.
+    pub fn new(model: &'a Model) -> Scene<'a> {
+        Scene::prepare(model, light::FINE)
+    }
+
+    /// Prepares a model for small pictures: the light is coarser and four times as fast.
+    pub fn draft(model: &'a Model) -> Scene<'a> {
+        Scene::prepare(model, light::DRAFT)
+    }
+
+    fn prepare(model: &'a Model, fineness: Fineness) -> Scene<'a> {
+        let textures = model.textures.par_iter().map(|t| Mips::new(&t.pixels)).collect();
+        let region = region(model);
+        Scene { model, textures, region, fineness, ambient: light::ambient(model, region, fineness) }
+    }
+
+    /// A picture.
+    pub fn render(&self, view: &View) -> RgbImage {
+        self.render_with(view, &[])
+    }
+
+    /// A picture with lines drawn over it.
+    pub fn render_with(&self, view: &View, lines: &[Line]) -> RgbImage {
+        let camera = Camera::fit(self.model, view);
+        let lights = Lights::new(&camera);
+        let shot = Shot {
+            scene: self,
+            key: light::soft_box(self.model, self.region, lights.key, self.fineness),
+            faces: faces(self.model, &camera),
+            lights,
+            width: view.width as usize,
+            height: view.height,
+        };
+        let mut picture = RgbImage::new(view.width, view.height);
+        let band_bytes = (view.width as usize * 3 * BAND_ROWS).max(1);
+        picture
+            .par_chunks_mut(band_bytes)
+            .enumerate()
+            .for_each(|(i, band)| shot.draw_band(i * BAND_ROWS, band));
+        overlay::draw(&mut picture, &camera, lines);
+        picture
+    }
+}
+
+/// The box of the garment, or of everything where there is none.
+fn region(model: &Model) -> Region {
+    let dressed = model.meshes.iter().any(|m| m.name != BODY);
+    let points = model.meshes.iter().filter(|m| !dressed || m.name != BODY).flat_map(|m| &m.positions);
+    let corners =
+        points.filter(|p| p.iter().all(|c| c.is_finite())).fold(None, |b: Option<(Point3, Point3)>, p| {
+            Some(b.map_or((*p, *p), |(lo, hi)| (lo.inf(p), hi.sup(p))))
+        });
+    let (lo, hi) = corners.unwrap_or((Point3::origin(), Point3::origin()));
+    Region::new(lo, hi)
+}
+
+/// A triangle of the picture.
+struct Face {
+    patch: Patch,
+    mesh: usize,
+    /// Vertices in the patch's order.
+    corners: [usize; 3],
+    inv_w: [f64; 3],
+    /// True where its back is seen.
+    reversed: bool,
+    /// Halvings of the texture that suit its middle.
+    texels_per_px: f64,
+}
+
+/// Every drawable triangle, in the order of the model.
+fn faces(model: &Model, camera: &Camera) -> Vec<Face> {
+    let mesh_faces = |(index, mesh): (usize, &Mesh)| {
+        let placed: Vec<Projected> = mesh.positions.iter().map(|p| camera.project(p)).collect();
+        let texture = model.materials.get(mesh.material).and_then(|m| m.texture);
+        let size = texture.and_then(|t| model.textures.get(t)).map(|t| t.pixels.dimensions());
+        let face = |t: &[u32; 3]| face(index, mesh, &placed, size, t.map(|i| i as usize));
+        mesh.triangles.iter().filter_map(face).collect::<Vec<_>>()
+    };
+    model.meshes.iter().enumerate().flat_map(mesh_faces).collect()
+}
+
+fn face(
+    index: usize,
+    mesh: &Mesh,
+    placed: &[Projected],
+    texture: Option<(u32, u32)>,
+    t: [usize; 3],
+) -> Option<Face> {
+    let known = |i: &usize| *i < placed.len() && *i < mesh.normals.len();
+    if !t.iter().all(known) {
+        return None;
+    }
+    let v = t.map(|i| placed[i]);
+    let patch = Patch::new(v)?;
+    let corners = patch.order.map(|k| t[k]);
+    // Rows grow downwards, so a triangle seen from its front runs clockwise over the pixels.
+    let reversed = patch.order == [0, 1, 2];
+    let texels =
+        |(w, h): (u32, u32)| texel_scale(mesh, &corners, [f64::from(w), f64::from(h)], v, patch.order);
+    let texels_per_px = texture.and_then(texels).unwrap_or(1.0);
+    Some(Face {
+        inv_w: patch.order.map(|k| v[k].inv_w),
+        patch,
+        mesh: index,
+        corners,
+        reversed,
+        texels_per_px,
+    })
+}
+
+/// Texels that one pixel spans along the direction that squeezes the texture most.
+///
+/// The map from pixels to texels is taken as affine over the triangle; its greater singular value is the scale.
+fn texel_scale(
+    mesh: &Mesh,
+    corners: &[usize; 3],
+    size: [f64; 2],
+    v: [Projected; 3],
+    order: [usize; 3],
+) -> Option<f64> {
+    let uv =
+        |k: usize| mesh.uv.get(corners[k]).map(|uv| [f64::from(uv[0]) * size[0], f64::from(uv[1]) * size[1]]);
+    let (a, b, c) = (uv(0)?, uv(1)?, uv(2)?);
+    let p = order.map(|k| [v[k].x, v[k].y]);
+    let texels = nalgebra::Matrix2::new(b[0] - a[0], c[0] - a[0], b[1] - a[1], c[1] - a[1]);
+    let pixels =
+        nalgebra::Matrix2::new(p[1][0] - p[0][0], p[2][0] - p[0][0], p[1][1] - p[0][1], p[2][1] - p[0][1]);
+    let map = texels * pixels.try_inverse()?;
+    // Greater singular value of a 2x2 matrix in closed form.
+    let (s, d) = (map.norm_squared(), map.determinant());
+    Some(((s + (s * s - 4.0 * d * d).max(0.0).sqrt()) / 2.0).sqrt())
+}
+
+/// Everything that the bands of one picture read.
+struct Shot<'a> {
+    scene: &'a Scene<'a>,
+    key: Vec<Vec<f32>>,
+    faces: Vec<Face>,
+    lights: Lights,
+    width: usize,
+    height: u32,
+}
+
+impl Shot<'_> {
+    fn draw_band(&self, top: usize, band: &mut [u8]) {
+        let rows = band.len() / (self.width * 3);
+        let seen = self.visible(top, rows);
+        for (i, (pixel, samples)) in
+            band.chunks_exact_mut(3).zip(seen.chunks_exact(SAMPLES.len())).enumerate()
+        {
+            let (x, y) = (i % self.width, top + i / self.width);
+            let colour = self.pixel(x, y, samples);
+            pixel.copy_from_slice(&colour.map(encode));
+        }
+    }
+
+    /// The face that every sample of a band sees.
+    fn visible(&self, top: usize, rows: usize) -> Vec<u32> {
+        let samples = self.width * rows * SAMPLES.len();
+        let (mut seen, mut nearest) = (vec![NONE; samples], vec![f32::NEG_INFINITY; samples]);
+        let range = top as i64..(top + rows) as i64;
+        for (id, face) in self.faces.iter().enumerate() {
+            let (first, last) = face.patch.rows();
+            if last < range.start || first >= range.end {
+                continue;
+            }
+            for (s, sample) in SAMPLES.iter().enumerate() {
+                face.patch.scan(self.width as i64, range.clone(), *sample, |x, y, near| {
+                    let at = ((y - top) * self.width + x) * SAMPLES.len() + s;
+                    if near as f32 > nearest[at] {
+                        (nearest[at], seen[at]) = (near as f32, id as u32);
+                    }
+                });
+            }
+        }
+        seen
+    }
+
+    /// Mean colour of a pixel's samples, linear light.
+    fn pixel(&self, x: usize, y: usize, samples: &[u32]) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (i, &id) in samples.iter().enumerate() {
+            if samples[..i].contains(&id) {
+                continue;
+            }
+            let with = || samples.iter().zip(&SAMPLES).filter(|(s, _)| **s == id).map(|(_, at)| at);
+            let count = with().count() as f32;
+            let colour = match self.faces.get(id as usize) {
+                None => wall(y as u32, self.height),
+                Some(face) => {
+                    let mean = |k: usize| with().map(|at| at[k] as f64).sum::<f64>() / f64::from(count);
+                    let corner = [x as i64 * STEPS, y as i64 * STEPS].map(|c| c as f64);
+                    self.colour(face, [corner[0] + mean(0), corner[1] + mean(1)])
+                }
+            };
+            (0..3).for_each(|c| sum[c] += colour[c] * count / SAMPLES.len() as f32);
+        }
+        sum
+    }
+
+    /// Colour of a face at a place in sub-pixel steps.
+    fn colour(&self, face: &Face, at: [f64; 2]) -> [f32; 3] {
+        let mesh = &self.scene.model.meshes[face.mesh];
+        let flat = face.patch.weights(at);
+        let deep = [0, 1, 2].map(|k| flat[k] * face.inv_w[k]);
+        let sum: f64 = deep.iter().sum();
+        let weights = deep.map(|w| w / sum);
+        let material = self.scene.model.materials.get(mesh.material);
+        let colour = material.map_or([0.8; 3], |m| m.colour);
+        let texel = material.and_then(|m| m.texture).and_then(|t| self.texel(mesh, t, face, &weights));
+        let own = texel.map_or(colour, |t| [0, 1, 2].map(|k| t[k] * colour[k]));
+        if material.is_some_and(|m| m.unlit) {
+            return own;
+        }
+        let light = self.light(mesh, face, &weights) as f32;
+        own.map(|v| v * light)
+    }
+
+    fn texel(&self, mesh: &Mesh, texture: usize, face: &Face, weights: &[f64; 3]) -> Option<[f32; 3]> {
+        let mips = self.scene.textures.get(texture)?;
+        let uv = face.corners.map(|i| mesh.uv.get(i).copied());
+        let [Some(a), Some(b), Some(c)] = uv else { return None };
+        let w = weights.map(|w| w as f32);
+        let at = [0, 1].map(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2]);
+        Some(mips.sample(at, face.texels_per_px.max(1e-6).log2() as f32))
+    }
+
+    fn light(&self, mesh: &Mesh, face: &Face, weights: &[f64; 3]) -> f64 {
+        let blend = |f: &dyn Fn(usize) -> f64| (0..3).map(|k| weights[k] * f(face.corners[k])).sum::<f64>();
+        let side = usize::from(face.reversed);
+        let ambient = blend(&|i| f64::from(self.scene.ambient[face.mesh][i][side]));
+        let key = blend(&|i| f64::from(self.key[face.mesh][i]));
+        let n: Vector3 = (0..3).map(|k| mesh.normals[face.corners[k]] * weights[k]).sum();
+        let n = n.try_normalize(1e-12).unwrap_or_else(Vector3::y);
+        self.lights.on(&if face.reversed { -n } else { n }, ambient, key)
+    }
+}

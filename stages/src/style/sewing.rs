@@ -1,0 +1,251 @@
+//! Seams: which edges meet, whether they can, and into how many parts both are divided.
+//!
+//! Method: an edge's length is that of its polyline, its least radius that of the circle through
+//! points 10 mm apart; both edges of a seam get one [`Gauge`] of the longer length and the lesser radius,
+//! so that meshers divide them alike. A seam's direction is checked by laying both panels face to face and
+//! one edge on the other: its threads must not be longer than those of the opposite pairing. Cost: linear in the edges.
+
+use super::naming::is_back;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_core::pipeline::nearest;
+use toile_core::prelude::*;
+
+/// Lengths that differ by more than this share are no seam unless it is declared gathered.
+const MAX_EASE: f64 = 0.03;
+/// Lengths that differ by more than this share are eased with a warning.
+const EASE_WARNING: f64 = 0.01;
+/// Half the chord over which curvature is measured, metres: shorter ones measure noise.
+const RADIUS_ARM: f64 = 0.01;
+/// Threads of a reversed seam are at least this much longer than those of the right one; edges that run at
+/// right angles to each other may be sewn either way.
+const REVERSED: f64 = 1.25;
+/// Points on an edge at which its threads are measured.
+const THREADS: usize = 9;
+
+/// The style's seams between `front` and `back`, for edges that both have.
+pub(super) fn pairs(outlines: &Set<Outline>, names: &[&str], cx: &Context) -> Vec<Seam> {
+    for (panel, _) in outlines.iter().filter(|(p, _)| *p != "front" && *p != "back") {
+        cx.warn(format!("the style sews \"front\" and \"back\"; the panel \"{panel}\" stays unsewn"));
+    }
+    match (outlines.get("front"), outlines.get("back")) {
+        (Some(_), Some(_)) => names.iter().map(|n| between("front", "back", n)).collect(),
+        (one, _) => {
+            let lone = if one.is_some() { "front" } else { "back" };
+            cx.warn(format!(
+                "the panel \"{lone}\" has no partner and stays unsewn; give a photo of the other side, or \
+                 `MirrorOf(\"{lone}\")` in its place"
+            ));
+            Vec::new()
+        }
+    }
+}
+
+fn between(a: &str, b: &str, edge: &str) -> Seam {
+    let of = |panel: &str| EdgeRef { panel: panel.to_owned(), edge: edge.to_owned() };
+    Seam { a: of(a), b: of(b), kind: SeamKind::Matched, reversed: false }
+}
+
+/// Places the panels of an upper-body style and sews them.
+pub(super) fn place_and_sew(
+    outlines: &Set<Outline>,
+    seams: Vec<Seam>,
+    cx: &Context,
+) -> Result<(Set<Outline>, SewingPlan), StageError> {
+    let placements = outlines.iter().map(|(name, o)| (name.to_owned(), placement(name, o))).collect();
+    sew(outlines, seams, placements, cx)
+}
+
+/// A panel's place: the point half-way between its neck points goes to the height of the body's.
+pub(super) fn placement(panel: &str, outline: &Outline) -> PanelPlacement {
+    let points = &outline.outer.points;
+    let (lo, hi) = outline.bounds();
+    let anchor = outline.edge("neck").map_or_else(
+        || Point2::new((lo.x + hi.x) / 2.0, hi.y),
+        |e| nalgebra::center(&points[e.start], &points[e.end]),
+    );
+    PanelPlacement { limb: Limb::Torso, behind: is_back(panel), anchor, landmark: "neck_base_back" }
+}
+
+/// Checks the seams and lets their edges agree on their divisions.
+pub(super) fn sew(
+    outlines: &Set<Outline>,
+    seams: Vec<Seam>,
+    placements: BTreeMap<String, PanelPlacement>,
+    cx: &Context,
+) -> Result<(Set<Outline>, SewingPlan), StageError> {
+    let mut sewn: BTreeMap<String, Outline> =
+        outlines.iter().map(|(k, o)| (k.to_owned(), o.clone())).collect();
+    sewn.values_mut().for_each(own_gauges);
+    let mut used: Vec<&EdgeRef> = Vec::new();
+    for seam in &seams {
+        for side in [&seam.a, &seam.b] {
+            find(&sewn, side)?;
+            if used.contains(&side) {
+                return Err(stitching(format!("the edge {side} stands in more than one seam"))
+                    .hint("sew every edge once"));
+            }
+            used.push(side);
+        }
+        check_lengths(&sewn, seam, cx)?;
+        check_direction(&sewn, seam, &placements)?;
+        agree(&mut sewn, seam);
+    }
+    let sewn = sewn.into_iter().map(|(k, o)| (k, Arc::new(o))).collect();
+    Ok((Set(sewn), SewingPlan { seams, placements }))
+}
+
+fn stitching(text: String) -> StageError {
+    StageError::new(ErrorCode::StitchingError, text)
+}
+
+/// The points of an edge or an inner line.
+fn find(outlines: &BTreeMap<String, Outline>, side: &EdgeRef) -> Result<Vec<Point2>, StageError> {
+    let Some(outline) = outlines.get(&side.panel) else {
+        let names: Vec<&str> = outlines.keys().map(String::as_str).collect();
+        return Err(unknown(format!("there is no panel \"{}\"", side.panel), &side.panel, &names, |n| {
+            format!("{n}.{}", side.edge)
+        }));
+    };
+    if let Some(edge) = outline.edge(&side.edge) {
+        return Ok(outline.edge_points(edge));
+    }
+    if let Some(line) = outline.inner.iter().find(|l| l.name == side.edge) {
+        return Ok(line.points.clone());
+    }
+    let edges = outline.edges.iter().map(|e| e.name.as_str());
+    let names: Vec<&str> = edges.chain(outline.inner.iter().map(|l| l.name.as_str())).collect();
+    let text = format!("the panel \"{}\" has no edge \"{}\"", side.panel, side.edge);
+    Err(unknown(text, &side.edge, &names, |n| format!("{}.{n}", side.panel)))
+}
+
+fn unknown(text: String, name: &str, names: &[&str], full: impl Fn(&str) -> String) -> StageError {
+    let hint = match nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean \"{}\"?", full(near)),
+        None if names.is_empty() => "its edges have no names; a style must come before".to_owned(),
+        None => format!("known are {}", names.join(", ")),
+    };
+    stitching(text).hint(hint)
+}
+
+fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context) -> Result<(), StageError> {
+    let [a, b] = [polyline_length(&find(outlines, &seam.a)?), polyline_length(&find(outlines, &seam.b)?)];
+    let difference = (a - b).abs() / a.max(b);
+    let words = format!("{} is {:.1} mm long, {} {:.1} mm", seam.a, a * 1e3, seam.b, b * 1e3);
+    match seam.kind {
+        SeamKind::Gathered => Ok(()),
+        SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(stitching(format!(
+            "{words}: they differ by {:.1} %, too much to be sewn flat",
+            100.0 * difference
+        ))
+        .hint(format!(
+            "if the longer one is meant to be gathered, write Gather(\"{}\", \"{}\")",
+            seam.a, seam.b
+        ))),
+        SeamKind::Matched => {
+            if difference > EASE_WARNING {
+                cx.warn(format!("{words}; the longer one is eased in by {:.1} %", 100.0 * difference));
+            }
+            Ok(())
+        }
+    }
+}
+
+/// Refuses a seam whose threads would cross when both panels lie face to face on the body.
+fn check_direction(
+    outlines: &BTreeMap<String, Outline>,
+    seam: &Seam,
+    placements: &BTreeMap<String, PanelPlacement>,
+) -> Result<(), StageError> {
+    let [a, b] = [&seam.a, &seam.b].map(|side| {
+        let placed = placements.get(&side.panel);
+        let points = find(outlines, side)?;
+        Ok::<_, StageError>(placed.map(|p| evenly(&points).map(|q| on_body(q, p))))
+    });
+    let (Some(a), Some(b)) = (a?, b?) else { return Ok(()) };
+    // Only the run of the edges counts, not how far the panels lie apart.
+    let centre = |t: &[Point2; THREADS]| t.iter().map(|p| p.coords).sum::<Vector2>() / THREADS as f64;
+    let apart = centre(&b) - centre(&a);
+    let threads = |reversed: bool| -> f64 {
+        (0..THREADS).map(|k| (b[if reversed { k } else { THREADS - 1 - k }] - a[k] - apart).norm()).sum()
+    };
+    if threads(seam.reversed) <= REVERSED * threads(!seam.reversed) {
+        return Ok(());
+    }
+    let better = if seam.reversed { "Match" } else { "Reversed" };
+    let text = format!("the seam {} is reversed: its threads would cross between the panels", seam.name());
+    Err(stitching(text).hint(format!(
+        "each edge runs counter-clockwise, and the start of one meets the end of the other; sew the edges \
+         that lie on each other, or write {better}(\"{}\", \"{}\")",
+        seam.a, seam.b
+    )))
+}
+
+/// Where a pattern point comes to lie, seen from before the wearer.
+fn on_body(p: Point2, placement: &PanelPlacement) -> Point2 {
+    let d = p - placement.anchor;
+    Point2::new(if placement.behind { -d.x } else { d.x }, d.y)
+}
+
+/// Points of a polyline at equal steps of its length, both ends included.
+fn evenly(points: &[Point2]) -> [Point2; THREADS] {
+    let total = polyline_length(points);
+    std::array::from_fn(|k| {
+        let mut left = total * k as f64 / (THREADS - 1) as f64;
+        for w in points.windows(2) {
+            let piece = (w[1] - w[0]).norm();
+            if left <= piece && piece > 0.0 {
+                return w[0] + (w[1] - w[0]) * (left / piece);
+            }
+            left -= piece;
+        }
+        points[points.len() - 1]
+    })
+}
+
+/// Gives every edge the divisions that suit it alone.
+pub(super) fn own_gauges(outline: &mut Outline) {
+    for i in 0..outline.edges.len() {
+        let points = outline.edge_points(&outline.edges[i]);
+        outline.edges[i].gauge =
+            Gauge { length: polyline_length(&points), min_radius: least_radius(&points) };
+    }
+}
+
+/// Both edges of a seam take the longer length and the lesser radius.
+fn agree(outlines: &mut BTreeMap<String, Outline>, seam: &Seam) {
+    let gauge = |side: &EdgeRef| Some(outlines.get(&side.panel)?.edge(&side.edge)?.gauge);
+    let (Some(a), Some(b)) = (gauge(&seam.a), gauge(&seam.b)) else { return };
+    let shared = Gauge { length: a.length.max(b.length), min_radius: a.min_radius.min(b.min_radius) };
+    for side in [&seam.a, &seam.b] {
+        let edge =
+            outlines.get_mut(&side.panel).and_then(|o| o.edges.iter_mut().find(|e| e.name == side.edge));
+        if let Some(edge) = edge {
+            edge.gauge = shared;
+        }
+    }
+}
+
+/// Radius of the tightest circle through points of the curve about [`RADIUS_ARM`] apart.
+fn least_radius(points: &[Point2]) -> f64 {
+    let total = polyline_length(points);
+    let arm = RADIUS_ARM.min(total / 4.0);
+    if arm.is_nan() || arm <= 0.0 {
+        return f64::INFINITY;
+    }
+    let mut along = vec![0.0];
+    points.windows(2).for_each(|w| along.push(along[along.len() - 1] + (w[1] - w[0]).norm()));
+    let behind = |i: usize| along.partition_point(|s| *s < along[i] - arm);
+    let ahead = |i: usize| along.partition_point(|s| *s < along[i] + arm);
+    (0..points.len())
+        .filter(|&i| along[i] >= arm && along[i] <= total - arm)
+        .map(|i| circle(points[behind(i)], points[i], points[ahead(i).min(points.len() - 1)]))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Radius of the circle through three points.
+fn circle(a: Point2, b: Point2, c: Point2) -> f64 {
+    let twice_area = (b - a).perp(&(c - a)).abs();
+    let product = (b - a).norm() * (c - b).norm() * (c - a).norm();
+    if twice_area * 1e9 > product && product > 0.0 { product / (2.0 * twice_area) } else { f64::INFINITY }
+}

@@ -1,0 +1,173 @@
+//! `PhotoTexturer`: the photo of every panel becomes its texture.
+//!
+//! The photo's pixels are cropped to the panel, scaled down by area average and bled past the outline; texture
+//! coordinates are the photo coordinates that the mesher kept for every vertex.
+//! Cost: a few passes over the photo's pixels. Limit: light and shadow in the photo stay in the texture.
+
+use super::inside::{PixelBox, covered};
+use super::{bleed, crop, parts};
+use std::sync::Arc;
+use toile_core::prelude::*;
+
+/// What light does to the photo.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Light {
+    /// The photo is the final colour.
+    Replace,
+    /// The photo is the cloth's own colour, on which light acts.
+    Modulate,
+}
+
+/// Whether the body stands in the model.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum BodyShown {
+    /// As the last mesh.
+    Show,
+    /// Left out.
+    Hide,
+}
+
+/// Dresses each panel in its own photo.
+///
+/// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
+/// and carried past it, so that no background shows at a seam or when the texture is seen from afar. A panel
+/// without a photo gets a plain cloth.
+#[stage(
+    role = Texturer,
+    source = "garment modelling thesis, 2012: replace and modulate",
+    example = "PhotoTexturer(light: Modulate, size: 2048)",
+    contracts(Deterministic, ThreadInvariant, Cancellable)
+)]
+pub struct PhotoTexturer {
+    /// Whether light acts on the photo.
+    #[param(default = Light::Modulate)]
+    light: Light,
+    /// Longer side of a texture at most; larger crops are scaled down.
+    #[param(default = 2048, min = 16, max = 8192, unit = "px", trades)]
+    size: u32,
+    /// How far inside the outline colours are taken: past the garment's own rim and shadow.
+    #[param(default = Length::mm(2.0), min = 0.0, max = 0.05)]
+    inset: Length,
+    /// Room around the panel in its texture, filled with its colours.
+    #[param(default = 8, min = 0, max = 256, unit = "px")]
+    margin: u32,
+    /// Whether the body stands in the model.
+    #[param(default = BodyShown::Show)]
+    body: BodyShown,
+}
+
+#[stage]
+impl PhotoTexturer {
+    pub(super) fn run(
+        &self,
+        garment: &Garment,
+        #[original] photos: Option<Set<Photo>>,
+        body: Option<&Body>,
+        cx: &Context,
+    ) -> Result<Model, StageError> {
+        check_garment(garment)?;
+        let normals = garment.vertex_normals();
+        let mut model = Model::default();
+        for (i, panel) in garment.panels.iter().enumerate() {
+            cx.check()?;
+            cx.progress(i as f64 / garment.panels.len() as f64, format!("texture of {}", panel.name));
+            let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
+            let mut material = parts::plain_cloth(&panel.name, parts::UNDYED);
+            match photo_of(panel, photos.as_ref(), cx) {
+                Some(photo) => {
+                    let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
+                        .ok_or_else(|| off_photo(panel, photo))?;
+                    model.textures.push(self.texture(garment, panel, photo, area)?);
+                    mesh.uv = panel.photo_px.iter().map(|px| area.uv(px)).collect();
+                    material.colour = [1.0; 3];
+                    material.texture = Some(model.textures.len() - 1);
+                    material.unlit = self.light == Light::Replace;
+                }
+                None => cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name)),
+            }
+            model.meshes.push(mesh);
+            model.materials.push(material);
+        }
+        if let (Some(body), BodyShown::Show) = (body, &self.body) {
+            model.meshes.push(parts::body_mesh(body, model.materials.len()));
+            model.materials.push(parts::mannequin());
+        }
+        Ok(model)
+    }
+}
+
+impl PhotoTexturer {
+    fn texture(
+        &self,
+        garment: &Garment,
+        panel: &GarmentPanel,
+        photo: &Photo,
+        area: PixelBox,
+    ) -> Result<Texture, StageError> {
+        let first = panel.vertices.start as u32;
+        let triangles: Vec<[u32; 3]> =
+            garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
+        let inside = covered(&panel.photo_px, &triangles, area);
+        let size = crop::scaled_size(area, self.size);
+        let mut crop = crop::crop(&photo.pixels, area, &inside, size);
+        let scale = f64::from(size[0]) / f64::from(area.width);
+        let depth = self.inset.metres() * px_per_metre(garment, panel) * scale;
+        let sure = bleed::eroded(&crop.inside, depth);
+        // A panel thinner than twice the inset has no inner part: then its whole inside must do.
+        if !bleed::bleed(&mut crop.pixels, &sure) && !bleed::bleed(&mut crop.pixels, &crop.inside) {
+            return Err(off_photo(panel, photo));
+        }
+        Ok(Texture { name: panel.name.clone(), pixels: Arc::new(crop.pixels) })
+    }
+}
+
+/// The panel's photo, where both it and the panel's place in it are known.
+fn photo_of<'a>(panel: &GarmentPanel, photos: Option<&'a Set<Photo>>, cx: &Context) -> Option<&'a Photo> {
+    let photo = photos?.get(&panel.name)?;
+    if panel.photo_px.len() != panel.vertices.len() {
+        cx.warn(format!("panel \"{}\" does not know its place in its photo", panel.name));
+        return None;
+    }
+    Some(photo)
+}
+
+/// Photo pixels a metre of cloth, from the areas of the panel in its photo and in the plane.
+fn px_per_metre(garment: &Garment, panel: &GarmentPanel) -> f64 {
+    let first = panel.vertices.start;
+    let (px, metres) = garment.triangles[panel.triangles.clone()].iter().fold((0.0, 0.0), |(px, m), t| {
+        let [a, b, c] = t.map(|i| panel.photo_px[i as usize - first]);
+        let [p, q, r] = t.map(|i| garment.rest[i as usize]);
+        (px + (b - a).perp(&(c - a)).abs(), m + (q - p).perp(&(r - p)).abs())
+    });
+    if metres > 0.0 { (px / metres).sqrt() } else { 0.0 }
+}
+
+/// Refuses what would put NaN into a file or a panel outside of its lists.
+fn check_garment(garment: &Garment) -> Result<(), StageError> {
+    let count = garment.positions.len();
+    let finite = garment.positions.iter().all(|p| p.iter().all(|c| c.is_finite()));
+    if !finite {
+        let hint = "the solver before this stage has blown up; try a smaller time step";
+        return Err(StageError::invalid("the garment has a vertex that is not finite").hint(hint));
+    }
+    for panel in &garment.panels {
+        let known = panel.vertices.end <= count && panel.triangles.end <= garment.triangles.len();
+        let own = |t: &[u32; 3]| t.iter().all(|&i| panel.vertices.contains(&(i as usize)));
+        if !known || !garment.triangles[panel.triangles.clone()].iter().all(own) {
+            let text = format!("panel \"{}\" has a triangle with another panel's vertex", panel.name);
+            return Err(StageError::internal(text));
+        }
+        if !panel.photo_px.iter().all(|p| p.iter().all(|c| c.is_finite())) {
+            let text = format!("panel \"{}\" has a photo coordinate that is not finite", panel.name);
+            return Err(StageError::invalid(text));
+        }
+    }
+    Ok(())
+}
+
+fn off_photo(panel: &GarmentPanel, photo: &Photo) -> StageError {
+    let text = format!("panel \"{}\" covers no pixel of its photo \"{}\"", panel.name, photo.file);
+    StageError::invalid(text).hint("was the mesh made from another photo?")
+}

@@ -1,0 +1,256 @@
+//! Photos on panels: the right pixels, in the right place, and none of the ground.
+
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use super::bleed::{bleed, eroded, nearest};
+use super::inside::{PixelBox, covered};
+use super::{PhotoTexturer, crop, fixture};
+use image::{GrayImage, Luma, Rgb, RgbImage};
+use proptest::prelude::*;
+use std::sync::Arc;
+use toile_core::param::ron_options;
+use toile_core::prelude::*;
+
+fn texturer(params: &str) -> PhotoTexturer {
+    ron_options().from_str(params).unwrap()
+}
+
+fn model(params: &str) -> Model {
+    let body = fixture::body();
+    texturer(params)
+        .run(&fixture::garment(8), Some(fixture::photos()), Some(&body), &Context::quiet())
+        .unwrap()
+}
+
+/// The texel under a texture coordinate.
+fn texel(texture: &Texture, uv: [f32; 2]) -> [u8; 3] {
+    let (w, h) = texture.pixels.dimensions();
+    let at = |c: f32, n: u32| ((c * n as f32) as u32).min(n - 1);
+    texture.pixels.get_pixel(at(uv[0], w), at(uv[1], h)).0
+}
+
+/// True for a colour with some of the fixture's green ground in it.
+fn greenish([r, g, b]: [u8; 3]) -> bool {
+    i32::from(g) > i32::from(r).max(i32::from(b)) + 10
+}
+
+#[test]
+fn every_panel_gets_its_own_photo() {
+    let model = model("()");
+    let names: Vec<&str> = model.meshes.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["front", "back", "body"]);
+    for (i, mesh) in model.meshes[..2].iter().enumerate() {
+        assert_eq!(mesh.material, i);
+        assert_eq!(model.materials[i].texture, Some(i));
+        assert_eq!(mesh.uv.len(), mesh.positions.len());
+        assert!(mesh.uv.iter().flatten().all(|c| (0.0..=1.0).contains(c)));
+    }
+    assert!(model.meshes[2].uv.is_empty());
+}
+
+#[test]
+fn vertices_find_their_photo_pixels() {
+    let (garment, photos, model) = (fixture::garment(8), fixture::photos(), model("(margin: 3)"));
+    let inner = |p: &Point2| {
+        let (w, h) = photos.get("front").unwrap().pixels.dimensions();
+        p.x > 50.0 && p.y > 50.0 && p.x < f64::from(w) - 50.0 && p.y < f64::from(h) - 50.0
+    };
+    let mut seen = 0;
+    for (panel, mesh) in garment.panels.iter().zip(&model.meshes) {
+        let photo = photos.get(&panel.name).unwrap();
+        for (px, uv) in panel.photo_px.iter().zip(&mesh.uv).filter(|(px, _)| inner(px)) {
+            // The vertex lies between pixel centres; the texel must be one of its four neighbours.
+            let around = [(0, 0), (1, 0), (0, 1), (1, 1)]
+                .map(|(dx, dy)| photo.pixels.get_pixel(px.x as u32 + dx, px.y as u32 + dy).0);
+            assert!(around.contains(&texel(&model.textures[mesh.material], *uv)), "at {px}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 2 * 7 * 7);
+}
+
+#[test]
+fn a_mirrored_photo_is_read_from_right_to_left() {
+    let (garment, model) = (fixture::garment(8), model("()"));
+    let (first, last) = (garment.rest[0], garment.rest[8]);
+    assert!(first.x < last.x);
+    let [front, back] = [&model.meshes[0], &model.meshes[1]];
+    assert!(front.uv[0][0] < front.uv[8][0]);
+    assert!(back.uv[0][0] > back.uv[8][0]);
+}
+
+#[test]
+fn no_ground_shows_anywhere_in_a_texture() {
+    for params in ["()", "(size: 200)", "(inset: \"0 mm\")", "(size: 64, margin: 0)", "(margin: 200)"] {
+        for texture in model(params).textures {
+            let green = texture.pixels.pixels().filter(|p| greenish(p.0)).count();
+            assert_eq!(green, 0, "{params}: {} of {:?}", texture.name, texture.pixels.dimensions());
+        }
+    }
+}
+
+#[test]
+fn textures_are_scaled_down_to_size() {
+    for texture in model("(size: 200)").textures {
+        assert_eq!(texture.pixels.width().max(texture.pixels.height()), 200);
+    }
+}
+
+#[test]
+fn replace_is_unlit_and_modulate_is_lit() {
+    assert!(model("(light: Replace)").materials[0].unlit);
+    assert!(!model("(light: Modulate)").materials[0].unlit);
+    assert!(!model("(light: Replace)").materials[2].unlit, "the body is always lit");
+}
+
+#[test]
+fn the_body_can_be_hidden() {
+    assert_eq!(model("(body: Hide)").meshes.len(), 2);
+}
+
+#[test]
+fn joined_vertices_share_their_normal() {
+    let (garment, model) = (fixture::garment(8), model("()"));
+    for [a, b] in garment.seams.iter().flat_map(|s| &s.pairs) {
+        let back = *b as usize - garment.panels[1].vertices.start;
+        assert_eq!(model.meshes[0].normals[*a as usize], model.meshes[1].normals[back]);
+    }
+}
+
+#[test]
+fn a_panel_without_a_photo_is_plain_and_says_so() {
+    let cx = Context::quiet();
+    let model = texturer("()").run(&fixture::garment(4), None, None, &cx).unwrap();
+    assert!(model.textures.is_empty() && model.meshes.iter().all(|m| m.uv.is_empty()));
+    assert_eq!(cx.take_notes().1[0], "panel \"front\" has no photo and gets a plain cloth");
+}
+
+#[test]
+fn a_vertex_that_is_not_finite_is_refused() {
+    let mut garment = fixture::garment(4);
+    garment.positions[3].y = f64::NAN;
+    let error = texturer("()").run(&garment, None, None, &Context::quiet()).unwrap_err();
+    assert_eq!(error.to_string(), "the garment has a vertex that is not finite");
+    assert!(error.hint.is_some());
+}
+
+#[test]
+fn a_panel_beside_its_photo_is_refused() {
+    let mut garment = fixture::garment(4);
+    garment.panels[0].photo_px.iter_mut().for_each(|p| p.x += 1e9);
+    let error = texturer("()").run(&garment, Some(fixture::photos()), None, &Context::quiet()).unwrap_err();
+    assert_eq!(error.to_string(), "panel \"front\" covers no pixel of its photo \"photo.png\"");
+}
+
+#[test]
+fn a_panel_thinner_than_the_inset_keeps_its_colours() {
+    let model = model("(inset: \"5 cm\", size: 16)");
+    assert!(model.textures.iter().all(|t| t.pixels.pixels().all(|p| p.0 != [0, 0, 0] && !greenish(p.0))));
+}
+
+#[test]
+fn a_stopped_run_stops() {
+    let cx = Context::quiet();
+    cx.cancel().cancel();
+    let error = texturer("()").run(&fixture::garment(4), None, None, &cx).unwrap_err();
+    assert_eq!(error.code, ErrorCode::Cancelled);
+}
+
+#[test]
+fn texture_coordinates_run_to_the_boxes_outer_corners() {
+    let area = PixelBox { left: 10, top: -2, width: 4, height: 8 };
+    assert_eq!(area.uv(&Point2::new(9.5, -2.5)), [0.0, 0.0]);
+    assert_eq!(area.uv(&Point2::new(13.5, 5.5)), [1.0, 1.0]);
+}
+
+#[test]
+fn averaging_leaves_the_outside_out() {
+    let photo = RgbImage::from_fn(4, 4, |x, _| if x < 2 { Rgb([200, 100, 50]) } else { Rgb([0, 255, 0]) });
+    let inside = GrayImage::from_fn(4, 4, |x, y| Luma([if x < 2 && y != 3 { 255 } else { 0 }]));
+    let area = PixelBox { left: 0, top: 0, width: 4, height: 4 };
+    let crop = crop::crop(&photo, area, &inside, [2, 2]);
+    assert_eq!(crop.inside.as_raw(), &[255, 0, 255, 0]);
+    let [r, g, b] = crop.pixels.get_pixel(0, 1).0;
+    assert!(r.abs_diff(200) <= 1 && g.abs_diff(100) <= 1 && b.abs_diff(50) <= 1);
+}
+
+#[test]
+fn erosion_takes_the_rim_off() {
+    let inside = GrayImage::from_fn(9, 9, |x, y| {
+        Luma([if (2..7).contains(&x) && (2..7).contains(&y) { 255 } else { 0 }])
+    });
+    let count = |depth: f64| eroded(&inside, depth).as_raw().iter().filter(|&&v| v != 0).count();
+    assert_eq!([count(0.0), count(1.0), count(2.0), count(3.0)], [25, 9, 1, 0]);
+}
+
+#[test]
+fn bleeding_nothing_says_so() {
+    assert!(!bleed(&mut RgbImage::new(3, 3), &GrayImage::new(3, 3)));
+}
+
+/// Small pictures with some pixels marked.
+fn marked() -> impl Strategy<Value = (usize, usize, Vec<bool>)> {
+    (1usize..24, 1usize..24).prop_flat_map(|(w, h)| {
+        (Just(w), Just(h), proptest::collection::vec(proptest::bool::weighted(0.1), w * h))
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn the_nearest_mark_is_the_nearest((w, h, marks) in marked()) {
+        let found = nearest(|x, y| marks[y * w + x], w, h);
+        prop_assert_eq!(found.is_some(), marks.contains(&true));
+        let d2 = |a: usize, b: usize| ((a % w).abs_diff(b % w)).pow(2) + ((a / w).abs_diff(b / w)).pow(2);
+        for (i, n) in found.into_iter().flatten().enumerate() {
+            let best = (0..w * h).filter(|&k| marks[k]).map(|k| d2(i, k)).min();
+            prop_assert!(marks[n as usize]);
+            prop_assert_eq!(Some(d2(i, n as usize)), best);
+        }
+    }
+
+    #[test]
+    fn covered_pixels_lie_in_the_triangle(c in proptest::collection::vec((-3.0..13.0, -3.0..13.0), 3)) {
+        let p: Vec<Point2> = c.iter().map(|&(x, y)| Point2::new(x, y)).collect();
+        let area = PixelBox { left: 0, top: 0, width: 10, height: 10 };
+        let picture = covered(&p, &[[0, 1, 2]], area);
+        let side = |a: Point2, b: Point2, q: Point2| (b - a).perp(&(q - a));
+        for (x, y, v) in picture.enumerate_pixels() {
+            let q = Point2::new(f64::from(x), f64::from(y));
+            let s = [side(p[0], p[1], q), side(p[1], p[2], q), side(p[2], p[0], q)];
+            let (least, most) = (s.iter().copied().fold(f64::MAX, f64::min), s.iter().copied().fold(f64::MIN, f64::max));
+            // Clear cases only: pixels within rounding of an edge may fall either way.
+            let inside = least > 1e-6 || most < -1e-6;
+            let outside = least < -1e-6 && most > 1e-6;
+            prop_assert!(!inside || v.0[0] == 255);
+            prop_assert!(!outside || v.0[0] == 0);
+        }
+    }
+
+    #[test]
+    fn any_finite_photo_coordinates_are_survived(
+        moves in proptest::collection::vec((0usize..50, -1e12..1e12, -2e3..2e3), 0..6),
+    ) {
+        let mut garment = fixture::garment(4);
+        for (i, dx, dy) in moves {
+            let px = &mut garment.panels[0].photo_px;
+            let k = i % px.len();
+            px[k] += Vector2::new(dx, dy);
+        }
+        let result = texturer("(size: 64)").run(&garment, Some(fixture::photos()), None, &Context::quiet());
+        if let Ok(model) = result {
+            prop_assert!(model.meshes[0].uv.iter().flatten().all(|c| c.is_finite()));
+        }
+    }
+}
+
+#[test]
+fn one_and_two_threads_give_the_same_bits() {
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let model = pool.install(|| model("(size: 300)"));
+        model.textures.iter().map(|t| Arc::clone(&t.pixels)).collect::<Vec<_>>()
+    };
+    assert_eq!(with(1), with(2));
+}

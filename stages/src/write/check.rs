@@ -1,0 +1,39 @@
+//! What every writer asks of a model before it writes a byte.
+
+use toile_core::StageError;
+use toile_core::artifact::{Mesh, Model};
+
+/// Refuses a model whose file would hold NaN or point past its own lists.
+pub(super) fn check_model(model: &Model) -> Result<(), StageError> {
+    if model.meshes.iter().all(|m| m.triangles.is_empty()) {
+        let hint = "did the mesher or the stitcher lose the panels?";
+        return Err(StageError::invalid("the model has no triangle").hint(hint));
+    }
+    model.meshes.iter().try_for_each(|mesh| check_mesh(mesh, model))
+}
+
+fn check_mesh(mesh: &Mesh, model: &Model) -> Result<(), StageError> {
+    let fault = |what: &str| StageError::invalid(format!("mesh \"{}\" {what}", mesh.name));
+    let count = mesh.positions.len();
+    let finite3 = |v: &[f64]| v.iter().all(|c| c.is_finite() && c.abs() <= f64::from(f32::MAX));
+    if !mesh.positions.iter().all(|p| finite3(p.coords.as_slice())) {
+        return Err(fault("has a vertex that is not finite"));
+    }
+    if mesh.normals.len() != count || !mesh.normals.iter().all(|n| finite3(n.as_slice())) {
+        return Err(fault("has not one finite normal for each vertex"));
+    }
+    if !(mesh.uv.is_empty() || mesh.uv.len() == count) || !mesh.uv.iter().flatten().all(|c| c.is_finite()) {
+        return Err(fault("has not one finite texture coordinate for each vertex"));
+    }
+    if !mesh.triangles.iter().flatten().all(|&i| (i as usize) < count) {
+        return Err(fault("has a triangle with a vertex that does not exist"));
+    }
+    let Some(material) = model.materials.get(mesh.material) else {
+        return Err(fault("has no material"));
+    };
+    match material.texture {
+        Some(t) if t >= model.textures.len() => Err(fault("has a texture that does not exist")),
+        Some(_) if mesh.uv.is_empty() => Err(fault("has a texture but no texture coordinates")),
+        _ => Ok(()),
+    }
+}

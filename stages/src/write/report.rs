@@ -1,0 +1,48 @@
+//! `Report`: one self-contained page on the run.
+//!
+//! Views of the result, key figures, then every stage with its pictures, parameters, time and measures.
+//! Cost: two small drawings for every garment on the way. Limit: pictures beyond [`PICTURE_BUDGET`] are left out,
+//! and the page says so.
+
+use super::report_data::{Page, page};
+use minijinja::Environment;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::{Serde, Value};
+use toile_core::prelude::*;
+
+/// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
+pub(super) const PICTURE_BUDGET: usize = 2_600_000;
+
+/// The page; autoescaped, since its name ends in `.html`.
+const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));
+
+/// Writes a page on the run: every stage with its pictures, parameters, time and numbers.
+///
+/// One file with no links to others; opens in any browser, light or dark.
+#[stage(role = Writer, source = "none", example = "Report(name: \"report\", pictures: 300)")]
+pub struct Report {
+    /// The file's name without its extension.
+    #[param(default = "report".to_owned())]
+    name: String,
+    /// Height of the stages' pictures.
+    #[param(default = 300, min = 32, max = 1200, unit = "px", trades)]
+    pictures: u32,
+}
+
+#[stage]
+impl Report {
+    pub(super) fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
+        super::names::check_name(&self.name)?;
+        let page = page(run, self.pictures, cx)?;
+        let html =
+            html(&page).map_err(|e| StageError::internal(format!("the report's template fails: {e}")))?;
+        Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
+    }
+}
+
+fn html(page: &Page) -> Result<String, minijinja::Error> {
+    let mut environment = Environment::new();
+    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build()?);
+    environment.add_template(TEMPLATE.0, TEMPLATE.1)?;
+    environment.get_template(TEMPLATE.0)?.render(Value::from(Serde(page)))
+}

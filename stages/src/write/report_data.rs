@@ -1,0 +1,299 @@
+//! What stands on the report's page, gathered from the run's record.
+
+use super::report::PICTURE_BUDGET;
+use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::any::Any;
+use toile_core::artifact::{
+    Artifact, Body, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
+    StageRecord, quantile,
+};
+use toile_core::{Context, StageError};
+
+/// Height of the three views at the head, px.
+const VIEW_HEIGHT: u32 = 640;
+/// A longer text output of a stage is cut.
+const MOST_NOTES: usize = 24;
+
+/// The page.
+#[derive(Debug, Serialize)]
+pub(super) struct Page {
+    title: String,
+    version: &'static str,
+    total: String,
+    views: Vec<Shown>,
+    shortfalls: Vec<String>,
+    figures: Vec<Vec<Figure>>,
+    stages: Vec<Section>,
+    skipped: Vec<Figure>,
+}
+
+/// A picture as the page holds it.
+#[derive(Debug, Serialize)]
+struct Shown {
+    caption: String,
+    /// A data URI: nothing in it needs escaping.
+    src: String,
+}
+
+/// A name and a value.
+#[derive(Debug, Serialize)]
+struct Figure {
+    name: String,
+    value: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Section {
+    id: String,
+    name: String,
+    role: &'static str,
+    params: String,
+    wall: String,
+    /// Per cent of the longest stage.
+    share: String,
+    warnings: Vec<String>,
+    figures: Vec<Figure>,
+    pictures: Vec<Shown>,
+    left_out: usize,
+    notes: Vec<String>,
+    outputs: Vec<Output>,
+}
+
+#[derive(Debug, Serialize)]
+struct Output {
+    name: String,
+    measures: Vec<Figure>,
+}
+
+/// Gathers the page; `height` is that of the stages' pictures.
+pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, StageError> {
+    let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
+    let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
+    let mut budget = PICTURE_BUDGET;
+    let views = shown(views(run), &mut budget).0;
+    let mut stages = Vec::new();
+    for (i, record) in run.stages.iter().enumerate() {
+        cx.check()?;
+        cx.progress(i as f64 / run.stages.len() as f64, format!("pictures of {}", record.id));
+        stages.push(section(run, i, longest, height, &mut budget));
+    }
+    let skipped = run.skipped.iter().map(|(name, why)| Figure { name: name.clone(), value: why.clone() });
+    Ok(Page {
+        title: if run.pipeline.is_empty() { "A garment".to_owned() } else { run.pipeline.clone() },
+        version: env!("CARGO_PKG_VERSION"),
+        total: seconds(total),
+        views,
+        shortfalls: shortfalls(run),
+        figures: key_figures(run),
+        stages,
+        skipped: skipped.collect(),
+    })
+}
+
+fn section(run: &RunLog, index: usize, longest: f64, height: u32, budget: &mut usize) -> Section {
+    let record = &run.stages[index];
+    let (pictures, left_out) = shown(stage_pictures(run, index, height), budget);
+    Section {
+        id: record.id.clone(),
+        name: record.name.clone(),
+        role: record.role.as_str(),
+        params: record.params.clone(),
+        wall: seconds(record.wall_s),
+        share: format!("{:.1}", (record.wall_s / longest * 100.0).clamp(0.0, 100.0)),
+        warnings: record.warnings.clone(),
+        figures: record.figures.iter().map(figure).collect(),
+        pictures,
+        left_out,
+        notes: entries(record).flat_map(|(_, a)| notes(a)).take(MOST_NOTES).collect(),
+        outputs: entries(record)
+            .map(|(name, a)| output(name, a))
+            .filter(|o| !o.measures.is_empty())
+            .collect(),
+    }
+}
+
+/// Every artifact that a stage made, with its name in its set.
+fn entries(record: &StageRecord) -> impl Iterator<Item = (&str, &dyn Artifact)> {
+    record.outputs.iter().flat_map(|value| value.entries()).map(|(name, artifact)| (name, artifact.as_ref()))
+}
+
+fn is<T: 'static>(artifact: &dyn Artifact) -> Option<&T> {
+    let any: &dyn Any = artifact;
+    any.downcast_ref()
+}
+
+/// The last artifact of a type among the first `stages` stages.
+fn last<T: 'static>(run: &RunLog, stages: usize) -> Option<&T> {
+    run.stages[..stages].iter().rev().flat_map(entries).find_map(|(_, a)| is(a))
+}
+
+/// Pictures of what a stage made, in the order of its outputs.
+fn stage_pictures(run: &RunLog, index: usize, height: u32) -> Vec<Picture> {
+    let body = last::<Body>(run, index);
+    let made: Vec<(&str, &dyn Artifact)> = entries(&run.stages[index]).collect();
+    let each = |(name, artifact): &(&str, &dyn Artifact)| {
+        let named = |p: Picture| Picture { caption: caption(name, &p.caption), ..p };
+        pictures_of(*artifact, body, height).into_iter().map(named).collect::<Vec<_>>()
+    };
+    made.par_iter().flat_map_iter(each).collect()
+}
+
+fn caption(name: &str, detail: &str) -> String {
+    match (name, detail) {
+        ("", detail) => detail.to_owned(),
+        (name, "") => name.to_owned(),
+        (name, detail) => format!("{name}, {detail}"),
+    }
+}
+
+/// The three views: those that a preview has drawn, else new ones.
+fn views(run: &RunLog) -> Vec<Picture> {
+    let Some(model) = last::<Model>(run, run.stages.len()) else { return Vec::new() };
+    let named = [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
+    let scene = Scene::draft(model);
+    let view = |(name, view): (&str, fn(u32) -> View)| {
+        let form = jpeg(&scene.render(&view(VIEW_HEIGHT)))?;
+        Some(Picture { caption: name.to_owned(), form })
+    };
+    named.into_iter().filter_map(view).collect()
+}
+
+/// Pictures as data URIs as far as the budget goes, and the number of those left out.
+fn shown(pictures: Vec<Picture>, budget: &mut usize) -> (Vec<Shown>, usize) {
+    let count = pictures.len();
+    let mut kept = Vec::new();
+    for picture in pictures {
+        let src = data_uri(&picture.form);
+        if src.len() <= *budget {
+            *budget -= src.len();
+            kept.push(Shown { caption: picture.caption, src });
+        }
+    }
+    let left_out = count - kept.len();
+    (kept, left_out)
+}
+
+fn data_uri(form: &Form) -> String {
+    let (mime, bytes) = match form {
+        Form::Png(bytes) => ("image/png", bytes.as_slice()),
+        Form::Jpeg(bytes) => ("image/jpeg", bytes.as_slice()),
+        Form::Svg(text) => ("image/svg+xml", text.as_bytes()),
+    };
+    format!("data:{mime};base64,{}", STANDARD.encode(bytes))
+}
+
+/// Lines of an artifact that has text rather than a picture: files written, seams.
+fn notes(artifact: &dyn Artifact) -> Vec<String> {
+    if let Some(files) = is::<OutputFiles>(artifact) {
+        let line = |f: &toile_core::artifact::OutputFile| format!("{} ({})", f.path, bytes(f.bytes.len()));
+        return files.0.iter().map(line).collect();
+    }
+    if is::<SewingPlan>(artifact).is_none() {
+        return Vec::new();
+    }
+    let text = artifact.export().into_iter().find(|(kind, _)| *kind == "txt");
+    let text = text.and_then(|(_, bytes)| String::from_utf8(bytes).ok()).unwrap_or_default();
+    text.lines().map(str::to_owned).collect()
+}
+
+fn output(name: &str, artifact: &dyn Artifact) -> Output {
+    let kind = artifact.kind().to_string();
+    let name = if name.is_empty() { kind } else { format!("{name} ({kind})") };
+    Output { name, measures: artifact.measures().0.iter().map(figure).collect() }
+}
+
+/// What a tailor asks of the result first: cloth, seams, strain, rest.
+fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
+    let Some(garment) = last::<Garment>(run, run.stages.len()) else { return Vec::new() };
+    let strains = garment.edge_strains();
+    let at = |q: f64| quantile(&strains, q) * 100.0;
+    let open = garment.seams.iter().filter(|s| s.state == SeamState::Open).count();
+    let row =
+        |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
+    let word = |yes: bool| if yes { "yes" } else { "no" }.to_owned();
+    let mut cloth = vec![
+        row("vertices", garment.positions.len() as f64, ""),
+        row("triangles", garment.triangles.len() as f64, ""),
+        row("solver steps", garment.status.steps as f64, ""),
+        Figure { name: "came to rest".to_owned(), value: word(garment.status.converged) },
+        row("greatest speed", garment.status.max_speed * 1e3, "mm/s"),
+        row("energy", garment.status.energy, "J"),
+    ];
+    let mut fit = vec![
+        row("seams", garment.seams.len() as f64, ""),
+        row("seams still open", open as f64, ""),
+        row("widest seam gap", garment.seam_gap_max() * 1e3, "mm"),
+        row("edge strain, median", at(0.5), "%"),
+        row("edge strain, 99 of 100", at(0.99), "%"),
+        row("edge strain, greatest", at(1.0), "%"),
+    ];
+    for panel in &garment.panels {
+        let ((flat, now), (flat_length, length)) =
+            (garment.panel_areas(panel), garment.panel_boundaries(panel));
+        let change = |flat: f64, now: f64| if flat > 0.0 { (now - flat) / flat * 100.0 } else { 0.0 };
+        cloth.push(row(&format!("{}, change of area", panel.name), change(flat, now), "%"));
+        fit.push(row(&format!("{}, change of outline", panel.name), change(flat_length, length), "%"));
+    }
+    let judged = last::<Figures>(run, run.stages.len()).map(|f| &f.garment);
+    if let Some(inside) = judged.and_then(|g| g.body_penetration) {
+        cloth.push(row("vertices inside the body", inside.vertices as f64, ""));
+        fit.push(row("deepest in the body", inside.max_m * 1e3, "mm"));
+    }
+    if let Some(crossings) = judged.and_then(|g| g.self_crossings) {
+        cloth.push(row("pairs of triangles that cross", crossings as f64, ""));
+    }
+    vec![cloth, fit]
+}
+
+/// The quality limits that the result misses.
+fn shortfalls(run: &RunLog) -> Vec<String> {
+    let figures = last::<Figures>(run, run.stages.len());
+    figures.map(|f| f.shortfalls.iter().map(|s| s.message.clone()).collect()).unwrap_or_default()
+}
+
+fn figure(m: &Measure) -> Figure {
+    Figure { name: m.name.replace('_', " "), value: number(m.value, m.unit) }
+}
+
+/// A number for people: whole numbers whole, others with four significant digits.
+pub(super) fn number(value: f64, unit: &str) -> String {
+    let text = match () {
+        () if !value.is_finite() => "not finite".to_owned(),
+        () if value == value.trunc() && value.abs() < 1e15 => grouped(value as i64),
+        () if value.abs() < 1e-4 => format!("{value:.2e}"),
+        () => {
+            let digits = (3 - value.abs().log10().floor() as i32).clamp(0, 7) as usize;
+            format!("{value:.digits$}")
+        }
+    };
+    if unit.is_empty() { text } else { format!("{text} {unit}") }
+}
+
+/// A whole number with a narrow space between its thousands.
+fn grouped(value: i64) -> String {
+    let digits = value.unsigned_abs().to_string();
+    let mut text = if value < 0 { "-".to_owned() } else { String::new() };
+    for (i, c) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push('\u{202f}');
+        }
+        text.push(c);
+    }
+    text
+}
+
+fn seconds(s: f64) -> String {
+    if s < 1.0 { format!("{:.0} ms", s * 1e3) } else { format!("{s:.2} s") }
+}
+
+fn bytes(n: usize) -> String {
+    match n {
+        0..1_000 => format!("{n} bytes"),
+        1_000..1_000_000 => format!("{} kB", n / 1_000),
+        _ => format!("{:.1} MB", n as f64 / 1e6),
+    }
+}

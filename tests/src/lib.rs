@@ -1,0 +1,36 @@
+//! What the tests of whole pipelines share: calling the command, and the repository's folders.
+
+use std::path::{Path, PathBuf};
+
+/// What a call of the command printed, and its exit code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answer {
+    /// The exit code.
+    pub code: u8,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+/// Calls `toile` with arguments, in this process.
+pub fn toile(arguments: &[&str]) -> Answer {
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    let all = std::iter::once("toile").chain(arguments.iter().copied());
+    let code = toile::command(all, &mut out, &mut err);
+    let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+    Answer { code, out: text(out), err: text(err) }
+}
+
+/// The repository's root.
+pub fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A shipped pipeline file.
+pub fn pipeline(name: &str) -> String {
+    root().join("pipelines").join(name).display().to_string()
+}
+
+/// The shipped pipelines.
+pub const PIPELINES: [&str; 2] = ["vest.ron", "tshirt.ron"];

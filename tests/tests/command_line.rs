@@ -1,0 +1,107 @@
+//! The command line, as a newcomer uses it.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::path::Path;
+use toile_core::pipeline::{Fault, load};
+use toile_tests::{pipeline, toile};
+
+#[test]
+fn no_arguments_is_a_usage_error() {
+    assert_eq!(toile(&[]).code, 2);
+    assert_eq!(toile(&["run"]).code, 2);
+    assert_eq!(toile(&["fly"]).code, 2);
+}
+
+#[test]
+fn help_and_version_are_answers() {
+    let help = toile(&["--help"]);
+    assert_eq!((help.code, help.err.as_str()), (0, ""));
+    assert!(help.out.contains("Run a pipeline"));
+    assert_eq!(toile(&["--version"]).code, 0);
+}
+
+#[test]
+fn the_shipped_pipelines_are_valid() {
+    for name in toile_tests::PIPELINES {
+        let answer = toile(&["validate", &pipeline(name)]);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+    }
+}
+
+#[test]
+fn stages_lists_every_role_and_its_default() {
+    let answer = toile(&["stages"]);
+    assert_eq!(answer.code, 0);
+    for name in [
+        "NeighbourhoodMean",
+        "Otsu",
+        "Canny",
+        "GridMesher",
+        "PlaneSmoother",
+        "SpringStitcher",
+        "BvhCollider",
+        "PhotoTexturer",
+    ] {
+        assert!(answer.out.contains(name), "{name} is missing in\n{}", answer.out);
+    }
+}
+
+#[test]
+fn stages_as_json_is_one_object() {
+    let answer = toile(&["stages", "--json"]);
+    let json: Value = serde_json::from_str(&answer.out).unwrap();
+    let stages = json["stages"].as_array().unwrap();
+    assert!(stages.len() > 30, "{} stages", stages.len());
+    for stage in stages {
+        assert!(!stage["doc"].as_str().unwrap().is_empty(), "{stage}");
+        for param in stage["params"].as_array().unwrap() {
+            assert!(!param["doc"].as_str().unwrap().is_empty(), "{param}");
+        }
+    }
+}
+
+#[test]
+fn a_stage_shows_its_card() {
+    let answer = toile(&["stage", "Otsu"]);
+    assert_eq!(answer.code, 0);
+    for part in ["Otsu (binariser", "Takes:", "photo", "Gives:", "mask", "Parameters:", "Example:"] {
+        assert!(answer.out.contains(part), "{part} is missing in\n{}", answer.out);
+    }
+}
+
+#[test]
+fn an_unknown_stage_gets_a_near_name() {
+    let answer = toile(&["stage", "Otzu"]);
+    assert_eq!(answer.code, 3);
+    assert_eq!(answer.err, "error: there is no stage `Otzu`; did you mean `Otsu`?\n");
+}
+
+#[test]
+fn explain_says_what_runs_and_what_does_not() {
+    let answer = toile(&["explain", &pipeline("vest.ron"), "--until", "GridMesher"]);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.out.contains("  run   GridMesher           takes outline from "), "{}", answer.out);
+    assert!(
+        answer.out.contains("  skip  SpringStitcher       not needed until GridMesher"),
+        "{}",
+        answer.out
+    );
+}
+
+/// Faults of a lone stage that only say that nothing feeds it.
+const UNFED: [&str; 2] = ["missing_input", "ambiguous_input"];
+
+#[test]
+fn every_example_of_a_card_is_valid() {
+    let registry = toile::registry();
+    for card in registry.cards() {
+        let text = format!("(name: \"example\", stages: [{}])", card.example);
+        let faults = match load(&text, card.name, Path::new("."), &registry, &[]) {
+            Ok(_) => continue,
+            Err(faults) => faults,
+        };
+        let own: Vec<&Fault> = faults.faults.iter().filter(|f| !UNFED.contains(&f.code)).collect();
+        assert!(own.is_empty(), "the example of {}: {own:?}", card.name);
+    }
+}
