@@ -10,9 +10,10 @@
 //!
 //! All this is done at a reduced size; the boundary is set again at the photo's own size (`refine`).
 //!
-//! Cost: one pass over the photo and 20 ms more. Measured on 23 phone photos with masks drawn by
-//! hand: median IoU 0.97 (Otsu: 0.88), 15 of them at 0.95 and above. Limits: stripes of the ground's colour, a strong
-//! cast shadow; `GraphCut`, which also looks at edges, goes on from here.
+//! Cost: 12 megapixels take 0.12 s on two cores. Measured on 23 phone photos with masks drawn by
+//! hand: median IoU 0.967 (Otsu: 0.884), 15 of them at 0.95 and above. Limits: stripes of the
+//! ground's colour; a hard cast shadow is mostly taken for garment, as it borders on it and the models
+//! are fitted again. `GraphCut`, which also looks at edges, goes on from here.
 
 use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
 use super::mixture::Mixture;

@@ -11,8 +11,8 @@
 //! The rounds are made at half the size; a last cut at the full size may move the boundary within a
 //! band. The boundary is set again at the photo's own size (`refine`).
 //!
-//! Cost: one pass over the photo and about 0.13 s more. Measured on 23 phone photos with masks drawn
-//! by hand: median IoU 0.976 (Otsu: 0.88), 21 of them at 0.95 and above. Limits: a strong cast shadow is taken
+//! Cost: 12 megapixels take about 0.15 s on two cores, a hard photo 0.5 s. Measured on 23 phone photos with masks drawn
+//! by hand: median IoU 0.976 (Otsu: 0.884), 22 of them at 0.95 and above. Limits: a hard cast shadow is taken
 //! for garment where its edge is sharper than the garment's.
 
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};

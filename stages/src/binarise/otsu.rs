@@ -5,7 +5,7 @@
 //! means, where also the boundary of a blurred edge lies, so that the mask is not biased outwards or
 //! inwards. Where an empty valley gives many thresholds of the same variance, its middle is taken.
 //!
-//! Cost: three looks at every pixel; 12 megapixels take about 15 ms on two cores. Limits: one threshold
+//! Cost: three looks at every pixel; 12 megapixels take about 50 ms on two cores. Limits: one threshold
 //! for the whole photo, on grey levels alone: fails on patterned grounds, strong shadows and garments of
 //! the ground's tone. `Background` and `GraphCut` look at colour.
 

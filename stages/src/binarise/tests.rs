@@ -1,6 +1,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::cut::{Grid, STEPS};
+use super::mixture::Mixture;
+use super::small::Lab;
 use super::*;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
@@ -126,6 +128,17 @@ fn colour_parts_a_red_tee_from_a_rug_where_grey_levels_fail() {
     assert!(score(|p, cx| Otsu::default().run(p, cx), &photo) < 0.7);
     assert!(score(|p, cx| Background::default().run(p, cx), &photo) > 0.95);
     assert!(score(|p, cx| GraphCut::default().run(p, cx), &photo) > 0.98);
+}
+
+#[test]
+fn a_shadow_counts_as_its_ground_and_another_hue_does_not() {
+    let ground = Mixture::fit(&[Lab::new(80.0, 4.0, 12.0); 50], 3, 0.0).unwrap();
+    // L + 16, a and b are three quarters of the ground's.
+    let shadow = Lab::new(56.0, 3.0, 9.0);
+    assert!(ground.shaded_distance(&shadow, 0.4) < 1e-9);
+    assert!(ground.shaded_distance(&shadow, 0.0) > 10.0);
+    assert!(ground.shaded_distance(&Lab::new(40.0, 2.3, 7.0), 0.4) > 10.0, "too deep for a shadow");
+    assert!(ground.shaded_distance(&Lab::new(56.0, -20.0, 9.0), 0.4) > 5.0, "green");
 }
 
 /// The mask is found at 200 or 400 px; its boundary must be right at the photo's own size.

@@ -6,7 +6,7 @@
 //! radius 1).
 //!
 //! Cost: the square's sums slide down and along the rows, so the radius costs nothing; 12 megapixels
-//! take about 20 ms on two cores at radius 1 and 60 ms above. The diamond costs 2 radius + 1
+//! take about 20 ms on two cores at radius 1 and 30 ms above. The diamond costs 2 radius + 1
 //! additions a sample. Integer sums: the result is the mean rounded to nearest, exactly.
 //!
 //! Limits: blurs edges by its radius; the edge detector finds them again at their middle.
