@@ -177,7 +177,7 @@ fn panel_svg(panel: &Panel) -> String {
         ((p.x - lo.x) * 1e3, (hi.y - p.y) * 1e3)
     };
     let mut s = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-30 -30 {w:.0} {h:.0}\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"-30 -30 {w:.0} {h:.0}\" width=\"{w:.0}mm\" height=\"{h:.0}mm\" \
          font-family=\"sans-serif\" font-size=\"16\">\n<path fill=\"none\" stroke=\"#8a93a0\" stroke-width=\".6\" d=\""
     );
     for [a, b] in drawn_edges(panel) {

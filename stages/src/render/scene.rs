@@ -7,10 +7,11 @@
 use super::camera::{Camera, Projected, View};
 use super::cover::{Patch, STEPS};
 use super::light::{self, Fineness, Region};
-use super::mips::{Mips, encode};
+use super::mips::{Footprint, Mips, encode};
 use super::shade::{Lights, wall};
 use super::{Line, overlay};
 use image::RgbImage;
+use nalgebra::Matrix2;
 use rayon::prelude::*;
 use toile_core::artifact::{Mesh, Model, Point3, Vector3};
 
@@ -40,7 +41,7 @@ impl<'a> Scene<'a> {
         Scene::prepare(model, light::FINE)
     }
 
-    /// Prepares a model for small pictures: the light is coarser and four times as fast.
+    /// Prepares a model for small pictures: the light is coarser and almost three times as fast.
     pub fn draft(model: &'a Model) -> Scene<'a> {
         Scene::prepare(model, light::DRAFT)
     }
@@ -100,8 +101,8 @@ struct Face {
     inv_w: [f64; 3],
     /// True where its back is seen.
     reversed: bool,
-    /// Halvings of the texture that suit its middle.
-    texels_per_px: f64,
+    /// How it reads its texture.
+    footprint: Footprint,
 }
 
 /// Every drawable triangle, in the order of the model.
@@ -132,40 +133,30 @@ fn face(
     let corners = patch.order.map(|k| t[k]);
     // Rows grow downwards, so a triangle seen from its front runs clockwise over the pixels.
     let reversed = patch.order == [0, 1, 2];
-    let texels =
-        |(w, h): (u32, u32)| texel_scale(mesh, &corners, [f64::from(w), f64::from(h)], v, patch.order);
-    let texels_per_px = texture.and_then(texels).unwrap_or(1.0);
-    Some(Face {
-        inv_w: patch.order.map(|k| v[k].inv_w),
-        patch,
-        mesh: index,
-        corners,
-        reversed,
-        texels_per_px,
-    })
+    let footprint = |(w, h): (u32, u32)| {
+        let size = [f64::from(w), f64::from(h)];
+        Some(Footprint::new(&texels_per_px(mesh, &corners, size, v, patch.order)?, size))
+    };
+    let footprint = texture.and_then(footprint).unwrap_or_default();
+    Some(Face { inv_w: patch.order.map(|k| v[k].inv_w), patch, mesh: index, corners, reversed, footprint })
 }
 
-/// Texels that one pixel spans along the direction that squeezes the texture most.
-///
-/// The map from pixels to texels is taken as affine over the triangle; its greater singular value is the scale.
-fn texel_scale(
+/// The map from pixels to texels, taken as affine over the triangle.
+fn texels_per_px(
     mesh: &Mesh,
     corners: &[usize; 3],
     size: [f64; 2],
     v: [Projected; 3],
     order: [usize; 3],
-) -> Option<f64> {
+) -> Option<Matrix2<f64>> {
     let uv =
         |k: usize| mesh.uv.get(corners[k]).map(|uv| [f64::from(uv[0]) * size[0], f64::from(uv[1]) * size[1]]);
     let (a, b, c) = (uv(0)?, uv(1)?, uv(2)?);
     let p = order.map(|k| [v[k].x, v[k].y]);
-    let texels = nalgebra::Matrix2::new(b[0] - a[0], c[0] - a[0], b[1] - a[1], c[1] - a[1]);
-    let pixels =
-        nalgebra::Matrix2::new(p[1][0] - p[0][0], p[2][0] - p[0][0], p[1][1] - p[0][1], p[2][1] - p[0][1]);
-    let map = texels * pixels.try_inverse()?;
-    // Greater singular value of a 2x2 matrix in closed form.
-    let (s, d) = (map.norm_squared(), map.determinant());
-    Some(((s + (s * s - 4.0 * d * d).max(0.0).sqrt()) / 2.0).sqrt())
+    let sides = |a: [f64; 2], b: [f64; 2], c: [f64; 2]| {
+        Matrix2::new(b[0] - a[0], c[0] - a[0], b[1] - a[1], c[1] - a[1])
+    };
+    Some(sides(a, b, c) * sides(p[0], p[1], p[2]).try_inverse()?)
 }
 
 /// Everything that the bands of one picture read.
@@ -259,7 +250,7 @@ impl Shot<'_> {
         let [Some(a), Some(b), Some(c)] = uv else { return None };
         let w = weights.map(|w| w as f32);
         let at = [0, 1].map(|k| a[k] * w[0] + b[k] * w[1] + c[k] * w[2]);
-        Some(mips.sample(at, face.texels_per_px.max(1e-6).log2() as f32))
+        Some(face.footprint.sample(mips, at))
     }
 
     fn light(&self, mesh: &Mesh, face: &Face, weights: &[f64; 3]) -> f64 {

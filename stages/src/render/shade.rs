@@ -4,13 +4,13 @@ use super::camera::Camera;
 use toile_core::artifact::Vector3;
 
 /// The key light's direction in the camera's axes: from above left, low enough to rake over folds.
-const KEY: [f64; 3] = [-0.62, 0.55, 0.56];
+const KEY: [f64; 3] = [-0.66, 0.52, 0.54];
 /// The fill light's direction, opposite and nearly level.
 const FILL: [f64; 3] = [0.80, 0.10, 0.59];
 /// Strengths, chosen so that a surface which faces the camera shows its own colour.
-const KEY_LIGHT: f64 = 0.72;
+const KEY_LIGHT: f64 = 0.86;
 const FILL_LIGHT: f64 = 0.22;
-const SKY_LIGHT: f64 = 0.60;
+const SKY_LIGHT: f64 = 0.50;
 
 /// The lights of one view, in the world's axes.
 #[derive(Debug, Clone, Copy)]
