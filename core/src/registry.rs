@@ -113,7 +113,9 @@ impl Registry {
     }
 
     /// Makes a stage from its arguments as RON, `(bias: 3.0)`.
-    pub(crate) fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
+    ///
+    /// Errors: a sentence on the argument at fault.
+    pub fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
         match self.cards.get(&(card.name, card.role)) {
             // typetag knows a stage by its name alone.
             Some(entry) if self.named(card.name).count() > 1 => (entry.make)(arguments),

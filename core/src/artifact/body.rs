@@ -1,5 +1,6 @@
 //! The body that wears the garment.
 
+use super::sound::{ensure, finite, finite_figure, indices};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
 use std::collections::BTreeMap;
 
@@ -99,6 +100,15 @@ impl Artifact for Body {
             m.push(name, length * 1e3, "mm", 1.0);
         }
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        finite("vertex", self.positions.iter().map(|p| &p.coords))?;
+        indices("a triangle", self.positions.len(), self.triangles.iter().flatten())?;
+        for (name, p) in &self.landmarks {
+            ensure(p.iter().all(|c| c.is_finite()), || format!("landmark {name} is not a finite number"))?;
+        }
+        self.measurements.iter().try_for_each(|(name, length)| finite_figure(name, *length))
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

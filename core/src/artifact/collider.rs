@@ -1,5 +1,6 @@
 //! What keeps cloth out of the body and out of itself, as a service to the solvers.
 
+use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
 use std::sync::Arc;
 
@@ -122,6 +123,14 @@ impl Artifact for Collider {
         let mut m = Measures::new();
         m.push("thickness", self.scheme.card().thickness * 1e3, "mm", 1e-9);
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let card = self.scheme.card();
+        positive("thickness", card.thickness)?;
+        ensure(card.friction.is_finite() && card.friction >= 0.0, || {
+            format!("the friction is {}, it must be at least 0", card.friction)
+        })
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

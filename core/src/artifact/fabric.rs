@@ -1,5 +1,6 @@
 //! What a cloth is made of.
 
+use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,13 @@ impl Curve {
     /// A straight line with stiffness `k`, N/m.
     pub fn linear(k: f64) -> Self {
         Curve(vec![(1.0, k)])
+    }
+
+    /// True where both strain and force rise from the origin, point by point.
+    pub fn rises(&self) -> bool {
+        let steps = std::iter::once(&(0.0, 0.0)).chain(&self.0).zip(&self.0);
+        let mut steps = steps.map(|(a, b)| b.0 > a.0 && b.1 > a.1 && b.0.is_finite() && b.1.is_finite());
+        !self.0.is_empty() && steps.all(|rises| rises)
     }
 
     /// Line force (N/m) and its slope (N/m) at a strain.
@@ -107,6 +115,16 @@ impl Artifact for Fabric {
         m.push("area_density", self.area_density * 1e3, "g/m2", 1e-6);
         m.push("thickness", self.thickness * 1e3, "mm", 1e-6);
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        positive("area density", self.area_density)?;
+        for (curve, word) in [(&self.warp, "warp"), (&self.weft, "weft"), (&self.shear, "shear")] {
+            ensure(curve.rises(), || format!("its {word} curve does not rise from the origin"))?;
+        }
+        let rest = [self.bending_warp, self.bending_weft, self.thickness, self.friction, self.damping];
+        let held = rest.iter().all(|x| x.is_finite() && *x >= 0.0);
+        ensure(held, || "bending, thickness, friction and damping must be finite and at least 0".to_owned())
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -1,5 +1,6 @@
 //! What a finished garment is judged by.
 
+use super::sound::finite_figure;
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use crate::ErrorCode;
 use serde::Serialize;
@@ -115,6 +116,12 @@ impl Artifact for Figures {
         }
         m.count("shortfalls", self.shortfalls.len());
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let panels = self.panels.values().flat_map(|p| [p.area_error, p.outline_error]);
+        panels.into_iter().try_for_each(|e| finite_figure("error of a panel", e))?;
+        finite_figure("seam gap", self.garment.seam_gap_max_m)
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -3,6 +3,7 @@
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use image::{GrayImage, ImageFormat, RgbImage};
 use std::io::Cursor;
+use std::path::{Component, Path};
 
 /// One file to be written into the output folder.
 #[derive(Debug, Clone)]
@@ -45,6 +46,17 @@ impl Artifact for OutputFiles {
         let mut m = Measures::new();
         m.count("files", self.0.len());
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let inside = |path: &str| {
+            let plain = |c: Component<'_>| matches!(c, Component::Normal(_));
+            !path.is_empty() && Path::new(path).components().all(plain)
+        };
+        match self.0.iter().find(|f| !inside(&f.path)) {
+            Some(file) => Err(format!("\"{}\" is not a path below the output folder", file.path)),
+            None => Ok(()),
+        }
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -1,6 +1,7 @@
 //! Panels in space, sewn or about to be.
 
 use super::body::{obj_text, vertex_normals};
+use super::sound::{ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -83,6 +84,34 @@ pub struct Garment {
 }
 
 impl Garment {
+    /// Panels follow each other and cover every vertex and triangle once.
+    fn check_panels(&self) -> Result<(), String> {
+        let (mut vertices, mut triangles) = (0, 0);
+        for panel in &self.panels {
+            let follows = panel.vertices.start == vertices && panel.triangles.start == triangles;
+            let forward = panel.vertices.end >= vertices && panel.triangles.end >= triangles;
+            ensure(follows && forward, || {
+                format!("panel \"{}\" does not follow the one before", panel.name)
+            })?;
+            (vertices, triangles) = (panel.vertices.end, panel.triangles.end);
+            let own = |i: &u32| panel.vertices.contains(&(*i as usize));
+            let corners = self.triangles[..panel.triangles.end.min(self.triangles.len())].iter();
+            let strange =
+                corners.skip(panel.triangles.start).flatten().chain(&panel.boundary).find(|&i| !own(i));
+            ensure(strange.is_none(), || format!("panel \"{}\" names another panel's vertex", panel.name))?;
+            ensure(panel.triangles.is_empty() || panel.boundary.len() >= 3, || {
+                format!("the boundary of panel \"{}\" has {} vertices", panel.name, panel.boundary.len())
+            })?;
+            if !panel.photo_px.is_empty() {
+                length("photo pixels", panel.photo_px.len(), panel.vertices.len())?;
+                finite("photo pixel", panel.photo_px.iter().map(|p| &p.coords))?;
+            }
+            panel.fabric.check().map_err(|e| format!("the fabric of panel \"{}\": {e}", panel.name))?;
+        }
+        let all = vertices == self.positions.len() && triangles == self.triangles.len();
+        ensure(all, || "some of it belongs to no panel".to_owned())
+    }
+
     /// The panel that owns a vertex.
     pub fn panel_of(&self, vertex: usize) -> Option<&GarmentPanel> {
         self.panels.iter().find(|p| p.vertices.contains(&vertex))
@@ -206,6 +235,23 @@ impl Artifact for Garment {
         m.push("strain_p99", quantile(&strains, 0.99) * 1e2, "%", 1.0);
         m.count("open_seams", self.seams.iter().filter(|s| s.state == SeamState::Open).count());
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let n = self.positions.len();
+        length("velocities", self.velocities.len(), n)?;
+        length("rest positions", self.rest.len(), n)?;
+        length("welds", self.weld.len(), n)?;
+        finite("vertex", self.positions.iter().map(|p| &p.coords))?;
+        finite("velocity", &self.velocities)?;
+        finite("rest position", self.rest.iter().map(|p| &p.coords))?;
+        indices("a triangle", n, self.triangles.iter().flatten())?;
+        indices("a seam", n, self.seams.iter().flat_map(|s| s.pairs.iter().flatten()))?;
+        indices("a weld", n, self.weld.iter())?;
+        let least = |(i, &w): (usize, &u32)| w as usize <= i && self.weld[w as usize] == w;
+        let joined = self.weld.iter().enumerate().all(least);
+        ensure(joined, || "a weld is not the least vertex that it is joined to".to_owned())?;
+        self.check_panels()
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -1,5 +1,6 @@
 //! Which pixels of a photo belong to the garment.
 
+use super::sound::ensure;
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use image::GrayImage;
 use std::sync::Arc;
@@ -56,6 +57,13 @@ impl Artifact for Mask {
         m.push("area", area as f64, "px", area as f64 * 1e-3);
         m.push("box_width", f64::from(r - l), "px", 2.0).push("box_height", f64::from(b - t), "px", 2.0);
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let (w, h) = self.pixels.dimensions();
+        ensure(w > 0 && h > 0, || format!("it is {w} x {h} pixels"))?;
+        let grey = self.pixels.as_raw().iter().find(|&&v| v != 0 && v != 255);
+        ensure(grey.is_none(), || "it has pixels between 0 and 255".to_owned())
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

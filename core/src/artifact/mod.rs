@@ -22,6 +22,7 @@ mod panel;
 mod photo;
 mod runlog;
 mod sewing;
+mod sound;
 
 pub use body::{Body, Landmark};
 pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact};
@@ -59,6 +60,11 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn kind(&self) -> Kind;
     /// Feeds everything that makes this artifact what it is, in a fixed order.
     fn digest(&self, digester: &mut Digester);
+    /// What is wrong with it, where no stage may give it: numbers that are not finite, indices beyond
+    /// their lists, lists of unequal length. The runner asks after every stage.
+    ///
+    /// Errors: one sentence in lower case, such as `vertex 12 is not a finite number`.
+    fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.

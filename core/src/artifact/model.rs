@@ -1,6 +1,7 @@
 //! A finished, textured model.
 
 use super::body::obj_text;
+use super::sound::{ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
 use image::RgbImage;
 use std::sync::Arc;
@@ -61,6 +62,26 @@ pub struct Model {
     pub textures: Vec<Texture>,
 }
 
+impl Model {
+    fn check_mesh(&self, mesh: &Mesh) -> Result<(), String> {
+        let n = mesh.positions.len();
+        finite("vertex", mesh.positions.iter().map(|p| &p.coords))?;
+        length("normals", mesh.normals.len(), n)?;
+        finite("normal", &mesh.normals)?;
+        indices("a triangle", n, mesh.triangles.iter().flatten())?;
+        let material = self.materials.get(mesh.material);
+        let material = material.ok_or_else(|| format!("there is no material {}", mesh.material))?;
+        let texture = material.texture.is_none_or(|t| t < self.textures.len());
+        ensure(texture, || format!("material \"{}\" names a texture that does not exist", material.name))?;
+        if !mesh.uv.is_empty() {
+            length("texture coordinates", mesh.uv.len(), n)?;
+        }
+        ensure(mesh.uv.iter().flatten().all(|c| c.is_finite()), || {
+            "a texture coordinate is not a finite number".to_owned()
+        })
+    }
+}
+
 impl ArtifactType for Model {
     const KIND: Kind = Kind("model");
     const IN_SETS: bool = false;
@@ -92,6 +113,16 @@ impl Artifact for Model {
             m.push(&format!("{}.mean_level", t.name), mean, "grey levels", 1.0);
         }
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for t in &self.textures {
+            let (w, h) = t.pixels.dimensions();
+            ensure(w > 0 && h > 0, || format!("texture \"{}\" is {w} x {h} pixels", t.name))?;
+        }
+        self.meshes
+            .iter()
+            .try_for_each(|m| self.check_mesh(m).map_err(|e| format!("mesh \"{}\": {e}", m.name)))
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -1,5 +1,6 @@
 //! The closed curves that bound a piece of cloth.
 
+use super::sound::{ensure, finite, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point2, polygon_area, polyline_length};
 
 /// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
@@ -199,6 +200,32 @@ impl Artifact for Outline {
             m.push(&format!("edge.{}", e.name), length * 1e3, "mm", 0.5);
         }
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        for l in std::iter::once(&self.outer).chain(&self.holes) {
+            ensure(l.points.len() >= 3, || format!("a loop has {} points", l.points.len()))?;
+            finite("point", l.points.iter().map(|p| &p.coords))?;
+            let rising = l.corners.windows(2).all(|c| c[0] < c[1]);
+            let last = l.corners.last().is_none_or(|&c| c < l.points.len());
+            ensure(rising && last, || "its corners are not in order along the loop".to_owned())?;
+        }
+        let n = self.outer.points.len();
+        for e in &self.edges {
+            ensure(e.start < n && e.end < n, || format!("edge \"{}\" ends beyond the loop", e.name))?;
+            ensure(
+                e.gauge.length.is_finite() && e.gauge.length >= 0.0 && !e.gauge.min_radius.is_nan(),
+                || format!("edge \"{}\" has no length to divide", e.name),
+            )?;
+        }
+        for line in &self.inner {
+            ensure(line.points.len() >= 2, || format!("inner line \"{}\" has no length", line.name))?;
+            finite("inner point", line.points.iter().map(|p| &p.coords))?;
+        }
+        self.frame.as_ref().map_or(Ok(()), |f| {
+            finite("photo origin", [&f.origin_px.coords])?;
+            positive("scale", f.px_per_metre)
+        })
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

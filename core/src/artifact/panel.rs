@@ -1,5 +1,6 @@
 //! A meshed piece of flat cloth.
 
+use super::sound::{ensure, finite, finite_figure, indices, length};
 use super::{Artifact, ArtifactType, Digester, InnerKind, Kind, Measures, Point2, polygon_area};
 
 /// A named stretch of the panel's boundary.
@@ -139,6 +140,26 @@ impl Artifact for Panel {
         m.count("boundary_loops", 1 + self.holes.len());
         m.push("least_angle", self.least_angle(), "deg", 2.0);
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let n = self.positions.len();
+        finite("vertex", self.positions.iter().map(|p| &p.coords))?;
+        indices("a triangle", n, self.triangles.iter().flatten())?;
+        ensure(self.triangles.is_empty() || self.boundary.len() >= 3, || {
+            format!("its boundary has {} vertices", self.boundary.len())
+        })?;
+        indices("the boundary", n, self.boundary.iter().chain(self.holes.iter().flatten()))?;
+        let short = self.edges.iter().find(|e| e.vertices.len() < 2);
+        ensure(short.is_none(), || "a named edge has fewer than two vertices".to_owned())?;
+        indices("an edge", n, self.edges.iter().flat_map(|e| &e.vertices))?;
+        indices("an inner line", n, self.inner.iter().flat_map(|c| &c.vertices))?;
+        if !self.photo_px.is_empty() {
+            length("photo pixels", self.photo_px.len(), n)?;
+            finite("photo pixel", self.photo_px.iter().map(|p| &p.coords))?;
+        }
+        finite_figure("outline's area", self.outline_area)?;
+        finite_figure("outline's length", self.outline_length)
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

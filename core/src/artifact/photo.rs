@@ -1,5 +1,6 @@
 //! A photo of a garment that lies flat.
 
+use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use image::{GrayImage, RgbImage};
 use std::sync::Arc;
@@ -59,6 +60,16 @@ impl Artifact for Photo {
         m.count("width_px", w as usize).count("height_px", h as usize);
         m.push("mean_level", mean, "grey levels", 0.5);
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        let (w, h) = self.pixels.dimensions();
+        ensure(w > 0 && h > 0, || format!("it is {w} x {h} pixels"))?;
+        if let Some(alpha) = &self.alpha {
+            ensure(alpha.dimensions() == (w, h), || "its opacity has another size".to_owned())?;
+        }
+        self.px_per_metre.map_or(Ok(()), |s| positive("scale", s))?;
+        self.garment_width.map_or(Ok(()), |w| positive("garment's width", w))
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

@@ -59,6 +59,10 @@ impl Artifact for RunLog {
         m
     }
 
+    fn check(&self) -> Result<(), String> {
+        Ok(())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         Vec::new()
     }

@@ -1,5 +1,6 @@
 //! Which edges are sewn to which, and where each panel goes on the body.
 
+use super::sound::finite;
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -130,6 +131,10 @@ impl Artifact for SewingPlan {
         let mut m = Measures::new();
         m.count("seams", self.seams.len()).count("panels", self.placements.len());
         m
+    }
+
+    fn check(&self) -> Result<(), String> {
+        finite("anchor", self.placements.values().map(|p| &p.anchor.coords))
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {

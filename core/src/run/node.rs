@@ -39,7 +39,7 @@ pub(super) fn run_node(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec
 /// A stage that panics is a bug of the stage, not the end of the program.
 fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError> {
     match catch_unwind(AssertUnwindSafe(|| node.stage.run_ports(inputs, cx))) {
-        Ok(outcome) => outcome,
+        Ok(outcome) => outcome.and_then(checked),
         Err(payload) => {
             let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
             let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
@@ -47,6 +47,20 @@ fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>,
                 .hint("this is a bug, please report it"))
         }
     }
+}
+
+/// A stage that gives what cannot be is named here, not where a later stage stumbles over it.
+fn checked(made: Vec<PortValue>) -> Result<Vec<PortValue>, StageError> {
+    for value in &made {
+        for (name, artifact) in value.entries() {
+            artifact.check().map_err(|fault| {
+                let of = if name.is_empty() { String::new() } else { format!(" \"{name}\"") };
+                StageError::internal(format!("its {}{of} cannot be used: {fault}", artifact.kind()))
+                    .hint("this is a bug of the stage, please report it to its author")
+            })?;
+        }
+    }
+    Ok(made)
 }
 
 /// The names of the sets on the mapped ports, which must all be the same.

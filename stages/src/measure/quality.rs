@@ -4,6 +4,7 @@
 //! strain is that of the mesh edges. Body and self-contact are asked of the pipeline's collider;
 //! without one they are not measured, and `metrics.json` says so with a null.
 
+use crate::cloth::check_garment;
 use std::collections::BTreeMap;
 use toile_core::artifact::{
     BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,
@@ -46,8 +47,9 @@ impl Measure {
         collider: Option<&Collider>,
         _cx: &Context,
     ) -> Result<Figures, StageError> {
+        check_garment(garment)?;
         let mut figures = Figures {
-            panels: panel_figures(garment),
+            panels: panel_figures(garment)?,
             garment: garment_figures(garment, collider),
             shortfalls: Vec::new(),
         };
@@ -127,12 +129,17 @@ fn percent(share: f64) -> String {
     format!("{:.2} %", share * 1e2)
 }
 
-fn panel_figures(garment: &Garment) -> BTreeMap<String, PanelFigures> {
-    let figures = |p| {
+fn panel_figures(garment: &Garment) -> Result<BTreeMap<String, PanelFigures>, StageError> {
+    let figures = |p: &GarmentPanel| {
         let ((s2, s3), (l2, l3)) = (garment.panel_areas(p), garment.panel_boundaries(p));
-        PanelFigures { area_error: (s2 - s3) / s2, outline_error: (l2 - l3) / l2 }
+        if s2 <= 0.0 || l2 <= 0.0 {
+            let text = format!("panel \"{}\" has no area or no outline to be judged by", p.name);
+            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
+        }
+        let figures = PanelFigures { area_error: (s2 - s3) / s2, outline_error: (l2 - l3) / l2 };
+        Ok((p.name.clone(), figures))
     };
-    garment.panels.iter().map(|p| (p.name.clone(), figures(p))).collect()
+    garment.panels.iter().map(figures).collect()
 }
 
 fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFigures {

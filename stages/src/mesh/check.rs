@@ -84,7 +84,25 @@ fn check_size(outline: &Outline, h: f64) -> Result<(), StageError> {
         .hint(format!("use an edge of at least {}", show((least * 1e4).ceil() / 1e4)))
         .at("edge"));
     }
-    Ok(())
+    check_segments(outline, h)
+}
+
+/// Refuses an outline that would be cut into more segments than a mesh has triangles.
+fn check_segments(outline: &Outline, h: f64) -> Result<(), StageError> {
+    let loops = std::iter::once(&outline.outer).chain(&outline.holes);
+    let round = |l: &Loop| polyline_length(&l.points) / h;
+    let inner = outline.inner.iter().map(|l| polyline_length(&l.points) / h);
+    let named = outline.edges.iter().map(|e| e.gauge.divisions(h) as f64);
+    let segments: f64 = loops.map(round).chain(inner).chain(named).sum();
+    match segments <= MAX_TRIANGLES {
+        true => Ok(()),
+        false => Err(degenerate(format!(
+            "an edge of {} would cut the outline into {:.0} million segments, the limit is 5 million",
+            show(h),
+            segments / 1e6
+        ))
+        .hint("look at the outline's picture: it may have a spike, or a bend of no radius")),
+    }
 }
 
 fn too_long(h: f64, span: Vector2) -> StageError {

@@ -29,7 +29,7 @@ pub(crate) fn triangulate(
 
 fn hull_triangles(points: &[Point2], segments: Vec<[u32; 2]>) -> Result<Vec<[u32; 3]>, StageError> {
     let fault = |what: &str| StageError::internal(format!("the triangulation failed: {what}"));
-    let vertices = points.iter().map(|p| spade::Point2::new(p.x, p.y)).collect();
+    let vertices = points.iter().map(|p| spade::Point2::new(at_least(p.x), at_least(p.y))).collect();
     let edges = segments.iter().map(|s| s.map(|v| v as usize)).collect();
     let mut conflicts = 0;
     let cdt =
@@ -41,4 +41,11 @@ fn hull_triangles(points: &[Point2], segments: Vec<[u32; 2]>) -> Result<Vec<[u32
         return Err(fault("segments cross or points coincide"));
     }
     Ok(cdt.inner_faces().map(|f| f.vertices().map(|v| v.index() as u32)).collect())
+}
+
+/// Coordinates nearer to 0 than this are 0: spade's exact predicates underflow there.
+const LEAST_COORDINATE: f64 = 1e-40;
+
+fn at_least(x: f64) -> f64 {
+    if x.abs() < LEAST_COORDINATE { 0.0 } else { x }
 }
