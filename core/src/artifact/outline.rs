@@ -1,7 +1,7 @@
 //! The closed curves that bound a piece of cloth.
 
 use super::sound::{ensure, finite, positive};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point2, polygon_area, polyline_length};
+use super::{Artifact, ArtifactType, Digester, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
 
 /// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
 /// clockwise (y up).
@@ -11,31 +11,6 @@ pub struct Loop {
     pub points: Vec<Point2>,
     /// Indices into `points` of the corners, ascending.
     pub corners: Vec<usize>,
-}
-
-/// What two edges that are sewn together agree upon, so that every mesher divides both alike.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gauge {
-    /// The length that fixes the number of divisions, metres: the longer of both edges.
-    pub length: f64,
-    /// The least radius of curvature on either edge, metres; infinite for straight edges.
-    pub min_radius: f64,
-}
-
-/// The share of the edge length by which a chord may leave the curve: outlines stay this true.
-pub const CHORD_TOLERANCE: f64 = 0.02;
-
-impl Gauge {
-    /// Into how many equal parts (by arc length) an edge is divided at a target edge length `h`
-    /// (metres). At least one.
-    ///
-    /// A chord of length s on radius r leaves the arc by s^2 / 8r; s is chosen so that this stays
-    /// below half of [`CHORD_TOLERANCE`] times `h`, and never above `h`.
-    pub fn divisions(&self, h: f64) -> usize {
-        let by_curve = (8.0 * self.min_radius * 0.5 * CHORD_TOLERANCE * h).sqrt();
-        let s = h.min(by_curve).max(h / 8.0);
-        ((self.length / s - 1e-9).ceil() as usize).max(1)
-    }
 }
 
 /// A named stretch of the outer loop, from one corner to the next, counter-clockwise.
@@ -180,7 +155,8 @@ impl Artifact for Outline {
             d.indices(lp.corners.iter().map(|&c| c as u32));
         }
         for e in &self.edges {
-            d.text(&e.name).count(e.start).count(e.end).floats([e.gauge.length, e.gauge.min_radius]);
+            d.text(&e.name).count(e.start).count(e.end);
+            e.gauge.digest(d);
         }
         for line in &self.inner {
             d.text(&line.name).floats(line.points.iter().flat_map(|p| [p.x, p.y]));
@@ -213,10 +189,7 @@ impl Artifact for Outline {
         let n = self.outer.points.len();
         for e in &self.edges {
             ensure(e.start < n && e.end < n, || format!("edge \"{}\" ends beyond the loop", e.name))?;
-            ensure(
-                e.gauge.length.is_finite() && e.gauge.length >= 0.0 && !e.gauge.min_radius.is_nan(),
-                || format!("edge \"{}\" has no length to divide", e.name),
-            )?;
+            ensure(e.gauge.is_sound(), || format!("edge \"{}\" has no length to divide", e.name))?;
         }
         for line in &self.inner {
             ensure(line.points.len() >= 2, || format!("inner line \"{}\" has no length", line.name))?;

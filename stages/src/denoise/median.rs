@@ -96,10 +96,9 @@ fn medians_of_nine(mut p: [[u8; LANES]; 9]) -> [u8; LANES] {
         (4, 2),
     ];
     for (a, b) in NETWORK {
-        for lane in 0..LANES {
-            let (x, y) = (p[a][lane], p[b][lane]);
-            (p[a][lane], p[b][lane]) = (x.min(y), x.max(y));
-        }
+        let (x, y) = (p[a], p[b]);
+        p[a] = std::array::from_fn(|lane| x[lane].min(y[lane]));
+        p[b] = std::array::from_fn(|lane| x[lane].max(y[lane]));
     }
     p[4]
 }

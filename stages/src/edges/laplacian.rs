@@ -16,23 +16,23 @@ use toile_core::prelude::*;
 #[stage(
     role = EdgeDetector,
     source = "A. Rosenfeld and A. Kak, 1976",
-    example = "LaplacianEdges(threshold: 6)",
+    example = "Laplacian(threshold: 6)",
     contracts(Deterministic, ThreadInvariant, TranslationEquivariant, ScaleEquivariant, RefusesEmpty)
 )]
-pub struct LaplacianEdges {
+pub struct Laplacian {
     /// Change of the signal over one pixel at a zero crossing that counts as an edge.
     #[param(default = 6.0, min = 0.0, max = 2000.0, unit = "grey levels a pixel squared")]
     threshold: f64,
 }
 
 #[stage]
-impl LaplacianEdges {
+impl Laplacian {
     pub(crate) fn run(&self, photo: &Photo, mask: &Mask, cx: &Context) -> Result<Outline, StageError> {
         detect(self, photo, mask, cx)
     }
 }
 
-impl Operator for LaplacianEdges {
+impl Operator for Laplacian {
     fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a> {
         let tiles = band.map(photo, 1, |grey: Patch| {
             let (one, second) = ([0.0, 1.0, 0.0], [1.0, -2.0, 1.0]);

@@ -23,7 +23,7 @@ mod tests;
 mod trace;
 
 pub use canny::Canny;
-pub use laplacian::LaplacianEdges;
+pub use laplacian::Laplacian;
 pub use log::LaplacianOfGaussian;
 pub use prewitt::Prewitt;
 pub use roberts::Roberts;
@@ -38,5 +38,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Prewitt>();
     registry.add::<Roberts>();
     registry.add::<LaplacianOfGaussian>();
-    registry.add::<LaplacianEdges>();
+    registry.add::<Laplacian>();
 }

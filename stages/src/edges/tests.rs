@@ -103,7 +103,7 @@ fn every_operator_finds_the_samples_outlines() {
             ("Prewitt", Prewitt::default().run(&truth.photo, &truth.mask, &cx)),
             ("Roberts", Roberts::default().run(&truth.photo, &truth.mask, &cx)),
             ("LaplacianOfGaussian", LaplacianOfGaussian::default().run(&truth.photo, &truth.mask, &cx)),
-            ("LaplacianEdges", LaplacianEdges::default().run(&truth.photo, &truth.mask, &cx)),
+            ("Laplacian", Laplacian::default().run(&truth.photo, &truth.mask, &cx)),
         ];
         for (name, found) in runs {
             assert_true(&found.unwrap(), &truth, 0.5, 1.5, &format!("{s:?} by {name}"));

@@ -41,9 +41,6 @@ fn check_numbers(outline: &Outline) -> Result<(), StageError> {
                 e.name
             )));
         }
-        if !(e.gauge.length.is_finite() && e.gauge.length >= 0.0) || e.gauge.min_radius.is_nan() {
-            return Err(StageError::invalid(format!("the gauge of edge \"{}\" is not a length", e.name)));
-        }
     }
     match outline.inner.iter().find(|l| l.points.len() < 2) {
         Some(l) => Err(StageError::invalid(format!("inner line \"{}\" has fewer than two points", l.name))),

@@ -28,18 +28,6 @@ fn cubic(a: Point2, b: Point2, c: Point2, d: Point2) -> Vec<Point2> {
     (0..=200).map(|k| at(f64::from(k) / 200.0)).collect()
 }
 
-/// The gauge of one edge.
-pub(crate) fn gauge(points: &[Point2]) -> Gauge {
-    let radius = |w: &[Point2]| {
-        let (u, v, c) = (w[1] - w[0], w[2] - w[1], w[2] - w[0]);
-        u.norm() * v.norm() * c.norm() / (2.0 * u.perp(&v).abs())
-    };
-    Gauge {
-        length: polyline_length(points),
-        min_radius: points.windows(3).map(radius).fold(f64::INFINITY, f64::min),
-    }
-}
-
 /// An outline of named edges, each of which starts where the one before it ends.
 pub(crate) fn named(edges: Vec<Named<'_>>) -> Outline {
     let (mut points, mut out, mut corners) = (Vec::new(), Vec::new(), Vec::new());
@@ -47,7 +35,12 @@ pub(crate) fn named(edges: Vec<Named<'_>>) -> Outline {
         corners.push(points.len());
         points.extend_from_slice(&line[..line.len() - 1]);
         let end = points.len();
-        out.push(Edge { name: (*name).into(), start: corners[corners.len() - 1], end, gauge: gauge(line) });
+        out.push(Edge {
+            name: (*name).into(),
+            start: corners[corners.len() - 1],
+            end,
+            gauge: Gauge::of(line, &[]),
+        });
     }
     let n = points.len();
     out.iter_mut().for_each(|e| e.end %= n);

@@ -392,10 +392,7 @@ proptest! {
         let mut front = star_shaped(&corners, &bulges);
         let mut back = star_shaped(&corners, &bulges.iter().map(|b| b * 0.5 + other).collect::<Vec<_>>());
         for (a, b) in front.edges.iter_mut().zip(&mut back.edges) {
-            a.gauge = Gauge {
-                length: a.gauge.length.max(b.gauge.length),
-                min_radius: a.gauge.min_radius.min(b.gauge.min_radius),
-            };
+            a.gauge = a.gauge.shared(&b.gauge);
             b.gauge = a.gauge;
         }
         let (a, b) = (grid(&front, h).unwrap(), delaunay(&back, h).unwrap());

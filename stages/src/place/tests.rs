@@ -32,7 +32,7 @@ fn outline(garment: &str, side: &str) -> Outline {
         name: e["name"].as_str().unwrap().to_owned(),
         start: index(&e["start"]),
         end: index(&e["end"]),
-        gauge: Gauge { length: metre(&e["length_mm"]), min_radius: 0.2 },
+        gauge: Gauge::straight(metre(&e["length_mm"])),
     };
     let edges: Vec<Edge> = json["edges"].as_array().unwrap().iter().map(edge).collect();
     let corners = edges.iter().map(|e| e.start).collect();

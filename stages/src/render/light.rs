@@ -38,6 +38,9 @@ const LIFT: f64 = 0.006;
 const BIAS: f64 = 0.004;
 /// Around the garment's box, metres: what lies beyond casts no shadow on it worth the resolution.
 const REACH: f64 = 0.25;
+/// What stands before the sky gives this share of its light back: the inside of a garment is dim,
+/// not black.
+const BOUNCE: f64 = 0.3;
 /// The sky's light at the nadir against that at the zenith: floor and walls give light back.
 const NADIR: f64 = 0.45;
 
@@ -60,7 +63,8 @@ pub(super) fn ambient(model: &Model, region: Region, fineness: Fineness) -> Vec<
     let sky = |d: &Vector3| NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0;
     let sums = gather(model, region, &sphere(fineness.ambient), |map, p, n| {
         let cos = n.dot(&map.towards);
-        let light = cos.abs() * sky(&map.towards) * map.free(p + n * LIFT.copysign(cos));
+        let free = BOUNCE + (1.0 - BOUNCE) * map.free(p + n * LIFT.copysign(cos));
+        let light = cos.abs() * sky(&map.towards) * free;
         if cos < 0.0 { [0.0, 0.0, light, -cos] } else { [light, cos, 0.0, 0.0] }
     });
     let share = |light: f64, all: f64| if all > 0.0 { (light / all) as f32 } else { 1.0 };

@@ -77,7 +77,7 @@ impl Landmarks {
             self.minus.iter().zip(upper).map(|(l, i)| (format!("{}_{minus}", l.0), i)).collect();
         starts.extend(down.into_iter().rev());
         starts.push(("hem".into(), self.minus[0].1));
-        let gauge = Gauge { length: 0.0, min_radius: f64::INFINITY };
+        let gauge = Gauge::default();
         let n = starts.len();
         (0..n)
             .map(|k| Edge {

@@ -1,8 +1,6 @@
 //! Seams: which edges meet, whether they can, and into how many parts both are divided.
 //!
-//! Method: an edge's length is that of its polyline, its least radius that of the circle through
-//! points 10 mm apart; both edges of a seam get one [`Gauge`] of the longer length and the lesser radius,
-//! so that meshers divide them alike. A seam's direction is checked by laying both panels face to face and
+//! Method: both edges of a seam get one [`Gauge`] that suits either, so that meshers divide them alike. A seam's direction is checked by laying both panels face to face and
 //! one edge on the other: its threads must not be longer than those of the opposite pairing. Cost: linear in the edges.
 
 use super::naming::is_back;
@@ -15,8 +13,6 @@ use toile_core::prelude::*;
 const MAX_EASE: f64 = 0.03;
 /// Lengths that differ by more than this share are eased with a warning.
 const EASE_WARNING: f64 = 0.01;
-/// Half the chord over which curvature is measured, metres: shorter ones measure noise.
-const RADIUS_ARM: f64 = 0.01;
 /// Threads of a reversed seam are at least this much longer than those of the right one; edges that run at
 /// right angles to each other may be sewn either way.
 const REVERSED: f64 = 1.25;
@@ -206,17 +202,18 @@ fn evenly(points: &[Point2]) -> [Point2; THREADS] {
 /// Gives every edge the divisions that suit it alone.
 pub(super) fn own_gauges(outline: &mut Outline) {
     for i in 0..outline.edges.len() {
-        let points = outline.edge_points(&outline.edges[i]);
-        outline.edges[i].gauge =
-            Gauge { length: polyline_length(&points), min_radius: least_radius(&points) };
+        let edge = &outline.edges[i];
+        let (points, n) = (outline.edge_points(edge), outline.outer.points.len());
+        let within: Vec<usize> = outline.outer.corners.iter().map(|c| (c + n - edge.start) % n).collect();
+        outline.edges[i].gauge = Gauge::of(&points, &within);
     }
 }
 
-/// Both edges of a seam take the longer length and the lesser radius.
+/// Both edges of a seam take the longer length and the greater sag.
 fn agree(outlines: &mut BTreeMap<String, Outline>, seam: &Seam) {
     let gauge = |side: &EdgeRef| Some(outlines.get(&side.panel)?.edge(&side.edge)?.gauge);
     let (Some(a), Some(b)) = (gauge(&seam.a), gauge(&seam.b)) else { return };
-    let shared = Gauge { length: a.length.max(b.length), min_radius: a.min_radius.min(b.min_radius) };
+    let shared = a.shared(&b);
     for side in [&seam.a, &seam.b] {
         let edge =
             outlines.get_mut(&side.panel).and_then(|o| o.edges.iter_mut().find(|e| e.name == side.edge));
@@ -224,28 +221,4 @@ fn agree(outlines: &mut BTreeMap<String, Outline>, seam: &Seam) {
             edge.gauge = shared;
         }
     }
-}
-
-/// Radius of the tightest circle through points of the curve about [`RADIUS_ARM`] apart.
-fn least_radius(points: &[Point2]) -> f64 {
-    let total = polyline_length(points);
-    let arm = RADIUS_ARM.min(total / 4.0);
-    if arm.is_nan() || arm <= 0.0 {
-        return f64::INFINITY;
-    }
-    let mut along = vec![0.0];
-    points.windows(2).for_each(|w| along.push(along[along.len() - 1] + (w[1] - w[0]).norm()));
-    let behind = |i: usize| along.partition_point(|s| *s < along[i] - arm);
-    let ahead = |i: usize| along.partition_point(|s| *s < along[i] + arm);
-    (0..points.len())
-        .filter(|&i| along[i] >= arm && along[i] <= total - arm)
-        .map(|i| circle(points[behind(i)], points[i], points[ahead(i).min(points.len() - 1)]))
-        .fold(f64::INFINITY, f64::min)
-}
-
-/// Radius of the circle through three points.
-fn circle(a: Point2, b: Point2, c: Point2) -> f64 {
-    let twice_area = (b - a).perp(&(c - a)).abs();
-    let product = (b - a).norm() * (c - b).norm() * (c - a).norm();
-    if twice_area * 1e9 > product && product > 0.0 { product / (2.0 * twice_area) } else { f64::INFINITY }
 }

@@ -11,8 +11,11 @@ use toile_core::{Cancel, Listener, RunOptions, add_implicit, run};
 /// Height of the photos, px: small, so that many runs are cheap.
 const PHOTO_HEIGHT: u32 = 240;
 
-/// Artifacts with their entry's name, by kind.
-pub(crate) struct Pool(BTreeMap<Kind, Vec<(String, Arc<dyn Artifact>)>>);
+/// An artifact with its entry's name.
+type Named = (String, Arc<dyn Artifact>);
+
+/// Artifacts by kind.
+pub(crate) struct Pool(BTreeMap<Kind, Vec<Named>>);
 
 impl Pool {
     pub(crate) fn new() -> Self {
@@ -33,7 +36,7 @@ impl Pool {
     }
 
     /// The artifacts of a kind, the last made of each name.
-    pub(crate) fn of(&self, kind: Kind) -> &[(String, Arc<dyn Artifact>)] {
+    pub(crate) fn of(&self, kind: Kind) -> &[Named] {
         self.0.get(&kind).map_or(&[], Vec::as_slice)
     }
 }

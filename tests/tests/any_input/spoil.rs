@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use std::any::Any;
 use std::sync::Arc;
 use toile_core::artifact::{
-    Artifact, Body, Fabric, Garment, InnerKind, InnerLine, Mask, Mesh, Model, Outline, Panel, Photo, Point2,
-    SewingPlan,
+    Artifact, Body, Fabric, Garment, Gauge, InnerKind, InnerLine, Mask, Mesh, Model, Outline, Panel, Photo,
+    Point2, SewingPlan,
 };
 
 /// One edit: which list, where in it, how, and with what number.
@@ -174,7 +174,7 @@ fn outline(e: &Edit, o: &mut Outline) {
         2 => e.apply(&mut o.outer.corners, |c, x| *c = index(x) as usize),
         3 => e.apply(&mut o.edges, |edge, x| edge.start = index(x) as usize),
         4 => e.apply(&mut o.edges, |edge, x| edge.gauge.length = x),
-        5 => e.apply(&mut o.edges, |edge, x| edge.gauge.min_radius = x),
+        5 => e.apply(&mut o.edges, |edge, x| edge.gauge = Gauge::straight(x.abs())),
         6 => o.holes.push(o.outer.clone()),
         7 => o.inner.push(InnerLine {
             name: "dart".into(),
@@ -256,8 +256,7 @@ fn plan(e: &Edit, s: &mut SewingPlan) {
 }
 
 fn model(e: &Edit, m: &mut Model) {
-    let mesh =
-        |m: &mut Model, edit: &dyn Fn(&mut Mesh)| e.one(&mut m.meshes).into_iter().for_each(|x| edit(x));
+    let mesh = |m: &mut Model, edit: &dyn Fn(&mut Mesh)| e.one(&mut m.meshes).into_iter().for_each(edit);
     match e.list % 7 {
         0 => mesh(m, &|x| e.points(&mut x.positions)),
         1 => mesh(m, &|x| e.points(&mut x.normals)),
