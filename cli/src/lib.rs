@@ -57,15 +57,25 @@ impl Streams<'_> {
     }
 }
 
-/// Runs the command with its arguments (the program's name first) and returns the exit code.
+/// Runs the command with its arguments (the program's name first) and the built-in stages; returns the
+/// exit code.
 pub fn command<A, T>(arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    command_with(&registry(), arguments, out, err)
+}
+
+/// Runs the command with the stages of a registry, so that a program of one's own can add some.
+pub fn command_with<A, T>(registry: &Registry, arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
 where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
     let mut streams = Streams { out, err };
     match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => dispatch(arguments.command, &mut streams),
+        Ok(arguments) => dispatch(arguments.command, registry, &mut streams),
         Err(e) if e.use_stderr() => {
             streams.tell(e.render());
             exit::USAGE
@@ -84,15 +94,14 @@ pub fn registry() -> Registry {
     registry
 }
 
-fn dispatch(command: Command, streams: &mut Streams<'_>) -> u8 {
-    let registry = registry();
+fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     match command {
-        Command::Run(args) => run::run(&args, &registry, streams),
-        Command::Validate(args) => validate::validate(&args, &registry, streams),
-        Command::Stages { json } => cards::list(json, &registry, streams),
-        Command::Stage { name, json } => cards::show(&name, json, &registry, streams),
-        Command::Explain(args) => explain::explain(&args, &registry, streams),
-        Command::Golden { verb: Verb::Check(args) } => golden::check(&args, &registry, streams),
-        Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, &registry, streams),
+        Command::Run(args) => run::run(&args, registry, streams),
+        Command::Validate(args) => validate::validate(&args, registry, streams),
+        Command::Stages { json } => cards::list(json, registry, streams),
+        Command::Stage { name, json } => cards::show(&name, json, registry, streams),
+        Command::Explain(args) => explain::explain(&args, registry, streams),
+        Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
+        Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }
 }
