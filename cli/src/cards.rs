@@ -100,20 +100,11 @@ fn port_words(port: &InPort) -> String {
 fn param_text(p: &ParamDoc) -> String {
     let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
     let doc = p.doc.replace('\n', "\n      ");
-    format!("  {}: {}{unit}{}, default {}\n      {doc}\n", p.name, p.kind, range_words(p), p.default)
+    format!("  {}: {}{unit}{}, default {}\n      {doc}\n", p.name, p.kind, range(p), p.default)
 }
 
-fn range_words(p: &ParamDoc) -> String {
-    let show = |x: f64| match p.kind.contains("length") {
-        true => toile_core::Length::m(x).to_string(),
-        false => x.to_string(),
-    };
-    match (p.min, p.max) {
-        (Some(lo), Some(hi)) => format!(", {} to {}", show(lo), show(hi)),
-        (Some(lo), None) => format!(", at least {}", show(lo)),
-        (None, Some(hi)) => format!(", at most {}", show(hi)),
-        (None, None) => String::new(),
-    }
+fn range(p: &ParamDoc) -> String {
+    p.range().map_or(String::new(), |words| format!(", {words}"))
 }
 
 fn card_json(card: &Card) -> Value {

@@ -222,6 +222,20 @@ pub struct ParamDoc {
     pub check: fn(&str, &ParamDoc) -> Result<(), ParamFault>,
 }
 
+impl ParamDoc {
+    /// Its range in words, `1 mm to 100 mm`; `None` where it has none.
+    pub fn range(&self) -> Option<String> {
+        let show =
+            |x: f64| if self.kind.contains("length") { Length::m(x).to_string() } else { x.to_string() };
+        match (self.min, self.max) {
+            (Some(lo), Some(hi)) => Some(format!("{} to {}", show(lo), show(hi))),
+            (Some(lo), None) => Some(format!("at least {}", show(lo))),
+            (None, Some(hi)) => Some(format!("at most {}", show(hi))),
+            (None, None) => None,
+        }
+    }
+}
+
 /// Why a text is no value for a parameter.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ParamFault {

@@ -1,0 +1,68 @@
+//! docs/stages.md is what the stages say of themselves.
+//!
+//! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test catalogue`.
+#![allow(clippy::unwrap_used)]
+
+use std::collections::BTreeMap;
+use toile_core::{Card, Role};
+use toile_tests::root;
+
+const HEAD: &str = "# The stages\n\nMade from the stages' own cards by a test, which fails where this page is behind. \
+                    `toile stage NAME` prints the same, `toile stages --json` gives it to programs.\n";
+
+fn port_list(card: &Card) -> String {
+    let inputs: Vec<String> =
+        card.inputs.iter().map(|p| format!("{}{}", p.kind, if p.optional { "?" } else { "" })).collect();
+    let outputs: Vec<String> = card.outputs.iter().map(|p| p.kind.to_string()).collect();
+    format!("{} -> {}", inputs.join(", "), outputs.join(", "))
+}
+
+fn entry(card: &Card) -> String {
+    let mut text = format!(
+        "\n### {}\n\n`{}` — {}. Source: {}.\n\n",
+        card.name,
+        card.example,
+        port_list(card),
+        card.source
+    );
+    text += &format!("{}\n", card.doc.lines().map(str::trim).collect::<Vec<_>>().join("\n").trim());
+    if !card.params.is_empty() {
+        text += "\n| parameter | is | default | |\n|---|---|---|---|\n";
+    }
+    for p in &card.params {
+        let cell = |s: &str| s.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
+        let range = p.range().map_or(String::new(), |r| format!(", {r}"));
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
+        let trades = if p.trades { " Trades accuracy for time." } else { "" };
+        let is = format!("{}{unit}{range}", cell(&p.kind));
+        text += &format!("| `{}` | {is} | `{}` | {}{trades} |\n", p.name, cell(&p.default), cell(p.doc));
+    }
+    text
+}
+
+fn page() -> String {
+    let registry = toile::registry();
+    let mut by_role: BTreeMap<Role, Vec<&Card>> = BTreeMap::new();
+    registry.cards().for_each(|c| by_role.entry(c.role).or_default().push(c));
+    let sections = by_role.iter().map(|(role, cards)| {
+        let entries: String = cards.iter().map(|c| entry(c)).collect();
+        format!("\n## {}\n{entries}", role.as_str())
+    });
+    HEAD.to_owned() + &sections.collect::<String>()
+}
+
+#[test]
+fn the_page_of_stages_is_up_to_date() {
+    let (file, page) = (root().join("docs/stages.md"), page());
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(&file, &page).unwrap();
+    }
+    let kept = std::fs::read_to_string(&file).unwrap();
+    let behind = kept.lines().zip(page.lines()).position(|(a, b)| a != b);
+    assert_eq!(
+        behind.map(|i| i + 1),
+        None,
+        "docs/stages.md is behind from that line on; see the head of this test"
+    );
+    assert_eq!(kept.lines().count(), page.lines().count());
+}
