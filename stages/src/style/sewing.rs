@@ -206,10 +206,14 @@ fn evenly(points: &[Point2]) -> [Point2; THREADS] {
 /// Gives every edge the divisions that suit it alone.
 pub(super) fn own_gauges(outline: &mut Outline) {
     for i in 0..outline.edges.len() {
-        let points = outline.edge_points(&outline.edges[i]);
-        outline.edges[i].gauge =
-            Gauge { length: polyline_length(&points), min_radius: least_radius(&points) };
+        outline.edges[i].gauge = own_gauge(outline, &outline.edges[i]);
     }
+}
+
+/// The divisions that suit an edge alone.
+pub(super) fn own_gauge(outline: &Outline, edge: &Edge) -> Gauge {
+    let points = outline.edge_points(edge);
+    Gauge { length: polyline_length(&points), min_radius: least_radius(&points) }
 }
 
 /// Both edges of a seam take the longer length and the lesser radius.
