@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// Depths that are tried, as shares of the neck's width: first, last, step.
-const DEPTHS: (f64, f64, f64) = (0.14, 1.3, 0.01);
+const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
 /// Powers of the curves `depth (1 - |s|^p)`: from nearly V to U.
 const POWERS: [f64; 6] = [1.2, 1.6, 2.0, 2.5, 3.2, 4.0];
 /// A neck edge that dips by this share of its width is the front's neckline already.
@@ -27,6 +27,10 @@ const WITHIN: f64 = 0.86;
 /// Half the distance across the curve at which colours are compared, as a share of the neck's width, and
 /// the least in pixels.
 const ACROSS: (f64, f64) = (0.025, 1.5);
+/// How far below the present edge a curve must lie, in such half distances, and over which part of its width:
+/// a back's collar is no neckline of the front.
+const MARGIN: f64 = 2.5;
+const INSIDE: f64 = 0.7;
 /// Least change of colour across the curve, in levels of 0 to 255.
 const LEAST_CHANGE: f64 = 3.0;
 /// Distance of the points of the new edge, metres.
@@ -75,13 +79,14 @@ impl Neckline {
     fn cut(&self, name: &str, outline: &Outline, photo: Option<&Photo>, cx: &Context) -> Option<Outline> {
         let neck = outline.edge("neck").filter(|_| !is_back(name))?;
         let chord = Chord::of(outline, neck)?;
-        let lowest = outline.edge_points(neck).iter().map(|p| chord.depth(*p)).fold(0.0, f64::max);
+        let collar = chord.profile(&outline.edge_points(neck));
+        let lowest = collar.iter().copied().fold(0.0, f64::max);
         if self.depth.is_none() && lowest > DIPS * chord.width {
             return None;
         }
         let found = match self.depth {
             Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
-            None => photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame, lowest)),
+            None => photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame, &collar)),
         };
         let curve = found.unwrap_or_else(|| {
             cx.warn(format!(
@@ -102,6 +107,17 @@ struct Curve {
     power: f64,
 }
 
+impl Curve {
+    fn depth_at(&self, s: f64) -> f64 {
+        self.depth * (1.0 - s.abs().powf(self.power))
+    }
+}
+
+/// Places along a curve at which colours are compared.
+fn places() -> impl Iterator<Item = f64> {
+    (0..SAMPLES).map(|k| WITHIN * (2.0 * k as f64 / (SAMPLES - 1) as f64 - 1.0))
+}
+
 /// The line between the neck points.
 struct Chord {
     middle: Point2,
@@ -120,12 +136,19 @@ impl Chord {
         Some(Chord { middle: nalgebra::center(&a, &b), half, down, width: 2.0 * half.norm() })
     }
 
-    fn depth(&self, p: Point2) -> f64 {
-        (p - self.middle).dot(&self.down)
+    /// The depth of the present edge at each place where colours are compared: its lowest point near
+    /// there.
+    fn profile(&self, edge: &[Point2]) -> Vec<f64> {
+        let across = |p: &Point2| (p - self.middle).dot(&self.half) / self.half.norm_squared();
+        let near = |s: f64| {
+            let close = edge.iter().filter(|p| (across(p) - s).abs() <= 2.0 / SAMPLES as f64);
+            close.map(|p| (p - self.middle).dot(&self.down)).fold(0.0, f64::max)
+        };
+        places().map(near).collect()
     }
 
     fn at(&self, curve: &Curve, s: f64) -> Point2 {
-        self.middle + self.half * s + self.down * (curve.depth * (1.0 - s.abs().powf(curve.power)))
+        self.middle + self.half * s + self.down * curve.depth_at(s)
     }
 
     /// The curve's points without its ends.
@@ -145,13 +168,24 @@ impl Chord {
         points
     }
 
+    /// Half the distance across a curve at which colours are compared.
+    fn across(&self, frame: PhotoFrame) -> f64 {
+        (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre)
+    }
+
     /// The curve of the most even change of colour below the present edge.
-    fn find(&self, photo: &Photo, frame: PhotoFrame, lowest: f64) -> Option<Curve> {
+    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64]) -> Option<Curve> {
         let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
         let depths = (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width);
+        // Above the collar lies the ground, whose border is no neckline.
+        let clear = MARGIN * self.across(frame);
+        let inside = |c: &Curve| {
+            let mut both = places().zip(collar).filter(|(s, _)| s.abs() < INSIDE);
+            both.all(|(s, above)| c.depth_at(s) > above + clear)
+        };
         let curves: Vec<Curve> = depths
-            .filter(|d| *d > lowest + 2.0 * ACROSS.0 * self.width)
             .flat_map(|depth| POWERS.iter().map(move |&power| Curve { depth, power }))
+            .filter(inside)
             .collect();
         let scored: Vec<f64> = curves.par_iter().map(|c| self.change(photo, frame, c)).collect();
         let best = (0..curves.len()).max_by(|a, b| scored[*a].total_cmp(&scored[*b]))?;
@@ -160,10 +194,9 @@ impl Chord {
 
     /// The median change of colour from below a curve to above.
     fn change(&self, photo: &Photo, frame: PhotoFrame, curve: &Curve) -> f64 {
-        let across = (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre);
-        let place = |k: usize| WITHIN * (2.0 * k as f64 / (SAMPLES - 1) as f64 - 1.0);
+        let across = self.across(frame);
         let mut changes: [Vec<f64>; 3] = Default::default();
-        for s in (0..SAMPLES).map(place) {
+        for s in places() {
             let tangent = self.at(curve, s + 0.01) - self.at(curve, s - 0.01);
             let Some(normal) = Vector2::new(-tangent.y, tangent.x).try_normalize(1e-12) else { return 0.0 };
             let p = self.at(curve, s);
