@@ -18,6 +18,8 @@ use toile_core::prelude::*;
 const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
 /// Powers of the curves `depth (1 - |s|^p)`: from nearly V to U.
 const POWERS: [f64; 6] = [1.2, 1.6, 2.0, 2.5, 3.2, 4.0];
+/// The likeliest depth, and how far off it a curve must be to count half, as shares of the neck's width.
+const USUAL: (f64, f64) = (0.5, 0.3);
 /// A neck edge that dips by this share of its width is the front's neckline already.
 const DIPS: f64 = 0.3;
 /// Points of a curve at which colours are compared, over this share of its width: near its ends all curves
@@ -188,8 +190,11 @@ impl Chord {
             .filter(inside)
             .collect();
         let scored: Vec<f64> = curves.par_iter().map(|c| self.change(photo, frame, c)).collect();
-        let best = (0..curves.len()).max_by(|a, b| scored[*a].total_cmp(&scored[*b]))?;
-        (scored[best] >= LEAST_CHANGE).then_some(curves[best])
+        // Prints have even edges too, but not where necklines are.
+        let likely = |c: &Curve| 1.0 / (1.0 + ((c.depth / self.width - USUAL.0) / USUAL.1).powi(2));
+        let score = |i: &usize| scored[*i] * likely(&curves[*i]);
+        let seen = (0..curves.len()).filter(|i| scored[*i] >= LEAST_CHANGE);
+        seen.max_by(|a, b| score(a).total_cmp(&score(b))).map(|i| curves[i])
     }
 
     /// The median change of colour from below a curve to above.
