@@ -39,13 +39,13 @@ fn a_black_tee_on_a_white_rug() {
 
 #[test]
 fn a_raglan_tee_on_dark_wood() {
-    let sets = ["photos.front.width=\"92 cm\"", "body.arm_angle=60"];
+    let sets = ["photos.front.width=\"88 cm\""];
     drapes("photo_tee.ron", "tee_raglan_on_dark_wood.jpg", &sets);
 }
 
 #[test]
 fn a_yellow_vest_on_stone() {
-    drapes("photo_vest.ron", "vest_yellow.jpg", &["photos.front.width=\"52 cm\""]);
+    drapes("photo_vest.ron", "vest_yellow.jpg", &["photos.front.width=\"50 cm\""]);
 }
 
 #[test]
