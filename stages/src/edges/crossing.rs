@@ -37,6 +37,25 @@ pub(crate) fn first<'a>(loops: impl Iterator<Item = &'a Loop>) -> Option<Point2>
     cells.values().find_map(hit)
 }
 
+/// The loop without the small loops that it makes where it crosses itself within `reach` points.
+pub(crate) fn without_small_loops(l: Loop, reach: usize) -> Loop {
+    let n = l.points.len();
+    let segment = |i: usize| [l.points[i % n], l.points[(i + 1) % n]];
+    let mut kept = vec![true; n];
+    let mut i = 0;
+    while i < n {
+        let crossed = (2..=reach.min(n / 4)).rev().find(|d| meet(&segment(i), &segment(i + d)));
+        let end = i + crossed.unwrap_or(0);
+        (i + 1..=end).for_each(|k| kept[k % n] = false);
+        i = end + 1;
+    }
+    let index: Vec<usize> =
+        kept.iter().scan(0, |at, k| Some(std::mem::replace(at, *at + usize::from(*k)))).collect();
+    let corners = l.corners.iter().filter(|c| kept[**c]).map(|c| index[*c]).collect();
+    let points = l.points.iter().zip(&kept).filter(|(_, k)| **k).map(|(p, _)| *p).collect();
+    Loop { points, corners }
+}
+
 /// True where two segments without a common end meet.
 fn meet(a: &[Point2; 2], b: &[Point2; 2]) -> bool {
     if a.iter().any(|p| b.contains(p)) {

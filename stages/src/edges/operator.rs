@@ -35,6 +35,11 @@ pub(crate) enum Accept<'a> {
 pub(crate) trait Operator: Sync {
     /// Evaluates it in the band.
     fn respond<'a>(&self, photo: &RgbImage, band: &'a Band) -> Response<'a>;
+
+    /// By how much the smoothing window along the outline is longer than usual.
+    fn smooth(&self) -> f64 {
+        1.0
+    }
 }
 
 /// Samples of a Gaussian that sum to 1, three standard deviations to each side.

@@ -61,7 +61,8 @@ pub(crate) fn detect(
     let mut found = loops(&mask.pixels);
     cx.check()?;
     let outer = take_outer(&mut found)?;
-    let lengths = Lengths::of(outer.area.sqrt());
+    let mut lengths = Lengths::of(outer.area.sqrt());
+    lengths.window *= operator.smooth();
     found.retain(|l| -l.area > TINY_HOLE * outer.area);
     cx.progress(0.2, "looking for edges");
     let cracks: Vec<Point2> =
@@ -139,8 +140,18 @@ fn smooth_loop(points: &[Point2], lengths: &Lengths) -> Result<Loop, StageError>
     let Lengths { arm, gap, window, spacing, .. } = *lengths;
     let small = || StageError::invalid("a loop of the outline is too short to be smoothed");
     let curve = Closed::sample(points, lengths.step).ok_or_else(small)?;
-    let corners = corners::find(&curve, CornerScale { arm, gap, least_turn: LEAST_TURN });
-    Ok(curve::smooth(&curve, &corners, Smoothing { window, gap, spacing }))
+    let mut corners = corners::find(&curve, CornerScale { arm, gap, least_turn: LEAST_TURN });
+    loop {
+        let smooth = curve::smooth(&curve, &corners, Smoothing { window, gap, spacing });
+        // Ragged borders can feign corners whose stretches cross each other: the one nearest to the place goes.
+        let Some(p) = crossing::first(std::iter::once(&smooth)) else { return Ok(smooth) };
+        let far = |c: &corners::Corner| (c.point - p).norm();
+        let nearest = (0..corners.len()).min_by(|a, b| far(&corners[*a]).total_cmp(&far(&corners[*b])));
+        match nearest.filter(|i| far(&corners[*i]) <= arm) {
+            Some(i) => drop(corners.remove(i)),
+            None => return Ok(crossing::without_small_loops(smooth, (2.0 * arm / spacing) as usize)),
+        }
+    }
 }
 
 /// From pixels (y up) to metres: the origin lies in the middle of the garment's box, at its bottom.

@@ -2,9 +2,11 @@
 //!
 //! A style looks at the shape ([`shape`]) and not only at the corners that were found, so that a missing
 //! or an extra corner does no harm ([`naming`]); seams are checked and their edges agree on their
-//! divisions in [`sewing`].
+//! divisions in [`sewing`]. [`neckline`] then looks at the photo for what the outline cannot show.
 
 mod naming;
+mod neck;
+mod neckline;
 mod seams;
 mod sewing;
 mod shape;
@@ -13,6 +15,7 @@ mod tests;
 mod tshirt;
 mod vest;
 
+pub use neckline::Neckline;
 pub use seams::{SeamEntry, Seams};
 pub use tshirt::TShirt;
 pub use vest::Vest;
@@ -23,5 +26,6 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<Vest>();
     registry.add::<TShirt>();
+    registry.add::<Neckline>();
     registry.add::<Seams>();
 }

@@ -1,5 +1,6 @@
 //! From landmarks to named edges: what all upper-body styles share.
 
+use super::neck::neck_points;
 use super::sewing::own_gauges;
 use super::shape::{Bend, MAX_TILT, Path, Shape};
 use toile_core::prelude::*;
@@ -105,7 +106,8 @@ fn landmarks(shape: &Shape, find: FindHalf) -> Result<Landmarks, String> {
         ));
     }
     let mirror = shape.mirror();
-    let [plus, minus] = [half(shape, find)?, half(&mirror, find)?];
+    let [neck, other] = neck_points(shape, &mirror).ok_or("it has no shoulders beside a neck")?;
+    let [plus, minus] = [half(shape, neck, find)?, half(&mirror, other, find)?];
     check_neck(shape, shape.at(plus.1), mirror.at(minus.1))?;
     let own = |s: &Shape, h: Half| h.into_iter().map(|(name, i)| (name, s.index(i))).collect();
     Ok(Landmarks {
@@ -116,10 +118,8 @@ fn landmarks(shape: &Shape, find: FindHalf) -> Result<Landmarks, String> {
 }
 
 /// Landmarks of the half at positive u, and its neck point.
-fn half(shape: &Shape, find: FindHalf) -> Result<(Half, usize), String> {
+fn half(shape: &Shape, neck: usize, find: FindHalf) -> Result<(Half, usize), String> {
     let hem = shape.extreme_right(Vector2::new(1.0, -1.3)).ok_or("it has no right half")?;
-    // Slightly inwards, so that a level shoulder's inner end is found.
-    let neck = shape.extreme_right(Vector2::new(-0.15, 1.0)).ok_or("it has no right half")?;
     let path = Path { from: hem, to: neck };
     let half = find(shape, path)?;
     // Counter-clockwise order: each landmark lies between its neighbours.

@@ -202,11 +202,15 @@ fn evenly(points: &[Point2]) -> [Point2; THREADS] {
 /// Gives every edge the divisions that suit it alone.
 pub(super) fn own_gauges(outline: &mut Outline) {
     for i in 0..outline.edges.len() {
-        let edge = &outline.edges[i];
-        let (points, n) = (outline.edge_points(edge), outline.outer.points.len());
-        let within: Vec<usize> = outline.outer.corners.iter().map(|c| (c + n - edge.start) % n).collect();
-        outline.edges[i].gauge = Gauge::of(&points, &within);
+        outline.edges[i].gauge = own_gauge(outline, &outline.edges[i]);
     }
+}
+
+/// The divisions that suit an edge alone.
+pub(super) fn own_gauge(outline: &Outline, edge: &Edge) -> Gauge {
+    let n = outline.outer.points.len();
+    let within: Vec<usize> = outline.outer.corners.iter().map(|c| (c + n - edge.start) % n).collect();
+    Gauge::of(&outline.edge_points(edge), &within)
 }
 
 /// Both edges of a seam take the longer length and the greater sag.

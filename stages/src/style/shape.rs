@@ -191,16 +191,32 @@ impl Shape {
         self.corners.iter().copied().filter(fits).map(turn).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// The detected corners.
+    pub(super) fn corners(&self) -> &[usize] {
+        &self.corners
+    }
+
+    /// The loop's point nearest to a place.
+    pub(super) fn nearest(&self, to: Point2) -> Option<usize> {
+        let far = |i: &usize| (self.at(*i) - to).norm_squared();
+        (0..self.points.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
+    }
+
     fn bend(&self, i: usize) -> Bend {
         if self.turn(i) >= 0.0 { Bend::Convex } else { Bend::Concave }
     }
 
-    /// The turn of the loop at a point, radians, positive to the left.
     fn turn(&self, i: usize) -> f64 {
+        self.turn_over(i, TURN_ARM)
+    }
+
+    /// The turn of the loop at a point between chords of a length (a share of the size), radians, positive
+    /// to the left.
+    pub(super) fn turn_over(&self, i: usize, arm: f64) -> f64 {
         let n = self.points.len();
         let walk = |step: usize| {
             let mut j = i;
-            while (self.at(j) - self.at(i)).norm() < TURN_ARM * self.size {
+            while (self.at(j) - self.at(i)).norm() < arm * self.size {
                 j = (j + step) % n;
                 if j == i {
                     break;

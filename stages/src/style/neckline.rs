@@ -1,0 +1,409 @@
+//! `Neckline`: finds the front's neckline in its photo.
+//!
+//! A shirt laid flat shows the inside of its back above the front's neckline, so the outline's upper border is the
+//! back's neckline, and a front cut along it has no room for the throat. Method: a family of curves from
+//! neck point to neck point, from V to U and of all depths, is laid over the photo, and the one across which
+//! the colour changes most evenly wins (deformable templates: Yuille, Hallinan, Cohen, 1992). The
+//! median along the curve counts, so that a label or a print beneath part of it does not, and beside it the
+//! lower quartile, so that a curve which follows the neckline half of the way does not.
+//! Cost: some thousand curves of 40 points, a few milliseconds. Limits: a curve that is symmetric about
+//! the middle of the neck points; a garment photographed closed and without any seam at its neck gets the
+//! usual depth, with a warning.
+
+use super::naming::is_back;
+use super::sewing::own_gauge;
+use rayon::prelude::*;
+use toile_core::prelude::*;
+
+/// Depths that are tried, as shares of the neck's width: first, last, step.
+const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
+/// Powers of the curves `depth (1 - |s|^p)`: from nearly V to U.
+const POWERS: [f64; 6] = [1.2, 1.6, 2.0, 2.5, 3.2, 4.0];
+/// The likeliest depth, and how far off it a curve must be to count half, as shares of the neck's width.
+const USUAL: (f64, f64) = (0.5, 0.3);
+/// A neck edge that dips by this share of its width is the front's neckline already.
+const DIPS: f64 = 0.3;
+/// Points of a curve at which colours are compared, over this share of its width: near its ends all curves
+/// meet.
+const SAMPLES: usize = 40;
+const WITHIN: f64 = 0.86;
+/// Half the distance across the curve at which colours are compared, as a share of the neck's width, and
+/// the least in pixels.
+const ACROSS: (f64, f64) = (0.025, 1.5);
+/// How far below the present edge a curve must lie, in such half distances, and over which part of its width:
+/// a back's collar is no neckline of the front.
+const MARGIN: f64 = 2.5;
+const INSIDE: f64 = 0.7;
+/// Least change of colour across the curve, in levels of 0 to 255.
+const LEAST_CHANGE: f64 = 3.0;
+/// Depths that are tried to either side of the curve that was found, and how far they reach, in half
+/// distances of comparison.
+const REFINE: i32 = 40;
+const REFINE_REACH: f64 = 4.0;
+/// Distance of the points of the new edge, metres.
+const SPACING: f64 = 1e-3;
+
+/// Cuts the front along the neckline that its photo shows.
+///
+/// Use it where the photo of the front shows the inside of the back above the neckline, as with most shirts laid flat.
+/// The back keeps its outline. A front whose outline dips at the neck already is left as it is.
+#[stage(
+    role = Style,
+    source = "deformable templates: Yuille, Hallinan, Cohen, 1992",
+    example = "Neckline(depth: \"8 cm\")",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty)
+)]
+pub struct Neckline {
+    /// How deep the neckline lies below its ends; found in the photo where it is not given.
+    #[param(default = None, min = 0.0, max = 1.0)]
+    depth: Option<Length>,
+    /// The depth that is taken where nothing is found, as a share of the neck's width.
+    #[param(default = 0.45, min = 0.05, max = 2.0)]
+    usual: f64,
+}
+
+#[stage]
+impl Neckline {
+    pub(crate) fn run(
+        &self,
+        outlines: Set<Outline>,
+        photos: Set<Photo>,
+        cx: &Context,
+    ) -> Result<Set<Outline>, StageError> {
+        outlines
+            .iter()
+            .map(|(name, o)| {
+                cx.check()?;
+                let photo = photos.get(name);
+                Ok((name.to_owned(), self.cut(name, o, photo, cx).unwrap_or_else(|| o.clone())))
+            })
+            .collect()
+    }
+}
+
+impl Neckline {
+    /// The outline with its neck cut, or nothing where it stays as it is.
+    fn cut(&self, name: &str, outline: &Outline, photo: Option<&Photo>, cx: &Context) -> Option<Outline> {
+        let neck = outline.edge("neck").filter(|_| !is_back(name))?;
+        let chord = Chord::of(outline, neck)?;
+        let collar = chord.profile(&outline.edge_points(neck));
+        let lowest = collar.iter().copied().fold(0.0, f64::max);
+        if self.depth.is_none() && lowest > DIPS * chord.width {
+            return None;
+        }
+        let found = match self.depth {
+            Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
+            None => photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame, &collar)),
+        };
+        let curve = found.unwrap_or_else(|| {
+            cx.warn(format!(
+                "the photo of \"{name}\" shows no neckline; it is cut {:.0} mm deep (`Neckline(depth: ...)` sets it)",
+                self.usual * chord.width * 1e3
+            ));
+            Curve { depth: self.usual * chord.width, power: 2.0 }
+        });
+        cx.figure("depth", curve.depth, "m");
+        Some(replaced(outline, neck, &chord.points(&curve)))
+    }
+}
+
+/// A neckline: depth below the chord at `s` from -1 to 1 is `depth (1 - |s|^power)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Curve {
+    depth: f64,
+    power: f64,
+}
+
+impl Curve {
+    fn depth_at(&self, s: f64) -> f64 {
+        self.depth * (1.0 - s.abs().powf(self.power))
+    }
+}
+
+/// Places along a curve at which colours are compared.
+fn places() -> impl Iterator<Item = f64> {
+    (0..SAMPLES).map(|k| WITHIN * (2.0 * k as f64 / (SAMPLES - 1) as f64 - 1.0))
+}
+
+/// The line between the neck points.
+struct Chord {
+    middle: Point2,
+    /// Half of it, towards the neck's end.
+    half: Vector2,
+    down: Vector2,
+    width: f64,
+}
+
+impl Chord {
+    fn of(outline: &Outline, neck: &Edge) -> Option<Chord> {
+        let (a, b) = (outline.outer.points[neck.start], outline.outer.points[neck.end]);
+        let half = (b - a) / 2.0;
+        // The garment lies to the left of a counter-clockwise edge.
+        let down = Vector2::new(-half.y, half.x).try_normalize(1e-9)?;
+        Some(Chord { middle: nalgebra::center(&a, &b), half, down, width: 2.0 * half.norm() })
+    }
+
+    /// The depth of the present edge at each place where colours are compared: its lowest point near
+    /// there.
+    fn profile(&self, edge: &[Point2]) -> Vec<f64> {
+        let across = |p: &Point2| (p - self.middle).dot(&self.half) / self.half.norm_squared();
+        let near = |s: f64| {
+            let close = edge.iter().filter(|p| (across(p) - s).abs() <= 2.0 / SAMPLES as f64);
+            close.map(|p| (p - self.middle).dot(&self.down)).fold(0.0, f64::max)
+        };
+        places().map(near).collect()
+    }
+
+    fn at(&self, curve: &Curve, s: f64) -> Point2 {
+        self.middle + self.half * s + self.down * curve.depth_at(s)
+    }
+
+    /// The curve's points without its ends.
+    fn points(&self, curve: &Curve) -> Vec<Point2> {
+        // Even in s would be sparse where the curve is steep; a fine polyline is thinned instead.
+        let fine: Vec<Point2> = (0..=4000).map(|k| self.at(curve, f64::from(k) / 2000.0 - 1.0)).collect();
+        let length = polyline_length(&fine);
+        let count = ((length / SPACING).round() as usize).max(8);
+        let mut points = Vec::with_capacity(count);
+        let mut passed = 0.0;
+        for w in fine.windows(2) {
+            passed += (w[1] - w[0]).norm();
+            if passed >= length * (points.len() + 1) as f64 / count as f64 && points.len() + 1 < count {
+                points.push(w[1]);
+            }
+        }
+        points
+    }
+
+    /// Half the distance across a curve at which colours are compared.
+    fn across(&self, frame: PhotoFrame) -> f64 {
+        (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre)
+    }
+
+    /// The curve of the most even change of colour below the present edge.
+    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64]) -> Option<Curve> {
+        let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
+        let depths = (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width);
+        // Above the collar lies the ground, whose border is no neckline.
+        let clear = MARGIN * self.across(frame);
+        let inside = |c: &Curve| {
+            let mut both = places().zip(collar).filter(|(s, _)| s.abs() < INSIDE);
+            both.all(|(s, above)| c.depth_at(s) > above + clear)
+        };
+        let curves: Vec<Curve> = depths
+            .flat_map(|depth| POWERS.iter().map(move |&power| Curve { depth, power }))
+            .filter(inside)
+            .collect();
+        let across = self.across(frame);
+        let changes: Vec<Change> = curves.par_iter().map(|c| self.change(photo, frame, c, across)).collect();
+        // Prints have even edges too, but not where necklines are.
+        let likely = |c: &Curve| 1.0 / (1.0 + ((c.depth / self.width - USUAL.0) / USUAL.1).powi(2));
+        let score = |i: &usize| changes[*i].score() * likely(&curves[*i]);
+        let seen = (0..curves.len()).filter(|i| changes[*i].median >= LEAST_CHANGE);
+        let best = seen.max_by(|a, b| score(a).total_cmp(&score(b))).map(|i| curves[i])?;
+        Some(self.refined(photo, frame, best))
+    }
+
+    /// The best curve beside one that was found: colours compared over a quarter of the distance.
+    fn refined(&self, photo: &Photo, frame: PhotoFrame, found: Curve) -> Curve {
+        let (far, near) = (self.across(frame), self.across(frame) / 4.0);
+        let step = REFINE_REACH * far / f64::from(REFINE);
+        let depths = (-REFINE..=REFINE).map(|k| found.depth + step * f64::from(k));
+        let curves: Vec<Curve> =
+            depths.flat_map(|depth| POWERS.iter().map(move |&power| Curve { depth, power })).collect();
+        let score = |c: &Curve| self.change(photo, frame, c, near).score();
+        let scores: Vec<f64> = curves.par_iter().map(score).collect();
+        // Of equal ones that in the middle of the plateau, nearest to what was found.
+        let off = |i: &usize| {
+            (curves[*i].depth - found.depth).abs() + (curves[*i].power - found.power).abs() * near
+        };
+        let best = (0..curves.len())
+            .max_by(|a, b| scores[*a].total_cmp(&scores[*b]).then(off(b).total_cmp(&off(a))));
+        best.map_or(found, |i| curves[i])
+    }
+
+    /// The change of colour from below a curve to above, `across` metres to either side.
+    fn change(&self, photo: &Photo, frame: PhotoFrame, curve: &Curve, across: f64) -> Change {
+        let mut changes: Vec<nalgebra::Vector3<f64>> = Vec::with_capacity(SAMPLES);
+        for s in places() {
+            let tangent = self.at(curve, s + 0.01) - self.at(curve, s - 0.01);
+            let Some(normal) = Vector2::new(-tangent.y, tangent.x).try_normalize(1e-12) else {
+                return Change::default();
+            };
+            let p = self.at(curve, s);
+            let (below, above) = (frame.to_px(p + normal * across), frame.to_px(p - normal * across));
+            let (below, above) = (colour(photo, below), colour(photo, above));
+            changes.push(std::array::from_fn::<f64, 3, _>(|c| below[c] - above[c]).into());
+        }
+        Change::of(&changes)
+    }
+}
+
+/// How colours change across a curve, in levels of 0 to 255.
+#[derive(Debug, Clone, Copy, Default)]
+struct Change {
+    /// The median over the curve.
+    median: f64,
+    /// The lower quartile of the changes in the median's direction.
+    quartile: f64,
+}
+
+impl Change {
+    fn of(changes: &[nalgebra::Vector3<f64>]) -> Change {
+        let channel = |c: usize| quantile_of(changes.iter().map(|v| v[c]), 0.5);
+        let typical = nalgebra::Vector3::new(channel(0), channel(1), channel(2));
+        match typical.try_normalize(1e-9) {
+            Some(along) => Change {
+                median: typical.norm(),
+                quartile: quantile_of(changes.iter().map(|v| v.dot(&along)), 0.25),
+            },
+            None => Change::default(),
+        }
+    }
+
+    fn score(&self) -> f64 {
+        (self.median + self.quartile.max(0.0)) / 2.0
+    }
+}
+
+fn quantile_of(values: impl Iterator<Item = f64>, share: f64) -> f64 {
+    let mut sorted: Vec<f64> = values.collect();
+    sorted.sort_by(f64::total_cmp);
+    quantile(&sorted, share)
+}
+
+/// The colour at a place between four pixels; the picture goes on beyond its frame.
+fn colour(photo: &Photo, p: Point2) -> [f64; 3] {
+    let (w, h) = photo.pixels.dimensions();
+    let (x, y) = (p.x.clamp(0.0, f64::from(w - 1)), p.y.clamp(0.0, f64::from(h - 1)));
+    let (i, j) = (x as u32, y as u32);
+    let (right, below) = ((i + 1).min(w - 1), (j + 1).min(h - 1));
+    let (fx, fy) = (x.fract(), y.fract());
+    let at = |x: u32, y: u32| photo.pixels.get_pixel(x, y).0.map(f64::from);
+    let (a, b, c, d) = (at(i, j), at(right, j), at(i, below), at(right, below));
+    std::array::from_fn(|k| {
+        (a[k] * (1.0 - fx) + b[k] * fx) * (1.0 - fy) + (c[k] * (1.0 - fx) + d[k] * fx) * fy
+    })
+}
+
+/// The outline with an edge's inner points replaced.
+fn replaced(outline: &Outline, edge: &Edge, inner: &[Point2]) -> Outline {
+    let n = outline.outer.points.len();
+    // The loop begins where the edge ends.
+    let moved = |i: usize| (i + n - edge.end) % n;
+    let kept = moved(edge.start) + 1;
+    let mut cut = outline.clone();
+    cut.outer.points = (0..kept).map(|k| outline.outer.points[(edge.end + k) % n]).collect();
+    cut.outer.points.extend(inner);
+    cut.outer.corners = outline.outer.corners.iter().map(|&c| moved(c)).filter(|&c| c < kept).collect();
+    cut.outer.corners.sort_unstable();
+    for e in &mut cut.edges {
+        (e.start, e.end) = (moved(e.start), moved(e.end));
+    }
+    let gauge = cut.edge(&edge.name).map(|e| own_gauge(&cut, e));
+    if let (Some(gauge), Some(e)) = (gauge, cut.edges.iter_mut().find(|e| e.name == edge.name)) {
+        e.gauge = gauge;
+    }
+    cut
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use image::{Rgb, RgbImage};
+    use std::sync::Arc;
+
+    /// A plain square shirt, 40 cm wide and 50 cm high, at 500 pixels a metre; its neck is 16 cm wide.
+    fn shirt() -> Outline {
+        let corners = [(0.2, 0.0), (0.2, 0.48), (0.08, 0.5), (-0.08, 0.5), (-0.2, 0.48), (-0.2, 0.0)];
+        let points = corners.map(|(x, y)| Point2::new(x, y)).to_vec();
+        let names = ["side_left", "shoulder_left", "neck", "shoulder_right", "side_right", "hem"];
+        let gauge = Gauge::straight(0.1);
+        let edge = |i: usize| Edge { name: names[i].into(), start: i, end: (i + 1) % 6, gauge };
+        Outline {
+            outer: Loop { points, corners: (0..6).collect() },
+            holes: Vec::new(),
+            edges: (0..6).map(edge).collect(),
+            inner: Vec::new(),
+            frame: Some(PhotoFrame {
+                origin_px: Point2::new(150.0, 290.0),
+                px_per_metre: 500.0,
+                mirrored: false,
+            }),
+        }
+    }
+
+    /// A photo of it: the inside of the back shows above a parabola `depth` deep.
+    fn photo(depth: f64) -> Photo {
+        let pixels = RgbImage::from_fn(300, 320, |x, y| {
+            let (u, v) = ((f64::from(x) - 150.0) / 500.0, (290.0 - f64::from(y)) / 500.0);
+            let inside = u.abs() < 0.08 && v > 0.5 - depth * (1.0 - (u / 0.08).powi(2));
+            Rgb(if inside { [90, 80, 70] } else { [120, 110, 100] })
+        });
+        Photo {
+            pixels: Arc::new(pixels),
+            alpha: None,
+            px_per_metre: None,
+            garment_width: None,
+            mirrored: false,
+            file: "front.jpg".into(),
+        }
+    }
+
+    fn both<T: Clone>(value: &T) -> Set<T> {
+        Set(["front", "back"].map(|n| (n.to_owned(), Arc::new(value.clone()))).into())
+    }
+
+    fn run(stage: &Neckline, depth: f64) -> Set<Outline> {
+        stage.run(both(&shirt()), both(&photo(depth)), &Context::quiet()).unwrap()
+    }
+
+    fn lowest(o: &Outline) -> f64 {
+        o.edge_points(o.edge("neck").unwrap()).iter().map(|p| 0.5 - p.y).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn the_front_is_cut_where_the_photo_changes_colour_and_the_back_is_not() {
+        for depth in [0.05, 0.09, 0.16] {
+            let cut = run(&Neckline::default(), depth);
+            let front = cut.get("front").unwrap();
+            assert!((lowest(front) - depth).abs() < 0.004, "{depth}: {}", lowest(front));
+            assert_eq!(cut.get("back").unwrap().outer, shirt().outer);
+        }
+    }
+
+    #[test]
+    fn all_other_edges_keep_their_points_and_gauges() {
+        let (before, cut) = (shirt(), run(&Neckline::default(), 0.08));
+        let front = cut.get("front").unwrap();
+        for e in before.edges.iter().filter(|e| e.name != "neck") {
+            let now = front.edge(&e.name).unwrap();
+            assert_eq!(front.edge_points(now), before.edge_points(e), "{}", e.name);
+            assert_eq!(now.gauge, e.gauge);
+        }
+        let neck = front.edge("neck").unwrap();
+        assert!((neck.gauge.length - polyline_length(&front.edge_points(neck))).abs() < 1e-9);
+        assert!(polygon_area(&front.outer.points) < polygon_area(&before.outer.points));
+        assert_eq!(front.outer.corners.len(), 6);
+    }
+
+    #[test]
+    fn a_given_depth_is_taken() {
+        let stage = Neckline { depth: Some(Length::cm(12.0)), ..Neckline::default() };
+        assert!((lowest(run(&stage, 0.05).get("front").unwrap()) - 0.12).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_neck_that_dips_already_stays() {
+        let once = run(&Neckline::default(), 0.08);
+        let again = Neckline::default().run(once.clone(), both(&photo(0.08)), &Context::quiet()).unwrap();
+        assert_eq!(once.get("front").unwrap().outer, again.get("front").unwrap().outer);
+    }
+
+    #[test]
+    fn a_photo_without_a_neckline_gets_the_usual_depth() {
+        let front = run(&Neckline::default(), 0.0);
+        assert!((lowest(front.get("front").unwrap()) - 0.45 * 0.16).abs() < 1e-3);
+    }
+}
