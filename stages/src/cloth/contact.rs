@@ -6,9 +6,11 @@
 //! (or gets it back, with restitution), and Coulomb friction takes from its tangential velocity in
 //! proportion [METHODS 3]. A node that is already nearer is moved out at a limited speed that does
 //! not count as velocity. With a penalty stiffness, `f = c_r (d - dist) N` replaces the impulse.
+//! Where the skin bends between two nodes, both are held farther off by what the body would stand out
+//! through the edge between them.
 //! Cost: one product a node and step, a query for nodes that moved.
 
-use super::model::{Cloth, State};
+use super::model::{Cloth, Edge, State};
 use nalgebra::Vector3;
 use toile_core::artifact::{BodyContact, Collide, ColliderCard, Point3};
 
@@ -26,6 +28,9 @@ const PUSH_OUT: f64 = 0.5;
 /// Penalty forces use no more than this share of the stiffness that would be unstable.
 const PENALTY_SHARE: f64 = 0.5;
 
+/// The body may come this near to the middle of an edge, metres.
+const LEAST_COVER: f64 = 3e-4;
+
 #[derive(Debug, Clone, Copy)]
 struct Skin {
     /// Where the node was when it was asked.
@@ -40,6 +45,8 @@ struct Skin {
 #[derive(Debug, Default)]
 pub struct Contacts {
     skins: Vec<Skin>,
+    /// By how much each node is held off beyond the thickness, metres.
+    lifts: Vec<f64>,
     moved: Vec<u32>,
     places: Vec<Point3>,
     found: Vec<BodyContact>,
@@ -52,7 +59,7 @@ impl Contacts {
     }
 
     /// Asks the collider about every node that has left the place where its answer holds.
-    pub fn refresh(&mut self, scheme: &dyn Collide, x: &[Point3]) {
+    pub fn refresh(&mut self, scheme: &dyn Collide, edges: &[Edge], x: &[Point3]) {
         let fresh = self.skins.len() != x.len();
         if fresh {
             let none = Skin { asked: Point3::origin(), normal: Vector3::y(), base: 0.0, near: false };
@@ -66,6 +73,25 @@ impl Contacts {
         self.moved.extend((0..x.len() as u32).filter(|&i| stale(&self.skins[i as usize], &x[i as usize])));
         if !self.moved.is_empty() {
             self.ask(scheme, x);
+            self.lift(edges, scheme.card().thickness);
+        }
+    }
+
+    /// Holds the ends of each edge so far off that the skin does not stand out through its middle: on a
+    /// round of radius r the chord of length s dips by s^2 / 8r, and the normals turn by s / r.
+    fn lift(&mut self, edges: &[Edge], thickness: f64) {
+        self.lifts.clear();
+        self.lifts.resize(self.skins.len(), 0.0);
+        for edge in edges {
+            let [a, b] = edge.nodes.map(|i| i as usize);
+            let (p, q) = (&self.skins[a], &self.skins[b]);
+            let (turn, along) = (p.normal - q.normal, p.asked - q.asked);
+            if p.near && q.near && turn.dot(&along) > 0.0 {
+                let dip = along.norm() * turn.norm() / 8.0;
+                let lift = (dip + LEAST_COVER - thickness).min(thickness);
+                self.lifts[a] = self.lifts[a].max(lift);
+                self.lifts[b] = self.lifts[b].max(lift);
+            }
         }
     }
 
@@ -91,7 +117,8 @@ impl Contacts {
             if !skin.near || cloth.inverse_inertia[i] <= 0.0 {
                 continue;
             }
-            let spare = skin.normal.dot(&state.x[i].coords) - skin.base - card.thickness;
+            let height = card.thickness + self.lifts[i];
+            let spare = skin.normal.dot(&state.x[i].coords) - skin.base - height;
             let (n, v) = (skin.normal, &mut state.v[i]);
             match card.penalty {
                 None => {

@@ -166,7 +166,7 @@ impl<'a> Simulation<'a> {
     fn look(&mut self) {
         let Some(scheme) = self.collider else { return };
         if self.steps.is_multiple_of(LOOK_EVERY) {
-            self.body.refresh(scheme, &self.state.x);
+            self.body.refresh(scheme, &self.cloth.edges, &self.state.x);
         }
         if scheme.card().self_collision {
             self.pairs.refresh(scheme, &self.state.x, &self.cloth.triangles);
