@@ -2,3 +2,5 @@
 //! (seams), and the solvers that bring it to rest.
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
+
+pub mod rest;
