@@ -3,4 +3,9 @@
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
 
+pub mod contact;
+pub mod error;
+pub mod force;
+pub mod linear;
+pub mod mesh;
 pub mod rest;
