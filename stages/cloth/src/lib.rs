@@ -9,3 +9,4 @@ pub mod force;
 pub mod linear;
 pub mod mesh;
 pub mod rest;
+pub mod scene;
