@@ -1,6 +1,8 @@
 //! Straight to static equilibrium, coarse to fine.
 
+pub mod coarsen;
 pub mod dissect;
 pub mod elastic;
 pub mod multifrontal;
 pub mod pattern;
+pub mod pieces;
