@@ -4,5 +4,8 @@ pub mod coarsen;
 pub mod dissect;
 pub mod elastic;
 pub mod multifrontal;
+pub mod newton;
 pub mod pattern;
 pub mod pieces;
+pub mod solve;
+pub mod system;

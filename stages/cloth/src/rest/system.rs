@@ -1,0 +1,263 @@
+//! Everything that acts on one level's nodes, as one potential: value, gradient and matrix.
+//!
+//! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its surface, so that
+//! vertices rest outside it), and friction as a potential about anchors that stick and, when the limit is reached, are
+//! dragged along (the elastic-plastic form of Coulomb's law). Normals and limits of friction are those of the step's start.
+
+use super::elastic::Elastic;
+use super::pattern::{Pattern, Slot, add_at};
+use crate::contact::body::{Body, Nearest};
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+
+type Vec3 = Vector3<f64>;
+
+/// A seam that still pulls its two nodes together, with a force that hardly depends on the gap.
+#[derive(Debug, Clone, Copy)]
+pub struct Thread {
+    /// The nodes.
+    pub nodes: [u32; 2],
+    /// Force at large gaps, N.
+    pub force: f64,
+    /// Gap at which the force falls off, m.
+    pub soft: f64,
+}
+
+/// Where a node touches the body.
+#[derive(Debug, Clone, Copy)]
+pub struct Touch {
+    /// The node.
+    pub node: u32,
+    /// Outward normal of the body there.
+    pub normal: Vec3,
+    /// Force of the body, N.
+    pub force: f64,
+}
+
+/// The body and how cloth rests on it.
+#[derive(Debug, Clone)]
+pub struct Support<'a> {
+    /// The body.
+    pub body: &'a Body,
+    /// Coefficient of friction.
+    pub friction: f64,
+    /// Distance at which contact begins, per node, m.
+    pub offsets: Vec<f64>,
+    /// Stiffness of contact, N/m per node.
+    pub stiffness: f64,
+}
+
+/// All that acts on the nodes.
+#[derive(Debug, Clone)]
+pub struct System<'a> {
+    /// The sheet's resistance.
+    pub elastic: Elastic,
+    /// kg per node.
+    pub masses: Vec<f64>,
+    /// m/s².
+    pub gravity: Vec3,
+    /// Nodes that stay.
+    pub pinned: Vec<bool>,
+    /// Seams that still pull.
+    pub threads: Vec<Thread>,
+    /// The body.
+    pub support: Option<Support<'a>>,
+    /// Nodes in contact at the start of the step.
+    pub touches: Vec<Touch>,
+    /// Where friction holds each node.
+    pub anchors: Vec<Option<Vec3>>,
+}
+
+impl System<'_> {
+    /// The pattern of its matrix.
+    #[must_use]
+    pub fn pattern(&self) -> Pattern {
+        let threads = self.threads.iter().map(|t| &t.nodes[..]);
+        Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads))
+    }
+
+    /// The body nearest to each node, if within reach.
+    fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
+        let Some(s) = &self.support else { return vec![None; x.len()] };
+        x.par_iter().zip(&s.offsets).with_min_len(64).map(|(p, o)| s.nearest(p, *o)).collect()
+    }
+
+    /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
+    #[must_use]
+    pub fn value(&self, x: &[Vec3]) -> f64 {
+        let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
+        let threads: f64 = self.threads.iter().map(|t| t.value(x)).sum();
+        let body: f64 = match &self.support {
+            Some(s) => {
+                let press = |(n, o): (Option<Nearest>, &f64)| n.map_or(0.0, |n| 0.5 * s.stiffness * (o - n.distance).powi(2));
+                self.nearest(x).into_iter().zip(&s.offsets).map(press).sum()
+            }
+            None => 0.0,
+        };
+        let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
+        self.elastic.value(x) + weight + threads + body + rub
+    }
+
+    /// Finds the touches at `x`: call it at the start of each step.
+    pub fn touch(&mut self, x: &[Vec3]) {
+        let near = self.nearest(x);
+        let Some(s) = &self.support else { return };
+        self.touches = near
+            .iter()
+            .enumerate()
+            .filter_map(|(i, n)| {
+                let n = n.as_ref()?;
+                let force = s.stiffness * (s.offsets[i] - n.distance);
+                Some(Touch { node: i as u32, normal: n.normal, force })
+            })
+            .collect();
+        let mut anchors = vec![None; x.len()];
+        for t in &self.touches {
+            let i = t.node as usize;
+            anchors[i] = Some(self.anchors[i].unwrap_or(x[i]));
+        }
+        self.anchors = anchors;
+    }
+
+    /// Drags anchors along where the step slipped: call it at the end of each step.
+    pub fn drag(&mut self, x: &[Vec3]) {
+        let dragged: Vec<(u32, Vec3)> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
+        dragged.into_iter().for_each(|(i, a)| self.anchors[i as usize] = Some(a));
+    }
+
+    fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
+        let s = self.support.as_ref();
+        self.touches.iter().filter_map(move |t| {
+            let s = s.filter(|s| s.friction > 0.0)?;
+            let anchor = self.anchors[t.node as usize]?;
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.force, stiffness: s.stiffness })
+        })
+    }
+
+    /// Derivative of the energy at the step's start, N; zero at pins.
+    #[must_use]
+    pub fn gradient(&self, x: &[Vec3]) -> Vec<Vec3> {
+        let mut g: Vec<Vec3> = self.masses.iter().map(|m| -self.gravity * *m).collect();
+        self.elastic.add_gradient(x, &mut g);
+        self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
+        self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
+        self.rubs().for_each(|r| g[r.node as usize] += r.gradient(x));
+        g.iter_mut().zip(&self.pinned).filter(|(_, p)| **p).for_each(|(g, _)| *g = Vec3::zeros());
+        g
+    }
+
+    /// Positive definite matrix at the step's start: second derivative plus `inertia` times the masses.
+    pub fn matrix(&self, x: &[Vec3], pattern: &Pattern, inertia: f64, values: &mut Vec<Matrix3<f64>>) {
+        values.clear();
+        values.resize(pattern.blocks(), Matrix3::zeros());
+        self.elastic.add_matrix(x, values);
+        for (v, m) in values.iter_mut().zip(&self.masses) {
+            (0..3).for_each(|c| v[(c, c)] += m * inertia);
+        }
+        self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
+        if let Some(s) = &self.support {
+            for t in &self.touches {
+                values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness;
+            }
+        }
+        self.rubs().for_each(|r| values[r.node as usize] += r.matrix(x));
+        hold(&self.pinned, pattern, values);
+    }
+}
+
+impl Support<'_> {
+    /// The body nearest to `p`, where it presses.
+    #[must_use]
+    pub fn nearest(&self, p: &Vec3, offset: f64) -> Option<Nearest> {
+        // Vertices never get deeper than this: steps end outside the body.
+        let reach = offset + 0.02;
+        self.body.nearest(p, reach).filter(|n| n.distance < offset)
+    }
+}
+
+/// Cuts pinned nodes out of the matrix.
+fn hold(pinned: &[bool], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+    if !pinned.contains(&true) {
+        return;
+    }
+    for (i, j, slot) in pattern.upper() {
+        if pinned[i as usize] || pinned[j as usize] {
+            values[slot as usize] = Matrix3::zeros();
+        }
+    }
+    for (i, _) in pinned.iter().enumerate().filter(|(_, p)| **p) {
+        values[i] = Matrix3::identity();
+    }
+}
+
+impl Thread {
+    fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
+        let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
+        (d, (d.norm_squared() + self.soft * self.soft).sqrt())
+    }
+
+    fn value(&self, x: &[Vec3]) -> f64 {
+        self.force * self.reach(x).1
+    }
+
+    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        let (d, r) = self.reach(x);
+        let pull = d * (self.force / r);
+        g[self.nodes[0] as usize] -= pull;
+        g[self.nodes[1] as usize] += pull;
+    }
+
+    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        let [i, j] = self.nodes;
+        let (_, r) = self.reach(x);
+        // The secant stiffness: a majorant, with which Newton's step never overshoots.
+        let k = Matrix3::identity() * (self.force / r);
+        values[i as usize] += k;
+        values[j as usize] += k;
+        add_at(values, pattern.slot(i, j).unwrap_or(Slot { index: i, flipped: false }), &-k);
+    }
+}
+
+/// Friction of one node.
+struct Rub {
+    node: u32,
+    normal: Vec3,
+    anchor: Vec3,
+    limit: f64,
+    stiffness: f64,
+}
+
+impl Rub {
+    fn slide(&self, x: &[Vec3]) -> (Vec3, f64) {
+        let d = x[self.node as usize] - self.anchor;
+        let along = d - self.normal * self.normal.dot(&d);
+        (along, along.norm())
+    }
+
+    fn value(&self, x: &[Vec3]) -> f64 {
+        let (_, s) = self.slide(x);
+        if s * self.stiffness <= self.limit {
+            0.5 * self.stiffness * s * s
+        } else {
+            self.limit * (s - 0.5 * self.limit / self.stiffness)
+        }
+    }
+
+    fn gradient(&self, x: &[Vec3]) -> Vec3 {
+        let (along, s) = self.slide(x);
+        if s * self.stiffness <= self.limit { along * self.stiffness } else { along * (self.limit / s) }
+    }
+
+    fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
+        let (_, s) = self.slide(x);
+        let k = if s * self.stiffness <= self.limit { self.stiffness } else { self.limit / s };
+        (Matrix3::identity() - self.normal * self.normal.transpose()) * k
+    }
+
+    /// The anchor after the step: no further away than the limit can pull.
+    fn dragged(&self, x: &[Vec3]) -> Vec3 {
+        let (along, s) = self.slide(x);
+        let most = self.limit / self.stiffness;
+        if s <= most { self.anchor } else { x[self.node as usize] - along * (most / s) }
+    }
+}
