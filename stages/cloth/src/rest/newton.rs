@@ -50,6 +50,7 @@ pub fn relax(
     let mut values: Vec<Matrix3<f64>> = Vec::new();
     let mut dt = pace.first;
     let mut outcome = Outcome::default();
+    let longest_dt = std::env::var("LONG").ok().and_then(|v| v.parse().ok()).unwrap_or(pace.longest);
     for step in 0..pace.steps {
         system.touch(x);
         let g = system.gradient(x);
@@ -79,7 +80,7 @@ pub fn relax(
         }
         system.drag(x);
         if std::env::var("TRACE").is_ok() {
-            eprintln!("  {step} dt {dt:.3} speed {:.2e} res {:.2e} share {share} touches {} E {start:.6e}", outcome.speed, outcome.residual, system.touches.len());
+            eprintln!("  {step} dt {dt:.3} speed {:.2e} res {:.2e} share {share} touches {} E {start:.8e}", outcome.speed, outcome.residual, system.touches.len());
         }
         if watch(system, x, &outcome) {
             break;
@@ -87,7 +88,7 @@ pub fn relax(
         if outcome.speed < pace.speed && share == 1.0 {
             break;
         }
-        if tries == 0 { dt = (dt * 1.5).min(pace.longest) } else if tries > 1 { dt *= 0.6 }
+        if tries == 0 { dt = (dt * 1.5).min(longest_dt) } else if tries > 1 { dt *= 0.6 }
     }
     Ok(outcome)
 }

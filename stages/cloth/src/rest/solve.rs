@@ -44,6 +44,7 @@ pub fn solve(scene: &Scene) -> Result<Rested, Box<dyn std::error::Error>> {
     }
     eprintln!("setup {:?}", clock.elapsed());
     let gravity = scene.phases.iter().rev().map(|p| p.gravity).find(|g| g.norm() > 0.0).unwrap_or_default();
+    let kappa = std::env::var("KAPPA").ok().and_then(|v| v.parse().ok()).unwrap_or(0.5);
     let system = |pieces: &Pieces, sheet: &Sheet, open: bool, threads: Vec<Thread>| {
         let n = sheet.vertex_count();
         let mut pinned = vec![false; n];
@@ -54,7 +55,7 @@ pub fn solve(scene: &Scene) -> Result<Rested, Box<dyn std::error::Error>> {
             body,
             friction: b.friction,
             offsets: vec![m.thickness; n],
-            stiffness: m.stretch,
+            stiffness: sheet.masses().iter().map(|w| kappa * m.stretch / m.thickness * w / m.area_density).collect(),
         });
         System {
             elastic: Elastic::new(sheet, stiffness),

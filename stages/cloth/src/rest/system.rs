@@ -44,7 +44,7 @@ pub struct Support<'a> {
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
     /// Stiffness of contact, N/m per node.
-    pub stiffness: f64,
+    pub stiffness: Vec<f64>,
 }
 
 /// All that acts on the nodes.
@@ -89,8 +89,8 @@ impl System<'_> {
         let threads: f64 = self.threads.iter().map(|t| t.value(x)).sum();
         let body: f64 = match &self.support {
             Some(s) => {
-                let press = |(n, o): (Option<Nearest>, &f64)| n.map_or(0.0, |n| 0.5 * s.stiffness * (o - n.distance).powi(2));
-                self.nearest(x).into_iter().zip(&s.offsets).map(press).sum()
+                let press = |((n, o), k): ((Option<Nearest>, &f64), &f64)| n.map_or(0.0, |n| 0.5 * k * (o - n.distance).powi(2));
+                self.nearest(x).into_iter().zip(&s.offsets).zip(&s.stiffness).map(press).sum()
             }
             None => 0.0,
         };
@@ -107,7 +107,7 @@ impl System<'_> {
             .enumerate()
             .filter_map(|(i, n)| {
                 let n = n.as_ref()?;
-                let force = s.stiffness * (s.offsets[i] - n.distance);
+                let force = s.stiffness[i] * (s.offsets[i] - n.distance);
                 Some(Touch { node: i as u32, normal: n.normal, force })
             })
             .collect();
@@ -130,7 +130,7 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.force, stiffness: s.stiffness })
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.force, stiffness: s.stiffness[t.node as usize] })
         })
     }
 
@@ -157,7 +157,7 @@ impl System<'_> {
         self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
         if let Some(s) = &self.support {
             for t in &self.touches {
-                values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness;
+                values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness[t.node as usize];
             }
         }
         self.rubs().for_each(|r| values[r.node as usize] += r.matrix(x));
