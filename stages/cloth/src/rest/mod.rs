@@ -3,6 +3,7 @@
 pub mod coarsen;
 pub mod dissect;
 pub mod elastic;
+pub mod layers;
 pub mod multifrontal;
 pub mod newton;
 pub mod pattern;

@@ -6,6 +6,8 @@
 use super::multifrontal::{NotPositive, Symbolic};
 use super::pattern::Pattern;
 use super::system::System;
+use crate::contact::limit::limit;
+use crate::contact::tree::ClothTree;
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
@@ -40,19 +42,30 @@ pub struct Outcome {
 pub fn relax(
     system: &mut System<'_>,
     layout: &[Vec3],
+    tree: Option<&ClothTree>,
     x: &mut Vec<Vec3>,
     pace: &Pace,
     watch: &mut dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> bool,
 ) -> Result<Outcome, NotPositive> {
-    let pattern = system.pattern();
+    if let (Some(tree), Some(l)) = (tree, &mut system.layers) {
+        l.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], l.thickness);
+    }
+    system.touch(x);
+    let mut pattern = system.pattern();
     system.elastic.bind(&pattern);
-    let symbolic = Symbolic::new(&pattern, layout);
+    let mut symbolic = Symbolic::new(&pattern, layout);
     let mut values: Vec<Matrix3<f64>> = Vec::new();
     let mut dt = pace.first;
     let mut outcome = Outcome::default();
     let longest_dt = std::env::var("LONG").ok().and_then(|v| v.parse().ok()).unwrap_or(pace.longest);
     for step in 0..pace.steps {
         system.touch(x);
+        let changed = system.layers.iter().flat_map(|l| &l.contacts).any(|c| !pattern.couples(&c.nodes));
+        if changed {
+            pattern = system.pattern();
+            system.elastic.bind(&pattern);
+            symbolic = Symbolic::new(&pattern, layout);
+        }
         let g = system.gradient(x);
         let inertia = 1.0 / (dt * dt);
         system.matrix(x, &pattern, inertia, &mut values);
@@ -63,6 +76,11 @@ pub fn relax(
         outcome = Outcome { steps: step + 1, speed: longest / dt, residual: g.iter().map(|g| g.norm()).fold(0.0, f64::max) };
         if longest > pace.farthest {
             move_by.iter_mut().for_each(|d| *d *= pace.farthest / longest);
+        }
+        let mut hits = 0;
+        if let (Some(tree), Some(l)) = (tree, &mut system.layers) {
+            l.pairs = tree.pairs(x, &move_by, l.thickness);
+            hits = limit(x, &mut move_by, &l.pairs);
         }
         let slope: f64 = g.iter().zip(&move_by).map(|(g, d)| g.dot(d)).sum();
         let start = system.value(x);
@@ -80,7 +98,7 @@ pub fn relax(
         }
         system.drag(x);
         if std::env::var("TRACE").is_ok() {
-            eprintln!("  {step} dt {dt:.3} speed {:.2e} res {:.2e} share {share} touches {} E {start:.8e}", outcome.speed, outcome.residual, system.touches.len());
+            eprintln!("  {step} dt {dt:.3} speed {:.2e} res {:.2e} share {share} touches {} layers {} pairs {} hits {hits} E {start:.8e}", outcome.speed, outcome.residual, system.touches.len(), system.layers.as_ref().map_or(0, |l| l.contacts.len()), system.layers.as_ref().map_or(0, |l| l.pairs.len()));
         }
         if watch(system, x, &outcome) {
             break;

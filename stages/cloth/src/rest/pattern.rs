@@ -67,6 +67,12 @@ impl Pattern {
         Some(Slot { index: (self.nodes + start + found) as u32, flipped: i > j })
     }
 
+    /// Whether it couples all these nodes.
+    #[must_use]
+    pub fn couples(&self, nodes: &[u32]) -> bool {
+        nodes.iter().enumerate().all(|(k, &i)| nodes[..k].iter().all(|&j| self.slot(i, j).is_some()))
+    }
+
     /// Row, column and slot of every block above the diagonal.
     pub fn upper(&self) -> impl Iterator<Item = (u32, u32, u32)> + '_ {
         (0..self.nodes).flat_map(move |i| {

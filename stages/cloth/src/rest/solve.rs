@@ -5,7 +5,9 @@ use super::elastic::{Elastic, Stiffness};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
+use super::layers::Layers;
 use crate::contact::body::Body;
+use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;
@@ -57,7 +59,16 @@ pub fn solve(scene: &Scene) -> Result<Rested, Box<dyn std::error::Error>> {
             offsets: vec![m.thickness; n],
             stiffness: sheet.masses().iter().map(|w| kappa * m.stretch / m.thickness * w / m.area_density).collect(),
         });
+        let mut corners = vec![0u16; n];
+        sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+        let layers = scene.self_collision.then(|| Layers {
+            thickness: m.thickness,
+            stiffness: sheet.masses().iter().map(|w| kappa * m.stretch / m.thickness * w / m.area_density).collect(),
+            corners,
+            ..Layers::default()
+        });
         System {
+            layers,
             elastic: Elastic::new(sheet, stiffness),
             masses: sheet.masses().to_vec(),
             gravity: if open { Vec3::zeros() } else { gravity },
@@ -79,7 +90,7 @@ pub fn solve(scene: &Scene) -> Result<Rested, Box<dyn std::error::Error>> {
         let mut s = system(pieces, &sheet, true, threads);
         let layout = start.clone();
         let pace = Pace { first: 0.02, longest: 0.2, steps: 60, speed: 1e-3, farthest: 0.05 };
-        let out = relax(&mut s, &layout, &mut start, &pace, &mut |_, x, _| {
+        let out = relax(&mut s, &layout, scene.self_collision.then(|| ClothTree::new(&sheet, &layout)).as_ref(), &mut start, &pace, &mut |_, x, _| {
             pairs.iter().all(|&[a, b]| (x[a as usize] - x[b as usize]).norm() < 5e-4)
         })?;
         let gap = pairs.iter().map(|&[a, b]| (start[a as usize] - start[b as usize]).norm()).fold(0.0, f64::max);
@@ -100,7 +111,7 @@ pub fn solve(scene: &Scene) -> Result<Rested, Box<dyn std::error::Error>> {
         let layout = pieces.sew(&place, &vec![1.0; place.len()]);
         let steps = std::env::var("STEPS").ok().and_then(|v| v.parse().ok()).unwrap_or(100);
         let pace = Pace { first: 0.05, longest: 0.3, steps, speed: 1e-3, farthest: 0.1 };
-        outcome = relax(&mut s, &layout, &mut x, &pace, &mut |_, _, _| false)?;
+        outcome = relax(&mut s, &layout, scene.self_collision.then(|| ClothTree::new(&sheet, &layout)).as_ref(), &mut x, &pace, &mut |_, _, _| false)?;
         report.push((sheet.vertex_count(), outcome.steps, t.elapsed().as_secs_f64()));
         if k > 0 {
             let coarse = pieces.spread(&x);

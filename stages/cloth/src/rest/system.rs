@@ -5,6 +5,7 @@
 //! dragged along (the elastic-plastic form of Coulomb's law). Normals and limits of friction are those of the step's start.
 
 use super::elastic::Elastic;
+use super::layers::Layers;
 use super::pattern::{Pattern, Slot, add_at};
 use crate::contact::body::{Body, Nearest};
 use nalgebra::{Matrix3, Vector3};
@@ -62,6 +63,8 @@ pub struct System<'a> {
     pub threads: Vec<Thread>,
     /// The body.
     pub support: Option<Support<'a>>,
+    /// Cloth against itself.
+    pub layers: Option<Layers>,
     /// Nodes in contact at the start of the step.
     pub touches: Vec<Touch>,
     /// Where friction holds each node.
@@ -73,7 +76,8 @@ impl System<'_> {
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let threads = self.threads.iter().map(|t| &t.nodes[..]);
-        Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads))
+        let layers = self.layers.iter().flat_map(|l| &l.contacts).map(|c| &c.nodes[..]);
+        Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads).chain(layers))
     }
 
     /// The body nearest to each node, if within reach.
@@ -95,11 +99,15 @@ impl System<'_> {
             None => 0.0,
         };
         let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
-        self.elastic.value(x) + weight + threads + body + rub
+        let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
+        self.elastic.value(x) + weight + threads + body + rub + layers
     }
 
     /// Finds the touches at `x`: call it at the start of each step.
     pub fn touch(&mut self, x: &[Vec3]) {
+        if let Some(l) = &mut self.layers {
+            l.contacts = l.touching(x);
+        }
         let near = self.nearest(x);
         let Some(s) = &self.support else { return };
         self.touches = near
@@ -142,6 +150,7 @@ impl System<'_> {
         self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
         self.rubs().for_each(|r| g[r.node as usize] += r.gradient(x));
+        self.layers.iter().for_each(|l| l.add_gradient(&mut g));
         g.iter_mut().zip(&self.pinned).filter(|(_, p)| **p).for_each(|(g, _)| *g = Vec3::zeros());
         g
     }
@@ -161,6 +170,7 @@ impl System<'_> {
             }
         }
         self.rubs().for_each(|r| values[r.node as usize] += r.matrix(x));
+        self.layers.iter().for_each(|l| l.add_matrix(pattern, values));
         hold(&self.pinned, pattern, values);
     }
 }
