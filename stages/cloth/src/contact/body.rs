@@ -128,6 +128,32 @@ impl Body {
         found.map(|(t, on)| self.signed(p, t, &on))
     }
 
+    /// The move from `p` by `by`, ended `gap` outside the surface where it would enter the body.
+    ///
+    /// The way is walked in steps no longer than the distance from the surface, so nothing is jumped over. A point that
+    /// starts inside may move as it likes.
+    #[must_use]
+    pub fn guard(&self, p: &Vec3, by: &Vec3, gap: f64) -> Vec3 {
+        let length = by.norm();
+        let start = self.nearest(p, length + gap);
+        if start.is_none_or(|n| n.distance < 0.0) {
+            return *by;
+        }
+        let mut t = start.map_or(0.0, |n| n.distance.max(gap)) / length;
+        while t < 1.0 {
+            let at = p + by * t;
+            match self.nearest(&at, length + gap) {
+                None => break,
+                Some(n) if n.distance < 0.0 => return n.point + n.normal * gap - p,
+                Some(n) => t += n.distance.max(gap) / length,
+            }
+        }
+        match self.nearest(&(p + by), length + gap) {
+            Some(n) if n.distance < 0.0 => n.point + n.normal * gap - p,
+            _ => *by,
+        }
+    }
+
     fn signed(&self, p: &Vec3, t: usize, on: &super::closest::OnTriangle) -> Nearest {
         let surface = match on.feature {
             Feature::Face => self.normals[t][0],

@@ -9,6 +9,7 @@
 use super::pattern::{Pattern, Slot, add_at};
 use crate::mesh::Sheet;
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
+use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
@@ -50,6 +51,9 @@ pub struct Elastic {
     slots: Vec<[Slot; 6]>,
     bending: Vec<(u32, f64)>,
 }
+
+/// Elements that one task evaluates.
+const CHUNK: usize = 512;
 
 /// The pairs of corners of a triangle, row before column.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
@@ -95,42 +99,48 @@ impl Elastic {
             0.5 * t.area * (s.weft * eu * eu + s.warp * ev * ev + s.shear * shear * shear)
         };
         let bending = |h: &Hinge| 0.5 * h.stiffness * h.curvature(x).norm_squared();
-        self.triangles.iter().map(membrane).sum::<f64>() + self.hinges.iter().map(bending).sum::<f64>()
+        sum(&self.triangles, membrane) + sum(&self.hinges, bending)
     }
 
     /// Adds the derivative of the energy, N.
     pub fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
         let s = &self.stiffness;
-        for t in &self.triangles {
+        let forces = |t: &Triangle| {
             let (u, v) = t.columns(x);
             let (eu, ev, shear) = strain(&u, &v);
             let (tu, tv, ts) = (s.weft * eu * t.area, s.warp * ev * t.area, s.shear * shear * t.area);
             let (pu, pv) = (u * tu + v * ts, v * tv + u * ts);
-            for (&i, b) in t.nodes.iter().zip(&t.shape) {
-                gradient[i as usize] += pu * b.x + pv * b.y;
-            }
+            t.shape.map(|b| pu * b.x + pv * b.y)
+        };
+        let membrane: Vec<[Vec3; 3]> = self.triangles.par_iter().with_min_len(CHUNK).map(forces).collect();
+        for (t, f) in self.triangles.iter().zip(&membrane) {
+            t.nodes.iter().zip(f).for_each(|(&i, f)| gradient[i as usize] += f);
         }
-        for h in &self.hinges {
-            let moment = h.curvature(x) * h.stiffness;
-            for (&i, w) in h.nodes.iter().zip(&h.weights) {
-                gradient[i as usize] += moment * *w;
-            }
+        let moments: Vec<Vec3> =
+            self.hinges.par_iter().with_min_len(CHUNK).map(|h| h.curvature(x) * h.stiffness).collect();
+        for (h, moment) in self.hinges.iter().zip(&moments) {
+            h.nodes.iter().zip(&h.weights).for_each(|(&i, w)| gradient[i as usize] += moment * *w);
         }
     }
 
     /// Adds the positive semi-definite second derivative, N/m.
     pub fn add_matrix(&self, x: &[Vec3], values: &mut [Matrix3<f64>]) {
-        for (t, slots) in self.triangles.iter().zip(&self.slots) {
-            let blocks = t.blocks(&self.stiffness, x);
-            for (slot, block) in slots.iter().zip(&blocks) {
-                add_at(values, *slot, block);
-            }
+        let blocks = |t: &Triangle| t.blocks(&self.stiffness, x);
+        let blocks: Vec<[Matrix3<f64>; 6]> = self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
+        for (blocks, slots) in blocks.iter().zip(&self.slots) {
+            blocks.iter().zip(slots).for_each(|(block, slot)| add_at(values, *slot, block));
         }
         for &(slot, k) in &self.bending {
             let block = &mut values[slot as usize];
             (0..3).for_each(|c| block[(c, c)] += k);
         }
     }
+}
+
+/// A sum in chunks of fixed size: the same bits for any number of threads.
+fn sum<T: Sync>(of: &[T], f: impl Fn(&T) -> f64 + Sync) -> f64 {
+    let parts: Vec<f64> = of.par_chunks(CHUNK).map(|c| c.iter().map(&f).sum()).collect();
+    parts.iter().sum()
 }
 
 impl Triangle {

@@ -85,6 +85,11 @@ impl Layers {
         Contact { nodes: p.nodes, weights: c.weights, normal: c.between / c.distance, distance: c.distance, stiffness }
     }
 
+    /// The nodes that each contact couples.
+    pub fn groups(&self) -> impl Iterator<Item = &[u32]> {
+        self.contacts.iter().map(|c| &c.nodes[..])
+    }
+
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {

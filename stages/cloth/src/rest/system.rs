@@ -44,6 +44,14 @@ pub struct Support<'a> {
     pub friction: f64,
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
+    /// The least of them, m.
+    pub offset: f64,
+    /// How deep inside the body a node is still pushed out, m.
+    pub depth: f64,
+    /// Edges of the sheet and their rest lengths: between two nodes on a curved body an edge sags.
+    pub edges: Vec<([u32; 2], f64)>,
+    /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as keeps the girth right.
+    pub clear: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
 }
@@ -76,7 +84,7 @@ impl System<'_> {
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let threads = self.threads.iter().map(|t| &t.nodes[..]);
-        let layers = self.layers.iter().flat_map(|l| &l.contacts).map(|c| &c.nodes[..]);
+        let layers = self.layers.iter().flat_map(|l| l.groups());
         Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads).chain(layers))
     }
 
@@ -109,16 +117,13 @@ impl System<'_> {
             l.contacts = l.touching(x);
         }
         let near = self.nearest(x);
-        let Some(s) = &self.support else { return };
-        self.touches = near
-            .iter()
-            .enumerate()
-            .filter_map(|(i, n)| {
-                let n = n.as_ref()?;
-                let force = s.stiffness[i] * (s.offsets[i] - n.distance);
-                Some(Touch { node: i as u32, normal: n.normal, force })
-            })
-            .collect();
+        let Some(s) = &mut self.support else { return };
+        s.allow_for_sag(&near, x);
+        let press = |(i, n): (usize, &Option<Nearest>)| {
+            let n = n.as_ref().filter(|n| n.distance < s.offsets[i])?;
+            Some(Touch { node: i as u32, normal: n.normal, force: s.stiffness[i] * (s.offsets[i] - n.distance) })
+        };
+        self.touches = near.iter().enumerate().filter_map(press).collect();
         let mut anchors = vec![None; x.len()];
         for t in &self.touches {
             let i = t.node as usize;
@@ -176,12 +181,30 @@ impl System<'_> {
 }
 
 impl Support<'_> {
+    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body.
+    fn allow_for_sag(&mut self, near: &[Option<Nearest>], x: &[Vec3]) {
+        let mut sags = vec![0.0f64; self.offsets.len()];
+        for &([i, j], length) in &self.edges {
+            let (i, j) = (i as usize, j as usize);
+            if let (Some(a), Some(b)) = (&near[i], &near[j]) {
+                let turn = b.normal - a.normal;
+                if turn.dot(&(x[j] - x[i])) > 0.0 {
+                    let sag = length * turn.norm() / 8.0;
+                    (sags[i], sags[j]) = (sags[i].max(sag), sags[j].max(sag));
+                }
+            }
+        }
+        for (i, sag) in sags.into_iter().enumerate().filter(|(i, _)| near[*i].is_some()) {
+            // A polygon around a circle has its length when its corners stand a third of the sag outside.
+            let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
+            self.offsets[i] = self.offset + least;
+        }
+    }
+
     /// The body nearest to `p`, where it presses.
     #[must_use]
     pub fn nearest(&self, p: &Vec3, offset: f64) -> Option<Nearest> {
-        // Vertices never get deeper than this: steps end outside the body.
-        let reach = offset + 0.02;
-        self.body.nearest(p, reach).filter(|n| n.distance < offset)
+        self.body.nearest(p, offset + self.depth).filter(|n| n.distance < offset)
     }
 }
 
