@@ -254,11 +254,15 @@ impl<'a> Work<'a> {
     /// Lets the sewn garment come to rest, level by level.
     fn drape(mut self, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
         let density = self.scene.material.area_density;
+        let mut slides = Vec::new();
         for k in (0..self.pieces.len()).rev() {
             let sheet = self.pieces[k].sewn_sheet(density)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
             let mut system = self.system(&self.pieces[k], &sheet, false);
             let mut x = std::mem::take(&mut self.x);
+            if slides.len() == x.len() {
+                system.slides = std::mem::take(&mut slides);
+            }
             let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
             let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
@@ -267,8 +271,12 @@ impl<'a> Work<'a> {
             if k == 0 {
                 return self.finish(system, x);
             }
-            let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(&x));
-            self.x = self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()]);
+            let finer = |values: &[Vec3]| {
+                let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
+                self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
+            };
+            slides = finer(&system.held_back(&x));
+            self.x = finer(&x);
         }
         Err(ClothError::EmptyScene.into())
     }
@@ -377,6 +385,9 @@ impl<'a> Work<'a> {
             layers,
             touches: vec![],
             anchors: vec![None; n],
+            slides: vec![Vec3::zeros(); n],
+            slips: vec![false; n],
+            loads: vec![0.0; n],
         }
     }
 }

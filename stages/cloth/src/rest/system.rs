@@ -33,6 +33,8 @@ pub struct Touch {
     pub normal: Vec3,
     /// Force of the body, N.
     pub force: f64,
+    /// The force that limits friction: the mean over the last steps, N.
+    pub load: f64,
 }
 
 /// The body and how cloth rests on it.
@@ -77,6 +79,12 @@ pub struct System<'a> {
     pub touches: Vec<Touch>,
     /// Where friction holds each node.
     pub anchors: Vec<Option<Vec3>>,
+    /// How far friction holds each node back when it first touches: what the coarser level found, m.
+    pub slides: Vec<Vec3>,
+    /// Nodes that slid in the last step.
+    pub slips: Vec<bool>,
+    /// What presses each node on the body, a mean over the last steps, N.
+    pub loads: Vec<f64>,
 }
 
 impl System<'_> {
@@ -101,7 +109,9 @@ impl System<'_> {
         let threads: f64 = self.threads.iter().map(|t| t.value(x)).sum();
         let body: f64 = match &self.support {
             Some(s) => {
-                let press = |((n, o), k): ((Option<Nearest>, &f64), &f64)| n.map_or(0.0, |n| 0.5 * k * (o - n.distance).powi(2));
+                let press = |((n, o), k): ((Option<Nearest>, &f64), &f64)| {
+                    n.map_or(0.0, |n| 0.5 * k * (o - n.distance).max(0.0).powi(2))
+                };
                 self.nearest(x).into_iter().zip(&s.offsets).zip(&s.stiffness).map(press).sum()
             }
             None => 0.0,
@@ -119,23 +129,38 @@ impl System<'_> {
         let near = self.nearest(x);
         let Some(s) = &mut self.support else { return };
         s.allow_for_sag(&near, x);
-        let press = |(i, n): (usize, &Option<Nearest>)| {
-            let n = n.as_ref().filter(|n| n.distance < s.offsets[i])?;
-            Some(Touch { node: i as u32, normal: n.normal, force: s.stiffness[i] * (s.offsets[i] - n.distance) })
-        };
-        self.touches = near.iter().enumerate().filter_map(press).collect();
         let mut anchors = vec![None; x.len()];
-        for t in &self.touches {
-            let i = t.node as usize;
-            anchors[i] = Some(self.anchors[i].unwrap_or(x[i]));
+        let mut loads = vec![0.0; x.len()];
+        self.touches.clear();
+        for (i, n) in near.iter().enumerate() {
+            let Some(n) = n else { continue };
+            let force = s.stiffness[i] * (s.offsets[i] - n.distance).max(0.0);
+            // While Newton's steps swing between touching and not, friction follows the mean.
+            loads[i] = if self.anchors[i].is_some() { 0.5 * (self.loads[i] + force) } else { force };
+            if force > 0.0 || loads[i] > 0.0 {
+                anchors[i] = Some(self.anchors[i].unwrap_or(x[i] - std::mem::take(&mut self.slides[i])));
+                self.touches.push(Touch { node: i as u32, normal: n.normal, force, load: loads[i] });
+            }
         }
-        self.anchors = anchors;
+        (self.anchors, self.loads) = (anchors, loads);
     }
 
     /// Drags anchors along where the step slipped: call it at the end of each step.
     pub fn drag(&mut self, x: &[Vec3]) {
-        let dragged: Vec<(u32, Vec3)> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
-        dragged.into_iter().for_each(|(i, a)| self.anchors[i as usize] = Some(a));
+        let dragged: Vec<(u32, (bool, Vec3))> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
+        self.slips.fill(false);
+        for (i, (slips, anchor)) in dragged {
+            self.anchors[i as usize] = Some(anchor);
+            self.slips[i as usize] = slips;
+        }
+    }
+
+    /// How far friction holds each node back at `x`, m. It is force over stiffness, so it is the same on a finer mesh.
+    #[must_use]
+    pub fn held_back(&self, x: &[Vec3]) -> Vec<Vec3> {
+        let mut slides = vec![Vec3::zeros(); x.len()];
+        self.rubs().for_each(|r| slides[r.node as usize] = r.slide(x).0);
+        slides
     }
 
     fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
@@ -143,7 +168,7 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.force, stiffness: s.stiffness[t.node as usize] })
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], stiffness: s.stiffness[t.node as usize] })
         })
     }
 
@@ -170,7 +195,7 @@ impl System<'_> {
         }
         self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
         if let Some(s) = &self.support {
-            for t in &self.touches {
+            for t in self.touches.iter().filter(|t| t.force > 0.0) {
                 values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness[t.node as usize];
             }
         }
@@ -194,17 +219,18 @@ impl Support<'_> {
                 }
             }
         }
-        for (i, sag) in sags.into_iter().enumerate().filter(|(i, _)| near[*i].is_some()) {
+        // Offsets only grow within a level, or contacts would come and go with them.
+        for (i, sag) in sags.into_iter().enumerate() {
             // A polygon around a circle has its length when its corners stand a third of the sag outside.
             let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
-            self.offsets[i] = self.offset + least;
+            self.offsets[i] = self.offsets[i].max(self.offset + least);
         }
     }
 
     /// The body nearest to `p`, where it presses.
     #[must_use]
     pub fn nearest(&self, p: &Vec3, offset: f64) -> Option<Nearest> {
-        self.body.nearest(p, offset + self.depth).filter(|n| n.distance < offset)
+        self.body.nearest(p, offset + self.depth).filter(|n| n.distance < NEAR * offset)
     }
 }
 
@@ -251,9 +277,13 @@ impl Thread {
     }
 }
 
+/// Share of the offset up to which a node that has touched keeps its place on the body.
+const NEAR: f64 = 1.5;
+
 /// Friction of one node.
 struct Rub {
     node: u32,
+    slips: bool,
     normal: Vec3,
     anchor: Vec3,
     limit: f64,
@@ -282,15 +312,26 @@ impl Rub {
     }
 
     fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
-        let (_, s) = self.slide(x);
-        let k = if s * self.stiffness <= self.limit { self.stiffness } else { self.limit / s };
-        (Matrix3::identity() - self.normal * self.normal.transpose()) * k
+        let flat = Matrix3::identity() - self.normal * self.normal.transpose();
+        if !self.slips {
+            return flat * self.stiffness;
+        }
+        let (along, s) = self.slide(x);
+        let way = if s > 0.0 { along / s } else { along };
+        (flat - way * way.transpose() * soft()) * self.stiffness * iso()
     }
 
-    /// The anchor after the step: no further away than the limit can pull.
-    fn dragged(&self, x: &[Vec3]) -> Vec3 {
+    /// Whether the step has dragged it beyond the limit, and where the anchor is then: so near that the force is the
+    /// lower one of sliding.
+    fn dragged(&self, x: &[Vec3]) -> (bool, Vec3) {
         let (along, s) = self.slide(x);
         let most = self.limit / self.stiffness;
-        if s <= most { self.anchor } else { x[self.node as usize] - along * (most / s) }
+        if s <= most { (false, self.anchor) } else { (s > big() * most, x[self.node as usize] - along * (eta() * most / s)) }
     }
 }
+
+fn env(k: &str, d: f64) -> f64 { std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d) }
+fn soft() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("SOFT", 0.99)) }
+fn iso() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ISO", 1.0)) }
+fn big() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("BIG", 1.0)) }
+fn eta() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ETA", 0.8)) }
