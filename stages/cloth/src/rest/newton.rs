@@ -27,6 +27,9 @@ const MOST_HALVINGS: u32 = 6;
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
 
+/// Least and greatest share of friction's stiffness in the matrix where nodes slide.
+pub(super) const EASE: (f64, f64) = (0.05, 1.0);
+
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
@@ -148,13 +151,25 @@ pub fn relax(
             break;
         }
         proving = pace.prove && slow && !proving && outcome.share == 1.0;
-        dt = match outcome.share {
-            1.0 => (dt * 1.5).min(pace.longest),
-            s if s < 0.5 => (dt * 0.6).max(1e-3),
-            _ => dt,
-        };
+        dt = next_pace(system, dt, outcome.share, pace);
     }
     Ok(outcome)
+}
+
+/// The next step of time. Where a step overshot, sliding nodes are stiffened first, then the step shortened.
+fn next_pace(system: &mut System<'_>, dt: f64, share: f64, pace: &Pace) -> f64 {
+    let slides = system.slips.contains(&true);
+    if share == 1.0 {
+        system.ease = (0.5 * system.ease).max(EASE.0);
+        (dt * 1.5).min(pace.longest)
+    } else if slides && system.ease < EASE.1 {
+        system.ease = (4.0 * system.ease).min(EASE.1);
+        dt
+    } else if share < 0.5 {
+        (dt * 0.6).max(1e-3)
+    } else {
+        dt
+    }
 }
 
 /// Greatest length.

@@ -386,6 +386,7 @@ impl<'a> Work<'a> {
             touches: vec![],
             anchors: vec![None; n],
             slides: vec![Vec3::zeros(); n],
+            ease: super::newton::EASE.0,
             slips: vec![false; n],
             loads: vec![0.0; n],
         }

@@ -81,6 +81,9 @@ pub struct System<'a> {
     pub anchors: Vec<Option<Vec3>>,
     /// How far friction holds each node back when it first touches: what the coarser level found, m.
     pub slides: Vec<Vec3>,
+    /// Share of friction's stiffness that nodes which slide put into the matrix: little, or they would hardly slide;
+    /// more where steps overshoot.
+    pub ease: f64,
     /// Nodes that slid in the last step.
     pub slips: Vec<bool>,
     /// What presses each node on the body, a mean over the last steps, N.
@@ -168,7 +171,7 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], stiffness: s.stiffness[t.node as usize] })
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], ease: self.ease, stiffness: s.stiffness[t.node as usize] })
         })
     }
 
@@ -284,6 +287,7 @@ const NEAR: f64 = 1.5;
 struct Rub {
     node: u32,
     slips: bool,
+    ease: f64,
     normal: Vec3,
     anchor: Vec3,
     limit: f64,
@@ -318,7 +322,7 @@ impl Rub {
         }
         let (along, s) = self.slide(x);
         let way = if s > 0.0 { along / s } else { along };
-        (flat - way * way.transpose() * soft()) * self.stiffness * iso()
+        (flat - way * way.transpose() * soft()) * (self.stiffness * self.ease)
     }
 
     /// Whether the step has dragged it beyond the limit, and where the anchor is then: so near that the force is the
@@ -331,7 +335,6 @@ impl Rub {
 }
 
 fn env(k: &str, d: f64) -> f64 { std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d) }
-fn soft() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("SOFT", 0.99)) }
-fn iso() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ISO", 1.0)) }
+fn soft() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("SOFT", 0.9)) }
 fn big() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("BIG", 1.0)) }
-fn eta() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ETA", 0.8)) }
+fn eta() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ETA", 0.7)) }
