@@ -30,6 +30,15 @@ const LEAST_FALL: f64 = 1e-4;
 /// Least and greatest share of friction's stiffness in the matrix where nodes slide.
 pub(super) const EASE: (f64, f64) = (0.05, 1.0);
 
+/// Friction of a node that slides, as a share of the limit at which it starts to: below 1 it comes to a stop.
+const SLIDING: f64 = 0.7;
+
+/// Least step of pseudo-time in which the speed tells that sliding is over, s.
+const HOLD_STEP: f64 = 0.1;
+
+/// Multiple of the speed of rest below which the last slides are settled with friction that holds.
+const HOLD: f64 = 5.0;
+
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
 pub struct Pace {
@@ -127,18 +136,17 @@ pub fn relax(
     system.touch(x);
     let mut linear = Linear::new(system, layout);
     let mut outcome = Outcome { dt: pace.first, ..Outcome::default() };
-    let mut proving = false;
+    let mut stage = Stage::Slide;
     let mut dt = pace.first;
     for step in 1..=pace.steps {
         system.touch(x);
         linear.follow(system);
         let g = system.gradient(x);
-        let used = if proving { REST_STEP } else { dt };
+        let used = if stage == Stage::Prove { REST_STEP } else { dt };
         let mut moves = linear.step(system, x, &g, used)?;
         let longest = greatest(&moves);
         outcome = Outcome { steps: step, speed: longest / used, residual: greatest(&g), dt: used, ..outcome };
         let slow = outcome.speed < pace.speed;
-        outcome.at_rest = slow && (proving || !pace.prove);
         shorten(&mut moves, pace.farthest / longest);
         clear_of_body(system, x, &mut moves);
         if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
@@ -146,14 +154,45 @@ pub fn relax(
             limit(x, &mut moves, &layers.pairs);
         }
         outcome.share = descend(system, x, &g, &moves);
-        system.drag(x);
+        outcome.at_rest = slow && (stage == Stage::Prove || !pace.prove);
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        proving = pace.prove && slow && !proving && outcome.share == 1.0;
+        stage = next_stage(system, x, stage, &outcome, pace);
         dt = next_pace(system, dt, outcome.share, pace);
     }
     Ok(outcome)
+}
+
+/// What a step may do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Stage {
+    /// Nodes slide where friction is at its limit.
+    Slide,
+    /// Friction holds without limit, so that the rest comes to rest; a smooth problem, soon solved.
+    Hold,
+    /// A step of [`REST_STEP`] from standstill with friction cut back to its limit.
+    Prove,
+}
+
+fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outcome, pace: &Pace) -> Stage {
+    let slow = outcome.speed < pace.speed && outcome.share == 1.0;
+    let (next, share) = match stage {
+        _ if !pace.prove => (Stage::Slide, SLIDING),
+        Stage::Slide if outcome.speed < HOLD * pace.speed && outcome.dt >= HOLD_STEP => (Stage::Hold, SLIDING),
+        Stage::Slide => (Stage::Slide, SLIDING),
+        Stage::Hold if slow => (Stage::Prove, 1.0),
+        Stage::Hold => (Stage::Hold, f64::INFINITY),
+        Stage::Prove => (Stage::Hold, SLIDING),
+    };
+    if share.is_finite() {
+        system.drag(x, share);
+    }
+    system.holds = next == Stage::Hold;
+    if next == Stage::Prove {
+        system.slips.fill(false);
+    }
+    next
 }
 
 /// The next step of time. Where a step overshot, sliding nodes are stiffened first, then the step shortened.

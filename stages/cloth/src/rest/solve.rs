@@ -387,6 +387,7 @@ impl<'a> Work<'a> {
             anchors: vec![None; n],
             slides: vec![Vec3::zeros(); n],
             ease: super::newton::EASE.0,
+            holds: false,
             slips: vec![false; n],
             loads: vec![0.0; n],
         }

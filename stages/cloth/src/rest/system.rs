@@ -81,6 +81,9 @@ pub struct System<'a> {
     pub anchors: Vec<Option<Vec3>>,
     /// How far friction holds each node back when it first touches: what the coarser level found, m.
     pub slides: Vec<Vec3>,
+    /// Whether friction holds without limit for now: the last slides are settled by springs, and the limit is looked at
+    /// when they have come to rest.
+    pub holds: bool,
     /// Share of friction's stiffness that nodes which slide put into the matrix: little, or they would hardly slide;
     /// more where steps overshoot.
     pub ease: f64,
@@ -148,9 +151,10 @@ impl System<'_> {
         (self.anchors, self.loads) = (anchors, loads);
     }
 
-    /// Drags anchors along where the step slipped: call it at the end of each step.
-    pub fn drag(&mut self, x: &[Vec3]) {
-        let dragged: Vec<(u32, (bool, Vec3))> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
+    /// Drags anchors along where friction is beyond its limit, until it is `share` of the limit: call it at the end of each
+    /// step that may slide.
+    pub fn drag(&mut self, x: &[Vec3], share: f64) {
+        let dragged: Vec<(u32, (bool, Vec3))> = self.rubs().map(|r| (r.node, r.dragged(x, share))).collect();
         self.slips.fill(false);
         for (i, (slips, anchor)) in dragged {
             self.anchors[i as usize] = Some(anchor);
@@ -171,7 +175,7 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], ease: self.ease, stiffness: s.stiffness[t.node as usize] })
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], ease: self.ease, holds: self.holds, stiffness: s.stiffness[t.node as usize] })
         })
     }
 
@@ -288,6 +292,7 @@ struct Rub {
     node: u32,
     slips: bool,
     ease: f64,
+    holds: bool,
     normal: Vec3,
     anchor: Vec3,
     limit: f64,
@@ -303,7 +308,7 @@ impl Rub {
 
     fn value(&self, x: &[Vec3]) -> f64 {
         let (_, s) = self.slide(x);
-        if s * self.stiffness <= self.limit {
+        if self.holds || s * self.stiffness <= self.limit {
             0.5 * self.stiffness * s * s
         } else {
             self.limit * (s - 0.5 * self.limit / self.stiffness)
@@ -312,29 +317,26 @@ impl Rub {
 
     fn gradient(&self, x: &[Vec3]) -> Vec3 {
         let (along, s) = self.slide(x);
-        if s * self.stiffness <= self.limit { along * self.stiffness } else { along * (self.limit / s) }
+        if self.holds || s * self.stiffness <= self.limit { along * self.stiffness } else { along * (self.limit / s) }
     }
 
     fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
         let flat = Matrix3::identity() - self.normal * self.normal.transpose();
-        if !self.slips {
+        if self.holds || !self.slips {
             return flat * self.stiffness;
         }
         let (along, s) = self.slide(x);
         let way = if s > 0.0 { along / s } else { along };
-        (flat - way * way.transpose() * soft()) * (self.stiffness * self.ease)
+        (flat - way * way.transpose() * (1.0 - ALONG)) * (self.stiffness * self.ease)
     }
 
-    /// Whether the step has dragged it beyond the limit, and where the anchor is then: so near that the force is the
-    /// lower one of sliding.
-    fn dragged(&self, x: &[Vec3]) -> (bool, Vec3) {
+    /// Whether the step has dragged it beyond the limit, and where the anchor is then.
+    fn dragged(&self, x: &[Vec3], share: f64) -> (bool, Vec3) {
         let (along, s) = self.slide(x);
         let most = self.limit / self.stiffness;
-        if s <= most { (false, self.anchor) } else { (s > big() * most, x[self.node as usize] - along * (eta() * most / s)) }
+        if s <= most { (false, self.anchor) } else { (true, x[self.node as usize] - along * (share * most / s)) }
     }
 }
 
-fn env(k: &str, d: f64) -> f64 { std::env::var(k).ok().and_then(|v| v.parse().ok()).unwrap_or(d) }
-fn soft() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("SOFT", 0.9)) }
-fn big() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("BIG", 1.0)) }
-fn eta() -> f64 { static T: std::sync::OnceLock<f64> = std::sync::OnceLock::new(); *T.get_or_init(|| env("ETA", 0.7)) }
+/// Share of its stiffness that friction keeps in the matrix along the way that a node slides.
+const ALONG: f64 = 0.1;
