@@ -183,7 +183,7 @@ fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outco
         Stage::Slide => (Stage::Slide, SLIDING),
         Stage::Hold if slow => (Stage::Prove, 1.0),
         Stage::Hold => (Stage::Hold, f64::INFINITY),
-        Stage::Prove => (Stage::Hold, SLIDING),
+        Stage::Prove => (Stage::Slide, SLIDING),
     };
     if share.is_finite() {
         system.drag(x, share);
