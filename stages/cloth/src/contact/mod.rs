@@ -6,3 +6,6 @@ pub mod closest;
 pub mod limit;
 pub mod pair;
 pub mod tree;
+
+#[cfg(test)]
+mod tests;

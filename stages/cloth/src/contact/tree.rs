@@ -15,6 +15,9 @@ type Vec3 = Vector3<f64>;
 /// Triangles in a leaf: leaves are tested against the tree as a whole.
 const LEAF_TRIANGLES: usize = 4;
 
+/// An end nearer than this to a triangle's plane lies in it: cloth that lies flat does not cross itself, m.
+const FLAT: f64 = 1e-9;
+
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     low: Vec3,
@@ -89,6 +92,31 @@ impl ClothTree {
         pairs
     }
 
+    /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted.
+    #[must_use]
+    pub fn crossings(&self, x: &[Vec3]) -> Vec<([u32; 2], [u32; 3])> {
+        let still = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| x[v as usize]);
+            Bounds { low: a.inf(&b).inf(&c), high: a.sup(&b).sup(&c) }
+        };
+        let boxes: Vec<Bounds> = self.triangles.iter().map(still).collect();
+        let fitted = self.fit(&boxes);
+        let of_leaf = |&leaf: &u32| {
+            let mut found = Vec::new();
+            self.meet(leaf, &boxes, &fitted, &mut |s, t| {
+                for (a, b) in [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])] {
+                    found.extend((0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| crosses(*e, b, x)).map(|e| (e, *b)));
+                }
+            });
+            found
+        };
+        let mut all: Vec<_> = self.leaves.par_iter().with_min_len(16).flat_map_iter(of_leaf).collect();
+        all.iter_mut().for_each(|(e, _)| e.sort_unstable());
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
     fn fit(&self, boxes: &[Bounds]) -> Vec<Bounds> {
         let mut fitted = vec![Bounds { low: Vec3::zeros(), high: Vec3::zeros() }; self.branches.len()];
         for (k, b) in self.branches.iter().enumerate().rev() {
@@ -149,6 +177,23 @@ impl ClothTree {
             }
         }
     }
+}
+
+/// Whether the edge passes through the triangle; features that share a node do not count.
+fn crosses(e: [u32; 2], t: &[u32; 3], x: &[Vec3]) -> bool {
+    if t.contains(&e[0]) || t.contains(&e[1]) {
+        return false;
+    }
+    let (p, q) = (x[e[0] as usize], x[e[1] as usize]);
+    let [a, b, c] = t.map(|v| x[v as usize]);
+    let volume = |o: &Vec3, u: &Vec3, v: &Vec3, w: &Vec3| (u - o).dot(&(v - o).cross(&(w - o)));
+    let area = (b - a).cross(&(c - a)).norm();
+    let (under, over) = (volume(&p, &a, &b, &c), volume(&q, &a, &b, &c));
+    if under * over >= 0.0 || under.abs().min(over.abs()) < FLAT * area {
+        return false;
+    }
+    let sides = [volume(&p, &q, &a, &b), volume(&p, &q, &b, &c), volume(&p, &q, &c, &a)];
+    sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
 }
 
 fn keep(pair: Pair, x: &[Vec3], moves: &[Vec3], reach: f64, out: &mut Vec<Pair>) {

@@ -25,6 +25,10 @@ pub struct Layers {
     pub pairs: Vec<Pair>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,
+    /// Edges that pass through triangles, as a coarser level's state can have it: pulled back out.
+    pub tangles: Vec<Contact>,
+    /// Nodes of the tangles: among themselves they may pass through each other to get free.
+    pub tangled: Vec<bool>,
 }
 
 /// Two features that touch.
@@ -47,6 +51,9 @@ impl Layers {
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
         let near = |p: &Pair| {
+            if self.is_tangled(p) {
+                return None;
+            }
             let c = p.closest(x);
             (c.distance < self.thickness && c.distance > 0.0).then_some((*p, c))
         };
@@ -87,18 +94,53 @@ impl Layers {
 
     /// The nodes that each contact couples.
     pub fn groups(&self) -> impl Iterator<Item = &[u32]> {
-        self.contacts.iter().map(|c| &c.nodes[..])
+        self.contacts.iter().chain(&self.tangles).map(|c| &c.nodes[..])
+    }
+
+    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side.
+    pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
+        self.tangled = vec![false; if crossings.is_empty() { 0 } else { x.len() }];
+        for (e, t) in crossings {
+            e.iter().chain(t).for_each(|&i| self.tangled[i as usize] = true);
+        }
+        self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
+    }
+
+    fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
+        let [a, b, c] = t.map(|v| x[v as usize]);
+        let up = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        let height = |v: u32| up.dot(&(x[v as usize] - a));
+        let [shallow, deep] = if height(e[0]).abs() < height(e[1]).abs() { e } else { [e[1], e[0]] };
+        let normal = if height(deep) > 0.0 { up } else { -up };
+        let on = crate::contact::closest::on_triangle(&x[shallow as usize], &[a, b, c]);
+        let nodes = [shallow, t[0], t[1], t[2]];
+        let weights = [1.0, -on.weights[0], -on.weights[1], -on.weights[2]];
+        let distance = normal.dot(&(x[shallow as usize] - on.point));
+        let stiffness = 0.5 * self.stiffness[shallow as usize];
+        Some(Contact { nodes, weights, normal, distance, stiffness })
+    }
+
+    /// Whether the pair lies among tangled nodes only.
+    #[must_use]
+    pub fn is_tangled(&self, pair: &Pair) -> bool {
+        !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
     }
 
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        self.touching(x).iter().map(|c| 0.5 * c.stiffness * (self.thickness - c.distance).powi(2)).sum()
+        let press = |c: &Contact, distance: f64| 0.5 * c.stiffness * (self.thickness - distance).powi(2);
+        let pull = |c: &Contact| {
+            let between: Vec3 = c.nodes.iter().zip(&c.weights).map(|(i, w)| x[*i as usize] * *w).sum();
+            press(c, c.normal.dot(&between).min(self.thickness))
+        };
+        let touching: f64 = self.touching(x).iter().map(|c| press(c, c.distance)).sum();
+        touching + self.tangles.iter().map(pull).sum::<f64>()
     }
 
     /// Adds the derivative at the step's start, N.
     pub fn add_gradient(&self, g: &mut [Vec3]) {
-        for c in &self.contacts {
+        for c in self.contacts.iter().chain(&self.tangles) {
             let push = c.normal * (c.stiffness * (self.thickness - c.distance));
             for (i, w) in c.nodes.iter().zip(&c.weights) {
                 g[*i as usize] -= push * *w;
@@ -108,7 +150,7 @@ impl Layers {
 
     /// Adds the matrix at the step's start, N/m.
     pub fn add_matrix(&self, pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-        for c in &self.contacts {
+        for c in self.contacts.iter().chain(&self.tangles) {
             let block = c.normal * c.normal.transpose() * c.stiffness;
             for a in 0..4 {
                 for b in 0..=a {

@@ -11,6 +11,7 @@ use super::multifrontal::{Factor, NotPositive, Symbolic};
 use super::pattern::Pattern;
 use super::system::System;
 use crate::contact::limit::limit;
+use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -24,6 +25,9 @@ pub const REST_STEP: f64 = 1.0 / 60.0;
 /// Halvings of a step before it is taken as it is.
 const MOST_HALVINGS: u32 = 6;
 
+/// Moves shorter than this change the potential by less than its rounding, m.
+const ROUNDING: f64 = 1e-10;
+
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
 
@@ -32,6 +36,9 @@ pub(super) const EASE: (f64, f64) = (0.05, 1.0);
 
 /// Friction of a node that slides, as a share of the limit at which it starts to: below 1 it comes to a stop.
 const SLIDING: f64 = 0.7;
+
+/// Friction asked for beyond its limit after a proof of rest, as a share of all friction: cloth that needs more slides on.
+const EXCESS: f64 = 0.01;
 
 /// Least step of pseudo-time in which the speed tells that sliding is over, s.
 const HOLD_STEP: f64 = 0.1;
@@ -133,12 +140,16 @@ pub fn relax(
     if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
         layers.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], layers.thickness);
     }
+    untangle(system, tree, x);
     system.touch(x);
     let mut linear = Linear::new(system, layout);
     let mut outcome = Outcome { dt: pace.first, ..Outcome::default() };
     let mut stage = Stage::Slide;
     let mut dt = pace.first;
     for step in 1..=pace.steps {
+        if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
+            untangle(system, tree, x);
+        }
         system.touch(x);
         linear.follow(system);
         let g = system.gradient(x);
@@ -151,15 +162,17 @@ pub fn relax(
         clear_of_body(system, x, &mut moves);
         if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
             layers.pairs = tree.pairs(x, &moves, layers.thickness);
-            limit(x, &mut moves, &layers.pairs);
+            let strict: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
+            limit(x, &mut moves, &strict);
         }
         outcome.share = descend(system, x, &g, &moves);
-        outcome.at_rest = slow && (stage == Stage::Prove || !pace.prove);
+        let stays = || stage == Stage::Prove && system.excess(x) < EXCESS;
+        outcome.at_rest = slow && (!pace.prove || stays());
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        stage = next_stage(system, x, stage, &outcome, pace);
         dt = next_pace(system, dt, outcome.share, pace);
+        stage = next_stage(system, x, stage, &outcome, pace);
     }
     Ok(outcome)
 }
@@ -190,7 +203,8 @@ fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outco
     }
     system.holds = next == Stage::Hold;
     if next == Stage::Prove {
-        system.slips.fill(false);
+        // What was held beyond its limit must prove that it stays without the spring that held it.
+        system.ease = 0.0;
     }
     next
 }
@@ -198,6 +212,10 @@ fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outco
 /// The next step of time. Where a step overshot, sliding nodes are stiffened first, then the step shortened.
 fn next_pace(system: &mut System<'_>, dt: f64, share: f64, pace: &Pace) -> f64 {
     let slides = system.slips.contains(&true);
+    if system.ease == 0.0 {
+        system.ease = EASE.0;
+        return dt;
+    }
     if share == 1.0 {
         system.ease = (0.5 * system.ease).max(EASE.0);
         (dt * 1.5).min(pace.longest)
@@ -223,6 +241,13 @@ fn shorten(moves: &mut [Vec3], share: f64) {
     }
 }
 
+/// Looks for crossings that the start has, or that are left of them.
+fn untangle(system: &mut System<'_>, tree: Option<&ClothTree>, x: &[Vec3]) {
+    if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
+        layers.untangle(&tree.crossings(x), x);
+    }
+}
+
 /// Ends moves that lead into the body just outside it.
 fn clear_of_body(system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
     let Some(s) = &system.support else { return };
@@ -233,6 +258,10 @@ fn clear_of_body(system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
 
 /// Makes the step or, where the potential does not fall, a share of it; the share.
 fn descend(system: &System<'_>, x: &mut Vec<Vec3>, g: &[Vec3], moves: &[Vec3]) -> f64 {
+    if greatest(moves) < ROUNDING {
+        x.iter_mut().zip(moves).for_each(|(p, m)| *p += m);
+        return 1.0;
+    }
     let slope: f64 = g.iter().zip(moves).map(|(g, d)| g.dot(d)).sum();
     let start = system.value(x);
     let mut share = 1.0;

@@ -124,6 +124,20 @@ pub enum RestError {
         /// The deepest, m.
         depth: f64,
     },
+    /// Cloth that passes through cloth where it starts.
+    #[error("{pairs} pairs of an edge and a triangle cross at the start; lay the panels out so that none do")]
+    InitialCrossing {
+        /// How many.
+        pairs: usize,
+    },
+    /// Cloth that passes through cloth at the end.
+    #[error("{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level")]
+    Crossing {
+        /// How many.
+        pairs: usize,
+        /// The state.
+        state: Box<Rested>,
+    },
     /// Still moving after all steps.
     #[error("still moving after {steps} steps: {speed:.4} m/s, wanted {wanted:.4} m/s; allow more steps or a faster end", steps = state.outcome.steps, speed = state.outcome.speed)]
     NotAtRest {
@@ -209,6 +223,12 @@ impl<'a> Work<'a> {
         let mut x = self.starts[coarsest].clone();
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
+        if self.scene.self_collision {
+            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            if pairs > 0 {
+                return Err(RestError::InitialCrossing { pairs });
+            }
+        }
         let mut pull = SEAM_PULL * self.scene.material.stretch;
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
@@ -269,7 +289,7 @@ impl<'a> Work<'a> {
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
             if k == 0 {
-                return self.finish(system, x);
+                return self.finish(system, &sheet, x);
             }
             let finer = |values: &[Vec3]| {
                 let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
@@ -281,12 +301,18 @@ impl<'a> Work<'a> {
         Err(ClothError::EmptyScene.into())
     }
 
-    fn finish(self, mut system: System<'_>, x: Vec<Vec3>) -> Result<Rested, RestError> {
+    fn finish(self, mut system: System<'_>, sheet: &Sheet, x: Vec<Vec3>) -> Result<Rested, RestError> {
         system.touch(&x);
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        if self.scene.self_collision {
+            let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
+            if pairs > 0 {
+                return Err(RestError::Crossing { pairs, state: Box::new(state) });
+            }
+        }
         if outcome.at_rest {
             return Ok(state);
         }
@@ -435,3 +461,6 @@ fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
         .collect();
     if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
 }
+
+#[cfg(test)]
+mod tests;

@@ -162,6 +162,17 @@ impl System<'_> {
         }
     }
 
+    /// Friction asked for beyond its limit, as a share of all it can give.
+    #[must_use]
+    pub fn excess(&self, x: &[Vec3]) -> f64 {
+        let (mut excess, mut limit) = (0.0, 0.0);
+        for r in self.rubs() {
+            excess += (r.slide(x).1 * r.stiffness - r.limit).max(0.0);
+            limit += r.limit;
+        }
+        if limit > 0.0 { excess / limit } else { 0.0 }
+    }
+
     /// How far friction holds each node back at `x`, m. It is force over stiffness, so it is the same on a finer mesh.
     #[must_use]
     pub fn held_back(&self, x: &[Vec3]) -> Vec<Vec3> {
