@@ -30,7 +30,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wall = clock.elapsed().as_secs_f64();
     let (state, error): (Rested, Option<String>) = match solved {
         Ok(state) => (state, None),
-        Err(RestError::NotAtRest { wanted, state }) => ((*state).clone(), Some(RestError::NotAtRest { wanted, state }.to_string())),
+        Err(RestError::NotAtRest { wanted, state }) => {
+            ((*state).clone(), Some(RestError::NotAtRest { wanted, state }.to_string()))
+        }
         Err(error) => return Err(error.into()),
     };
     let levels: Vec<_> = state

@@ -111,7 +111,8 @@ impl Body {
             }
             if node.count == 0 {
                 let (a, b) = (node.first, node.first + 1);
-                let (ga, gb) = (gap_squared(&self.boxes[a as usize], p), gap_squared(&self.boxes[b as usize], p));
+                let (ga, gb) =
+                    (gap_squared(&self.boxes[a as usize], p), gap_squared(&self.boxes[b as usize], p));
                 (stack[depth], stack[depth + 1]) = if ga < gb { (b, a) } else { (a, b) };
                 depth += 2;
                 continue;

@@ -22,26 +22,36 @@ const MOST_STEPS: usize = 200;
 #[must_use]
 pub fn approach(kind: Kind, moves: &[Vec3; 4]) -> f64 {
     let shared = moves.iter().sum::<Vec3>() * 0.25;
-    let fastest = |moves: &[Vec3]| moves.iter().map(|m| (m - shared).norm_squared()).fold(0.0, f64::max).sqrt();
+    let fastest =
+        |moves: &[Vec3]| moves.iter().map(|m| (m - shared).norm_squared()).fold(0.0, f64::max).sqrt();
     let first = if kind == Kind::VertexTriangle { 1 } else { 2 };
     fastest(&moves[..first]) + fastest(&moves[first..])
 }
 
-/// The time, 0 to 1, until which the pair surely keeps [`NEARNESS`] of its starting distance; `None` for all of the step.
+/// Pieces nearer than this may hardly come nearer: much below it, rounding of places could turn the sides about, m.
+const CLOSEST: f64 = 1e-6;
+
+/// The distance that a pair which starts at `start` keeps through the step.
+#[must_use]
+pub fn kept(start: f64) -> f64 {
+    (NEARNESS * start).max(CLOSEST.min(0.9 * start))
+}
+
+/// The time, 0 to 1, until which the pair surely keeps the distance [`kept`] of its start; `None` for all of the step.
 ///
 /// Zero where the two touch at the start or a coordinate is no finite number.
 #[must_use]
 pub fn impact(pair: &Pair, from: &[Vec3; 4], moves: &[Vec3; 4]) -> Option<f64> {
     let speed = approach(pair.kind, moves);
     let start = pair.kind.closest(from).distance;
-    if speed <= (1.0 - NEARNESS) * start {
+    let least = kept(start);
+    if speed <= start - least {
         return None;
     }
     let known = from.iter().chain(moves).all(|p| p.iter().all(|v| v.is_finite()));
     if start <= 0.0 || !known {
         return Some(0.0);
     }
-    let least = NEARNESS * start;
     let (mut time, mut left) = (0.0, start - least);
     for _ in 0..MOST_STEPS {
         let next = time + left / speed;
@@ -51,7 +61,7 @@ pub fn impact(pair: &Pair, from: &[Vec3; 4], moves: &[Vec3; 4]) -> Option<f64> {
         let at = std::array::from_fn(|i| from[i] + moves[i] * next);
         left = pair.kind.closest(&at).distance - least;
         time = next;
-        if left <= 0.1 * least {
+        if left <= NEARNESS * (start - least).min(least) {
             return Some(time);
         }
     }

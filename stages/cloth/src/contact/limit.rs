@@ -36,7 +36,8 @@ pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
             }
         }
         moves.iter_mut().zip(&share).filter(|(_, s)| **s < 1.0).for_each(|(m, s)| *m *= *s);
-        suspects = pairs.iter().filter(|p| p.nodes.iter().any(|&i| share[i as usize] < 1.0)).copied().collect();
+        suspects =
+            pairs.iter().filter(|p| p.nodes.iter().any(|&i| share[i as usize] < 1.0)).copied().collect();
     }
     // Scaled as a whole, a step that is safe until some time is safe when it ends there.
     let least = hits(x, moves, pairs).iter().map(|(_, t)| *t).fold(1.0, f64::min);

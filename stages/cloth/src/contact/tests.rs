@@ -127,7 +127,8 @@ fn all_pairs(sheet: &Sheet) -> Vec<Pair> {
         pairs.extend(away.map(|t| Pair { kind: Kind::VertexTriangle, nodes: [v, t[0], t[1], t[2]] }));
     }
     for (k, e) in sheet.edges().iter().enumerate() {
-        let others = sheet.edges()[k + 1..].iter().filter(|f| f.vertices.iter().all(|v| !e.vertices.contains(v)));
+        let others =
+            sheet.edges()[k + 1..].iter().filter(|f| f.vertices.iter().all(|v| !e.vertices.contains(v)));
         pairs.extend(others.map(|f| Pair {
             kind: Kind::EdgeEdge,
             nodes: [e.vertices[0], e.vertices[1], f.vertices[0], f.vertices[1]],
@@ -145,7 +146,9 @@ fn crumpled(n: usize, seed: u64, size: f64) -> (Sheet, Vec<Vec3>, Vec<Vec3>) {
     let cell = |k: usize| (k % n, k / n);
     let triangles: Vec<[u32; 3]> = (0..n * n)
         .map(cell)
-        .flat_map(|(i, j)| [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]])
+        .flat_map(|(i, j)| {
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        })
         .collect();
     let sheet = Sheet::flat(&uv, &triangles, 0.1).unwrap();
     let roll = |p: &Vector2<f64>| {

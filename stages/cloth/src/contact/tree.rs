@@ -56,7 +56,8 @@ impl ClothTree {
     #[must_use]
     pub fn new(sheet: &Sheet, layout: &[Vec3]) -> Self {
         let all = sheet.triangles();
-        let centres: Vec<Vec3> = all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
+        let centres: Vec<Vec3> =
+            all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
         let mut order: Vec<u32> = (0..all.len() as u32).collect();
         let mut branches = vec![Branch { first: 0, count: 0 }];
         split(0, &mut order, 0, &centres, &mut branches);
@@ -104,8 +105,12 @@ impl ClothTree {
         let of_leaf = |&leaf: &u32| {
             let mut found = Vec::new();
             self.meet(leaf, &boxes, &fitted, &mut |s, t| {
-                for (a, b) in [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])] {
-                    found.extend((0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| crosses(*e, b, x)).map(|e| (e, *b)));
+                for (a, b) in
+                    [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
+                {
+                    found.extend(
+                        (0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| crosses(*e, b, x)).map(|e| (e, *b)),
+                    );
                 }
             });
             found
@@ -172,7 +177,13 @@ impl ClothTree {
             for j in (0..3).filter(|&j| self.owns[t].1[j]) {
                 let f = [b[j], b[(j + 1) % 3]];
                 if !e.contains(&f[0]) && !e.contains(&f[1]) {
-                    keep(Pair { kind: Kind::EdgeEdge, nodes: [e[0], e[1], f[0], f[1]] }, x, moves, reach, out);
+                    keep(
+                        Pair { kind: Kind::EdgeEdge, nodes: [e[0], e[1], f[0], f[1]] },
+                        x,
+                        moves,
+                        reach,
+                        out,
+                    );
                 }
             }
         }

@@ -123,8 +123,11 @@ impl Mesh {
     }
 
     fn neighbours(&self, v: u32) -> Vec<u32> {
-        let mut all: Vec<u32> =
-            self.at[v as usize].iter().flat_map(|&t| self.triangles[t as usize]).filter(|&w| w != v).collect();
+        let mut all: Vec<u32> = self.at[v as usize]
+            .iter()
+            .flat_map(|&t| self.triangles[t as usize])
+            .filter(|&w| w != v)
+            .collect();
         all.sort_unstable();
         all.dedup();
         all
@@ -301,7 +304,12 @@ struct Locator<'a> {
 
 impl<'a> Locator<'a> {
     fn new(pieces: &'a Pieces) -> Self {
-        let area: f64 = pieces.triangles.iter().map(|t| corners(pieces, t)).map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a))).sum();
+        let area: f64 = pieces
+            .triangles
+            .iter()
+            .map(|t| corners(pieces, t))
+            .map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a)))
+            .sum();
         let cell = (2.0 * area / pieces.triangles.len() as f64).sqrt().max(1e-9);
         let mut cells: BTreeMap<(u32, i64, i64), Vec<u32>> = BTreeMap::new();
         for (k, t) in pieces.triangles.iter().enumerate() {

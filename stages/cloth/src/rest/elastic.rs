@@ -76,17 +76,18 @@ impl Elastic {
     pub fn bind(&mut self, pattern: &Pattern) {
         let none = Slot { index: 0, flipped: false };
         let at = |i: u32, j: u32| pattern.slot(i, j).unwrap_or(none);
-        self.slots =
-            self.triangles.iter().map(|t| PAIRS.map(|(a, b)| at(t.nodes[a], t.nodes[b]))).collect();
+        self.slots = self.triangles.iter().map(|t| PAIRS.map(|(a, b)| at(t.nodes[a], t.nodes[b]))).collect();
         let mut bending = vec![0.0; pattern.blocks()];
         for h in &self.hinges {
             for a in 0..4 {
                 for b in 0..=a {
-                    bending[at(h.nodes[a], h.nodes[b]).index as usize] += h.stiffness * h.weights[a] * h.weights[b];
+                    bending[at(h.nodes[a], h.nodes[b]).index as usize] +=
+                        h.stiffness * h.weights[a] * h.weights[b];
                 }
             }
         }
-        self.bending = bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
+        self.bending =
+            bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
     }
 
     /// Energy, J.
@@ -126,7 +127,8 @@ impl Elastic {
     /// Adds the positive semi-definite second derivative, N/m.
     pub fn add_matrix(&self, x: &[Vec3], values: &mut [Matrix3<f64>]) {
         let blocks = |t: &Triangle| t.blocks(&self.stiffness, x);
-        let blocks: Vec<[Matrix3<f64>; 6]> = self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
+        let blocks: Vec<[Matrix3<f64>; 6]> =
+            self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
         for (blocks, slots) in blocks.iter().zip(&self.slots) {
             blocks.iter().zip(slots).for_each(|(block, slot)| add_at(values, *slot, block));
         }

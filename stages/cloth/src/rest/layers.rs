@@ -88,8 +88,15 @@ impl Layers {
     }
 
     fn contact(&self, (p, c): &(Pair, Closest)) -> Contact {
-        let stiffness = (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
-        Contact { nodes: p.nodes, weights: c.weights, normal: c.between / c.distance, distance: c.distance, stiffness }
+        let stiffness =
+            (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
+        Contact {
+            nodes: p.nodes,
+            weights: c.weights,
+            normal: c.between / c.distance,
+            distance: c.distance,
+            stiffness,
+        }
     }
 
     /// The nodes that each contact couples.
@@ -156,7 +163,9 @@ impl Layers {
                 for b in 0..=a {
                     let w = c.weights[a] * c.weights[b];
                     if w != 0.0 {
-                        let slot = pattern.slot(c.nodes[a], c.nodes[b]).unwrap_or(Slot { index: c.nodes[a], flipped: false });
+                        let slot = pattern
+                            .slot(c.nodes[a], c.nodes[b])
+                            .unwrap_or(Slot { index: c.nodes[a], flipped: false });
                         add_at(values, slot, &(block * w));
                     }
                 }

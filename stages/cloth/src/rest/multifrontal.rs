@@ -180,10 +180,13 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
         }
         own + border.binary_search_by_key(&at, |&b| order[b as usize]).unwrap_or(0) as u32
     };
-    let child_rows = part.children.iter().map(|&c| fronts[c].border.iter().map(|&i| row(i)).collect()).collect();
+    let child_rows =
+        part.children.iter().map(|&c| fronts[c].border.iter().map(|&i| row(i)).collect()).collect();
     let mut entries: Vec<_> = part.nodes.iter().map(|&i| (i, row(i), row(i), false)).collect();
     // Kept are blocks of row i and column j with i < j; the front wants the later node as the row.
-    entries.extend(later.iter().map(|&(first, last, slot, last_is_row)| (slot, row(last), row(first), !last_is_row)));
+    entries.extend(
+        later.iter().map(|&(first, last, slot, last_is_row)| (slot, row(last), row(first), !last_is_row)),
+    );
     let weight = 3 * part.nodes.len() + part.children.iter().map(|&c| fronts[c].weight).sum::<usize>();
     Front { nodes: part.nodes, border, children: part.children, child_rows, entries, weight }
 }
@@ -283,7 +286,8 @@ fn scale_panel(strip: &mut [f64], m: usize, end: usize, width: usize, inverse: &
         panel.extend_from_slice(&strip[c * m + end..(c + 1) * m]);
     }
     let from = DMatrixView::from_slice_with_strides_generic(panel, Dyn(rows), Dyn(width), Dyn(1), Dyn(rows));
-    let by = DMatrixView::from_slice_with_strides_generic(inverse, Dyn(width), Dyn(width), Dyn(width), Dyn(1));
+    let by =
+        DMatrixView::from_slice_with_strides_generic(inverse, Dyn(width), Dyn(width), Dyn(width), Dyn(1));
     let to = &mut strip[end..];
     let mut to = DMatrixViewMut::from_slice_with_strides_generic(to, Dyn(rows), Dyn(width), Dyn(1), Dyn(m));
     to.gemm(1.0, &from, &by, 0.0);
@@ -294,11 +298,23 @@ fn update_rest(strip: &[f64], rest: &mut [f64], m: usize, end: usize, width: usi
     for first in (end..m).step_by(STRIP) {
         let columns = STRIP.min(m - first);
         let rows = m - first;
-        let left = DMatrixView::from_slice_with_strides_generic(&strip[first..], Dyn(rows), Dyn(width), Dyn(1), Dyn(m));
-        let right =
-            DMatrixView::from_slice_with_strides_generic(&strip[first..], Dyn(width), Dyn(columns), Dyn(m), Dyn(1));
+        let left = DMatrixView::from_slice_with_strides_generic(
+            &strip[first..],
+            Dyn(rows),
+            Dyn(width),
+            Dyn(1),
+            Dyn(m),
+        );
+        let right = DMatrixView::from_slice_with_strides_generic(
+            &strip[first..],
+            Dyn(width),
+            Dyn(columns),
+            Dyn(m),
+            Dyn(1),
+        );
         let to = &mut rest[(first - end) * m + first..];
-        let mut to = DMatrixViewMut::from_slice_with_strides_generic(to, Dyn(rows), Dyn(columns), Dyn(1), Dyn(m));
+        let mut to =
+            DMatrixViewMut::from_slice_with_strides_generic(to, Dyn(rows), Dyn(columns), Dyn(1), Dyn(m));
         to.gemm(-1.0, &left, &right, 1.0);
     }
 }

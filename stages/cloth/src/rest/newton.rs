@@ -38,7 +38,7 @@ pub(super) const EASE: (f64, f64) = (0.05, 1.0);
 const SLIDING: f64 = 0.7;
 
 /// Friction asked for beyond its limit after a proof of rest, as a share of all friction: cloth that needs more slides on.
-const EXCESS: f64 = 0.01;
+const EXCESS: f64 = 0.02;
 
 /// Least step of pseudo-time in which the speed tells that sliding is over, s.
 const HOLD_STEP: f64 = 0.1;
@@ -108,7 +108,13 @@ impl<'a> Linear<'a> {
     }
 
     /// The step of pseudo-time `dt` from `x`.
-    fn step(&mut self, system: &System<'_>, x: &[Vec3], g: &[Vec3], dt: f64) -> Result<Vec<Vec3>, NotPositive> {
+    fn step(
+        &mut self,
+        system: &System<'_>,
+        x: &[Vec3],
+        g: &[Vec3],
+        dt: f64,
+    ) -> Result<Vec<Vec3>, NotPositive> {
         let mut shift = 1.0 / (dt * dt);
         let factor: Factor = loop {
             system.matrix(x, &self.pattern, shift, &mut self.values);
@@ -174,6 +180,9 @@ pub fn relax(
         dt = next_pace(system, dt, outcome.share, pace);
         stage = next_stage(system, x, stage, &outcome, pace);
     }
+    if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
+        untangle(system, tree, x);
+    }
     Ok(outcome)
 }
 
@@ -192,7 +201,9 @@ fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outco
     let slow = outcome.speed < pace.speed && outcome.share == 1.0;
     let (next, share) = match stage {
         _ if !pace.prove => (Stage::Slide, SLIDING),
-        Stage::Slide if outcome.speed < HOLD * pace.speed && outcome.dt >= HOLD_STEP => (Stage::Hold, SLIDING),
+        Stage::Slide if outcome.speed < HOLD * pace.speed && outcome.dt >= HOLD_STEP => {
+            (Stage::Hold, SLIDING)
+        }
         Stage::Slide => (Stage::Slide, SLIDING),
         Stage::Hold if slow => (Stage::Prove, 1.0),
         Stage::Hold => (Stage::Hold, f64::INFINITY),
@@ -269,7 +280,9 @@ fn descend(system: &System<'_>, x: &mut Vec<Vec3>, g: &[Vec3], moves: &[Vec3]) -
         let trial: Vec<Vec3> = x.iter().zip(moves).map(|(p, d)| p + d * share).collect();
         // Rounding of the sum hides changes smaller than this.
         let noise = 1e-13 * start.abs();
-        if tries == MOST_HALVINGS || system.value(&trial) <= start + LEAST_FALL * share * slope.min(0.0) + noise {
+        if tries == MOST_HALVINGS
+            || system.value(&trial) <= start + LEAST_FALL * share * slope.min(0.0) + noise
+        {
             *x = trial;
             break;
         }

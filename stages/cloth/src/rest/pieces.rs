@@ -83,7 +83,8 @@ impl Pieces {
     /// The pattern of sewn points that share a triangle.
     #[must_use]
     pub fn neighbours(&self) -> Pattern {
-        let groups: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|v| self.point[v as usize])).collect();
+        let groups: Vec<[u32; 3]> =
+            self.triangles.iter().map(|t| t.map(|v| self.point[v as usize])).collect();
         Pattern::new(self.points, groups.iter().map(|g| &g[..]))
     }
 }

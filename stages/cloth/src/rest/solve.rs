@@ -104,10 +104,14 @@ pub enum RestError {
     #[error(transparent)]
     NotPositive(#[from] NotPositive),
     /// Nothing holds the cloth.
-    #[error("nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest")]
+    #[error(
+        "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
+    )]
     Falls,
     /// A seam does not close.
-    #[error("seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider")]
+    #[error(
+        "seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider"
+    )]
     SeamNotClosed {
         /// The seam with the widest gap.
         seam: String,
@@ -117,7 +121,9 @@ pub enum RestError {
         force: f64,
     },
     /// Vertices start inside the body, too deep to be pushed out.
-    #[error("{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it")]
+    #[error(
+        "{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it"
+    )]
     InitialPenetration {
         /// How many.
         vertices: usize,
@@ -131,7 +137,9 @@ pub enum RestError {
         pairs: usize,
     },
     /// Cloth that passes through cloth at the end.
-    #[error("{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level")]
+    #[error(
+        "{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level"
+    )]
     Crossing {
         /// How many.
         pairs: usize,
@@ -174,10 +182,33 @@ impl Rest {
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
         let clock = Instant::now();
         let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
-        let mut work = Work::new(self, scene, body.as_ref(), clock)?;
-        work.sew(progress)?;
-        work.drape(progress)
+        let mut coarsest = self.coarsest;
+        loop {
+            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            work.sew(progress)?;
+            match work.drape(progress)? {
+                Draped::Rested(state) => return self.judge(*state),
+                // From its own start the level keeps free of crossings by itself, if slowly.
+                Draped::Tangled { nodes } => coarsest = nodes,
+            }
+        }
     }
+
+    fn judge(&self, state: Rested) -> Result<Rested, RestError> {
+        match state.outcome.at_rest {
+            true => Ok(state),
+            false => Err(RestError::NotAtRest { wanted: self.speed, state: Box::new(state) }),
+        }
+    }
+}
+
+/// How the levels ended.
+enum Draped {
+    Rested(Box<Rested>),
+    /// The state carried to the level of so many nodes crosses itself and could not be undone.
+    Tangled {
+        nodes: usize,
+    },
 }
 
 struct Work<'a> {
@@ -198,11 +229,17 @@ struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    fn new(rest: &'a Rest, scene: &'a Scene, body: Option<&'a Body>, clock: Instant) -> Result<Self, RestError> {
+    fn new(
+        rest: &'a Rest,
+        coarsest: usize,
+        scene: &'a Scene,
+        body: Option<&'a Body>,
+        clock: Instant,
+    ) -> Result<Self, RestError> {
         let mut pieces = vec![Pieces::new(scene)];
         let mut coarser: Vec<Coarser> = Vec::new();
         let mut starts = vec![clear_start(scene, body)?];
-        while let Some(fine) = pieces.last().filter(|p| p.points > rest.coarsest) {
+        while let Some(fine) = pieces.last().filter(|p| p.points > coarsest) {
             let Some(next) = coarsen(fine) else { break };
             let start = starts.last().map(|s| next.kept.iter().map(|&v| s[v as usize]).collect());
             starts.extend(start);
@@ -212,7 +249,18 @@ impl<'a> Work<'a> {
         if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
             return Err(RestError::Falls);
         }
-        Ok(Self { rest, scene, body, clock, pieces, coarser, starts, x: vec![], joined_at: None, reports: vec![] })
+        Ok(Self {
+            rest,
+            scene,
+            body,
+            clock,
+            pieces,
+            coarser,
+            starts,
+            x: vec![],
+            joined_at: None,
+            reports: vec![],
+        })
     }
 
     /// Closes the seams on the coarsest level and joins them.
@@ -235,13 +283,19 @@ impl<'a> Work<'a> {
             if widest < self.rest.join_gap {
                 break;
             }
-            let thread = |nodes: &[u32; 2]| Thread { nodes: *nodes, force: pull * spacing, soft: 2.0 * self.rest.join_gap };
+            let thread = |nodes: &[u32; 2]| Thread {
+                nodes: *nodes,
+                force: pull * spacing,
+                soft: 2.0 * self.rest.join_gap,
+            };
             let mut system = self.system(pieces, &sheet, true);
             system.threads = pairs.iter().map(thread).collect();
             let farthest = (0.2 * widest).max(0.05);
-            let pace = Pace { first: 0.02, longest: 1.0, steps: 40, speed: self.rest.speed, farthest, prove: false };
+            let pace =
+                Pace { first: 0.02, longest: 1.0, steps: 40, speed: self.rest.speed, farthest, prove: false };
             let closed = |x: &[Vec3]| self.rest.join_gap > self::widest(x, &pairs);
-            let report = self.run(&mut system, &sheet, &self.starts[coarsest], &mut x, &pace, &closed, progress)?;
+            let report =
+                self.run(&mut system, &sheet, &self.starts[coarsest], &mut x, &pace, &closed, progress)?;
             self.reports.push(report);
             pull *= HARDER.0;
         }
@@ -261,7 +315,9 @@ impl<'a> Work<'a> {
     fn widest_seam(&self, x: &[Vec3]) -> String {
         let mut names: Vec<Option<&str>> = vec![None; self.pieces[0].points];
         for seam in &self.scene.seams {
-            seam.pairs.iter().for_each(|p| names[self.pieces[0].point[p[0] as usize] as usize] = Some(&seam.name));
+            seam.pairs
+                .iter()
+                .for_each(|p| names[self.pieces[0].point[p[0] as usize] as usize] = Some(&seam.name));
         }
         let fine_of = |v: u32| self.coarser.iter().rev().fold(v, |v, c| c.kept[v as usize]);
         let coarsest = &self.pieces[self.pieces.len() - 1];
@@ -272,7 +328,7 @@ impl<'a> Work<'a> {
     }
 
     /// Lets the sewn garment come to rest, level by level.
-    fn drape(mut self, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+    fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
         let density = self.scene.material.area_density;
         let mut slides = Vec::new();
         for k in (0..self.pieces.len()).rev() {
@@ -288,8 +344,11 @@ impl<'a> Work<'a> {
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
+            if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
+                return Ok(Draped::Tangled { nodes: x.len() });
+            }
             if k == 0 {
-                return self.finish(system, &sheet, x);
+                return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
             }
             let finer = |values: &[Vec3]| {
                 let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
@@ -313,10 +372,7 @@ impl<'a> Work<'a> {
                 return Err(RestError::Crossing { pairs, state: Box::new(state) });
             }
         }
-        if outcome.at_rest {
-            return Ok(state);
-        }
-        Err(RestError::NotAtRest { wanted: self.rest.speed, state: Box::new(state) })
+        Ok(state)
     }
 
     /// Runs one level.
@@ -340,7 +396,9 @@ impl<'a> Work<'a> {
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             report = LevelReport { outcome: *outcome, seconds: start.elapsed().as_secs_f64(), ..report };
             let free = system.touches.is_empty() && !system.pinned.contains(&true);
-            let falls = free && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt && outcome.dt >= pace.longest;
+            let falls = free
+                && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt
+                && outcome.dt >= pace.longest;
             falling = if falls && outcome.speed > 0.0 { falling + 1 } else { 0 };
             if falling > 8 {
                 stop = Some(RestError::Falls);
@@ -382,8 +440,11 @@ impl<'a> Work<'a> {
         for (v, &p) in pieces.pinned.iter().enumerate() {
             pinned[if open { v } else { pieces.point[v] as usize }] |= p;
         }
-        let stiffness: Vec<f64> =
-            sheet.masses().iter().map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density).collect();
+        let stiffness: Vec<f64> = sheet
+            .masses()
+            .iter()
+            .map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density)
+            .collect();
         let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
         let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
             body,
@@ -399,8 +460,10 @@ impl<'a> Work<'a> {
         sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
         let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
         let thickness = m.thickness.min(LAYER_SHARE * shortest);
-        let layers = self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let elastic = Elastic::new(sheet, Stiffness { weft: m.stretch, warp: m.stretch, shear: m.shear, bend: m.bend });
+        let layers =
+            self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
+        let elastic =
+            Elastic::new(sheet, Stiffness { weft: m.stretch, warp: m.stretch, shear: m.shear, bend: m.bend });
         System {
             elastic,
             masses: sheet.masses().to_vec(),

@@ -186,7 +186,16 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, slips: self.slips[t.node as usize], ease: self.ease, holds: self.holds, stiffness: s.stiffness[t.node as usize] })
+            Some(Rub {
+                node: t.node,
+                normal: t.normal,
+                anchor,
+                limit: s.friction * t.load,
+                slips: self.slips[t.node as usize],
+                ease: self.ease,
+                holds: self.holds,
+                stiffness: s.stiffness[t.node as usize],
+            })
         })
     }
 
@@ -328,7 +337,11 @@ impl Rub {
 
     fn gradient(&self, x: &[Vec3]) -> Vec3 {
         let (along, s) = self.slide(x);
-        if self.holds || s * self.stiffness <= self.limit { along * self.stiffness } else { along * (self.limit / s) }
+        if self.holds || s * self.stiffness <= self.limit {
+            along * self.stiffness
+        } else {
+            along * (self.limit / s)
+        }
     }
 
     fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
@@ -345,7 +358,11 @@ impl Rub {
     fn dragged(&self, x: &[Vec3], share: f64) -> (bool, Vec3) {
         let (along, s) = self.slide(x);
         let most = self.limit / self.stiffness;
-        if s <= most { (false, self.anchor) } else { (true, x[self.node as usize] - along * (share * most / s)) }
+        if s <= most {
+            (false, self.anchor)
+        } else {
+            (true, x[self.node as usize] - along * (share * most / s))
+        }
     }
 }
 

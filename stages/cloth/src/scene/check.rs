@@ -72,7 +72,11 @@ fn check_seams(scene: &Scene) -> Result<(), SceneError> {
     for (s, seam) in scene.seams.iter().enumerate() {
         for (pair, &[a, b]) in seam.pairs.iter().enumerate() {
             if a == b {
-                return Err(SceneError::SeamPair { seam: seam.name.clone(), pair, why: "sews a vertex to itself" });
+                return Err(SceneError::SeamPair {
+                    seam: seam.name.clone(),
+                    pair,
+                    why: "sews a vertex to itself",
+                });
             }
             seen.push(([a.min(b), a.max(b)], s, pair));
         }

@@ -18,7 +18,9 @@ type Patch = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
 fn patch(nx: u32, ny: u32) -> Patch {
     let at = |i: u32, j: u32| j * (nx + 1) + i;
     let points = (0..=ny)
-        .flat_map(|j| (0..=nx).map(move |i| Vector2::new(f64::from(i) / f64::from(nx), f64::from(j) / f64::from(ny))))
+        .flat_map(|j| {
+            (0..=nx).map(move |i| Vector2::new(f64::from(i) / f64::from(nx), f64::from(j) / f64::from(ny)))
+        })
         .collect();
     let cell = |i: u32, j: u32| {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
@@ -32,7 +34,8 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
     let (points, triangles) = patch(cells, cells);
     let rest: Vec<Vector2<f64>> = points.iter().map(|p| p.add_scalar(-0.5)).collect();
     let positions: Vec<Vector3<f64>> = rest.iter().map(|p| Vector3::new(p.x, y, -p.y)).collect();
-    let panels = vec![Panel { name: "square".into(), vertices: 0..rest.len(), triangles: 0..triangles.len() }];
+    let panels =
+        vec![Panel { name: "square".into(), vertices: 0..rest.len(), triangles: 0..triangles.len() }];
     Scene {
         name,
         rest,
@@ -105,7 +108,11 @@ pub fn tube(nx: u32, ny: u32) -> Scene {
 }
 
 /// Rings of `around` vertices between two poles, closed and facing outwards.
-fn lathe(rings: &[Vec<Vector3<f64>>], bottom: Vector3<f64>, top: Vector3<f64>) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
+fn lathe(
+    rings: &[Vec<Vector3<f64>>],
+    bottom: Vector3<f64>,
+    top: Vector3<f64>,
+) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     let around = rings.first().map_or(0, Vec::len) as u32;
     let mut vertices: Vec<_> = rings.iter().flatten().copied().collect();
     let (low, high) = (vertices.len() as u32, vertices.len() as u32 + 1);

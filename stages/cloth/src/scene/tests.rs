@@ -23,24 +23,34 @@ fn a_small_scene_is_read() {
 
 #[test]
 fn faults_are_named() {
-    assert_eq!(fault("garment-scene-1", "garment-scene-9"), "the format is 'garment-scene-9', not 'garment-scene-1'");
+    assert_eq!(
+        fault("garment-scene-1", "garment-scene-9"),
+        "the format is 'garment-scene-9', not 'garment-scene-1'"
+    );
     assert_eq!(fault("[0,1,2]]", "[0,1,7]]"), "triangle 0 refers to vertex 7, but there are 3");
     assert_eq!(fault("[[0,0,0],[1", "[[1"), "positions has 2 entries, but there are 3 vertices");
     assert_eq!(fault("[[0,1,2]]", "[]"), "the scene has no triangles");
     assert_eq!(fault("[0,1]}", "[0,2]}"), "panel 'one': triangles 0..2 lie outside 0..1");
     assert_eq!(fault("\"stretch\": 10", "\"stretch\": -1"), "stretch = -1 is out of range: above 0 N/m");
     assert_eq!(fault("\"pinned\": [0]", "\"pinned\": [3]"), "pin 0 refers to vertex 3, but there are 3");
-    let seam = |pairs: &str| fault("\"seams\": []", &format!("\"seams\": [{{\"name\": \"s\", \"pairs\": {pairs}}}]"));
+    let seam = |pairs: &str| {
+        fault("\"seams\": []", &format!("\"seams\": [{{\"name\": \"s\", \"pairs\": {pairs}}}]"))
+    };
     assert_eq!(seam("[[1,1]]"), "seam 's': pair 0 sews a vertex to itself");
     assert_eq!(seam("[[0,1],[1,0]]"), "seam 's': pair 1 is sewn already");
-    assert!(fault("\"stretch\": 10,", "").starts_with("not a garment-scene-1: missing field `stretch` at line"));
+    assert!(
+        fault("\"stretch\": 10,", "").starts_with("not a garment-scene-1: missing field `stretch` at line")
+    );
 }
 
 #[test]
 fn an_obj_is_read_and_its_faults_have_lines() {
     let (v, f) = parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/2 3/3 -1\n").unwrap();
     assert_eq!((v.len(), f), (4, vec![[0, 1, 2], [0, 2, 3]]));
-    assert_eq!(parse_obj("v 0 0\n").unwrap_err().to_string(), "line 1 of the OBJ: a vertex needs three numbers");
+    assert_eq!(
+        parse_obj("v 0 0\n").unwrap_err().to_string(),
+        "line 1 of the OBJ: a vertex needs three numbers"
+    );
     let error = parse_obj("v 0 0 0\nf 1 2 3\n").unwrap_err().to_string();
     assert_eq!(error, "line 2 of the OBJ: a corner is no index of a vertex above it");
 }

@@ -2,9 +2,12 @@
 use super::*;
 
 fn patch() -> (Sheet, Vec<Vec3>) {
-    let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12], [0.13, 0.11], [0.05, 0.22]].map(|[x, y]| Vector2::new(x, y));
+    let uv =
+        [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12], [0.13, 0.11], [0.05, 0.22]].map(|[x, y]| Vector2::new(x, y));
     let sheet = Sheet::flat(&uv, &[[0, 1, 2], [1, 3, 2], [2, 3, 4]], 0.1).unwrap();
-    let bend = |(k, p): (usize, &Vector2<f64>)| Vec3::new(p.x * 1.03, 0.4 * p.y * p.y + 0.01 * (k as f64).sin(), p.y);
+    let bend = |(k, p): (usize, &Vector2<f64>)| {
+        Vec3::new(p.x * 1.03, 0.4 * p.y * p.y + 0.01 * (k as f64).sin(), p.y)
+    };
     (sheet, uv.iter().enumerate().map(bend).collect())
 }
 
@@ -26,7 +29,11 @@ fn the_gradient_is_the_slope_of_the_energy() {
             let down = elastic.value(&x);
             x[i][c] = at;
             let slope = (up - down) / (2.0 * h);
-            assert!((slope - gradient[i][c]).abs() < 1e-6 * (1.0 + slope.abs()), "{i} {c}: {slope} {}", gradient[i][c]);
+            assert!(
+                (slope - gradient[i][c]).abs() < 1e-6 * (1.0 + slope.abs()),
+                "{i} {c}: {slope} {}",
+                gradient[i][c]
+            );
         }
     }
 }
@@ -40,7 +47,8 @@ fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
     elastic.bind(&pattern);
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     elastic.add_matrix(&x, &mut values);
-    let push: Vec<Vec3> = (0..x.len()).map(|i| Vec3::new(i as f64, 2.0 * i as f64, 1.0).map(f64::sin)).collect();
+    let push: Vec<Vec3> =
+        (0..x.len()).map(|i| Vec3::new(i as f64, 2.0 * i as f64, 1.0).map(f64::sin)).collect();
     let mut product = vec![Vec3::zeros(); x.len()];
     pattern.multiply_add(&values, &push, &mut product);
     let h = 1e-6;

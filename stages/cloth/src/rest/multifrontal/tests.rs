@@ -12,8 +12,11 @@ fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
     let pattern = Pattern::new(n * n, cells.iter().map(|c| &c[..]));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     for (k, cell) in cells.iter().enumerate() {
-        let v: Vec<Vector3<f64>> =
-            (0..4).map(|c| Vector3::new((k * 7 + c) as f64, (k * 3 + 2 * c) as f64, (c * c + k) as f64).map(f64::sin)).collect();
+        let v: Vec<Vector3<f64>> = (0..4)
+            .map(|c| {
+                Vector3::new((k * 7 + c) as f64, (k * 3 + 2 * c) as f64, (c * c + k) as f64).map(f64::sin)
+            })
+            .collect();
         for a in 0..4 {
             for b in 0..=a {
                 add_at(&mut values, pattern.slot(cell[a], cell[b]).unwrap(), &(v[a] * v[b].transpose()));
@@ -31,7 +34,8 @@ fn the_solution_solves() {
         let (pattern, values, layout) = sheet(n);
         let symbolic = Symbolic::new(&pattern, &layout);
         let factor = symbolic.factor(&values).unwrap();
-        let want: Vec<Vector3<f64>> = (0..n * n).map(|i| Vector3::new(i as f64, 1.0, -2.0 * i as f64).map(f64::cos)).collect();
+        let want: Vec<Vector3<f64>> =
+            (0..n * n).map(|i| Vector3::new(i as f64, 1.0, -2.0 * i as f64).map(f64::cos)).collect();
         let mut x = vec![Vector3::zeros(); n * n];
         pattern.multiply_add(&values, &want, &mut x);
         symbolic.solve(&factor, &mut x);
@@ -67,9 +71,12 @@ fn speed() {
         let id = |i: usize, j: usize| (j * n + i) as u32;
         let groups: Vec<[u32; 6]> = (0..(n - 1) * (n - 2))
             .map(|c| (c % (n - 1), c / (n - 1)))
-            .map(|(i, j)| [id(i, j), id(i + 1, j), id(i, j + 1), id(i + 1, j + 1), id(i, j + 2), id(i + 1, j + 2)])
+            .map(|(i, j)| {
+                [id(i, j), id(i + 1, j), id(i, j + 1), id(i + 1, j + 1), id(i, j + 2), id(i + 1, j + 2)]
+            })
             .collect();
-        let across: Vec<[u32; 6]> = groups.iter().map(|g| g.map(|k| id(k as usize / n, k as usize % n))).collect();
+        let across: Vec<[u32; 6]> =
+            groups.iter().map(|g| g.map(|k| id(k as usize / n, k as usize % n))).collect();
         let pattern = Pattern::new(n * n, groups.iter().chain(&across).map(|c| &c[..]));
         let mut values = vec![Matrix3::from_element(-0.01); pattern.blocks()];
         (0..n * n).for_each(|i| values[i] = Matrix3::identity() * 10.0);
@@ -82,6 +89,13 @@ fn speed() {
         let t = std::time::Instant::now();
         let mut x = vec![Vector3::new(1.0, 2.0, 3.0); n * n];
         symbolic.solve(&factor, &mut x);
-        eprintln!("n {n} work {:.2e} fronts {} blocks {} len {} symbolic {t1:?} factor {t2:?} solve {:?}", symbolic.work(), symbolic.fronts.len(), pattern.blocks(), symbolic.factor_len(), t.elapsed());
+        eprintln!(
+            "n {n} work {:.2e} fronts {} blocks {} len {} symbolic {t1:?} factor {t2:?} solve {:?}",
+            symbolic.work(),
+            symbolic.fronts.len(),
+            pattern.blocks(),
+            symbolic.factor_len(),
+            t.elapsed()
+        );
     }
 }

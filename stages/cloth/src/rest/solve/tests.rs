@@ -49,7 +49,8 @@ fn a_skirt_is_sewn_and_comes_to_rest_from_ten_starts() {
         }
         let state = settle(&scene).unwrap();
         let x = &state.positions;
-        let gap = scene.seams.iter().flat_map(|s| &s.pairs).map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm());
+        let gap =
+            scene.seams.iter().flat_map(|s| &s.pairs).map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm());
         assert_eq!(gap.fold(0.0, f64::max), 0.0);
         assert!(state.joined_at.unwrap() < 5e-4);
         let strain = strains(&scene, x);
@@ -103,8 +104,18 @@ fn plate(slope: f64, half: f64) -> SceneBody {
         nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), slope) * p
     };
     let triangles = vec![
-        [0, 4, 6], [0, 6, 2], [1, 3, 7], [1, 7, 5], [0, 1, 5], [0, 5, 4], [2, 6, 7], [2, 7, 3], [0, 2, 3], [0, 3, 1],
-        [4, 5, 7], [4, 7, 6],
+        [0, 4, 6],
+        [0, 6, 2],
+        [1, 3, 7],
+        [1, 7, 5],
+        [0, 1, 5],
+        [0, 5, 4],
+        [2, 6, 7],
+        [2, 7, 3],
+        [0, 2, 3],
+        [0, 3, 1],
+        [4, 5, 7],
+        [4, 7, 6],
     ];
     SceneBody { vertices: (0..8).map(corner).collect(), triangles, friction: 0.4 }
 }
@@ -145,7 +156,8 @@ fn friction_sticks_below_its_angle_and_slips_above() {
 #[test]
 fn what_has_no_rest_is_named() {
     let falls = settle(&Scene { body: None, ..generate::drape(5) }).unwrap_err();
-    let text = "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest";
+    let text =
+        "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest";
     assert_eq!(falls.to_string(), text);
     let mut beside = generate::drape(5);
     beside.positions.iter_mut().for_each(|p| p.x += 3.0);
@@ -166,7 +178,10 @@ fn panels_inside_the_body_are_refused_or_moved_out() {
     let mut scene = generate::tube(8, 9);
     scene.positions.iter_mut().for_each(|p| p.z *= 0.2);
     let error = settle(&scene).unwrap_err();
-    assert!(matches!(error, RestError::InitialPenetration { vertices, depth } if vertices > 20 && depth > 0.05), "{error}");
+    assert!(
+        matches!(error, RestError::InitialPenetration { vertices, depth } if vertices > 20 && depth > 0.05),
+        "{error}"
+    );
     let mut scene = generate::drape(12);
     scene.positions.iter_mut().for_each(|p| p.y = 0.29);
     let state = roughly(&scene);
@@ -202,7 +217,8 @@ fn a_caller_can_stop_and_time_can_run_out() {
     let scene = generate::hang(9);
     let stopped = Rest::default().solve(&scene, &mut |_| ControlFlow::Break(()));
     assert_eq!(stopped.unwrap_err(), RestError::Stopped);
-    let hurried = Rest { budget: Duration::ZERO, ..Rest::default() }.solve(&scene, &mut |_| ControlFlow::Continue(()));
+    let hurried =
+        Rest { budget: Duration::ZERO, ..Rest::default() }.solve(&scene, &mut |_| ControlFlow::Continue(()));
     match hurried.unwrap_err() {
         RestError::Timeout { positions, .. } => assert_eq!(positions.len(), scene.rest.len()),
         error => panic!("{error}"),
