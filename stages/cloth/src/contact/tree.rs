@@ -165,9 +165,9 @@ impl ClothTree {
     fn narrow(&self, s: usize, t: usize, x: &[Vec3], moves: &[Vec3], reach: f64, out: &mut Vec<Pair>) {
         let (a, b) = (&self.triangles[s], &self.triangles[t]);
         for (k, other, owner) in [(s, b, a), (t, a, b)] {
-            for c in 0..3 {
-                if self.owns[k].0[c] && !other.contains(&owner[c]) {
-                    let nodes = [owner[c], other[0], other[1], other[2]];
+            for (own, v) in self.owns[k].0.iter().zip(owner) {
+                if *own && !other.contains(v) {
+                    let nodes = [*v, other[0], other[1], other[2]];
                     keep(Pair { kind: Kind::VertexTriangle, nodes }, x, moves, reach, out);
                 }
             }

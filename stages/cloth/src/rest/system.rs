@@ -162,15 +162,20 @@ impl System<'_> {
         }
     }
 
-    /// Friction asked for beyond its limit, as a share of all it can give.
+    /// Friction that the sheet as a whole asks for beyond its limit, as a share of all it can give: what single nodes ask
+    /// for against each other cancels, for they may slide and stop.
     #[must_use]
     pub fn excess(&self, x: &[Vec3]) -> f64 {
-        let (mut excess, mut limit) = (0.0, 0.0);
+        let (mut excess, mut limit) = (Vec3::zeros(), 0.0);
         for r in self.rubs() {
-            excess += (r.slide(x).1 * r.stiffness - r.limit).max(0.0);
+            let (along, s) = r.slide(x);
+            let beyond = s * r.stiffness - r.limit;
+            if beyond > 0.0 {
+                excess += along * (beyond / s);
+            }
             limit += r.limit;
         }
-        if limit > 0.0 { excess / limit } else { 0.0 }
+        if limit > 0.0 { excess.norm() / limit } else { 0.0 }
     }
 
     /// How far friction holds each node back at `x`, m. It is force over stiffness, so it is the same on a finer mesh.

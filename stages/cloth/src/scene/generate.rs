@@ -24,7 +24,7 @@ fn patch(nx: u32, ny: u32) -> Patch {
         .collect();
     let cell = |i: u32, j: u32| {
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-        if (i + j) % 2 == 0 { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
+        if (i + j).is_multiple_of(2) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] }
     };
     (points, (0..ny).flat_map(|j| (0..nx).flat_map(move |i| cell(i, j))).collect())
 }

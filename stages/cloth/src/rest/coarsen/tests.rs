@@ -28,7 +28,6 @@ fn levels_shrink_and_keep_the_area_and_the_seams() {
                 break;
             }
         }
-        eprintln!("{} {sizes:?}", scene.name);
         assert!(sizes.len() > 2 && sizes[1] * 2 < sizes[0], "{sizes:?}");
         fine.sewn_sheet(0.1).unwrap();
     }
