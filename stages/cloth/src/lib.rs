@@ -2,3 +2,11 @@
 //! (seams), and the solvers that bring it to rest.
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
+
+pub mod contact;
+pub mod error;
+pub mod force;
+pub mod linear;
+pub mod mesh;
+pub mod rest;
+pub mod scene;

@@ -1,0 +1,49 @@
+//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--trace]`; prints one line of JSON.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
+use std::error::Error;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+use toile_cloth::rest::solve::{Rest, RestError, Rested};
+use toile_cloth::scene;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let (Some(file), Some(out)) = (args.first(), args.get(1)) else {
+        return Err("usage: scene SCENE.json RESULT.obj [--trace]".into());
+    };
+    let trace = args.iter().any(|a| a == "--trace");
+    let scene = scene::read(Path::new(file))?;
+    let clock = Instant::now();
+    let mut steps = 0;
+    let solved = Rest::default().solve(&scene, &mut |level| {
+        steps += 1;
+        if trace {
+            let o = &level.outcome;
+            eprintln!(
+                "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
+                level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
+            );
+        }
+        ControlFlow::Continue(())
+    });
+    let wall = clock.elapsed().as_secs_f64();
+    let (state, error): (Rested, Option<String>) = match solved {
+        Ok(state) => (state, None),
+        Err(RestError::NotAtRest { wanted, state }) => {
+            ((*state).clone(), Some(RestError::NotAtRest { wanted, state }.to_string()))
+        }
+        Err(error) => return Err(error.into()),
+    };
+    let levels: Vec<_> = state
+        .levels
+        .iter()
+        .map(|l| serde_json::json!({"nodes": l.nodes, "sewing": l.sewing, "steps": l.outcome.steps, "s": (l.seconds * 1e4).round() / 1e4}))
+        .collect();
+    let line = serde_json::json!({
+        "scene": scene.name, "wall_s": (wall * 1e4).round() / 1e4, "steps": steps, "speed_m_s": state.outcome.speed,
+        "residual_n": state.residual, "joined_at_m": state.joined_at, "error": error, "levels": levels,
+    });
+    println!("{line}");
+    Ok(scene::write_obj(Path::new(out), &state.positions, &scene.triangles)?)
+}

@@ -1,0 +1,11 @@
+//! What cloth touches: the body and itself.
+
+pub mod body;
+pub mod ccd;
+pub mod closest;
+pub mod limit;
+pub mod pair;
+pub mod tree;
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,161 @@
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+use super::body::Body;
+use super::ccd::impact;
+use super::limit::limit;
+use super::pair::{Kind, Pair};
+use super::tree::ClothTree;
+use crate::mesh::Sheet;
+use crate::scene::generate;
+use nalgebra::{Vector2, Vector3};
+use proptest::prelude::*;
+
+type Vec3 = Vector3<f64>;
+
+fn point() -> impl Strategy<Value = Vec3> {
+    prop::array::uniform3(-1.0..1.0f64).prop_map(Vec3::from)
+}
+
+fn kind() -> impl Strategy<Value = Kind> {
+    prop_oneof![Just(Kind::VertexTriangle), Just(Kind::EdgeEdge)]
+}
+
+/// The least distance of a pair over a fine division of the step up to `until`.
+fn least(kind: Kind, from: &[Vec3; 4], moves: &[Vec3; 4], until: f64) -> f64 {
+    (0..=400)
+        .map(|k| f64::from(k) / 400.0 * until)
+        .map(|t| kind.closest(&std::array::from_fn(|i| from[i] + moves[i] * t)).distance)
+        .fold(f64::INFINITY, f64::min)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(128))]
+
+    #[test]
+    fn nothing_meets_before_the_impact(
+        kind in kind(),
+        from in prop::array::uniform4(point()),
+        moves in prop::array::uniform4(point()),
+    ) {
+        let pair = Pair { kind, nodes: [0, 1, 2, 3] };
+        let start = kind.closest(&from).distance;
+        prop_assume!(start > 1e-3);
+        let hit = impact(&pair, &from, &moves);
+        let brute = least(kind, &from, &moves, 1.0);
+        prop_assert!(least(kind, &from, &moves, hit.unwrap_or(1.0)) >= 0.09 * start);
+        // A clear miss must not be called a hit.
+        prop_assert!(hit.is_none() || brute < 0.2 * start, "{hit:?} {brute} {start}");
+    }
+
+    #[test]
+    fn closest_points_are_the_closest(
+        kind in kind(),
+        x in prop::array::uniform4(point()),
+        s in 0.0..1.0f64,
+        t in 0.0..1.0f64,
+    ) {
+        let c = kind.closest(&x);
+        let between: Vec3 = (0..4).map(|i| x[i] * c.weights[i]).sum();
+        prop_assert!((between.norm() - c.distance).abs() < 1e-9);
+        let (s, t) = if s + t > 1.0 && kind == Kind::VertexTriangle { (1.0 - s, 1.0 - t) } else { (s, t) };
+        let other = match kind {
+            Kind::VertexTriangle => x[0] - (x[1] + (x[2] - x[1]) * s + (x[3] - x[1]) * t),
+            Kind::EdgeEdge => x[0] + (x[1] - x[0]) * s - x[2] - (x[3] - x[2]) * t,
+        };
+        prop_assert!(c.distance <= other.norm() + 1e-12);
+    }
+
+    #[test]
+    fn the_tree_finds_what_all_pairs_find(seed in 0u64..1000, reach in 0.01..0.2f64) {
+        let (sheet, x, moves) = crumpled(4, seed, 0.05);
+        let found = ClothTree::new(&sheet, &x).pairs(&x, &moves, reach);
+        for pair in all_pairs(&sheet) {
+            if least(pair.kind, &pair.at(&x), &pair.at(&moves), 1.0) < reach {
+                let there = found.iter().any(|p| same(p, &pair));
+                prop_assert!(there, "{pair:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_limited_step_crosses_nothing(seed in 0u64..1000, size in 0.01..0.5f64) {
+        let (sheet, x, mut moves) = crumpled(6, seed, size);
+        let tree = ClothTree::new(&sheet, &x);
+        prop_assume!(tree.crossings(&x).is_empty());
+        let pairs = tree.pairs(&x, &moves, 1e-3);
+        limit(&x, &mut moves, &pairs);
+        let end: Vec<Vec3> = x.iter().zip(&moves).map(|(p, m)| p + m).collect();
+        prop_assert_eq!(tree.crossings(&end), vec![]);
+    }
+
+    #[test]
+    fn distance_to_a_sphere(p in point()) {
+        let scene = generate::drape(3).body.unwrap();
+        let body = Body::new(scene.vertices, &scene.triangles);
+        let near = body.nearest(&p, f64::INFINITY).unwrap();
+        // The facets lie inside the sphere by less than this.
+        let sag = 0.3 * (1.0 - (std::f64::consts::PI / 48.0).cos()) * 2.2;
+        prop_assert!((near.distance - (p.norm() - 0.3)).abs() < sag + 1e-9);
+        prop_assert!((near.normal.norm() - 1.0).abs() < 1e-9);
+        prop_assert!((near.point + near.normal * near.distance - p).norm() < 1e-9);
+    }
+
+    #[test]
+    fn no_guarded_move_enters_the_body(p in point(), by in point()) {
+        let scene = generate::drape(3).body.unwrap();
+        let body = Body::new(scene.vertices, &scene.triangles);
+        prop_assume!(body.nearest(&p, f64::INFINITY).unwrap().distance > 0.0);
+        let end = p + body.guard(&p, &(by * 3.0), 5e-4);
+        prop_assert!(body.nearest(&end, f64::INFINITY).unwrap().distance > 0.0);
+    }
+}
+
+fn same(a: &Pair, b: &Pair) -> bool {
+    let parts = |p: &Pair| {
+        let first = if p.kind == Kind::VertexTriangle { 1 } else { 2 };
+        let mut sides = [p.nodes[..first].to_vec(), p.nodes[first..].to_vec()];
+        sides.iter_mut().for_each(|s| s.sort_unstable());
+        sides.sort_by_key(|s| (s.len(), s.clone()));
+        sides
+    };
+    a.kind == b.kind && parts(a) == parts(b)
+}
+
+fn all_pairs(sheet: &Sheet) -> Vec<Pair> {
+    let mut pairs = Vec::new();
+    for v in 0..sheet.vertex_count() as u32 {
+        let away = sheet.triangles().iter().filter(|t| !t.contains(&v));
+        pairs.extend(away.map(|t| Pair { kind: Kind::VertexTriangle, nodes: [v, t[0], t[1], t[2]] }));
+    }
+    for (k, e) in sheet.edges().iter().enumerate() {
+        let others =
+            sheet.edges()[k + 1..].iter().filter(|f| f.vertices.iter().all(|v| !e.vertices.contains(v)));
+        pairs.extend(others.map(|f| Pair {
+            kind: Kind::EdgeEdge,
+            nodes: [e.vertices[0], e.vertices[1], f.vertices[0], f.vertices[1]],
+        }));
+    }
+    pairs
+}
+
+/// A square sheet of `n` by `n` cells rolled up loosely, and wild moves of up to `size`.
+fn crumpled(n: usize, seed: u64, size: f64) -> (Sheet, Vec<Vec3>, Vec<Vec3>) {
+    let at = |i: usize, j: usize| (j * (n + 1) + i) as u32;
+    let uv: Vec<Vector2<f64>> = (0..(n + 1) * (n + 1))
+        .map(|k| Vector2::new((k % (n + 1)) as f64, (k / (n + 1)) as f64) / n as f64)
+        .collect();
+    let cell = |k: usize| (k % n, k / n);
+    let triangles: Vec<[u32; 3]> = (0..n * n)
+        .map(cell)
+        .flat_map(|(i, j)| {
+            [[at(i, j), at(i + 1, j), at(i + 1, j + 1)], [at(i, j), at(i + 1, j + 1), at(i, j + 1)]]
+        })
+        .collect();
+    let sheet = Sheet::flat(&uv, &triangles, 0.1).unwrap();
+    let roll = |p: &Vector2<f64>| {
+        let turn = 7.0 * p.x;
+        Vec3::new((0.05 + 0.02 * turn) * turn.cos(), p.y, (0.05 + 0.02 * turn) * turn.sin())
+    };
+    let wild = |k: usize, c: u64| size * (((k as u64 * 3 + c) * 7919 + seed * 104_729) as f64).sin();
+    let moves = (0..uv.len()).map(|k| Vec3::new(wild(k, 0), wild(k, 1), wild(k, 2))).collect();
+    (sheet, uv.iter().map(roll).collect(), moves)
+}

@@ -1,0 +1,265 @@
+//! Which parts of a sheet may meet during a step: a tree of boxes over its triangles.
+//!
+//! The tree's shape is made once, where the sheet lies flat; each step only refits the boxes to the swept triangles. Each
+//! vertex and edge belongs to one triangle, so that every pair is found once (Curtis, Tamstorf, Manocha 2008). Cost
+//! O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
+
+use super::ccd::approach;
+use super::pair::{Kind, Pair};
+use crate::mesh::Sheet;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+type Vec3 = Vector3<f64>;
+
+/// Triangles in a leaf: leaves are tested against the tree as a whole.
+const LEAF_TRIANGLES: usize = 4;
+
+/// An end nearer than this to a triangle's plane lies in it: cloth that lies flat does not cross itself, m.
+const FLAT: f64 = 1e-9;
+
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    low: Vec3,
+    high: Vec3,
+}
+
+impl Bounds {
+    fn meets(&self, other: &Self) -> bool {
+        (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
+    }
+
+    fn with(&self, other: &Self) -> Self {
+        Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
+    }
+}
+
+/// A part of the tree: a leaf's triangles, or the left child; the right one follows it.
+#[derive(Debug, Clone, Copy)]
+struct Branch {
+    first: u32,
+    count: u32,
+}
+
+/// The tree over one sheet.
+#[derive(Debug, Clone)]
+pub struct ClothTree {
+    triangles: Vec<[u32; 3]>,
+    /// Which corners and which sides (k to k + 1) each triangle answers for.
+    owns: Vec<([bool; 3], [bool; 3])>,
+    branches: Vec<Branch>,
+    leaves: Vec<u32>,
+}
+
+impl ClothTree {
+    /// Builds the tree; `layout` holds a place for each node, best where the sheet lies flat.
+    #[must_use]
+    pub fn new(sheet: &Sheet, layout: &[Vec3]) -> Self {
+        let all = sheet.triangles();
+        let centres: Vec<Vec3> =
+            all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
+        let mut order: Vec<u32> = (0..all.len() as u32).collect();
+        let mut branches = vec![Branch { first: 0, count: 0 }];
+        split(0, &mut order, 0, &centres, &mut branches);
+        let triangles: Vec<[u32; 3]> = order.iter().map(|&t| all[t as usize]).collect();
+        let mut place = vec![0u32; all.len()];
+        order.iter().enumerate().for_each(|(k, &t)| place[t as usize] = k as u32);
+        let owns = ownership(sheet, &triangles, &place);
+        let leaves = (0..branches.len() as u32).filter(|&b| branches[b as usize].count > 0).collect();
+        Self { triangles, owns, branches, leaves }
+    }
+
+    /// Pairs that may come nearer than `reach` while the nodes move from `x` by `moves`, sorted.
+    #[must_use]
+    pub fn pairs(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        let margin = Vec3::repeat(0.5 * reach);
+        let swept = |t: &[u32; 3]| {
+            let mut b = Bounds { low: x[t[0] as usize], high: x[t[0] as usize] };
+            for &v in t {
+                let (p, q) = (x[v as usize], x[v as usize] + moves[v as usize]);
+                b = Bounds { low: b.low.inf(&p).inf(&q), high: b.high.sup(&p).sup(&q) };
+            }
+            Bounds { low: b.low - margin, high: b.high + margin }
+        };
+        let boxes: Vec<Bounds> = self.triangles.par_iter().with_min_len(256).map(swept).collect();
+        let fitted = self.fit(&boxes);
+        let of_leaf = |&leaf: &u32| {
+            let mut found = Vec::new();
+            self.meet(leaf, &boxes, &fitted, &mut |s, t| self.narrow(s, t, x, moves, reach, &mut found));
+            found
+        };
+        let mut pairs: Vec<Pair> = self.leaves.par_iter().with_min_len(16).flat_map_iter(of_leaf).collect();
+        pairs.par_sort_unstable();
+        pairs
+    }
+
+    /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted.
+    #[must_use]
+    pub fn crossings(&self, x: &[Vec3]) -> Vec<([u32; 2], [u32; 3])> {
+        let still = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|v| x[v as usize]);
+            Bounds { low: a.inf(&b).inf(&c), high: a.sup(&b).sup(&c) }
+        };
+        let boxes: Vec<Bounds> = self.triangles.iter().map(still).collect();
+        let fitted = self.fit(&boxes);
+        let of_leaf = |&leaf: &u32| {
+            let mut found = Vec::new();
+            self.meet(leaf, &boxes, &fitted, &mut |s, t| {
+                for (a, b) in
+                    [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
+                {
+                    found.extend(
+                        (0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| crosses(*e, b, x)).map(|e| (e, *b)),
+                    );
+                }
+            });
+            found
+        };
+        let mut all: Vec<_> = self.leaves.par_iter().with_min_len(16).flat_map_iter(of_leaf).collect();
+        all.iter_mut().for_each(|(e, _)| e.sort_unstable());
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    fn fit(&self, boxes: &[Bounds]) -> Vec<Bounds> {
+        let mut fitted = vec![Bounds { low: Vec3::zeros(), high: Vec3::zeros() }; self.branches.len()];
+        for (k, b) in self.branches.iter().enumerate().rev() {
+            let first = b.first as usize;
+            fitted[k] = match b.count {
+                0 => fitted[first].with(&fitted[first + 1]),
+                n => boxes[first + 1..first + n as usize].iter().fold(boxes[first], |a, b| a.with(b)),
+            };
+        }
+        fitted
+    }
+
+    /// Visits every pair of triangles whose boxes meet, the first of which lies in `leaf` and comes first.
+    fn meet(&self, leaf: u32, boxes: &[Bounds], fitted: &[Bounds], visit: &mut dyn FnMut(usize, usize)) {
+        let own = self.branches[leaf as usize];
+        let mine = &fitted[leaf as usize];
+        let mut stack = vec![0u32];
+        while let Some(k) = stack.pop() {
+            if !fitted[k as usize].meets(mine) {
+                continue;
+            }
+            let b = self.branches[k as usize];
+            if b.count == 0 {
+                stack.extend([b.first, b.first + 1]);
+                continue;
+            }
+            if b.first < own.first {
+                continue;
+            }
+            for s in own.first..own.first + own.count {
+                for t in b.first.max(s + 1)..b.first + b.count {
+                    if boxes[s as usize].meets(&boxes[t as usize]) {
+                        visit(s as usize, t as usize);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds the pairs of features that two triangles answer for and that may come within `reach`.
+    fn narrow(&self, s: usize, t: usize, x: &[Vec3], moves: &[Vec3], reach: f64, out: &mut Vec<Pair>) {
+        let (a, b) = (&self.triangles[s], &self.triangles[t]);
+        for (k, other, owner) in [(s, b, a), (t, a, b)] {
+            for (own, v) in self.owns[k].0.iter().zip(owner) {
+                if *own && !other.contains(v) {
+                    let nodes = [*v, other[0], other[1], other[2]];
+                    keep(Pair { kind: Kind::VertexTriangle, nodes }, x, moves, reach, out);
+                }
+            }
+        }
+        for i in (0..3).filter(|&i| self.owns[s].1[i]) {
+            let e = [a[i], a[(i + 1) % 3]];
+            for j in (0..3).filter(|&j| self.owns[t].1[j]) {
+                let f = [b[j], b[(j + 1) % 3]];
+                if !e.contains(&f[0]) && !e.contains(&f[1]) {
+                    keep(
+                        Pair { kind: Kind::EdgeEdge, nodes: [e[0], e[1], f[0], f[1]] },
+                        x,
+                        moves,
+                        reach,
+                        out,
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Whether the edge passes through the triangle; features that share a node do not count.
+fn crosses(e: [u32; 2], t: &[u32; 3], x: &[Vec3]) -> bool {
+    if t.contains(&e[0]) || t.contains(&e[1]) {
+        return false;
+    }
+    let (p, q) = (x[e[0] as usize], x[e[1] as usize]);
+    let [a, b, c] = t.map(|v| x[v as usize]);
+    let volume = |o: &Vec3, u: &Vec3, v: &Vec3, w: &Vec3| (u - o).dot(&(v - o).cross(&(w - o)));
+    let area = (b - a).cross(&(c - a)).norm();
+    let (under, over) = (volume(&p, &a, &b, &c), volume(&q, &a, &b, &c));
+    if under * over >= 0.0 || under.abs().min(over.abs()) < FLAT * area {
+        return false;
+    }
+    let sides = [volume(&p, &q, &a, &b), volume(&p, &q, &b, &c), volume(&p, &q, &c, &a)];
+    sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0)
+}
+
+fn keep(pair: Pair, x: &[Vec3], moves: &[Vec3], reach: f64, out: &mut Vec<Pair>) {
+    let at = pair.at(x);
+    let step = approach(pair.kind, &pair.at(moves));
+    if far(pair.kind, &at, reach + step) {
+        return;
+    }
+    if pair.kind.closest(&at).distance < reach + step {
+        out.push(pair);
+    }
+}
+
+/// A quick test that two features are further apart than `reach`: their boxes are.
+fn far(kind: Kind, x: &[Vec3; 4], reach: f64) -> bool {
+    let first = if kind == Kind::VertexTriangle { 1 } else { 2 };
+    let (mut low, mut high) = (x[0], x[0]);
+    x[1..first].iter().for_each(|p| (low, high) = (low.inf(p), high.sup(p)));
+    let (mut low2, mut high2) = (x[3], x[3]);
+    x[first..3].iter().for_each(|p| (low2, high2) = (low2.inf(p), high2.sup(p)));
+    (0..3).any(|k| low[k] - high2[k] > reach || low2[k] - high[k] > reach)
+}
+
+fn split(k: usize, order: &mut [u32], offset: usize, centres: &[Vec3], branches: &mut Vec<Branch>) {
+    if order.len() <= LEAF_TRIANGLES {
+        branches[k] = Branch { first: offset as u32, count: order.len() as u32 };
+        return;
+    }
+    let (mut low, mut high) = (centres[order[0] as usize], centres[order[0] as usize]);
+    order.iter().for_each(|&t| (low, high) = (low.inf(&centres[t as usize]), high.sup(&centres[t as usize])));
+    let axis = (high - low).imax();
+    let half = order.len() / 2;
+    order.select_nth_unstable_by(half, |&a, &b| {
+        centres[a as usize][axis].total_cmp(&centres[b as usize][axis]).then(a.cmp(&b))
+    });
+    let left = branches.len();
+    branches[k] = Branch { first: left as u32, count: 0 };
+    branches.extend([Branch { first: 0, count: 0 }; 2]);
+    let (a, b) = order.split_at_mut(half);
+    split(left, a, offset, centres, branches);
+    split(left + 1, b, offset + half, centres, branches);
+}
+
+fn ownership(sheet: &Sheet, triangles: &[[u32; 3]], place: &[u32]) -> Vec<([bool; 3], [bool; 3])> {
+    let mut owns = vec![([false; 3], [false; 3]); triangles.len()];
+    let mut seen = vec![false; sheet.vertex_count()];
+    for (t, own) in triangles.iter().zip(&mut owns) {
+        for c in 0..3 {
+            own.0[c] = !std::mem::replace(&mut seen[t[c] as usize], true);
+        }
+    }
+    for edge in sheet.edges() {
+        let k = place[edge.sides.0.triangle as usize] as usize;
+        // The side opposite corner c runs from corner c + 1.
+        owns[k].1[(edge.sides.0.corner as usize + 1) % 3] = true;
+    }
+    owns
+}

@@ -1,0 +1,14 @@
+//! Energies: what every implicit solver asks of a model, and the assembly of small elements into forces and matrices.
+
+mod assemble;
+mod check;
+mod energy;
+mod gravity;
+
+#[cfg(test)]
+mod tests;
+
+pub use assemble::{Assembled, Element};
+pub use check::{gradient_error, hessian_error};
+pub use energy::{Energy, Projection, Vec3, total_gradient, total_value};
+pub use gravity::Gravity;

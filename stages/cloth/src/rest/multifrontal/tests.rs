@@ -1,0 +1,101 @@
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr)]
+use super::*;
+use crate::rest::pattern::add_at;
+
+/// A sheet of `n` by `n` nodes, every cell's four nodes coupled, and a matrix that is positive definite.
+fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
+    let id = |i: usize, j: usize| (j * n + i) as u32;
+    let cells: Vec<[u32; 4]> = (0..(n - 1) * (n - 1))
+        .map(|c| (c % (n - 1), c / (n - 1)))
+        .map(|(i, j)| [id(i, j), id(i + 1, j), id(i, j + 1), id(i + 1, j + 1)])
+        .collect();
+    let pattern = Pattern::new(n * n, cells.iter().map(|c| &c[..]));
+    let mut values = vec![Matrix3::zeros(); pattern.blocks()];
+    for (k, cell) in cells.iter().enumerate() {
+        let v: Vec<Vector3<f64>> = (0..4)
+            .map(|c| {
+                Vector3::new((k * 7 + c) as f64, (k * 3 + 2 * c) as f64, (c * c + k) as f64).map(f64::sin)
+            })
+            .collect();
+        for a in 0..4 {
+            for b in 0..=a {
+                add_at(&mut values, pattern.slot(cell[a], cell[b]).unwrap(), &(v[a] * v[b].transpose()));
+            }
+        }
+    }
+    (0..n * n).for_each(|i| values[i] += Matrix3::identity() * 0.1);
+    let layout = (0..n * n).map(|i| Vector3::new((i % n) as f64, (i / n) as f64, 0.0)).collect();
+    (pattern, values, layout)
+}
+
+#[test]
+fn the_solution_solves() {
+    for n in [2, 3, 7, 20, 45] {
+        let (pattern, values, layout) = sheet(n);
+        let symbolic = Symbolic::new(&pattern, &layout);
+        let factor = symbolic.factor(&values).unwrap();
+        let want: Vec<Vector3<f64>> =
+            (0..n * n).map(|i| Vector3::new(i as f64, 1.0, -2.0 * i as f64).map(f64::cos)).collect();
+        let mut x = vec![Vector3::zeros(); n * n];
+        pattern.multiply_add(&values, &want, &mut x);
+        symbolic.solve(&factor, &mut x);
+        let worst = x.iter().zip(&want).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(worst < 1e-9, "{n}: {worst}");
+    }
+}
+
+#[test]
+fn an_indefinite_matrix_is_named() {
+    let (pattern, mut values, layout) = sheet(9);
+    values[40] -= Matrix3::identity() * 100.0;
+    let error = Symbolic::new(&pattern, &layout).factor(&values).unwrap_err();
+    assert!(error.to_string().starts_with("the stiffness matrix is not positive definite at node"));
+}
+
+#[test]
+fn one_thread_and_many_give_the_same_bits() {
+    let (pattern, values, layout) = sheet(40);
+    let symbolic = Symbolic::new(&pattern, &layout);
+    let with = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| symbolic.factor(&values).unwrap().columns)
+    };
+    assert_eq!(with(1), with(4));
+}
+
+#[test]
+#[ignore = "a measurement"]
+fn speed() {
+    for n in [35, 101] {
+        let (_, _, layout) = sheet(n);
+        let id = |i: usize, j: usize| (j * n + i) as u32;
+        let groups: Vec<[u32; 6]> = (0..(n - 1) * (n - 2))
+            .map(|c| (c % (n - 1), c / (n - 1)))
+            .map(|(i, j)| {
+                [id(i, j), id(i + 1, j), id(i, j + 1), id(i + 1, j + 1), id(i, j + 2), id(i + 1, j + 2)]
+            })
+            .collect();
+        let across: Vec<[u32; 6]> =
+            groups.iter().map(|g| g.map(|k| id(k as usize / n, k as usize % n))).collect();
+        let pattern = Pattern::new(n * n, groups.iter().chain(&across).map(|c| &c[..]));
+        let mut values = vec![Matrix3::from_element(-0.01); pattern.blocks()];
+        (0..n * n).for_each(|i| values[i] = Matrix3::identity() * 10.0);
+        let t = std::time::Instant::now();
+        let symbolic = Symbolic::new(&pattern, &layout);
+        let t1 = t.elapsed();
+        let t = std::time::Instant::now();
+        let factor = symbolic.factor(&values).unwrap();
+        let t2 = t.elapsed();
+        let t = std::time::Instant::now();
+        let mut x = vec![Vector3::new(1.0, 2.0, 3.0); n * n];
+        symbolic.solve(&factor, &mut x);
+        eprintln!(
+            "n {n} work {:.2e} fronts {} blocks {} len {} symbolic {t1:?} factor {t2:?} solve {:?}",
+            symbolic.work(),
+            symbolic.fronts.len(),
+            pattern.blocks(),
+            symbolic.factor_len(),
+            t.elapsed()
+        );
+    }
+}

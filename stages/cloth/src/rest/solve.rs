@@ -1,0 +1,529 @@
+//! `Rest`: a whole scene straight to static equilibrium.
+//!
+//! Method: panels are coarsened; the coarsest level is sewn (seams pull with a force that hardly depends on their gap,
+//! without weight, until they meet; then each pair becomes one node, so the gap is exactly zero) and draped; each finer
+//! level starts from the coarser one's state, carried over by the triangles that its vertices lie in at rest. So the fall
+//! and the sewing happen where steps cost milliseconds, and the finest level only settles.
+//!
+//! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
+//! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
+
+use super::coarsen::{Coarser, coarsen};
+use super::elastic::{Elastic, Stiffness};
+use super::layers::Layers;
+use super::multifrontal::NotPositive;
+use super::newton::{Outcome, Pace, relax};
+use super::pieces::Pieces;
+use super::system::{Support, System, Thread};
+use crate::contact::body::Body;
+use crate::contact::tree::ClothTree;
+use crate::error::ClothError;
+use crate::mesh::Sheet;
+use crate::scene::Scene;
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+type Vec3 = Vector3<f64>;
+
+/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre of thickness: a cloth
+/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer converges sooner.
+const CONTACT_STIFFNESS: f64 = 0.5;
+
+/// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
+const SEAM_PULL: f64 = 0.01;
+
+/// Factor by which a seam that stays open pulls harder, and how often.
+const HARDER: (f64, usize) = (3.0, 4);
+
+/// Settings of the rest solver.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
+    pub speed: f64,
+    /// The coarsest level has at most about this many nodes.
+    pub coarsest: usize,
+    /// Steps on each level but the finest.
+    pub coarse_steps: usize,
+    /// Steps on the finest level before giving up.
+    pub finest_steps: usize,
+    /// Seams are joined when their gaps are below this, m.
+    pub join_gap: f64,
+    /// Wall time before giving up.
+    pub budget: Duration,
+}
+
+impl Default for Rest {
+    fn default() -> Self {
+        Self {
+            speed: 1e-3,
+            coarsest: 200,
+            coarse_steps: 30,
+            finest_steps: 200,
+            join_gap: 5e-4,
+            budget: Duration::from_secs(600),
+        }
+    }
+}
+
+/// What one level did.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelReport {
+    /// Its nodes.
+    pub nodes: usize,
+    /// Whether seams were open.
+    pub sewing: bool,
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Wall time, s.
+    pub seconds: f64,
+}
+
+/// A garment at rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rested {
+    /// Position of every vertex of the scene, m.
+    pub positions: Vec<Vec3>,
+    /// How the finest level ended.
+    pub outcome: Outcome,
+    /// Greatest force left on a node, N.
+    pub residual: f64,
+    /// Widest seam when it was joined, m; nothing where there are none.
+    pub joined_at: Option<f64>,
+    /// Every level, coarse to fine.
+    pub levels: Vec<LevelReport>,
+}
+
+/// Why there is no garment at rest.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RestError {
+    /// A fault of the input.
+    #[error(transparent)]
+    Cloth(#[from] ClothError),
+    /// The matrix stayed indefinite.
+    #[error(transparent)]
+    NotPositive(#[from] NotPositive),
+    /// Nothing holds the cloth.
+    #[error(
+        "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
+    )]
+    Falls,
+    /// A seam does not close.
+    #[error(
+        "seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider"
+    )]
+    SeamNotClosed {
+        /// The seam with the widest gap.
+        seam: String,
+        /// Its widest gap, m.
+        gap: f64,
+        /// The force that did not close it, N/m.
+        force: f64,
+    },
+    /// Vertices start inside the body, too deep to be pushed out.
+    #[error(
+        "{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it"
+    )]
+    InitialPenetration {
+        /// How many.
+        vertices: usize,
+        /// The deepest, m.
+        depth: f64,
+    },
+    /// Cloth that passes through cloth where it starts.
+    #[error("{pairs} pairs of an edge and a triangle cross at the start; lay the panels out so that none do")]
+    InitialCrossing {
+        /// How many.
+        pairs: usize,
+    },
+    /// Cloth that passes through cloth at the end.
+    #[error(
+        "{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level"
+    )]
+    Crossing {
+        /// How many.
+        pairs: usize,
+        /// The state.
+        state: Box<Rested>,
+    },
+    /// Still moving after all steps.
+    #[error("still moving after {steps} steps: {speed:.4} m/s, wanted {wanted:.4} m/s; allow more steps or a faster end", steps = state.outcome.steps, speed = state.outcome.speed)]
+    NotAtRest {
+        /// The speed that was asked for, m/s.
+        wanted: f64,
+        /// The last state, which has neither crossings nor vertices in the body.
+        state: Box<Rested>,
+    },
+    /// The budget of time is spent.
+    #[error("out of time after {seconds:.1} s on level {level} of {levels}")]
+    Timeout {
+        /// Wall time spent, s.
+        seconds: f64,
+        /// The level, coarse to fine, from 1.
+        level: usize,
+        /// Levels.
+        levels: usize,
+        /// The state carried to the finest level.
+        positions: Vec<Vec3>,
+    },
+    /// The caller asked to stop.
+    #[error("stopped")]
+    Stopped,
+}
+
+/// What a caller learns while solving; it may stop the solver.
+pub type Progress<'p> = dyn FnMut(&LevelReport) -> ControlFlow<()> + 'p;
+
+impl Rest {
+    /// Solves `scene`; `progress` hears of every step.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        let clock = Instant::now();
+        let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
+        let mut coarsest = self.coarsest;
+        loop {
+            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            work.sew(progress)?;
+            match work.drape(progress)? {
+                Draped::Rested(state) => return self.judge(*state),
+                // From its own start the level keeps free of crossings by itself, if slowly.
+                Draped::Tangled { nodes } => coarsest = nodes,
+            }
+        }
+    }
+
+    fn judge(&self, state: Rested) -> Result<Rested, RestError> {
+        match state.outcome.at_rest {
+            true => Ok(state),
+            false => Err(RestError::NotAtRest { wanted: self.speed, state: Box::new(state) }),
+        }
+    }
+}
+
+/// How the levels ended.
+enum Draped {
+    Rested(Box<Rested>),
+    /// The state carried to the level of so many nodes crosses itself and could not be undone.
+    Tangled {
+        nodes: usize,
+    },
+}
+
+struct Work<'a> {
+    rest: &'a Rest,
+    scene: &'a Scene,
+    body: Option<&'a Body>,
+    clock: Instant,
+    /// Fine to coarse.
+    pieces: Vec<Pieces>,
+    /// How each level but the finest was made from the finer one.
+    coarser: Vec<Coarser>,
+    /// Where the vertices of each level start.
+    starts: Vec<Vec<Vec3>>,
+    /// Where the nodes of the level in work are.
+    x: Vec<Vec3>,
+    joined_at: Option<f64>,
+    reports: Vec<LevelReport>,
+}
+
+impl<'a> Work<'a> {
+    fn new(
+        rest: &'a Rest,
+        coarsest: usize,
+        scene: &'a Scene,
+        body: Option<&'a Body>,
+        clock: Instant,
+    ) -> Result<Self, RestError> {
+        let mut pieces = vec![Pieces::new(scene)];
+        let mut coarser: Vec<Coarser> = Vec::new();
+        let mut starts = vec![clear_start(scene, body)?];
+        while let Some(fine) = pieces.last().filter(|p| p.points > coarsest) {
+            let Some(next) = coarsen(fine) else { break };
+            let start = starts.last().map(|s| next.kept.iter().map(|&v| s[v as usize]).collect());
+            starts.extend(start);
+            pieces.push(next.pieces.clone());
+            coarser.push(next);
+        }
+        if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
+            return Err(RestError::Falls);
+        }
+        Ok(Self {
+            rest,
+            scene,
+            body,
+            clock,
+            pieces,
+            coarser,
+            starts,
+            x: vec![],
+            joined_at: None,
+            reports: vec![],
+        })
+    }
+
+    /// Closes the seams on the coarsest level and joins them.
+    fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
+        let coarsest = self.pieces.len() - 1;
+        let pieces = &self.pieces[coarsest];
+        let sheet = pieces.open_sheet(self.scene.material.area_density)?;
+        let mut x = self.starts[coarsest].clone();
+        let pairs = pieces.seam_pairs();
+        let spacing = spacing(pieces, &pairs);
+        if self.scene.self_collision {
+            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            if pairs > 0 {
+                return Err(RestError::InitialCrossing { pairs });
+            }
+        }
+        let mut pull = SEAM_PULL * self.scene.material.stretch;
+        for _ in 0..HARDER.1 {
+            let widest = widest(&x, &pairs);
+            if widest < self.rest.join_gap {
+                break;
+            }
+            let thread = |nodes: &[u32; 2]| Thread {
+                nodes: *nodes,
+                force: pull * spacing,
+                soft: 2.0 * self.rest.join_gap,
+            };
+            let mut system = self.system(pieces, &sheet, true);
+            system.threads = pairs.iter().map(thread).collect();
+            let farthest = (0.2 * widest).max(0.05);
+            let pace =
+                Pace { first: 0.02, longest: 1.0, steps: 40, speed: self.rest.speed, farthest, prove: false };
+            let closed = |x: &[Vec3]| self.rest.join_gap > self::widest(x, &pairs);
+            let report =
+                self.run(&mut system, &sheet, &self.starts[coarsest], &mut x, &pace, &closed, progress)?;
+            self.reports.push(report);
+            pull *= HARDER.0;
+        }
+        if !pairs.is_empty() {
+            let gap = widest(&x, &pairs);
+            self.joined_at = Some(gap);
+            if gap > self.rest.join_gap {
+                let seam = self.widest_seam(&x);
+                return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
+            }
+        }
+        self.x = pieces.sew(&x, sheet.masses());
+        Ok(())
+    }
+
+    /// The name of the seam that is open widest on the coarsest level.
+    fn widest_seam(&self, x: &[Vec3]) -> String {
+        let mut names: Vec<Option<&str>> = vec![None; self.pieces[0].points];
+        for seam in &self.scene.seams {
+            seam.pairs
+                .iter()
+                .for_each(|p| names[self.pieces[0].point[p[0] as usize] as usize] = Some(&seam.name));
+        }
+        let fine_of = |v: u32| self.coarser.iter().rev().fold(v, |v, c| c.kept[v as usize]);
+        let coarsest = &self.pieces[self.pieces.len() - 1];
+        let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
+        let worst = coarsest.seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let point = worst.map_or(0, |p| self.pieces[0].point[fine_of(p[0]) as usize]);
+        names[point as usize].unwrap_or("?").to_string()
+    }
+
+    /// Lets the sewn garment come to rest, level by level.
+    fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
+        let density = self.scene.material.area_density;
+        let mut slides = Vec::new();
+        for k in (0..self.pieces.len()).rev() {
+            let sheet = self.pieces[k].sewn_sheet(density)?;
+            let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
+            let mut system = self.system(&self.pieces[k], &sheet, false);
+            let mut x = std::mem::take(&mut self.x);
+            if slides.len() == x.len() {
+                system.slides = std::mem::take(&mut slides);
+            }
+            let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
+            let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
+            let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
+            let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
+            self.reports.push(report);
+            if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
+                return Ok(Draped::Tangled { nodes: x.len() });
+            }
+            if k == 0 {
+                return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
+            }
+            let finer = |values: &[Vec3]| {
+                let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
+                self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
+            };
+            slides = finer(&system.held_back(&x));
+            self.x = finer(&x);
+        }
+        Err(ClothError::EmptyScene.into())
+    }
+
+    fn finish(self, mut system: System<'_>, sheet: &Sheet, x: Vec<Vec3>) -> Result<Rested, RestError> {
+        system.touch(&x);
+        let residual = super::newton::greatest(&system.gradient(&x));
+        let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
+        let positions = self.pieces[0].spread(&x);
+        let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        if self.scene.self_collision {
+            let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
+            if pairs > 0 {
+                return Err(RestError::Crossing { pairs, state: Box::new(state) });
+            }
+        }
+        Ok(state)
+    }
+
+    /// Runs one level.
+    #[allow(clippy::too_many_arguments)]
+    fn run(
+        &self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut Vec<Vec3>,
+        pace: &Pace,
+        done: &dyn Fn(&[Vec3]) -> bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<LevelReport, RestError> {
+        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
+        let start = Instant::now();
+        let sewing = !system.threads.is_empty();
+        let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
+        let mut stop = None;
+        let mut falling = 0;
+        let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
+            report = LevelReport { outcome: *outcome, seconds: start.elapsed().as_secs_f64(), ..report };
+            let free = system.touches.is_empty() && !system.pinned.contains(&true);
+            let falls = free
+                && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt
+                && outcome.dt >= pace.longest;
+            falling = if falls && outcome.speed > 0.0 { falling + 1 } else { 0 };
+            if falling > 8 {
+                stop = Some(RestError::Falls);
+            } else if progress(&report).is_break() {
+                stop = Some(RestError::Stopped);
+            } else if self.clock.elapsed() > self.rest.budget {
+                stop = Some(self.timeout());
+            }
+            if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        report.outcome = relax(system, layout, tree.as_ref(), x, pace, &mut watch)?;
+        match stop {
+            Some(RestError::Timeout { seconds, level, levels, .. }) => {
+                Err(RestError::Timeout { seconds, level, levels, positions: self.carried(x) })
+            }
+            Some(error) => Err(error),
+            None => Ok(report),
+        }
+    }
+
+    fn timeout(&self) -> RestError {
+        let done = self.reports.iter().filter(|r| !r.sewing).count();
+        let seconds = self.clock.elapsed().as_secs_f64();
+        RestError::Timeout { seconds, level: done + 1, levels: self.pieces.len(), positions: vec![] }
+    }
+
+    /// The level's nodes, sewn or open, carried to the finest vertices.
+    fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
+        let open = |p: &&Pieces| p.rest.len() == x.len();
+        let k = self.pieces.iter().position(|p| p.points == x.len() || open(&p)).unwrap_or(0);
+        let vertices = if self.pieces[k].points == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
+        self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
+    }
+
+    fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> System<'a> {
+        let m = &self.scene.material;
+        let n = sheet.vertex_count();
+        let mut pinned = vec![false; n];
+        for (v, &p) in pieces.pinned.iter().enumerate() {
+            pinned[if open { v } else { pieces.point[v] as usize }] |= p;
+        }
+        let stiffness: Vec<f64> = sheet
+            .masses()
+            .iter()
+            .map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density)
+            .collect();
+        let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+        let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
+            body,
+            friction: b.friction,
+            offsets: vec![m.thickness; n],
+            offset: m.thickness,
+            depth: longest.clamp(0.02, 0.1),
+            edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
+            clear: pieces.rest.len() == self.scene.rest.len(),
+            stiffness: stiffness.clone(),
+        });
+        let mut corners = vec![0u16; n];
+        sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+        let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
+        let thickness = m.thickness.min(LAYER_SHARE * shortest);
+        let layers =
+            self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
+        let elastic =
+            Elastic::new(sheet, Stiffness { weft: m.stretch, warp: m.stretch, shear: m.shear, bend: m.bend });
+        System {
+            elastic,
+            masses: sheet.masses().to_vec(),
+            gravity: if open { Vec3::zeros() } else { gravity(self.scene) },
+            pinned,
+            threads: vec![],
+            support,
+            layers,
+            touches: vec![],
+            anchors: vec![None; n],
+            slides: vec![Vec3::zeros(); n],
+            ease: super::newton::EASE.0,
+            holds: false,
+            slips: vec![false; n],
+            loads: vec![0.0; n],
+        }
+    }
+}
+
+/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
+const LAYER_SHARE: f64 = 0.25;
+
+/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
+const DEEPEST_START: f64 = 0.05;
+
+/// The gravity in the end.
+fn gravity(scene: &Scene) -> Vec3 {
+    scene.phases.last().map(|p| p.gravity).unwrap_or_default()
+}
+
+/// The start with vertices that lie a little inside the body moved out.
+fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
+    let mut start = scene.positions.clone();
+    let Some(body) = body else { return Ok(start) };
+    let (mut vertices, mut depth) = (0, 0.0f64);
+    for p in &mut start {
+        if let Some(n) = body.nearest(p, f64::INFINITY).filter(|n| n.distance < 0.0) {
+            vertices += 1;
+            depth = depth.max(-n.distance);
+            *p = n.point + n.normal * scene.material.thickness;
+        }
+    }
+    if depth > DEEPEST_START { Err(RestError::InitialPenetration { vertices, depth }) } else { Ok(start) }
+}
+
+fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
+    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}
+
+/// Mean length of seam that a pair stands for, m.
+fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
+    let mut sewn = vec![false; pieces.rest.len()];
+    pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);
+    let edges = pieces.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
+    let along: Vec<f64> = edges
+        .filter(|e| e.iter().all(|&v| sewn[v as usize]))
+        .map(|[a, b]| (pieces.rest[a as usize] - pieces.rest[b as usize]).norm())
+        .collect();
+    if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,109 @@
+//! What a scene must satisfy before a solver sees it. O(n log n).
+
+use super::{Scene, SceneError};
+use crate::error::{ClothError, check_parameter};
+use nalgebra::Vector3;
+
+pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    let n = scene.rest.len();
+    if scene.triangles.is_empty() {
+        return Err(ClothError::EmptyScene.into());
+    }
+    if scene.positions.len() != n {
+        return Err(SceneError::Length { name: "positions", found: scene.positions.len(), wanted: n });
+    }
+    finite("rest_uv", scene.rest.iter().map(|p| p.iter().all(|v| v.is_finite())))?;
+    finite("positions", scene.positions.iter().map(is_finite))?;
+    refers("triangle", scene.triangles.iter().map(|t| &t[..]), n)?;
+    refers("pin", scene.pinned.iter().map(std::slice::from_ref), n)?;
+    for phase in &scene.phases {
+        finite("gravity", std::iter::once(is_finite(&phase.gravity)))?;
+        check_parameter("seconds", phase.seconds, |s| s >= 0.0, "0 s or more")?;
+    }
+    check_panels(scene)?;
+    check_seams(scene)?;
+    check_material(scene)?;
+    check_body(scene)
+}
+
+fn is_finite(p: &Vector3<f64>) -> bool {
+    p.iter().all(|v| v.is_finite())
+}
+
+fn finite(field: &'static str, good: impl Iterator<Item = bool>) -> Result<(), ClothError> {
+    match good.enumerate().find(|(_, good)| !good) {
+        Some((index, _)) => Err(ClothError::NonFiniteInput { field, index }),
+        None => Ok(()),
+    }
+}
+
+fn refers<'a>(
+    what: &'static str,
+    groups: impl Iterator<Item = &'a [u32]>,
+    count: usize,
+) -> Result<(), ClothError> {
+    for (index, group) in groups.enumerate() {
+        if let Some(&v) = group.iter().find(|&&v| v as usize >= count) {
+            return Err(ClothError::VertexOutOfRange { what, index, vertex: v as usize, count });
+        }
+    }
+    Ok(())
+}
+
+fn check_panels(scene: &Scene) -> Result<(), SceneError> {
+    for panel in &scene.panels {
+        let both = [
+            ("vertices", &panel.vertices, scene.rest.len()),
+            ("triangles", &panel.triangles, scene.triangles.len()),
+        ];
+        for (what, range, count) in both {
+            if range.start > range.end || range.end > count {
+                let (start, end) = (range.start, range.end);
+                return Err(SceneError::PanelRange { panel: panel.name.clone(), what, start, end, count });
+            }
+        }
+    }
+    Ok(())
+}
+
+fn check_seams(scene: &Scene) -> Result<(), SceneError> {
+    refers("seam pair", scene.seams.iter().flat_map(|s| &s.pairs).map(|p| &p[..]), scene.rest.len())?;
+    let mut seen: Vec<([u32; 2], usize, usize)> = Vec::new();
+    for (s, seam) in scene.seams.iter().enumerate() {
+        for (pair, &[a, b]) in seam.pairs.iter().enumerate() {
+            if a == b {
+                return Err(SceneError::SeamPair {
+                    seam: seam.name.clone(),
+                    pair,
+                    why: "sews a vertex to itself",
+                });
+            }
+            seen.push(([a.min(b), a.max(b)], s, pair));
+        }
+    }
+    seen.sort_unstable();
+    match seen.windows(2).find(|w| w[0].0 == w[1].0) {
+        Some(w) => {
+            let (_, s, pair) = w[1];
+            Err(SceneError::SeamPair { seam: scene.seams[s].name.clone(), pair, why: "is sewn already" })
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_material(scene: &Scene) -> Result<(), ClothError> {
+    let m = &scene.material;
+    check_parameter("area_density", m.area_density, |v| v > 0.0, "above 0 kg/m^2")?;
+    check_parameter("stretch", m.stretch, |v| v > 0.0, "above 0 N/m")?;
+    check_parameter("shear", m.shear, |v| v >= 0.0, "0 N/m or more")?;
+    check_parameter("bend", m.bend, |v| v >= 0.0, "0 N m or more")?;
+    check_parameter("friction", m.friction, |v| v >= 0.0, "0 or more")?;
+    check_parameter("thickness", m.thickness, |v| v > 0.0, "above 0 m")
+}
+
+fn check_body(scene: &Scene) -> Result<(), SceneError> {
+    let Some(body) = &scene.body else { return Ok(()) };
+    check_parameter("body.friction", body.friction, |v| v >= 0.0, "0 or more")?;
+    finite("body", body.vertices.iter().map(is_finite))?;
+    Ok(refers("body triangle", body.triangles.iter().map(|t| &t[..]), body.vertices.len())?)
+}

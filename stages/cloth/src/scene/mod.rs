@@ -1,0 +1,176 @@
+//! Prepared scenes: panels, seams, a body and what the cloth is made of.
+//!
+//! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON form `garment-scene-1`
+//! (described in docs/scene.md), `generate` makes the standard ones.
+
+mod check;
+pub mod generate;
+mod obj;
+mod read;
+
+#[cfg(test)]
+mod tests;
+
+pub use obj::{ObjMesh, parse_obj, write_obj};
+pub use read::{parse, read};
+
+use crate::error::ClothError;
+use nalgebra::{Vector2, Vector3};
+use std::ops::Range;
+use std::path::PathBuf;
+
+/// A scene, checked: every index points at something and every number is finite.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// What it is called.
+    pub name: String,
+    /// Flat rest coordinates of every vertex, m; warp along y.
+    pub rest: Vec<Vector2<f64>>,
+    /// Where every vertex starts, m; y is up.
+    pub positions: Vec<Vector3<f64>>,
+    /// Vertices of each triangle, counter-clockwise at rest.
+    pub triangles: Vec<[u32; 3]>,
+    /// The pieces it is cut from.
+    pub panels: Vec<Panel>,
+    /// What has to be sewn.
+    pub seams: Vec<Seam>,
+    /// Vertices that stay where they start.
+    pub pinned: Vec<u32>,
+    /// What it is worn by.
+    pub body: Option<SceneBody>,
+    /// What it is made of.
+    pub material: Material,
+    /// What acts, one after the other.
+    pub phases: Vec<Phase>,
+    /// Whether a right answer needs cloth to collide with itself.
+    pub self_collision: bool,
+}
+
+/// A piece of cloth.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Panel {
+    /// What it is called.
+    pub name: String,
+    /// Its vertices.
+    pub vertices: Range<usize>,
+    /// Its triangles.
+    pub triangles: Range<usize>,
+}
+
+/// Pairs of vertices that end up at one place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seam {
+    /// What it is called.
+    pub name: String,
+    /// The pairs.
+    pub pairs: Vec<[u32; 2]>,
+}
+
+/// A closed, static mesh whose triangles face outwards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneBody {
+    /// Its vertices, m.
+    pub vertices: Vec<Vector3<f64>>,
+    /// Its triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Coefficient of friction of cloth on it.
+    pub friction: f64,
+}
+
+/// Sheet quantities, each per unit width.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Material {
+    /// kg/m².
+    pub area_density: f64,
+    /// Tensile stiffness in warp and weft, N/m.
+    pub stretch: f64,
+    /// Shear stiffness, N/m.
+    pub shear: f64,
+    /// Bending stiffness, N m.
+    pub bend: f64,
+    /// Coefficient of friction of cloth on cloth.
+    pub friction: f64,
+    /// m.
+    pub thickness: f64,
+}
+
+/// A span of time with one gravity.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// What it is called.
+    pub name: String,
+    /// How long it lasts, s.
+    pub seconds: f64,
+    /// m/s².
+    pub gravity: Vector3<f64>,
+}
+
+/// Why a scene cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SceneError {
+    /// A file could not be read.
+    #[error("cannot read {}: {why}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        why: String,
+    },
+    /// Not JSON, or not of the form.
+    #[error("not a garment-scene-1: {why}")]
+    Form {
+        /// What the parser said, with line and column.
+        why: String,
+    },
+    /// Another format or version.
+    #[error("the format is '{found}', not 'garment-scene-1'")]
+    Format {
+        /// What the file calls itself.
+        found: String,
+    },
+    /// Two lists that must be equally long.
+    #[error("{name} has {found} entries, but there are {wanted} vertices")]
+    Length {
+        /// The list.
+        name: &'static str,
+        /// Its length.
+        found: usize,
+        /// The right length.
+        wanted: usize,
+    },
+    /// A range that does not lie within its list.
+    #[error("panel '{panel}': {what} {start}..{end} lie outside 0..{count}")]
+    PanelRange {
+        /// The panel.
+        panel: String,
+        /// Vertices or triangles.
+        what: &'static str,
+        /// First.
+        start: usize,
+        /// One after the last.
+        end: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// A vertex sewn to itself, or a pair given twice.
+    #[error("seam '{seam}': pair {pair} {why}")]
+    SeamPair {
+        /// The seam.
+        seam: String,
+        /// Which pair.
+        pair: usize,
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// A line of an OBJ file.
+    #[error("line {line} of the OBJ: {why}")]
+    Obj {
+        /// Counted from 1.
+        line: usize,
+        /// What is wrong.
+        why: &'static str,
+    },
+    /// A fault of the numbers.
+    #[error(transparent)]
+    Cloth(#[from] ClothError),
+}

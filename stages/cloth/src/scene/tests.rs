@@ -1,0 +1,81 @@
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+use super::*;
+use crate::contact::body::Body;
+use proptest::prelude::*;
+
+const SMALL: &str = r#"{"format": "garment-scene-1", "name": "small", "rest_uv": [[0,0],[1,0],[0,1]],
+    "positions": [[0,0,0],[1,0,0],[0,1,0]], "triangles": [[0,1,2]],
+    "panels": [{"name": "one", "vertices": [0,3], "triangles": [0,1]}], "seams": [], "pinned": [0], "body": null,
+    "material": {"area_density": 0.1, "stretch": 10, "shear": 1, "bend": 1e-5, "damping": null, "friction": 0.3, "thickness": 0.001},
+    "phases": [{"name": "drape", "seconds": 1, "gravity": [0,-9.81,0]}], "seconds": 1, "self_collision": false}"#;
+
+fn fault(from: &str, to: &str) -> String {
+    assert!(SMALL.contains(from), "{from}");
+    parse(&SMALL.replace(from, to), &|_| Ok(String::new())).unwrap_err().to_string()
+}
+
+#[test]
+fn a_small_scene_is_read() {
+    let scene = parse(SMALL, &|_| Ok(String::new())).unwrap();
+    assert_eq!((scene.name.as_str(), scene.rest.len(), scene.pinned.as_slice()), ("small", 3, &[0][..]));
+    assert_eq!(scene.panels[0].vertices, 0..3);
+}
+
+#[test]
+fn faults_are_named() {
+    assert_eq!(
+        fault("garment-scene-1", "garment-scene-9"),
+        "the format is 'garment-scene-9', not 'garment-scene-1'"
+    );
+    assert_eq!(fault("[0,1,2]]", "[0,1,7]]"), "triangle 0 refers to vertex 7, but there are 3");
+    assert_eq!(fault("[[0,0,0],[1", "[[1"), "positions has 2 entries, but there are 3 vertices");
+    assert_eq!(fault("[[0,1,2]]", "[]"), "the scene has no triangles");
+    assert_eq!(fault("[0,1]}", "[0,2]}"), "panel 'one': triangles 0..2 lie outside 0..1");
+    assert_eq!(fault("\"stretch\": 10", "\"stretch\": -1"), "stretch = -1 is out of range: above 0 N/m");
+    assert_eq!(fault("\"pinned\": [0]", "\"pinned\": [3]"), "pin 0 refers to vertex 3, but there are 3");
+    let seam = |pairs: &str| {
+        fault("\"seams\": []", &format!("\"seams\": [{{\"name\": \"s\", \"pairs\": {pairs}}}]"))
+    };
+    assert_eq!(seam("[[1,1]]"), "seam 's': pair 0 sews a vertex to itself");
+    assert_eq!(seam("[[0,1],[1,0]]"), "seam 's': pair 1 is sewn already");
+    assert!(
+        fault("\"stretch\": 10,", "").starts_with("not a garment-scene-1: missing field `stretch` at line")
+    );
+}
+
+#[test]
+fn an_obj_is_read_and_its_faults_have_lines() {
+    let (v, f) = parse_obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/2 3/3 -1\n").unwrap();
+    assert_eq!((v.len(), f), (4, vec![[0, 1, 2], [0, 2, 3]]));
+    assert_eq!(
+        parse_obj("v 0 0\n").unwrap_err().to_string(),
+        "line 1 of the OBJ: a vertex needs three numbers"
+    );
+    let error = parse_obj("v 0 0 0\nf 1 2 3\n").unwrap_err().to_string();
+    assert_eq!(error, "line 2 of the OBJ: a corner is no index of a vertex above it");
+}
+
+#[test]
+fn the_standard_scenes_are_good() {
+    for scene in [generate::hang(5), generate::drape(6), generate::tube(4, 5)] {
+        check::check(&scene).unwrap();
+    }
+    let tube = generate::tube(22, 25);
+    assert_eq!((tube.triangles.len(), tube.rest.len()), (2200, 1196));
+    let form = tube.body.unwrap();
+    let body = Body::new(form.vertices, &form.triangles);
+    assert!(body.nearest(&Vector3::new(0.0, 0.9, 0.0), 1.0).unwrap().distance < -0.1);
+    assert!(tube.positions.iter().all(|p| body.nearest(p, 1.0).unwrap().distance > 0.03));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Whatever is in the file, the reader answers.
+    #[test]
+    fn the_reader_never_panics(cut in 0..SMALL.len(), with in "[\\[\\]{}0-9,\"a-z-]{0,6}") {
+        let text = format!("{}{}{}", &SMALL[..cut], with, &SMALL[(cut + with.len()).min(SMALL.len())..]);
+        let _ = parse(&text, &|_| Ok(String::new()));
+        let _ = parse_obj(&text);
+    }
+}
