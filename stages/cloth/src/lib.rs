@@ -3,6 +3,7 @@
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
 
+pub mod bench;
 pub mod bending;
 pub mod constraint;
 pub mod error;
