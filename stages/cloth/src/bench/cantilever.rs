@@ -10,7 +10,7 @@ use crate::solver::{Model, Solver, State, Static};
 
 const GAMMAS: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
 /// Strip width in lengths.
-const WIDTH: f64 = 0.2;
+const WIDTH: f64 = 0.3;
 /// Stretch stiffness over weight: elongation well below the error looked for.
 const STIFFNESS_OVER_WEIGHT: f64 = 2000.0;
 /// Stretch over bending stiffness in the light cases.
@@ -32,7 +32,7 @@ fn tip_drop(models: Models, mesh: &Rectangle, gamma: f64) -> Result<f64, ClothEr
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, LEAST_STIFFNESS.max(STIFFNESS_OVER_WEIGHT * gamma), 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v)).under(Vec3::new(0.0, -gamma, 0.0));
-    model.energies = models.energies(&sheet, &fabric)?;
+    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
     model.energies.push(models.clamp(&sheet, &fabric, |v| mesh.at_bottom(v as usize), |_| -Vec3::x())?);
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, 0.0, p.x)).collect());
     Static::to(1e-7 * gamma).advance(&model, &mut state)?;

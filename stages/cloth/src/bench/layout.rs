@@ -107,11 +107,11 @@ fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) 
 }
 
 fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
-    let rows = 2 * ((ny as f64 * 4.0_f64 / 3.0_f64.sqrt() / 4.0).round() as usize).max(1);
+    let (nx, rows) = nearly_equilateral(size, nx, ny);
+    let step = size.x / nx as f64;
     let mut uv = Vec::new();
     for j in 0..=rows {
         let y = size.y * j as f64 / rows as f64;
-        let step = size.x / nx as f64;
         if j % 2 == 0 {
             uv.extend((0..=nx).map(|i| Vector2::new(step * i as f64, y)));
         } else {
@@ -122,6 +122,18 @@ fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
     }
     let triangles = delaunay(&uv);
     (uv, triangles)
+}
+
+/// Columns near `nx` and an even number of rows whose triangles are closest to equilateral.
+fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize) {
+    let misfit = |n: usize| {
+        let wanted = size.y / (size.x / n as f64 * 0.75_f64.sqrt());
+        let rows = 2 * ((0.5 * wanted).round() as usize).max(1);
+        ((wanted / rows as f64).ln().abs(), n, rows)
+    };
+    let nominal = nx.max(1).min(8 * ny);
+    let near = (nominal * 4 / 5).max(1)..=nominal + nominal / 4;
+    near.map(misfit).min_by(|a, b| a.0.total_cmp(&b.0)).map_or((nominal, 2 * ny), |m| (m.1, m.2))
 }
 
 fn irregular(size: Vector2<f64>, nx: usize, ny: usize, seed: u64) -> Mesh {

@@ -28,7 +28,7 @@ fn deflection(models: Models, mesh: &Rectangle, clamped: bool, coefficient: f64)
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, 1e4, 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.on_border(v)).under(Vec3::new(0.0, 0.0, -load));
-    model.energies = models.energies(&sheet, &fabric)?;
+    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
     if clamped {
         let outward = |v: u32| outward(mesh, v as usize);
         model.energies.push(models.clamp(&sheet, &fabric, |v| mesh.on_border(v as usize), outward)?);

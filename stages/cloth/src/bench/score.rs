@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::{Layout, cantilever, catenary, dynamics, friction, plate, stretch};
-use crate::bending::{Clamp, Hinge, QuadraticHinge, Rigidity, SkipOne};
+use crate::bending::{Clamp, FreeEdge, Hinge, QuadraticHinge, Rigidity, SkipOne};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::{Energy, Vec3};
@@ -141,14 +141,23 @@ impl Models {
         })
     }
 
-    pub(super) fn energies(self, sheet: &Sheet, fabric: &Fabric) -> Result<Vec<Box<dyn Energy>>, ClothError> {
+    pub(super) fn energies(
+        self,
+        sheet: &Sheet,
+        fabric: &Fabric,
+        fixed: &[bool],
+    ) -> Result<Vec<Box<dyn Energy>>, ClothError> {
         let d = Rigidity::of(fabric);
         let bending: Box<dyn Energy> = match self.bending {
             Bending::Hinge => Box::new(Hinge::new(sheet, &d)?),
             Bending::Quadratic => Box::new(QuadraticHinge::new(sheet, &d)?),
             Bending::SkipOne => Box::new(SkipOne::new(sheet, &d)?),
         };
-        Ok(vec![self.membrane_energy(sheet, fabric)?, bending])
+        let mut energies = vec![self.membrane_energy(sheet, fabric)?, bending];
+        if self.bending != Bending::SkipOne {
+            energies.push(Box::new(FreeEdge::new(sheet, &d, |v| !fixed[v])?));
+        }
+        Ok(energies)
     }
 
     /// A clamp beside this bending model.

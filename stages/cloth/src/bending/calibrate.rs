@@ -20,20 +20,45 @@ const RELAXATION_STEPS: usize = 60;
 /// Triangles of different panels meet with different rest frames; only flaps inside one frame can be judged.
 const SAME_FRAME: f64 = 1e-9;
 
-/// What to multiply the hinge stiffness by. 1 for a mesh too small to judge.
-pub(super) fn factor(sheet: &Sheet) -> f64 {
-    let flaps: Vec<Flap> =
-        flaps(sheet, &Rigidity::uniform(1.0)).into_iter().filter(|f| one_frame(sheet, f)).collect();
-    let frame = vertex_frame(sheet);
-    let free = inner(sheet, &flaps);
-    let mut lifts = quadratics(&frame);
-    relax(&flaps, &free, &mut lifts);
-    let judged = |f: &&Flap| f.vertices.iter().all(|&v| free[v as usize]);
-    let chosen: Vec<&Flap> = flaps.iter().filter(judged).collect();
-    let chosen = if chosen.is_empty() { flaps.iter().collect() } else { chosen };
-    let (energy, area) =
-        chosen.iter().fold((0.0, 0.0), |(e, a), f| (e + cylinder_energy(f, &lifts), a + f.area / 3.0));
-    if energy > 0.0 && area > 0.0 { area / energy } else { 1.0 }
+/// What a hinge mesh is, against the sheet it stands for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Calibration {
+    /// What to multiply the hinge stiffness by. 1 for a mesh without inner edges.
+    pub factor: f64,
+    /// Poisson's ratio of its bending, about -1/3.
+    pub poisson: f64,
+}
+
+impl Calibration {
+    /// Judges the rest mesh.
+    pub(super) fn of(sheet: &Sheet) -> Self {
+        let flaps: Vec<Flap> =
+            flaps(sheet, &Rigidity::uniform(1.0)).into_iter().filter(|f| one_frame(sheet, f)).collect();
+        let free = inner(sheet, &flaps);
+        let mut lifts = quadratics(&vertex_frame(sheet));
+        relax(&flaps, &free, &mut lifts);
+        let judged = |f: &&Flap| f.vertices.iter().all(|&v| free[v as usize]);
+        let chosen: Vec<&Flap> = flaps.iter().filter(judged).collect();
+        Self::from_folds(&if chosen.is_empty() { flaps.iter().collect() } else { chosen }, &lifts)
+    }
+
+    fn from_folds(flaps: &[&Flap], lifts: &[Vec3]) -> Self {
+        let (mut cylinder, mut dome, mut saddle, mut area) = (0.0, 0.0, 0.0, 0.0);
+        for f in flaps {
+            let [a, b, c]: [f64; 3] = fold(f, lifts).into();
+            let k = stiffness(f);
+            // Mean over directions of (a cos² + b sin² + c sin cos)²; a dome; the mean of the two saddles.
+            cylinder += k * (3.0 * (a * a + b * b) + 2.0 * a * b + c * c) / 8.0;
+            dome += k * (a + b).powi(2);
+            saddle += k * 0.5 * ((a - b).powi(2) + c * c);
+            area += f.area / 3.0;
+        }
+        if cylinder > 0.0 && area > 0.0 {
+            Self { factor: area / cylinder, poisson: (dome - saddle) / (dome + saddle) }
+        } else {
+            Self { factor: 1.0, poisson: -1.0 / 3.0 }
+        }
+    }
 }
 
 fn one_frame(sheet: &Sheet, f: &Flap) -> bool {
@@ -111,11 +136,4 @@ fn relax(flaps: &[Flap], free: &[bool], lifts: &mut [Vec3]) {
 
 fn fold(f: &Flap, lifts: &[Vec3]) -> Vec3 {
     (0..4).map(|i| lifts[f.vertices[i] as usize] * f.weights[i]).sum()
-}
-
-/// Twice the energy of a unit cylinder, averaged over its directions: for folds (a, b, c) of the three lifts, the mean of
-/// `(a cos² + b sin² + c sin cos)²`.
-fn cylinder_energy(f: &Flap, lifts: &[Vec3]) -> f64 {
-    let [a, b, c]: [f64; 3] = fold(f, lifts).into();
-    stiffness(f) * (3.0 * (a * a + b * b) + 2.0 * a * b + c * c) / 8.0
 }

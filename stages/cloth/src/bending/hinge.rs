@@ -8,9 +8,10 @@
 
 use nalgebra::Matrix3;
 
+use super::Rigidity;
 use super::angle::{Leaf, angle};
+use super::calibrate::Calibration;
 use super::flap::{Flap, flaps};
-use super::{Rigidity, calibrate};
 use crate::error::ClothError;
 use crate::force::{Assembled, Element, Projection, Vec3};
 use crate::mesh::Sheet;
@@ -30,7 +31,7 @@ impl Hinge {
     /// # Errors
     /// [`ClothError::InvalidParameter`] for a negative rigidity.
     pub fn new(sheet: &Sheet, rigidity: &Rigidity) -> Result<Assembled<4, Self>, ClothError> {
-        let factor = calibrate::factor(sheet);
+        let factor = Calibration::of(sheet).factor;
         Self::with_factor(sheet, rigidity, factor)
     }
 

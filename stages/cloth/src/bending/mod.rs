@@ -11,6 +11,7 @@ mod angle;
 mod calibrate;
 mod clamp;
 mod flap;
+mod free_edge;
 mod hinge;
 mod quadratic;
 mod skip;
@@ -19,6 +20,7 @@ mod skip;
 mod tests;
 
 pub use clamp::Clamp;
+pub use free_edge::FreeEdge;
 pub use hinge::Hinge;
 pub use quadratic::QuadraticHinge;
 pub use skip::SkipOne;

@@ -5,8 +5,9 @@
 
 use nalgebra::Matrix3;
 
+use super::Rigidity;
+use super::calibrate::Calibration;
 use super::flap::{Flap, flaps};
-use super::{Rigidity, calibrate};
 use crate::error::ClothError;
 use crate::force::{Assembled, Element, Projection, Vec3};
 use crate::mesh::Sheet;
@@ -25,7 +26,7 @@ impl QuadraticHinge {
     /// [`ClothError::InvalidParameter`] for a negative rigidity.
     pub fn new(sheet: &Sheet, rigidity: &Rigidity) -> Result<Assembled<4, Self>, ClothError> {
         rigidity.check()?;
-        let factor = calibrate::factor(sheet);
+        let factor = Calibration::of(sheet).factor;
         let flaps = flaps(sheet, rigidity);
         let stiffness = flaps.iter().map(|f| factor * f.rigidity * f.slenderness).collect();
         Ok(Assembled(Self { flaps, stiffness }))
