@@ -9,7 +9,7 @@ use crate::force::Vec3;
 use crate::solver::{CentralDifferences, ImplicitEuler, Model, Solver, State, Static, lowest_modes};
 
 /// Greatest displacement of the motion, in lengths.
-const AMPLITUDE: f64 = 1e-4;
+const AMPLITUDE: f64 = 1e-3;
 /// Angle of motion in one step of backward Euler.
 const PHASE_STEP: f64 = 0.05;
 const WIDTH: f64 = 0.3;
@@ -110,7 +110,7 @@ fn damping(model: &Model, shape: &Shape, omega: f64) -> Result<f64, ClothError> 
     let dt = PHASE_STEP / omega;
     let mut state = State::at_rest(shape.rest.iter().zip(&shape.mode).map(|(r, m)| r + m).collect());
     let weight: f64 = model.masses.iter().sum();
-    let mut solver = ImplicitEuler::new(dt, 1e-9 * weight * AMPLITUDE);
+    let mut solver = ImplicitEuler::new(dt, 1e-6 * weight * AMPLITUDE);
     solver.newton.linear = crate::solver::LinearMethod::Cholesky;
     // Peaks of the decaying swing: the values where it turns, by a parabola through three samples.
     let mut samples = vec![1.0];

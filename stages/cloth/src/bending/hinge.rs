@@ -69,6 +69,37 @@ impl Hinge {
     }
 }
 
+/// One hinge on its own, for solvers that go from constraint to constraint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HingeTerm {
+    /// Edge start, edge end, left tip, right tip.
+    pub vertices: [u32; 4],
+    /// Small fold angle = sum of these times the lifts, 1/m.
+    pub weights: [f64; 4],
+    /// Calibrated stiffness, N m per radian².
+    pub stiffness: f64,
+}
+
+impl HingeTerm {
+    /// The fold angle and its derivative by the four vertices.
+    #[must_use]
+    pub fn fold(&self, x: &[Vec3; 4]) -> (f64, [Vec3; 4]) {
+        let (left, right) = leaves(x);
+        (angle(&x[0], &x[1], &x[2], &x[3]), gradient(&left, &right))
+    }
+}
+
+/// All hinges of a sheet, flat at rest, calibrated.
+///
+/// # Errors
+/// [`ClothError::InvalidParameter`] for a negative rigidity.
+pub fn hinge_terms(sheet: &Sheet, rigidity: &Rigidity) -> Result<Vec<HingeTerm>, ClothError> {
+    let Assembled(hinge) = Hinge::new(sheet, rigidity)?;
+    let term =
+        |(f, &stiffness): (&Flap, &f64)| HingeTerm { vertices: f.vertices, weights: f.weights, stiffness };
+    Ok(hinge.flaps.iter().zip(&hinge.stiffness).map(term).collect())
+}
+
 /// Derivative of the angle by edge start, edge end, left tip, right tip.
 fn gradient(left: &Leaf, right: &Leaf) -> [Vec3; 4] {
     let (l, r) = (left.gradient(), right.gradient());

@@ -21,7 +21,7 @@ mod tests;
 
 pub use clamp::Clamp;
 pub use free_edge::FreeEdge;
-pub use hinge::Hinge;
+pub use hinge::{Hinge, HingeTerm, hinge_terms};
 pub use quadratic::QuadraticHinge;
 pub use skip::SkipOne;
 

@@ -27,7 +27,7 @@ fn models() -> Vec<Box<dyn Energy>> {
         Box::new(Hinge::new(&s, &d).unwrap()),
         Box::new(pressed),
         Box::new(QuadraticHinge::new(&s, &d).unwrap()),
-        Box::new(FreeEdge::new(&s, &d, |_| true).unwrap()),
+        Box::new(FreeEdge::new(&s, &d, |v| v != 2).unwrap()),
         Box::new(SkipOne::new(&s, &d).unwrap()),
         Box::new(Clamp::new(&s, &d, 1.0, |v| v == 4 || v == 1, outward).unwrap()),
     ]
@@ -114,7 +114,7 @@ proptest! {
         let turn = nalgebra::Rotation3::new(Vec3::from(r));
         let moved: Vec<Vec3> = folded().iter().map(|p| turn * p + Vec3::from(t)).collect();
         for m in models().iter().filter(|m| m.name() != "clamped edge") {
-            prop_assert!((m.value(&moved) / m.value(&folded()) - 1.0).abs() < 1e-8);
+            prop_assert!((m.value(&moved) / m.value(&folded()) - 1.0).abs() < 1e-8, "{}", m.name());
         }
     }
 

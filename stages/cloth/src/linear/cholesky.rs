@@ -20,6 +20,7 @@ use crate::force::Vec3;
 
 /// A factor that can be renewed for other values of the same pattern.
 pub struct Cholesky {
+    width: usize,
     pattern: SymbolicSparseColMat<u32>,
     symbolic: SymbolicCholesky<u32>,
     values: Vec<f64>,
@@ -33,8 +34,20 @@ impl Cholesky {
     /// # Errors
     /// [`ClothError::Factorization`] if memory runs out.
     pub fn analyse(a: &BlockMatrix) -> Result<Self, ClothError> {
-        let pattern = scalar_pattern(a);
-        let (forward, inverse) = order(a)?;
+        Self::analyse_width(a, 3)
+    }
+
+    /// For a matrix whose blocks are multiples of the identity: keeps one number a block, a ninth of the work.
+    ///
+    /// # Errors
+    /// [`ClothError::Factorization`] if memory runs out.
+    pub fn analyse_scalar(a: &BlockMatrix) -> Result<Self, ClothError> {
+        Self::analyse_width(a, 1)
+    }
+
+    fn analyse_width(a: &BlockMatrix, width: usize) -> Result<Self, ClothError> {
+        let pattern = scalar_pattern(a, width);
+        let (forward, inverse) = order(a, width)?;
         let permutation = faer::perm::PermRef::new_checked(&forward, &inverse, forward.len());
         let symbolic = factorize_symbolic_cholesky(
             pattern.as_ref(),
@@ -47,7 +60,7 @@ impl Cholesky {
         let workspace = MemBuffer::try_new(needed).map_err(refused)?;
         let factor = vec![0.0; symbolic.len_val()];
         let values = vec![0.0; pattern.row_idx().len()];
-        Ok(Self { pattern, symbolic, values, factor, workspace })
+        Ok(Self { width, pattern, symbolic, values, factor, workspace })
     }
 
     /// Numbers in the factor.
@@ -61,7 +74,7 @@ impl Cholesky {
     /// # Errors
     /// [`ClothError::Factorization`] if `a` is not positive definite.
     pub fn factor(&mut self, a: &BlockMatrix) -> Result<(), ClothError> {
-        copy_values(a, &mut self.values);
+        copy_values(a, self.width, &mut self.values);
         let matrix = SparseColMatRef::new(self.pattern.as_ref(), &self.values[..]);
         self.symbolic
             .factorize_numeric_llt(
@@ -85,16 +98,21 @@ impl Cholesky {
     /// Solves `A x = b` with the factor at hand.
     #[must_use]
     pub fn solve(&self, b: &[Vec3]) -> Vec<Vec3> {
-        let mut flat: Vec<f64> = b.iter().flat_map(|v| [v.x, v.y, v.z]).collect();
-        let n = flat.len();
-        let mut workspace = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq));
+        let (rows, columns) = (b.len() * self.width, 3 / self.width);
+        let mut flat = vec![0.0; 3 * b.len()];
+        // One column of all scalars, or three columns of one scalar a block.
+        let at = |v: usize, k: usize| if self.width == 3 { 3 * v + k } else { rows * k + v };
+        for (v, value) in b.iter().enumerate() {
+            (0..3).for_each(|k| flat[at(v, k)] = value[k]);
+        }
+        let mut workspace = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(columns, Par::Seq));
         LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
             Conj::No,
-            MatMut::from_column_major_slice_mut(&mut flat, n, 1),
+            MatMut::from_column_major_slice_mut(&mut flat, rows, columns),
             Par::Seq,
             MemStack::new(&mut workspace),
         );
-        flat.chunks_exact(3).map(|c| Vec3::new(c[0], c[1], c[2])).collect()
+        (0..b.len()).map(|v| Vec3::new(flat[at(v, 0)], flat[at(v, 1)], flat[at(v, 2)])).collect()
     }
 }
 
@@ -102,16 +120,16 @@ fn refused(e: impl std::fmt::Debug) -> ClothError {
     ClothError::Factorization { why: format!("{e:?}").to_lowercase() }
 }
 
-/// Columns of the lower triangle: block row i of the upper triangle, read as columns 3i..3i+3.
-fn scalar_pattern(a: &BlockMatrix) -> SymbolicSparseColMat<u32> {
-    let n = 3 * a.rows();
+/// Columns of the lower triangle: block row i of the upper triangle, read as `width` columns.
+fn scalar_pattern(a: &BlockMatrix, width: usize) -> SymbolicSparseColMat<u32> {
+    let n = width * a.rows();
     let (mut starts, mut rows) = (Vec::with_capacity(n + 1), Vec::with_capacity(9 * a.block_count()));
     starts.push(0);
     for i in 0..a.rows() {
-        for k in 0..3 {
+        for k in 0..width {
             for (j, _) in a.row(i) {
                 let first = if i == j { k } else { 0 };
-                rows.extend((first..3).map(|r| (3 * j + r) as u32));
+                rows.extend((first..width).map(|r| (width * j + r) as u32));
             }
             starts.push(rows.len() as u32);
         }
@@ -119,13 +137,13 @@ fn scalar_pattern(a: &BlockMatrix) -> SymbolicSparseColMat<u32> {
     SymbolicSparseColMat::new_checked(n, n, starts, None, rows)
 }
 
-fn copy_values(a: &BlockMatrix, values: &mut [f64]) {
+fn copy_values(a: &BlockMatrix, width: usize, values: &mut [f64]) {
     let mut slot = 0;
     for i in 0..a.rows() {
-        for k in 0..3 {
+        for k in 0..width {
             for (j, block) in a.row(i) {
                 let first = if i == j { k } else { 0 };
-                for r in first..3 {
+                for r in first..width {
                     values[slot] = block[(k, r)];
                     slot += 1;
                 }
@@ -134,8 +152,8 @@ fn copy_values(a: &BlockMatrix, values: &mut [f64]) {
     }
 }
 
-/// Minimum degree on the block graph, each vertex then standing for its three scalars.
-fn order(a: &BlockMatrix) -> Result<(Vec<u32>, Vec<u32>), ClothError> {
+/// Minimum degree on the block graph, each vertex then standing for its scalars.
+fn order(a: &BlockMatrix, width: usize) -> Result<(Vec<u32>, Vec<u32>), ClothError> {
     let n = a.rows();
     let (mut starts, mut rows) = (vec![0_u32], Vec::with_capacity(a.block_count()));
     for i in 0..n {
@@ -156,7 +174,9 @@ fn order(a: &BlockMatrix) -> Result<(Vec<u32>, Vec<u32>), ClothError> {
         MemStack::new(&mut workspace),
     )
     .map_err(refused)?;
-    let expand = |p: &[u32]| p.iter().flat_map(|&v| [3 * v, 3 * v + 1, 3 * v + 2]).collect::<Vec<_>>();
+    let expand = |p: &[u32]| {
+        p.iter().flat_map(|&v| (0..width as u32).map(move |k| width as u32 * v + k)).collect::<Vec<_>>()
+    };
     let forward = expand(&forward);
     let mut inverse = vec![0; forward.len()];
     for (k, &v) in forward.iter().enumerate() {

@@ -68,3 +68,15 @@ fn fixed_rows_stay_put() {
     let x = cholesky.solve(&b);
     assert!(fixed.iter().zip(&x).all(|(f, x)| !f || *x == Vec3::zeros()));
 }
+
+#[test]
+fn a_scalar_factor_solves_the_three_axes_apart() {
+    let mut a = BlockMatrix::with_couplings(30, |visit| (0..29).for_each(|i| visit(&[i, i + 1])));
+    a.add_diagonal((0..30).map(|i| 2.5 + f64::from(i)));
+    (0..29).for_each(|i| a.add(i, i + 1, &-Matrix3::identity()));
+    let mut factor = Cholesky::analyse_scalar(&a).unwrap();
+    factor.factor(&a).unwrap();
+    for (ax, b) in a.times(&factor.solve(&load(30))).iter().zip(&load(30)) {
+        assert!((ax - b).norm() < 1e-13);
+    }
+}

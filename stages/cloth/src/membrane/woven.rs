@@ -56,6 +56,24 @@ impl Woven {
     }
 }
 
+impl Woven {
+    /// Stiffness of (weft strain, warp strain, shear angle) at rest, N/m.
+    #[must_use]
+    pub fn linear_stiffness(&self) -> Matrix3<f64> {
+        let (weft, warp, c) = (self.weft.slope(0.0), self.warp.slope(0.0), self.coupling);
+        Matrix3::new(weft, c, 0.0, c, warp, 0.0, 0.0, 0.0, self.shear.slope(0.0))
+    }
+
+    /// Weft strain, warp strain and shear angle of the images of the weft and warp axes, and the derivative of each by both.
+    #[must_use]
+    pub fn strains(f: &[Vec3; 2]) -> (nalgebra::Vector3<f64>, [[Vec3; 2]; 3]) {
+        let s = Strains::of(&Matrix3x2::from_columns(f));
+        let none = Vec3::zeros();
+        let values = nalgebra::Vector3::new(s.strain(0), s.strain(1), s.gamma);
+        (values, [[s.unit[0], none], [none, s.unit[1]], s.gamma_gradient()])
+    }
+}
+
 /// The strains at one deformation and what their derivatives need.
 struct Strains {
     length: [f64; 2],

@@ -12,8 +12,10 @@ mod explicit;
 mod implicit;
 mod model;
 mod newton;
+mod projective;
 mod spectrum;
 mod statics;
+mod xpbd;
 
 #[cfg(test)]
 mod tests;
@@ -22,8 +24,10 @@ pub use explicit::CentralDifferences;
 pub use implicit::ImplicitEuler;
 pub use model::{Model, State};
 pub use newton::{LinearMethod, Newton, NewtonReport};
+pub use projective::Projective;
 pub use spectrum::{lowest_modes, omega_max};
 pub use statics::Static;
+pub use xpbd::Xpbd;
 
 use crate::error::ClothError;
 
