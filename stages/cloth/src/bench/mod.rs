@@ -11,8 +11,11 @@ pub mod layout;
 mod plate;
 pub mod reference;
 mod score;
+pub mod stability;
 mod stretch;
 
+#[cfg(test)]
+mod stability_tests;
 #[cfg(test)]
 mod tests;
 

@@ -9,6 +9,9 @@ use crate::error::{ClothError, check_parameter};
 use crate::force::{Energy, Projection, Vec3};
 use crate::linear::BlockMatrix;
 
+/// Pseudo-time step of a hard step, as a share of the step.
+const PSEUDO_SHARE: f64 = 0.1;
+
 /// The solver.
 pub struct ImplicitEuler {
     /// Time step, s.
@@ -23,7 +26,9 @@ impl ImplicitEuler {
     /// With step `dt` (s), each solved to this largest force (N).
     #[must_use]
     pub fn new(dt: f64, tolerance: f64) -> Self {
-        Self { dt, newton: Newton::new(tolerance), held_back: Vec3::zeros() }
+        let mut newton = Newton::new(tolerance);
+        (newton.pseudo_step, newton.cautious) = (PSEUDO_SHARE * dt, false);
+        Self { dt, newton, held_back: Vec3::zeros() }
     }
 }
 

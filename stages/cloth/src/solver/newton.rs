@@ -18,6 +18,9 @@ const ENERGY_NOISE: f64 = 1e-13;
 /// Factorizations that may fail, each with ten times the shift, before giving up.
 const MOST_SHIFTS: usize = 12;
 
+/// The shift that a cut step brings in, as a share of the first: small, since most cuts are mild.
+const SHIFT_AFTER_A_CUT: f64 = 1e-3;
+
 /// How the linear systems are solved.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LinearMethod {
@@ -40,6 +43,8 @@ pub struct Newton {
     pub linear: LinearMethod,
     /// First pseudo-time step, s; infinite for plain Newton.
     pub pseudo_step: f64,
+    /// Whether to begin with the pseudo-time step, or to bring it in only when the line search cuts a step.
+    pub cautious: bool,
     factor: Option<(BlockMatrix, Cholesky)>,
 }
 
@@ -63,6 +68,7 @@ impl Newton {
             most_iterations: 200,
             linear: LinearMethod::Cholesky,
             pseudo_step: f64::INFINITY,
+            cautious: true,
             factor: None,
         }
     }
@@ -81,7 +87,7 @@ impl Newton {
         let mut hessian = BlockMatrix::for_energies(x.len(), energies);
         let mut value = total_value(energies, x);
         let first_shift = self.pseudo_step.powi(-2);
-        let (mut shift, mut exact) = (first_shift, false);
+        let (mut shift, mut exact) = (if self.cautious { first_shift } else { 0.0 }, false);
         let mut residual = f64::INFINITY;
         for iterations in 0..=self.most_iterations {
             let gradient = free_gradient(energies, x, fixed);
@@ -168,7 +174,7 @@ impl Newton {
 
 /// Pseudo-time steps grow while steps are taken whole and shrink when the line search cuts them.
 fn next_shift(shift: f64, share: f64, first: f64) -> f64 {
-    let next = if share == 1.0 { shift * 0.125 } else { shift * 2.0 };
+    let next = if share == 1.0 { shift * 0.125 } else { (shift * 2.0).max(first * SHIFT_AFTER_A_CUT) };
     if next < first * 1e-9 { 0.0 } else { next }
 }
 

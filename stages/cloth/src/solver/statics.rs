@@ -22,7 +22,7 @@ impl Static {
     pub fn to(tolerance: f64) -> Self {
         let mut newton = Newton::new(tolerance);
         newton.pseudo_step = PSEUDO_STEP;
-        newton.most_iterations = 1000;
+        newton.most_iterations = 400;
         Self { newton }
     }
 }
