@@ -136,7 +136,9 @@ impl Case {
             State::at_rest(mesh.uv.iter().enumerate().map(|(v, p)| Vec3::new(p.x, p.y, nudge(v))).collect());
         let weight = self.density * width * length * 9.81 * self.gravity.max(1.0);
         // Nobody can do better than rounding of the stiffest force in the system.
-        let floor = 1e-13 * self.stiffness * self.aspect * width.max(length);
+        let size = width.max(length);
+        let floor =
+            1e-13 * self.stiffness * self.aspect * size + 1e-14 * self.bending / self.edge.powi(2) * size;
         let mut solver = ImplicitEuler::new(self.dt, (1e-6 * weight).max(floor));
         // Velocities are of the middle of a step: half a step of gravity is no gain.
         let half_step = 0.5 * 9.81 * self.gravity * self.dt;

@@ -4,9 +4,9 @@
 //! Stable at any step, never gains energy. A mode of frequency w loses the factor `1/sqrt(1 + (w dt)²)` a step: choose dt by the
 //! motion that must survive. Velocities are those of the middle of a step, as with central differences, so free fall is exact.
 
-use super::{Model, Newton, Report, Solver, State};
+use super::{Model, Newton, NewtonReport, Report, Solver, State};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{Energy, Projection, Vec3};
+use crate::force::{Energy, Projection, Vec3, total_value};
 use crate::linear::BlockMatrix;
 
 /// Pseudo-time step of a hard step, as a share of the step.
@@ -126,7 +126,11 @@ impl Solver for ImplicitEuler {
         energies.extend([&weight as &dyn Energy, &inertia]);
         energies.extend((model.drag > 0.0).then_some(&drag as &dyn Energy));
         energies.extend(viscous.as_ref().map(|v| v as &dyn Energy));
-        let mut x = inertia.target.clone();
+        // From the better of coasting and standing still: then a step can never end above the energy it began with.
+        let mut x = start.clone();
+        if total_value(&energies, &inertia.target) < total_value(&energies, &x) {
+            x.clone_from(&inertia.target);
+        }
         let report = self.newton.minimise(&energies, &model.masses, &model.fixed, &mut x)?;
         state.v = x.iter().zip(&start).map(|(x, s)| (x - s) / dt).collect();
         state.x = x;
@@ -136,5 +140,3 @@ impl Solver for ImplicitEuler {
         Ok(Report { advanced: dt, iterations, residual, converged })
     }
 }
-
-use super::NewtonReport;
