@@ -17,7 +17,7 @@ fn worst(test: Test, along: usize) -> f64 {
 
 #[test]
 fn e1_cantilever() {
-    worst(Test::Cantilever, 48);
+    worst(Test::Cantilever, 64);
 }
 
 #[test]
