@@ -19,6 +19,11 @@ const SAME_FRAME: f64 = 1e-9;
 /// A mesh that asks for more correction than this (either way) is too small to judge.
 const LARGEST_FACTOR: f64 = 2.0;
 
+/// Hinges that lean with the square of their direction's cosine change the two stiffnesses by two thirds of it (mean over directions).
+const LEAN_PER_DIFFERENCE: f64 = 1.5;
+/// More grain than this is the mesh's layout, not chance, and stays.
+const LARGEST_LEAN: f64 = 0.3;
+
 /// What a hinge mesh is, against the sheet it stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Calibration {
@@ -26,6 +31,8 @@ pub(super) struct Calibration {
     pub factor: f64,
     /// Poisson's ratio of its bending, about -1/3.
     pub poisson: f64,
+    /// How much more the hinges across x need than those across y, as a share of the mean: an irregular mesh has a grain of some per cent.
+    pub lean: f64,
 }
 
 /// The rest mesh cut apart into panels: seam vertices count once a panel.
@@ -39,7 +46,7 @@ struct Panels {
 }
 
 impl Calibration {
-    const NONE: Self = Self { factor: 1.0, poisson: -1.0 / 3.0 };
+    const NONE: Self = Self { factor: 1.0, poisson: -1.0 / 3.0, lean: 0.0 };
 
     /// Judges the rest mesh.
     pub(super) fn of(sheet: &Sheet) -> Self {
@@ -50,14 +57,21 @@ impl Calibration {
         compliance.try_inverse().map_or(Self::NONE, |q| Self::from_stiffness(&q))
     }
 
+    /// The rigidity to build hinges with.
+    pub(super) fn corrected(&self, d: &Rigidity) -> Rigidity {
+        Rigidity { weft: d.weft * (1.0 + self.lean), warp: d.warp * (1.0 - self.lean) }
+    }
+
     /// From the stiffness by (curvature along x, along y, twist).
     fn from_stiffness(q: &Matrix3<f64>) -> Self {
         let cylinder = (3.0 * (q[(0, 0)] + q[(1, 1)]) + 2.0 * q[(0, 1)] + q[(2, 2)]) / 8.0;
         let dome = q[(0, 0)] + q[(1, 1)] + 2.0 * q[(0, 1)];
         let saddle = 0.5 * (q[(0, 0)] + q[(1, 1)] - 2.0 * q[(0, 1)] + q[(2, 2)]);
         let (factor, poisson) = (1.0 / cylinder, (dome - saddle) / (dome + saddle));
+        let difference = (q[(1, 1)] - q[(0, 0)]) / (q[(1, 1)] + q[(0, 0)]);
+        let lean = (LEAN_PER_DIFFERENCE * difference).clamp(-LARGEST_LEAN, LARGEST_LEAN);
         let fair = factor.is_finite() && (1.0 / LARGEST_FACTOR..=LARGEST_FACTOR).contains(&factor);
-        if fair && poisson.abs() < 1.0 { Self { factor, poisson } } else { Self::NONE }
+        if fair && poisson.abs() < 1.0 { Self { factor, poisson, lean } } else { Self::NONE }
     }
 }
 

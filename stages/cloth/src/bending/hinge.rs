@@ -31,8 +31,8 @@ impl Hinge {
     /// # Errors
     /// [`ClothError::InvalidParameter`] for a negative rigidity.
     pub fn new(sheet: &Sheet, rigidity: &Rigidity) -> Result<Assembled<4, Self>, ClothError> {
-        let factor = Calibration::of(sheet).factor;
-        Self::with_factor(sheet, rigidity, factor)
+        let calibration = Calibration::of(sheet);
+        Self::with_factor(sheet, &calibration.corrected(rigidity), calibration.factor)
     }
 
     /// Flat at rest, with `factor` in place of the calibration (1 for the formula as it stands).

@@ -26,8 +26,8 @@ impl QuadraticHinge {
     /// [`ClothError::InvalidParameter`] for a negative rigidity.
     pub fn new(sheet: &Sheet, rigidity: &Rigidity) -> Result<Assembled<4, Self>, ClothError> {
         rigidity.check()?;
-        let factor = Calibration::of(sheet).factor;
-        let flaps = flaps(sheet, rigidity);
+        let calibration = Calibration::of(sheet);
+        let (flaps, factor) = (flaps(sheet, &calibration.corrected(rigidity)), calibration.factor);
         let stiffness = flaps.iter().map(|f| factor * f.rigidity * f.slenderness).collect();
         Ok(Assembled(Self { flaps, stiffness }))
     }
