@@ -95,12 +95,12 @@ impl Solver for CentralDifferences {
             force.iter_mut().zip(&damping).for_each(|(f, d)| *f -= d * model.viscosity);
         }
         let (keep, share) = (1.0 - 0.5 * model.drag * reach, 1.0 / (1.0 + 0.5 * model.drag * reach));
-        for v in 0..state.x.len() {
+        for (v, push) in force.iter().enumerate() {
             if model.fixed[v] {
                 state.v[v] = Vec3::zeros();
                 continue;
             }
-            let mut velocity = (state.v[v] * keep + force[v] * (reach / model.masses[v])) * share;
+            let mut velocity = (state.v[v] * keep + push * (reach / model.masses[v])) * share;
             for obstacle in &model.obstacles {
                 velocity = obstacle.stop(&state.x[v], &velocity, dt);
             }

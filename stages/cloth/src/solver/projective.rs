@@ -149,15 +149,12 @@ impl Solver for Projective {
             let change = self.factor.solve(&rest);
             state.x.iter_mut().zip(&change).for_each(|(x, c)| *x += c);
         }
-        for v in 0..start.len() {
-            if self.fixed[v] {
-                continue;
-            }
-            let mut velocity = (state.x[v] - start[v]) / dt;
+        for (v, from) in start.iter().enumerate().filter(|(v, _)| !self.fixed[*v]) {
+            let mut velocity = (state.x[v] - from) / dt;
             for obstacle in &model.obstacles {
-                velocity = obstacle.stop(&start[v], &velocity, dt);
+                velocity = obstacle.stop(from, &velocity, dt);
             }
-            state.x[v] = start[v] + velocity * dt;
+            state.x[v] = from + velocity * dt;
             state.v[v] = velocity + model.gravity * (0.5 * dt);
         }
         crate::mesh::check_finite("positions", &state.x)

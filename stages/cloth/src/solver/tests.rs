@@ -207,8 +207,8 @@ fn limits_of_springs_are_those_of_the_books() {
 fn drag_falls_as_the_formula_says() {
     let (_, sheet, mut model, state) = square(Layout::Alternating, 3);
     model.drag = 10.0;
-    let (t, c) = (0.5, 10.0);
-    let exact = G / c * (t - (1.0 - (-c * t as f64).exp()) / c);
+    let (t, c) = (0.5_f64, 10.0_f64);
+    let exact = G / c * (t - (1.0 - (-c * t).exp()) / c);
     for mut solver in steppers(&sheet, &model, 1e-3) {
         let mut s = state.clone();
         run(&mut *solver, &model, &mut s, t);

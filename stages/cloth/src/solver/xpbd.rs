@@ -65,8 +65,8 @@ impl Xpbd {
     fn substep(&self, model: &Model, state: &mut State, inverse_mass: &[f64], h: f64) {
         let start = state.x.clone();
         let keep = 1.0 / (1.0 + model.drag * h);
-        for v in 0..start.len() {
-            if inverse_mass[v] > 0.0 {
+        for (v, &w) in inverse_mass.iter().enumerate() {
+            if w > 0.0 {
                 // The middle of the step: free fall is then exact.
                 state.x[v] += (state.v[v] * keep + model.gravity * (0.5 * h)) * h;
             }
