@@ -96,6 +96,12 @@ const UNFED: [&str; 2] = ["missing_input", "ambiguous_input"];
 fn every_example_of_a_card_is_valid() {
     let registry = toile::registry();
     for card in registry.cards() {
+        // Alone in a file, a shared name means the stage whose role comes first.
+        if registry.named(card.name).count() > 1 {
+            let arguments = card.example.trim_start_matches(card.name);
+            assert!(registry.make(card, arguments).is_ok(), "the example of {}, {:?}", card.name, card.role);
+            continue;
+        }
         let text = format!("(name: \"example\", stages: [{}])", card.example);
         let faults = match load(&text, card.name, Path::new("."), &registry, &[]) {
             Ok(_) => continue,

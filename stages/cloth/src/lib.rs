@@ -3,10 +3,16 @@
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
 
+pub mod bench;
+pub mod bending;
+pub mod constraint;
 pub mod contact;
 pub mod error;
+pub mod fabric;
 pub mod force;
 pub mod linear;
+pub mod membrane;
 pub mod mesh;
 pub mod rest;
 pub mod scene;
+pub mod solver;

@@ -42,9 +42,13 @@ impl<const N: usize, E: Element<N>> Assembled<N, E> {
         self.0.vertices(e).map(|v| x[v as usize])
     }
 
+    /// One chunk stays on this thread: waking others would cost more than it saves.
     fn chunks<T: Send>(&self, f: impl Fn(usize) -> T + Sync) -> Vec<Vec<T>> {
         let count = self.0.count();
         let chunk = |c: usize| (c * CHUNK..((c + 1) * CHUNK).min(count)).map(&f).collect();
+        if count <= CHUNK {
+            return vec![chunk(0)];
+        }
         (0..count.div_ceil(CHUNK)).into_par_iter().map(chunk).collect()
     }
 }

@@ -4,6 +4,7 @@ mod assemble;
 mod check;
 mod energy;
 mod gravity;
+mod load;
 
 #[cfg(test)]
 mod tests;
@@ -12,3 +13,4 @@ pub use assemble::{Assembled, Element};
 pub use check::{gradient_error, hessian_error};
 pub use energy::{Energy, Projection, Vec3, total_gradient, total_value};
 pub use gravity::Gravity;
+pub use load::DeadLoad;

@@ -56,6 +56,38 @@ impl BlockMatrix {
         self.blocks.len()
     }
 
+    /// Whether another matrix has blocks at just the same places.
+    #[must_use]
+    pub fn same_pattern(&self, other: &Self) -> bool {
+        self.starts == other.starts && self.columns == other.columns
+    }
+
+    /// An all-zero matrix with the same pattern.
+    #[must_use]
+    pub fn zeroed(&self) -> Self {
+        let mut copy = self.clone();
+        copy.clear();
+        copy
+    }
+
+    /// Adds `scale` times a matrix whose pattern this one contains.
+    pub fn add_matrix(&mut self, scale: f64, other: &Self) {
+        for i in 0..other.rows() {
+            for (j, block) in other.row(i) {
+                self.add(i as u32, j as u32, &(block * scale));
+            }
+        }
+    }
+
+    /// Hands each pair of coupled rows to `visit`.
+    pub fn couplings(&self, visit: &mut dyn FnMut(&[u32])) {
+        for i in 0..self.rows() {
+            for (j, _) in self.row(i).skip(1) {
+                visit(&[i as u32, j as u32]);
+            }
+        }
+    }
+
     /// Columns and blocks of row `i`, from the diagonal on, columns ascending.
     pub fn row(&self, i: usize) -> impl Iterator<Item = (usize, &Matrix3<f64>)> {
         let range = self.starts[i] as usize..self.starts[i + 1] as usize;

@@ -2,8 +2,12 @@
 //! conjugate gradients.
 
 mod block;
+mod cholesky;
+mod pcg;
 
 #[cfg(test)]
 mod tests;
 
 pub use block::BlockMatrix;
+pub use cholesky::Cholesky;
+pub use pcg::{PcgReport, conjugate_gradients};

@@ -133,6 +133,15 @@ impl Sheet {
         nalgebra::Matrix3x2::from_columns(&[b - a, c - a]) * self.inverse_rest[t]
     }
 
+    /// Refuses a state in which some triangle is stretched beyond `limit` (engineering strain).
+    ///
+    /// # Errors
+    /// [`ClothError::StrainLimitExceeded`] with the worst triangle.
+    pub fn check_strain(&self, x: &[Vector3<f64>], limit: f64) -> Result<(), ClothError> {
+        let (index, strain) = self.greatest_strain(x);
+        if strain <= limit { Ok(()) } else { Err(ClothError::StrainLimitExceeded { index, strain, limit }) }
+    }
+
     /// Greatest engineering strain over all triangles and directions, with the triangle.
     #[must_use]
     pub fn greatest_strain(&self, x: &[Vector3<f64>]) -> (usize, f64) {

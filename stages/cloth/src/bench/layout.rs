@@ -1,0 +1,198 @@
+//! Meshes of a rectangle for the tests: two kinds of grid, equilateral rows, and an irregular Delaunay mesh.
+
+use nalgebra::Vector2;
+use spade::{DelaunayTriangulation, Point2, Triangulation};
+
+use crate::error::ClothError;
+use crate::mesh::Sheet;
+
+/// Rounds of moving irregular points to the middle of their surroundings.
+const SMOOTHING: usize = 40;
+
+/// How a rectangle is cut into triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layout {
+    /// Squares, every diagonal the same way.
+    OneDiagonal,
+    /// Squares, diagonals alternating.
+    Alternating,
+    /// Rows of equilateral triangles.
+    Equilateral,
+    /// Random points, smoothed, Delaunay; by seed.
+    Irregular(u64),
+}
+
+impl Layout {
+    /// The four layouts of the tests.
+    pub const ALL: [Self; 4] = [Self::OneDiagonal, Self::Alternating, Self::Equilateral, Self::Irregular(1)];
+
+    /// What it is called in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OneDiagonal => "one diagonal",
+            Self::Alternating => "alternating",
+            Self::Equilateral => "equilateral",
+            Self::Irregular(_) => "irregular",
+        }
+    }
+}
+
+/// A meshed rectangle.
+#[derive(Debug, Clone)]
+pub struct Rectangle {
+    /// Rest coordinates, m: 0..width by 0..length.
+    pub uv: Vec<Vector2<f64>>,
+    /// Counter-clockwise triangles.
+    pub triangles: Vec<[u32; 3]>,
+    /// Extent in x and y, m.
+    pub size: Vector2<f64>,
+}
+
+impl Rectangle {
+    /// Meshes `width` x `length` with edges of about `length / along`.
+    #[must_use]
+    pub fn new(layout: Layout, width: f64, length: f64, along: usize) -> Self {
+        let size = Vector2::new(width, length);
+        let across = ((width * along as f64 / length).round() as usize).max(1);
+        let (uv, triangles) = match layout {
+            Layout::OneDiagonal => grid(size, across, along, |_, _| true),
+            Layout::Alternating => grid(size, across, along, |i, j| (i + j) % 2 == 0),
+            Layout::Equilateral => equilateral(size, across, along),
+            Layout::Irregular(seed) => irregular(size, across, along, seed),
+        };
+        Self { uv, triangles, size }
+    }
+
+    /// As a sheet of this density.
+    ///
+    /// # Errors
+    /// See [`Sheet::flat`].
+    pub fn sheet(&self, density: f64) -> Result<Sheet, ClothError> {
+        Sheet::flat(&self.uv, &self.triangles, density)
+    }
+
+    /// Whether vertex `v` lies on the lower (y = 0) edge.
+    #[must_use]
+    pub fn at_bottom(&self, v: usize) -> bool {
+        self.uv[v].y < 1e-9 * self.size.y
+    }
+
+    /// Whether vertex `v` lies on the upper edge.
+    #[must_use]
+    pub fn at_top(&self, v: usize) -> bool {
+        self.uv[v].y > self.size.y * (1.0 - 1e-9)
+    }
+
+    /// Whether vertex `v` lies on any edge.
+    #[must_use]
+    pub fn on_border(&self, v: usize) -> bool {
+        let x = self.uv[v].x;
+        self.at_bottom(v) || self.at_top(v) || x < 1e-9 * self.size.x || x > self.size.x * (1.0 - 1e-9)
+    }
+}
+
+type Mesh = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
+
+fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) -> bool) -> Mesh {
+    let at = |i: usize, j: usize| Vector2::new(size.x * i as f64 / nx as f64, size.y * j as f64 / ny as f64);
+    let uv = (0..=ny).flat_map(|j| (0..=nx).map(move |i| (i, j))).map(|(i, j)| at(i, j)).collect();
+    let mut triangles = Vec::with_capacity(2 * nx * ny);
+    for (j, i) in (0..ny).flat_map(|j| (0..nx).map(move |i| (j, i))) {
+        let a = (j * (nx + 1) + i) as u32;
+        let [b, c, d] = [a + 1, a + nx as u32 + 2, a + nx as u32 + 1];
+        triangles.extend(if rising(i, j) { [[a, b, c], [a, c, d]] } else { [[a, b, d], [b, c, d]] });
+    }
+    (uv, triangles)
+}
+
+fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
+    let (nx, rows) = nearly_equilateral(size, nx, ny);
+    let step = size.x / nx as f64;
+    let mut uv = Vec::new();
+    for j in 0..=rows {
+        let y = size.y * j as f64 / rows as f64;
+        if j % 2 == 0 {
+            uv.extend((0..=nx).map(|i| Vector2::new(step * i as f64, y)));
+        } else {
+            uv.push(Vector2::new(0.0, y));
+            uv.extend((0..nx).map(|i| Vector2::new(step * (i as f64 + 0.5), y)));
+            uv.push(Vector2::new(size.x, y));
+        }
+    }
+    let triangles = delaunay(&uv);
+    (uv, triangles)
+}
+
+/// Columns near `nx` and an even number of rows whose triangles are closest to equilateral.
+fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize) {
+    let misfit = |n: usize| {
+        let wanted = size.y / (size.x / n as f64 * 0.75_f64.sqrt());
+        let rows = 2 * ((0.5 * wanted).round() as usize).max(1);
+        ((wanted / rows as f64).ln().abs(), n, rows)
+    };
+    let nominal = nx.max(1).min(8 * ny);
+    let near = (nominal * 4 / 5).max(1)..=nominal + nominal / 4;
+    near.map(misfit).min_by(|a, b| a.0.total_cmp(&b.0)).map_or((nominal, 2 * ny), |m| (m.1, m.2))
+}
+
+fn irregular(size: Vector2<f64>, nx: usize, ny: usize, seed: u64) -> Mesh {
+    let mut uv: Vec<Vector2<f64>> = Vec::new();
+    for i in 0..nx {
+        let t = size.x * i as f64 / nx as f64;
+        uv.extend([Vector2::new(t, 0.0), Vector2::new(size.x - t, size.y)]);
+    }
+    for j in 0..ny {
+        let t = size.y * j as f64 / ny as f64;
+        uv.extend([Vector2::new(size.x, t), Vector2::new(0.0, size.y - t)]);
+    }
+    let held = uv.len();
+    let wanted = (1.155 * (nx * ny) as f64) as usize;
+    let inset = Vector2::new(0.5 * size.x / nx as f64, 0.5 * size.y / ny as f64);
+    let mut random = Random(seed);
+    for _ in 0..wanted.saturating_sub(held / 2) {
+        let r = Vector2::new(random.next(), random.next());
+        uv.push(inset + r.component_mul(&(size - 2.0 * inset)));
+    }
+    for _ in 0..SMOOTHING {
+        let triangles = delaunay(&uv);
+        let (mut sum, mut weight) = (vec![Vector2::zeros(); uv.len()], vec![0.0; uv.len()]);
+        for t in &triangles {
+            let [a, b, c] = t.map(|v| uv[v as usize]);
+            let area = (b - a).perp(&(c - a));
+            for &v in t {
+                sum[v as usize] += (a + b + c) * (area / 3.0);
+                weight[v as usize] += area;
+            }
+        }
+        (held..uv.len()).for_each(|v| uv[v] = sum[v] / weight[v]);
+    }
+    let triangles = delaunay(&uv);
+    (uv, triangles)
+}
+
+/// Delaunay triangles of points in convex position overall; flat slivers along the border are left out.
+fn delaunay(uv: &[Vector2<f64>]) -> Vec<[u32; 3]> {
+    let points: Vec<Point2<f64>> = uv.iter().map(|p| Point2::new(p.x, p.y)).collect();
+    let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(points) else { return Vec::new() };
+    let corners = |f: spade::handles::FaceHandle<'_, spade::handles::InnerTag, _, _, _, _>| {
+        f.vertices().map(|v| v.index() as u32)
+    };
+    let mut triangles: Vec<[u32; 3]> = mesh.inner_faces().map(corners).collect();
+    triangles.retain(|t| crate::mesh::quality(&t.map(|v| uv[v as usize])) > 1e-6);
+    triangles.sort_unstable();
+    triangles
+}
+
+/// SplitMix64: the same numbers everywhere.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

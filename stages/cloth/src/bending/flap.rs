@@ -1,0 +1,76 @@
+//! Two neighbouring triangles at rest, unfolded: how a small lift of their four vertices turns into a fold.
+
+use nalgebra::Vector2;
+
+use super::Rigidity;
+use crate::mesh::{Edge, Sheet, Side};
+
+/// A fold line and what stands on it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flap {
+    /// Edge start, edge end, left tip, right tip.
+    pub vertices: [u32; 4],
+    /// Small fold angle = sum of these times the lifts, 1/m.
+    pub weights: [f64; 4],
+    /// Edge length squared over the area of the two triangles.
+    pub slenderness: f64,
+    /// Distance of the two tips at rest, m.
+    pub span: f64,
+    /// Rest area of both triangles, m².
+    pub area: f64,
+    /// Rigidity across the edge, N m.
+    pub rigidity: f64,
+    /// The two triangles.
+    pub triangles: [u32; 2],
+}
+
+/// All inner edges of a sheet as flaps, in the order of the edges.
+pub(super) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
+    sheet.edges().iter().filter_map(|e| flap(sheet, rigidity, e)).collect()
+}
+
+fn flap(sheet: &Sheet, rigidity: &Rigidity, e: &Edge) -> Option<Flap> {
+    let (left, right) = (e.sides.0, e.sides.1?);
+    let (l, r) = (leaf(sheet, &left), leaf(sheet, &right));
+    // The right triangle runs through the edge backwards, so its share along the edge counts from the other end.
+    let weights = [
+        -(1.0 - l.along) / l.height - r.along / r.height,
+        -l.along / l.height - (1.0 - r.along) / r.height,
+        1.0 / l.height,
+        1.0 / r.height,
+    ];
+    let area = sheet.areas()[left.triangle as usize] + sheet.areas()[right.triangle as usize];
+    let across = 0.5 * (rigidity.along(&l.across) + rigidity.along(&r.across));
+    Some(Flap {
+        vertices: [e.vertices[0], e.vertices[1], left.opposite, right.opposite],
+        weights,
+        slenderness: e.rest_length * e.rest_length / area,
+        span: (l.height + r.height).hypot((l.along + r.along - 1.0) * e.rest_length),
+        area,
+        rigidity: across,
+        triangles: [left.triangle, right.triangle],
+    })
+}
+
+/// A rest triangle seen from one of its edges.
+pub(super) struct RestLeaf {
+    /// Height over the edge, m.
+    pub height: f64,
+    /// Foot of the height along the edge, 0 at its start.
+    pub along: f64,
+    /// Unit direction across the edge, away from the triangle, in its rest frame.
+    pub across: Vector2<f64>,
+}
+
+pub(super) fn leaf(sheet: &Sheet, side: &Side) -> RestLeaf {
+    let corners = &sheet.rest()[side.triangle as usize];
+    let k = side.corner as usize;
+    let (a, b, p) = (corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k]);
+    let e = b - a;
+    let length = e.norm();
+    RestLeaf {
+        height: e.perp(&(p - a)) / length,
+        along: e.dot(&(p - a)) / (length * length),
+        across: Vector2::new(e.y, -e.x) / length,
+    }
+}

@@ -1,0 +1,10 @@
+//! What holds cloth besides its own forces: obstacles with a closed form, and limits on strain.
+
+mod obstacle;
+mod strain_limit;
+
+#[cfg(test)]
+mod tests;
+
+pub use obstacle::{Cylinder, Obstacle, Plane, Sphere};
+pub use strain_limit::{Provot, StrainLimit};

@@ -1,0 +1,29 @@
+//! Dead loads: forces that keep size and direction. E = -sum f.x.
+
+use super::energy::{Energy, Projection, Vec3};
+use crate::linear::BlockMatrix;
+
+/// A fixed force on every vertex.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DeadLoad {
+    /// N per vertex.
+    pub forces: Vec<Vec3>,
+}
+
+impl Energy for DeadLoad {
+    fn name(&self) -> &'static str {
+        "dead load"
+    }
+
+    fn value(&self, x: &[Vec3]) -> f64 {
+        -x.iter().zip(&self.forces).map(|(p, f)| f.dot(p)).sum::<f64>()
+    }
+
+    fn add_gradient(&self, _: &[Vec3], gradient: &mut [Vec3]) {
+        gradient.iter_mut().zip(&self.forces).for_each(|(g, f)| *g -= f);
+    }
+
+    fn couplings(&self, _: &mut dyn FnMut(&[u32])) {}
+
+    fn add_hessian(&self, _: &[Vec3], _: Projection, _: &mut BlockMatrix) {}
+}

@@ -1,0 +1,151 @@
+//! Extended position-based dynamics with small steps (Macklin, Mueller, Chentanez, 2016; Macklin et al., 2019).
+//!
+//! Each triangle is one constraint of three strains (weft, warp, shear angle) with the fabric's 3 x 3 compliance, each inner edge one
+//! of its fold angle with the hinge's; one Gauss-Seidel walk a small step. In the limit of small steps it solves the same equations as the
+//! finite elements in their linear range; at a given cost it is too soft, most of all in long, stiff pieces, because a walk carries a pull
+//! only as far as the vertices are numbered. Never unstable. Cost: one 3 x 3 solve a triangle and step, no matrix.
+//! The model's energies are not used; its masses, gravity, drag, pins and obstacles are.
+
+use nalgebra::Matrix3;
+
+use super::{Model, Report, Solver, State};
+use crate::bending::{HingeTerm, Rigidity, hinge_terms};
+use crate::error::{ClothError, check_parameter};
+use crate::fabric::Fabric;
+use crate::force::Vec3;
+use crate::membrane::Woven;
+use crate::mesh::Sheet;
+
+struct StrainTerm {
+    vertices: [usize; 3],
+    shape: [nalgebra::Vector2<f64>; 3],
+    compliance: Matrix3<f64>,
+}
+
+/// The solver, with the constraints of one sheet.
+pub struct Xpbd {
+    /// Time that one call advances, s.
+    pub dt: f64,
+    /// Small steps in it.
+    pub substeps: usize,
+    strains: Vec<StrainTerm>,
+    hinges: Vec<HingeTerm>,
+}
+
+impl Xpbd {
+    /// For a sheet of this fabric.
+    ///
+    /// # Errors
+    /// What [`Fabric::check`] finds; [`ClothError::InvalidParameter`] for a sheet with no stiffness at all in some direction.
+    pub fn new(sheet: &Sheet, fabric: &Fabric, dt: f64, substeps: usize) -> Result<Self, ClothError> {
+        let woven = Woven::new(fabric)?;
+        let stiffness = woven.linear_stiffness();
+        let inverse = stiffness.try_inverse().ok_or(ClothError::InvalidParameter {
+            name: "stiffness",
+            value: stiffness.determinant(),
+            range: "above 0 N/m along warp, weft and in shear",
+        })?;
+        let strains = (0..sheet.triangles().len()).map(|t| {
+            let m = sheet.inverse_rest()[t];
+            let (g1, g2) = (m.row(0).transpose(), m.row(1).transpose());
+            StrainTerm {
+                vertices: sheet.triangles()[t].map(|v| v as usize),
+                shape: [-g1 - g2, g1, g2],
+                compliance: inverse / sheet.areas()[t],
+            }
+        });
+        Ok(Self {
+            dt,
+            substeps,
+            strains: strains.collect(),
+            hinges: hinge_terms(sheet, &Rigidity::of(fabric))?,
+        })
+    }
+
+    fn substep(&self, model: &Model, state: &mut State, inverse_mass: &[f64], h: f64) {
+        let start = state.x.clone();
+        let keep = 1.0 / (1.0 + model.drag * h);
+        for (v, &w) in inverse_mass.iter().enumerate() {
+            if w > 0.0 {
+                // The middle of the step: free fall is then exact.
+                state.x[v] += (state.v[v] * keep + model.gravity * (0.5 * h)) * h;
+            }
+        }
+        for s in &self.strains {
+            s.project(&mut state.x, inverse_mass, h);
+        }
+        for hinge in &self.hinges {
+            project_hinge(hinge, &mut state.x, inverse_mass, h);
+        }
+        for v in 0..start.len() {
+            if inverse_mass[v] == 0.0 {
+                (state.x[v], state.v[v]) = (start[v], Vec3::zeros());
+                continue;
+            }
+            let mut velocity = (state.x[v] - start[v]) / h;
+            for obstacle in &model.obstacles {
+                velocity = obstacle.stop(&start[v], &velocity, h);
+            }
+            state.x[v] = start[v] + velocity * h;
+            state.v[v] = velocity + model.gravity * (0.5 * h);
+        }
+    }
+}
+
+impl StrainTerm {
+    fn project(&self, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
+        let p = self.vertices.map(|v| x[v]);
+        let f: [Vec3; 2] = std::array::from_fn(|k| (0..3).map(|c| p[c] * self.shape[c][k]).sum());
+        let (strain, by_column) = Woven::strains(&f);
+        // Row r of the Jacobian at corner c.
+        let jacobian: [[Vec3; 3]; 3] = std::array::from_fn(|r| {
+            std::array::from_fn(|c| by_column[r][0] * self.shape[c].x + by_column[r][1] * self.shape[c].y)
+        });
+        let w = self.vertices.map(|v| inverse_mass[v]);
+        let system = Matrix3::from_fn(|r, s| {
+            (0..3).map(|c| w[c] * jacobian[r][c].dot(&jacobian[s][c])).sum::<f64>()
+                + self.compliance[(r, s)] / (h * h)
+        });
+        let Some(pull) = system.cholesky().map(|c| c.solve(&-strain)) else { return };
+        for c in 0..3 {
+            let d: Vec3 = (0..3).map(|r| jacobian[r][c] * pull[r]).sum();
+            x[self.vertices[c]] += d * w[c];
+        }
+    }
+}
+
+fn project_hinge(hinge: &HingeTerm, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
+    if hinge.stiffness <= 0.0 {
+        return;
+    }
+    let vertices = hinge.vertices.map(|v| v as usize);
+    let (angle, gradient) = hinge.fold(&vertices.map(|v| x[v]));
+    let sum: f64 = (0..4).map(|k| inverse_mass[vertices[k]] * gradient[k].norm_squared()).sum();
+    let pull = -angle / (sum + 1.0 / (hinge.stiffness * h * h));
+    for k in 0..4 {
+        x[vertices[k]] += gradient[k] * (pull * inverse_mass[vertices[k]]);
+    }
+}
+
+impl Solver for Xpbd {
+    fn name(&self) -> &'static str {
+        "XPBD"
+    }
+
+    /// # Errors
+    /// Those of input; [`ClothError::Diverged`] for NaN.
+    fn advance(&mut self, model: &Model, state: &mut State) -> Result<Report, ClothError> {
+        check_parameter("dt", self.dt, |dt| dt > 0.0, "above 0 s")?;
+        check_parameter("substeps", self.substeps as f64, |n| n >= 1.0, "1 or more")?;
+        model.check(state)?;
+        let inverse_mass: Vec<f64> =
+            model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
+        for _ in 0..self.substeps {
+            self.substep(model, state, &inverse_mass, self.dt / self.substeps as f64);
+        }
+        crate::mesh::check_finite("positions", &state.x)
+            .map_err(|_| ClothError::Diverged { what: "position", step: self.substeps })?;
+        state.time += self.dt;
+        Ok(Report { advanced: self.dt, iterations: self.substeps, residual: 0.0, converged: true })
+    }
+}
