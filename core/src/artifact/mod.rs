@@ -65,7 +65,7 @@ pub trait Artifact: Any + Send + Sync + Debug {
     /// What is wrong with it, where no stage may give it: numbers that are not finite, indices beyond
     /// their lists, lists of unequal length. The runner asks after every stage.
     ///
-    /// Errors: one sentence in lower case, such as `vertex 12 is not a finite number`.
+    /// Errors: one sentence in lower case, such as `vertex 12 is not a finite number below 1e9`.
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;

@@ -20,14 +20,16 @@ where
     }
 }
 
-/// A single figure is finite.
+/// A single figure is finite, and not absurdly large.
 pub(super) fn finite_figure(word: &str, value: f64) -> Sound {
     ensure(value.abs() <= LARGEST, || format!("the {word} is {value}"))
 }
 
-/// A figure is finite and above zero.
+/// A figure is above zero, and not absurdly large.
 pub(super) fn positive(word: &str, value: f64) -> Sound {
-    ensure(value > 0.0 && value <= LARGEST, || format!("the {word} is {value}, it must be above 0"))
+    ensure(value > 0.0 && value <= LARGEST, || {
+        format!("the {word} is {value}, it must be above 0 and at most 1e9")
+    })
 }
 
 /// All indices lie below `count`.

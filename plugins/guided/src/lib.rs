@@ -11,8 +11,7 @@ use toile_core::prelude::*;
 /// Takes grain off and keeps edges, at a cost that does not grow with the radius.
 ///
 /// The photo guides itself: where a window varies by less than `noise`, it becomes flat; where it
-/// varies by more, as at the garment's outline, it stays. Stronger than `Bilateral` on coarse
-/// weaves and without its reversed gradients at edges.
+/// varies by more, as at the garment's outline, it stays.
 #[stage(
     role = Denoiser,
     source = "He, Sun, Tang, 2010",

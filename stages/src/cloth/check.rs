@@ -52,7 +52,7 @@ fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
         for (curve, word) in
             [(&panel.fabric.warp, "warp"), (&panel.fabric.weft, "weft"), (&panel.fabric.shear, "shear")]
         {
-            if !rises(curve) {
+            if !curve.rises() {
                 let text =
                     format!("the {word} curve of \"{}\" does not rise from the origin", panel.fabric.name);
                 return Err(StageError::invalid(text).hint("give points (strain, N/m) that rise in both"));
@@ -60,11 +60,6 @@ fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
         }
     }
     Ok(())
-}
-
-fn rises(curve: &Curve) -> bool {
-    let steps = std::iter::once(&(0.0, 0.0)).chain(&curve.0).zip(&curve.0);
-    !curve.0.is_empty() && steps.into_iter().all(|(a, b)| b.0 > a.0 && b.1 > a.1 && b.1.is_finite())
 }
 
 fn check_triangles(garment: &Garment) -> Result<(), StageError> {

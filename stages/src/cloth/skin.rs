@@ -1,7 +1,7 @@
 //! The last look at the skin: triangles, not only vertices, stay outside.
 //!
-//! Method: contacts hold vertices at the thickness, but on a thin limb the middle of a long edge can
-//! dip below. Middles of edges and triangles that lie under [`CLEAR`] are lifted by moving the
+//! Method: contacts hold vertices off, farther where the skin bends between two of them (see `contact`), but
+//! where it bends more than the thickness makes up for, the middle of a long edge can dip below. Middles of edges and triangles that lie under [`CLEAR`] are lifted by moving the
 //! nodes they belong to, a few rounds of fractions of a millimetre. Cost: one query of edges and
 //! triangles a round. Limit: skin that bulges between these points is not seen.
 

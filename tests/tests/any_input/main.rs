@@ -11,6 +11,7 @@ mod spoil;
 use pool::Pool;
 use proptest::prelude::*;
 use spoil::Edit;
+use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, LazyLock};
 use std::time::Duration;
@@ -69,12 +70,13 @@ fn sound(value: &PortValue) -> bool {
     value.entries().iter().all(|(_, a)| a.check().is_ok())
 }
 
-/// Runs a stage on edited inputs; says what is wrong with its answer.
-fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<(), String> {
+/// Runs a stage on edited inputs, unless they are unsound; says whether it ran, or what is wrong with its
+/// answer.
+fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<bool, String> {
     let inputs: Vec<Option<PortValue>> = card.inputs.iter().map(|port| value(port, edits)).collect();
     let missing = inputs.iter().zip(&card.inputs).any(|(v, port)| v.is_none() && !port.optional);
     if missing || !inputs.iter().flatten().all(sound) {
-        return Ok(());
+        return Ok(false);
     }
     let (cancel, dir) = (Cancel::new(), toile_tests::root());
     let watched = cancel.clone();
@@ -91,10 +93,10 @@ fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<(), String> {
         Err(panic) => Err(format!("it panicked: {:?}", panic.downcast_ref::<String>())),
         Ok(Err(e)) if e.code == ErrorCode::Internal => Err(format!("it calls it its own fault: {e}")),
         Ok(Err(e)) if e.message.is_empty() => Err("it refuses without a word".to_owned()),
-        Ok(Err(_)) => Ok(()),
-        Ok(Ok(made)) => made.iter().flat_map(PortValue::entries).try_for_each(|(_, a)| {
+        Ok(Err(_)) => Ok(true),
+        Ok(Ok(made)) => made.iter().flat_map(PortValue::entries).try_fold(true, |ran, (_, a)| {
             let _ = (a.measures(), a.export());
-            a.check().map_err(|e| format!("it gave a {} that cannot be: {e}", a.kind()))
+            a.check().map(|()| ran).map_err(|e| format!("it gave a {} that cannot be: {e}", a.kind()))
         }),
     }
 }
@@ -109,8 +111,17 @@ fn every_stage_answers_or_refuses_whatever_it_is_given() {
             ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() };
         let mut runner = proptest::test_runner::TestRunner::new_with_rng(config, pool::rng(card.name));
         let edits = prop::collection::vec(any::<Edit>(), 0..4);
-        let outcome =
-            runner.run(&edits, |edits| trial(card, stage.as_ref(), &edits).map_err(TestCaseError::fail));
+        let edited = Cell::new(0);
+        let outcome = runner.run(&edits, |edits| {
+            let ran = trial(card, stage.as_ref(), &edits).map_err(TestCaseError::fail)?;
+            edited.set(edited.get() + u32::from(ran && !edits.is_empty()));
+            Ok(())
+        });
+        eprintln!("  ran on edited inputs in {} of {} cases", edited.get(), cases());
+        let reached = edited.get() > 0;
+        failures.extend(
+            (!reached).then(|| format!("{}: no edited input was sound enough to reach it", card.name)),
+        );
         failures.extend(outcome.err().map(|e| format!("{} ({}): {e}", card.name, card.role.as_str())));
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
