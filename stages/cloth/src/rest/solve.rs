@@ -16,6 +16,7 @@ use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
 use crate::contact::body::Body;
+use crate::contact::skin::Skin;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
@@ -77,6 +78,15 @@ pub struct LevelReport {
     pub outcome: Outcome,
     /// Wall time, s.
     pub seconds: f64,
+}
+
+/// Who wears the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Wearer<'a> {
+    /// The solid.
+    pub skin: &'a dyn Skin,
+    /// Coulomb's coefficient of cloth on it.
+    pub friction: f64,
 }
 
 /// A garment at rest.
@@ -180,11 +190,25 @@ impl Rest {
     /// # Errors
     /// Every [`RestError`].
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(body, friction)| Wearer { skin: body, friction: *friction });
+        self.solve_on(scene, wearer, progress)
+    }
+
+    /// Solves `scene` on a body that answers for itself; the scene's own body is not looked at.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve_on(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Rested, RestError> {
         let clock = Instant::now();
-        let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
         let mut coarsest = self.coarsest;
         loop {
-            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            let mut work = Work::new(self, coarsest, scene, wearer, clock)?;
             work.sew(progress)?;
             match work.drape(progress)? {
                 Draped::Rested(state) => return self.judge(*state),
@@ -214,7 +238,7 @@ enum Draped {
 struct Work<'a> {
     rest: &'a Rest,
     scene: &'a Scene,
-    body: Option<&'a Body>,
+    body: Option<Wearer<'a>>,
     clock: Instant,
     /// Fine to coarse.
     pieces: Vec<Pieces>,
@@ -233,7 +257,7 @@ impl<'a> Work<'a> {
         rest: &'a Rest,
         coarsest: usize,
         scene: &'a Scene,
-        body: Option<&'a Body>,
+        body: Option<Wearer<'a>>,
         clock: Instant,
     ) -> Result<Self, RestError> {
         let mut pieces = vec![Pieces::new(scene)];
@@ -446,8 +470,8 @@ impl<'a> Work<'a> {
             .map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density)
             .collect();
         let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-        let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
-            body,
+        let support = self.body.map(|b| Support {
+            body: b.skin,
             friction: b.friction,
             offsets: vec![m.thickness; n],
             offset: m.thickness,
@@ -495,12 +519,13 @@ fn gravity(scene: &Scene) -> Vec3 {
 }
 
 /// The start with vertices that lie a little inside the body moved out.
-fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
+fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
     let mut start = scene.positions.clone();
     let Some(body) = body else { return Ok(start) };
     let (mut vertices, mut depth) = (0, 0.0f64);
-    for p in &mut start {
-        if let Some(n) = body.nearest(p, f64::INFINITY).filter(|n| n.distance < 0.0) {
+    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
+    for (p, n) in start.iter_mut().zip(near) {
+        if let Some(n) = n.filter(|n| n.distance < 0.0) {
             vertices += 1;
             depth = depth.max(-n.distance);
             *p = n.point + n.normal * scene.material.thickness;
