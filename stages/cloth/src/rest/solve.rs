@@ -98,6 +98,8 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -389,7 +391,8 @@ impl<'a> Work<'a> {
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
-        let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        let energy = system.stored(&x);
+        let state = Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {

@@ -127,6 +127,13 @@ impl System<'_> {
         self.elastic.value(x) + weight + threads + body + rub + layers
     }
 
+    /// Elastic and gravitational energy at `x`, J.
+    #[must_use]
+    pub fn stored(&self, x: &[Vec3]) -> f64 {
+        let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
+        self.elastic.value(x) + weight
+    }
+
     /// Finds the touches at `x`: call it at the start of each step.
     pub fn touch(&mut self, x: &[Vec3]) {
         if let Some(l) = &mut self.layers {
