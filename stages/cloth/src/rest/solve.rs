@@ -298,7 +298,8 @@ impl<'a> Work<'a> {
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
         if self.scene.self_collision {
-            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::InitialCrossing { pairs });
             }
@@ -414,9 +415,13 @@ impl<'a> Work<'a> {
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
-        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
-        let start = Instant::now();
         let sewing = !system.threads.is_empty();
+        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
+        let tree = match self.pieces.last() {
+            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
+            _ => tree,
+        };
+        let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
         let mut falling = 0;
