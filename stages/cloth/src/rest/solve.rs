@@ -480,7 +480,8 @@ impl<'a> Work<'a> {
         let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
         let support = self.body.map(|b| Support {
             body: b.skin,
-            friction: b.friction,
+            // Hands that sew a garment on a body let it slip into place.
+            friction: if open { 0.0 } else { b.friction },
             offsets: vec![m.thickness; n],
             offset: m.thickness,
             depth: longest.clamp(0.02, 0.1),
