@@ -6,7 +6,7 @@
 //! which one is found.
 
 use crate::cloth::check_garment;
-use crate::engine::{SchemeSkin, cloth_error, scene_of, weld_seams};
+use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -67,9 +67,13 @@ impl Rest {
         let gravity =
             phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
         let card = collider.map(|c| c.scheme.card());
-        let thickness = card.map_or(self.thickness.metres(), |c| c.thickness);
+        let setting = Setting {
+            gravity,
+            thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
+            self_collision: card.is_none_or(|c| c.self_collision),
+        };
+        let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
-        let scene = scene_of(garment, gravity, thickness, friction, card.is_none_or(|c| c.self_collision));
         let skin = collider.map(|c| SchemeSkin(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
@@ -153,6 +157,7 @@ fn rest_error(error: &RestError) -> StageError {
     };
     let code = match error {
         RestError::Cloth(e) => return cloth_error(e),
+        RestError::Scene(e) => return scene_error(e),
         RestError::SeamNotClosed { .. } => ErrorCode::StitchingError,
         RestError::InitialPenetration { .. } => ErrorCode::BodyIntersection,
         RestError::InitialCrossing { .. } | RestError::Crossing { .. } => ErrorCode::SelfIntersection,

@@ -7,5 +7,5 @@ mod scene;
 mod skin;
 
 pub use fault::{cloth_error, scene_error};
-pub use scene::{garment_of, scene_of, weld_seams};
+pub use scene::{Setting, garment_of, scene_of, weld_seams};
 pub use skin::SchemeSkin;

@@ -1,69 +1,86 @@
 //! Garments as the engine's scenes and back.
 
+use super::cloth_error;
 use nalgebra::Vector3;
 use std::sync::Arc;
-use toile_cloth::scene::{Material, Panel, Phase, Scene, Seam};
+use toile_cloth::error::ClothError;
+use toile_cloth::fabric as engine;
+use toile_cloth::scene::{Panel, Phase, Scene, Seam};
+use toile_core::StageError;
 use toile_core::artifact::{
     Curve, Fabric, Garment, GarmentPanel, GarmentSeam, Point2, Point3, SeamKind, SeamState, SolveStatus,
 };
 
-/// The scene of a garment under `gravity`; the body answers for itself.
+/// What a garment's scene takes from elsewhere than the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Setting {
+    /// m/s².
+    pub gravity: Vector3<f64>,
+    /// Distance at which cloth is held off the body and off itself, m.
+    pub thickness: f64,
+    /// Whether cloth is kept out of itself.
+    pub self_collision: bool,
+}
+
+/// The scene of a garment; the body answers for itself.
 ///
-/// `thickness` is the distance at which cloth is held off the body and off itself, metres.
-pub fn scene_of(
-    garment: &Garment,
-    gravity: Vector3<f64>,
-    thickness: f64,
-    friction: f64,
-    self_collision: bool,
-) -> Scene {
-    Scene {
+/// # Errors
+/// A fabric whose curves the engine does not take.
+pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageError> {
+    let mut panels = Vec::with_capacity(garment.panels.len());
+    for p in &garment.panels {
+        let material = fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;
+        let panel = Panel::new(p.name.clone(), p.vertices.clone(), p.triangles.clone());
+        panels.push(Panel { material: Some(material), ..panel });
+    }
+    let material = panels.first().and_then(|p| p.material.clone());
+    Ok(Scene {
         name: "garment".into(),
         rest: garment.rest.iter().map(|p| p.coords).collect(),
         positions: garment.positions.iter().map(|p| p.coords).collect(),
         triangles: garment.triangles.clone(),
-        panels: garment.panels.iter().map(panel).collect(),
+        panels,
         seams: garment.seams.iter().map(seam).collect(),
         pinned: garment.pinned.clone(),
         body: None,
-        material: material(garment, thickness, friction),
-        phases: vec![Phase { name: "drape".into(), seconds: 0.0, gravity }],
-        self_collision,
-    }
+        material: material.unwrap_or_else(|| engine::Fabric::isotropic(0.1, 500.0, 0.0, 1e-5)),
+        phases: vec![Phase { name: "drape".into(), seconds: 0.0, gravity: setting.gravity }],
+        self_collision: setting.self_collision,
+    })
 }
 
-fn panel(p: &GarmentPanel) -> Panel {
-    Panel { name: p.name.clone(), vertices: p.vertices.clone(), triangles: p.triangles.clone() }
+fn fabric(f: &Fabric, thickness: f64) -> Result<engine::Fabric, ClothError> {
+    let curve = |c: &Curve| {
+        let points: Vec<[f64; 2]> = c.0.iter().map(|&(strain, force)| [strain, force]).collect();
+        engine::Curve::through(&points)
+    };
+    Ok(engine::Fabric {
+        density: f.area_density,
+        warp: curve(&f.warp)?,
+        weft: curve(&f.weft)?,
+        poisson: 0.0,
+        shear: curve(&f.shear)?,
+        bending_warp: f.bending_warp,
+        bending_weft: f.bending_weft,
+        thickness,
+        friction: f.friction,
+        damping: 0.0,
+    })
 }
 
 fn seam(s: &GarmentSeam) -> Seam {
-    Seam { name: s.name.clone(), pairs: s.pairs.clone() }
-}
-
-fn material(garment: &Garment, thickness: f64, friction: f64) -> Material {
-    let fabric = garment.panels.first().map(|p| p.fabric.as_ref());
-    let slope = |of: fn(&Fabric) -> &Curve| fabric.map_or(0.0, |f| of(f).at(0.0).1);
-    let (warp, weft) = (slope(|f| &f.warp), slope(|f| &f.weft));
-    Material {
-        area_density: fabric.map_or(0.0, |f| f.area_density),
-        stretch: 0.5 * (warp + weft),
-        shear: slope(|f| &f.shear),
-        bend: fabric.map_or(0.0, |f| 0.5 * (f.bending_warp + f.bending_weft)),
-        friction,
-        thickness,
-    }
+    Seam::new(s.name.clone(), s.pairs.clone())
 }
 
 /// A scene as a garment, at its start.
 pub fn garment_of(scene: &Scene) -> Garment {
     let n = scene.positions.len();
-    let fabric = Arc::new(fabric_of(&scene.name, &scene.material));
     Garment {
         positions: scene.positions.iter().map(|p| Point3::from(*p)).collect(),
         velocities: vec![Vector3::zeros(); n],
         rest: scene.rest.iter().map(|p| Point2::from(*p)).collect(),
         triangles: scene.triangles.clone(),
-        panels: scene.panels.iter().map(|p| garment_panel(p, scene, &fabric)).collect(),
+        panels: (0..scene.panels.len()).map(|k| garment_panel(k, scene)).collect(),
         seams: scene.seams.iter().map(garment_seam).collect(),
         weld: (0..n as u32).collect(),
         pinned: scene.pinned.clone(),
@@ -80,28 +97,30 @@ fn garment_seam(s: &Seam) -> GarmentSeam {
     }
 }
 
-fn garment_panel(p: &Panel, scene: &Scene, fabric: &Arc<Fabric>) -> GarmentPanel {
+fn garment_panel(k: usize, scene: &Scene) -> GarmentPanel {
+    let p = &scene.panels[k];
     GarmentPanel {
         name: p.name.clone(),
         vertices: p.vertices.clone(),
         triangles: p.triangles.clone(),
         boundary: outline(&scene.triangles[p.triangles.clone()]),
         photo_px: Vec::new(),
-        fabric: fabric.clone(),
+        fabric: Arc::new(fabric_of(&p.name, scene.fabric_of(k))),
     }
 }
 
-fn fabric_of(name: &str, m: &Material) -> Fabric {
+fn fabric_of(panel: &str, f: &engine::Fabric) -> Fabric {
+    let curve = |c: &engine::Curve| Curve(c.points().into_iter().map(|[s, f]| (s, f)).collect());
     Fabric {
-        name: name.to_owned(),
-        area_density: m.area_density,
-        warp: Curve::linear(m.stretch),
-        weft: Curve::linear(m.stretch),
-        shear: Curve::linear(m.shear),
-        bending_warp: m.bend,
-        bending_weft: m.bend,
-        thickness: m.thickness,
-        friction: m.friction,
+        name: format!("fabric of {panel}"),
+        area_density: f.density,
+        warp: curve(&f.warp),
+        weft: curve(&f.weft),
+        shear: curve(&f.shear),
+        bending_warp: f.bending_warp,
+        bending_weft: f.bending_weft,
+        thickness: f.thickness,
+        friction: f.friction,
         damping: 0.0,
         source: "the scene's file".into(),
     }

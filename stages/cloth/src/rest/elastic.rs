@@ -1,5 +1,5 @@
 //! The sheet's own resistance, in the form the rest solver wants: one pass for the gradient and a positive semi-definite
-//! matrix.
+//! matrix. Every triangle has the stiffness of its panel.
 //!
 //! Membrane: St Venant-Kirchhoff triangles with a warp, a weft and a shear modulus; the part of the second derivative that
 //! the stress makes is projected by clamping the two principal stresses at zero, which costs two square roots a triangle
@@ -7,7 +7,8 @@
 //! 2006), whose matrix never changes. Cost O(triangles).
 
 use super::pattern::{Pattern, Slot, add_at};
-use crate::mesh::Sheet;
+use crate::fabric::Fabric;
+use crate::mesh::{Edge, Sheet, Side};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
 
@@ -22,13 +23,31 @@ pub struct Stiffness {
     pub warp: f64,
     /// Shear stiffness, N/m per unit of shear angle.
     pub shear: f64,
-    /// Bending stiffness, N m.
-    pub bend: f64,
+    /// Bending rigidity of a strip cut along the rest x axis, N m.
+    pub bend_weft: f64,
+    /// Bending rigidity of a strip cut along the rest y axis, N m.
+    pub bend_warp: f64,
+}
+
+impl Stiffness {
+    /// Of a fabric.
+    #[must_use]
+    pub fn of(fabric: &Fabric) -> Self {
+        Self {
+            weft: fabric.weft.slope(0.0),
+            warp: fabric.warp.slope(0.0),
+            shear: fabric.shear.slope(0.0),
+            bend_weft: fabric.bending_weft,
+            bend_warp: fabric.bending_warp,
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
 struct Triangle {
     nodes: [u32; 3],
+    /// Which stiffness.
+    cloth: u32,
     /// Derivative of the deformation gradient's two columns by each corner.
     shape: [Vector2<f64>; 3],
     area: f64,
@@ -45,7 +64,7 @@ struct Hinge {
 /// The elastic energy of a sheet.
 #[derive(Debug, Clone)]
 pub struct Elastic {
-    stiffness: Stiffness,
+    cloths: Vec<Stiffness>,
     triangles: Vec<Triangle>,
     hinges: Vec<Hinge>,
     slots: Vec<[Slot; 6]>,
@@ -59,12 +78,13 @@ const CHUNK: usize = 512;
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 impl Elastic {
-    /// Prepares the sheet's elements.
+    /// Prepares the sheet's elements; triangle `t` is of `cloths[cloth(t)]`.
     #[must_use]
-    pub fn new(sheet: &Sheet, stiffness: Stiffness) -> Self {
-        let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t)).collect();
-        let hinges = sheet.edges().iter().filter_map(|e| hinge(sheet, e, stiffness.bend)).collect();
-        Self { stiffness, triangles, hinges, slots: Vec::new(), bending: Vec::new() }
+    pub fn new(sheet: &Sheet, cloths: Vec<Stiffness>, cloth: impl Fn(usize) -> usize) -> Self {
+        let of = |t: usize| cloth(t).min(cloths.len().saturating_sub(1));
+        let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t, of(t) as u32)).collect();
+        let hinges = sheet.edges().iter().filter_map(|e| hinge(sheet, e, |t| &cloths[of(t)])).collect();
+        Self { cloths, triangles, hinges, slots: Vec::new(), bending: Vec::new() }
     }
 
     /// The groups of nodes that it couples.
@@ -93,8 +113,8 @@ impl Elastic {
     /// Energy, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        let s = &self.stiffness;
         let membrane = |t: &Triangle| {
+            let s = &self.cloths[t.cloth as usize];
             let (u, v) = t.columns(x);
             let (eu, ev, shear) = strain(&u, &v);
             0.5 * t.area * (s.weft * eu * eu + s.warp * ev * ev + s.shear * shear * shear)
@@ -105,8 +125,8 @@ impl Elastic {
 
     /// Adds the derivative of the energy, N.
     pub fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
-        let s = &self.stiffness;
         let forces = |t: &Triangle| {
+            let s = &self.cloths[t.cloth as usize];
             let (u, v) = t.columns(x);
             let (eu, ev, shear) = strain(&u, &v);
             let (tu, tv, ts) = (s.weft * eu * t.area, s.warp * ev * t.area, s.shear * shear * t.area);
@@ -126,7 +146,7 @@ impl Elastic {
 
     /// Adds the positive semi-definite second derivative, N/m.
     pub fn add_matrix(&self, x: &[Vec3], values: &mut [Matrix3<f64>]) {
-        let blocks = |t: &Triangle| t.blocks(&self.stiffness, x);
+        let blocks = |t: &Triangle| t.blocks(&self.cloths[t.cloth as usize], x);
         let blocks: Vec<[Matrix3<f64>; 6]> =
             self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
         for (blocks, slots) in blocks.iter().zip(&self.slots) {
@@ -197,16 +217,16 @@ fn tension(u: f64, v: f64, s: f64) -> Matrix2<f64> {
     Matrix2::new(u - low, s, s, v - low) * (high / (high - low))
 }
 
-fn triangle(sheet: &Sheet, t: usize) -> Triangle {
+fn triangle(sheet: &Sheet, t: usize, cloth: u32) -> Triangle {
     let inverse = sheet.inverse_rest()[t];
     let (b, c) = (inverse.row(0).transpose(), inverse.row(1).transpose());
-    Triangle { nodes: sheet.triangles()[t], shape: [-b - c, b, c], area: sheet.areas()[t] }
+    Triangle { nodes: sheet.triangles()[t], cloth, shape: [-b - c, b, c], area: sheet.areas()[t] }
 }
 
-fn hinge(sheet: &Sheet, edge: &crate::mesh::Edge, bend: f64) -> Option<Hinge> {
+fn hinge<'s>(sheet: &Sheet, edge: &Edge, cloth: impl Fn(usize) -> &'s Stiffness) -> Option<Hinge> {
     let other = edge.sides.1?;
     let [i, j] = edge.vertices;
-    let cotangents = |side: &crate::mesh::Side| {
+    let cotangents = |side: &Side| {
         let t = side.triangle as usize;
         let cot = |node: u32| {
             let k = sheet.triangles()[t].iter().position(|&n| n == node).unwrap_or(0);
@@ -217,6 +237,14 @@ fn hinge(sheet: &Sheet, edge: &crate::mesh::Edge, bend: f64) -> Option<Hinge> {
         (cot(i), cot(j), sheet.areas()[t])
     };
     let ((ai, aj, a), (bi, bj, b)) = (cotangents(&edge.sides.0), cotangents(&other));
+    let across = |side: &Side| {
+        let s = cloth(side.triangle as usize);
+        let (r, k) = (&sheet.rest()[side.triangle as usize], side.corner as usize);
+        let e = (r[(k + 2) % 3] - r[(k + 1) % 3]).normalize();
+        // Across the edge lies what runs along it turned by a right angle.
+        s.bend_weft * e.y * e.y + s.bend_warp * e.x * e.x
+    };
+    let bend = 0.5 * (across(&edge.sides.0) + across(&other));
     Some(Hinge {
         nodes: [i, j, edge.sides.0.opposite, other.opposite],
         weights: [aj + bj, ai + bi, -ai - aj, -bi - bj],

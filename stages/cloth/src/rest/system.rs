@@ -42,8 +42,8 @@ pub struct Touch {
 pub struct Support<'a> {
     /// The body.
     pub body: &'a dyn Skin,
-    /// Coefficient of friction.
-    pub friction: f64,
+    /// Coefficient of friction, per node.
+    pub friction: Vec<f64>,
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
     /// The least of them, m.
@@ -196,13 +196,13 @@ impl System<'_> {
     fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
         let s = self.support.as_ref();
         self.touches.iter().filter_map(move |t| {
-            let s = s.filter(|s| s.friction > 0.0)?;
+            let s = s.filter(|s| s.friction[t.node as usize] > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
             Some(Rub {
                 node: t.node,
                 normal: t.normal,
                 anchor,
-                limit: s.friction * t.load,
+                limit: s.friction[t.node as usize] * t.load,
                 slips: self.slips[t.node as usize],
                 ease: self.ease,
                 holds: self.holds,
