@@ -147,7 +147,11 @@ impl Models {
         })
     }
 
-    pub(super) fn energies(
+    /// Membrane, bending and its correction at free edges, for a sheet of this fabric with these vertices held.
+    ///
+    /// # Errors
+    /// What the models find in sheet or fabric.
+    pub fn energies(
         self,
         sheet: &Sheet,
         fabric: &Fabric,

@@ -400,7 +400,8 @@ impl<'a> Work<'a> {
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
-        let state = Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
+        let state =
+            Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {

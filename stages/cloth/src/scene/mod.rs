@@ -8,6 +8,7 @@ mod check;
 pub mod generate;
 mod obj;
 mod read;
+mod write;
 
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ mod tests;
 pub use build::GRAVITY;
 pub use obj::{ObjMesh, parse_obj, write_obj};
 pub use read::{parse, read};
+pub use write::{body_to_obj, to_json};
 
 use crate::error::ClothError;
 use crate::fabric::Fabric;
