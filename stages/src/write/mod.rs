@@ -1,6 +1,7 @@
 //! Writers: model and run to files.
 
 mod check;
+mod garment_obj;
 mod glb;
 mod names;
 mod obj;
@@ -12,6 +13,7 @@ mod report_data;
 mod tests;
 mod texture_file;
 
+pub use garment_obj::GarmentObj;
 pub use glb::Glb;
 pub use obj::Obj;
 pub use ply::Ply;
@@ -24,6 +26,7 @@ use toile_core::Registry;
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Glb>();
+    registry.add::<GarmentObj>();
     registry.add::<Obj>();
     registry.add::<Ply>();
     registry.add::<Preview>();

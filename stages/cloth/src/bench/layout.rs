@@ -36,6 +36,21 @@ impl Layout {
             Self::Irregular(_) => "irregular",
         }
     }
+
+    /// The name, with the seed of an irregular mesh.
+    #[must_use]
+    pub fn label(self) -> String {
+        match self {
+            Self::Irregular(seed) => format!("irregular {seed}"),
+            _ => self.name().into(),
+        }
+    }
+
+    /// Whether garments are cut into such meshes: hinges cannot be right on grids, so limits bind on these only.
+    #[must_use]
+    pub fn is_for_garments(self) -> bool {
+        matches!(self, Self::Equilateral | Self::Irregular(_))
+    }
 }
 
 /// A meshed rectangle.

@@ -55,6 +55,12 @@ impl Test {
         }
     }
 
+    /// The least resolution at which the limit binds, and the one that a table shows if it shows one.
+    #[must_use]
+    pub fn binding_resolution(self) -> usize {
+        self.resolutions()[1]
+    }
+
     /// Triangles along the longest side: coarse, middle, fine.
     #[must_use]
     pub fn resolutions(self) -> [usize; 3] {
@@ -217,17 +223,4 @@ pub fn run(test: Test, models: Models, layout: Layout, along: usize) -> Result<S
         Test::Dynamics => dynamics::errors(models, layout, along),
     }?;
     Ok(Score { test, models, layout, along, parts, seconds: start.elapsed().as_secs_f64() })
-}
-
-/// Every test on every mesh at every resolution for the given models, handed over as it comes.
-pub fn all(models: &[Models], mut take: impl FnMut(Test, Models, Layout, usize, Result<Score, ClothError>)) {
-    for test in Test::ALL {
-        for &m in models {
-            for layout in Layout::ALL {
-                for along in test.resolutions() {
-                    take(test, m, layout, along, run(test, m, layout, along));
-                }
-            }
-        }
-    }
 }

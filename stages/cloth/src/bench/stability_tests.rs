@@ -3,7 +3,7 @@ use nalgebra::Vector2;
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::stability::Case;
+use super::stability::{Case, Verdict};
 use crate::bending::{Clamp, FreeEdge, Hinge, Rigidity};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
@@ -12,18 +12,12 @@ use crate::membrane::{Triangles, Woven};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, Model, Solver, State, Static};
 
-/// What is wrong with a case, if anything.
-fn unsound(case: &Case, cells: usize) -> Option<String> {
-    match case.run(cells, 4) {
-        Ok(o) if o.converged && o.strain.is_finite() && o.energy_gain < 1e-6 => None,
-        Ok(o) => Some(format!("{o:?}")),
-        Err(e) => Some(e.to_string()),
-    }
-}
-
 fn all_sound(cases: impl Iterator<Item = (String, Case)>, cells: usize) {
     let faults: Vec<String> = cases
-        .filter_map(|(name, case)| unsound(&case, cells).map(|fault| format!("{name}: {fault}")))
+        .filter_map(|(name, case)| match case.verdict(cells) {
+            Verdict::Failed(fault) => Some(format!("{name}: {fault}")),
+            _ => None,
+        })
         .collect();
     assert!(faults.is_empty(), "{}", faults.join("\n"));
 }

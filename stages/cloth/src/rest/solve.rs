@@ -16,11 +16,12 @@ use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
 use crate::contact::body::Body;
+use crate::contact::skin::Skin;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::{Scene, SceneBody, SceneError, Seam};
+use crate::scene::{Scene, SceneError, Seam};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -83,6 +84,15 @@ pub struct LevelReport {
     pub seconds: f64,
 }
 
+/// Who wears the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Wearer<'a> {
+    /// The solid.
+    pub skin: &'a dyn Skin,
+    /// Coulomb's coefficient of cloth on it.
+    pub friction: f64,
+}
+
 /// A garment at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rested {
@@ -92,6 +102,8 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -187,12 +199,26 @@ impl Rest {
     /// # Errors
     /// Every [`RestError`].
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(body, friction)| Wearer { skin: body, friction: *friction });
+        self.solve_on(scene, wearer, progress)
+    }
+
+    /// Solves `scene` on a body that answers for itself; the scene's own body is not looked at.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve_on(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Rested, RestError> {
         let clock = Instant::now();
         scene.check()?;
-        let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
         let mut coarsest = self.coarsest;
         loop {
-            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            let mut work = Work::new(self, coarsest, scene, wearer, clock)?;
             work.sew(progress)?;
             match work.drape(progress)? {
                 Draped::Rested(state) => return self.judge(*state),
@@ -222,7 +248,7 @@ enum Draped {
 struct Work<'a> {
     rest: &'a Rest,
     scene: &'a Scene,
-    body: Option<&'a Body>,
+    body: Option<Wearer<'a>>,
     /// What no panel and what each panel is made of.
     cloths: Vec<&'a Fabric>,
     clock: Instant,
@@ -243,7 +269,7 @@ impl<'a> Work<'a> {
         rest: &'a Rest,
         coarsest: usize,
         scene: &'a Scene,
-        body: Option<&'a Body>,
+        body: Option<Wearer<'a>>,
         clock: Instant,
     ) -> Result<Self, RestError> {
         let mut pieces = vec![Pieces::new(scene)];
@@ -283,7 +309,8 @@ impl<'a> Work<'a> {
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
         if self.scene.self_collision {
-            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::InitialCrossing { pairs });
             }
@@ -372,7 +399,8 @@ impl<'a> Work<'a> {
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
-        let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        let energy = system.stored(&x);
+        let state = Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -394,9 +422,13 @@ impl<'a> Work<'a> {
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
-        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
-        let start = Instant::now();
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
+        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
+        let tree = match self.pieces.last() {
+            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
+            _ => tree,
+        };
+        let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
         let mut falling = 0;
@@ -480,12 +512,13 @@ impl<'a> Work<'a> {
             .collect();
         let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
         let thickness = |p: &usize| self.cloths[*p].thickness;
-        let rub = |b: &SceneBody, p: usize| {
+        let rub = |b: Wearer<'_>, p: usize| {
             let own = p.checked_sub(1).and_then(|k| self.scene.panels[k].body_friction);
-            own.unwrap_or(b.friction)
+            // Hands that sew a garment on a body let it slip into place.
+            if open { 0.0 } else { own.unwrap_or(b.friction) }
         };
-        let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
-            body,
+        let support = self.body.map(|b| Support {
+            body: b.skin,
             friction: panel.iter().map(|&p| rub(b, p)).collect(),
             offsets: panel.iter().map(thickness).collect(),
             offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
@@ -537,12 +570,13 @@ fn gravity(scene: &Scene) -> Vec3 {
 }
 
 /// The start with vertices that lie a little inside the body moved out.
-fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
+fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
     let mut start = scene.positions.clone();
     let Some(body) = body else { return Ok(start) };
     let (mut vertices, mut depth) = (0, 0.0f64);
-    for p in &mut start {
-        if let Some(n) = body.nearest(p, f64::INFINITY).filter(|n| n.distance < 0.0) {
+    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
+    for (p, n) in start.iter_mut().zip(near) {
+        if let Some(n) = n.filter(|n| n.distance < 0.0) {
             vertices += 1;
             depth = depth.max(-n.distance);
             *p = n.point + n.normal * scene.material.thickness;
