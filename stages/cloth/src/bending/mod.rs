@@ -19,7 +19,9 @@ mod skip;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use calibrate::Calibration;
 pub use clamp::Clamp;
+pub(crate) use flap::flaps;
 pub use free_edge::FreeEdge;
 pub use hinge::{Hinge, HingeTerm, hinge_terms};
 pub use quadratic::QuadraticHinge;

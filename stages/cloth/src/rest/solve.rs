@@ -9,7 +9,7 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 use super::coarsen::{Coarser, coarsen};
-use super::elastic::{Elastic, Stiffness};
+use super::elastic::Elastic;
 use super::layers::Layers;
 use super::multifrontal::NotPositive;
 use super::newton::{Outcome, Pace, relax};
@@ -64,7 +64,7 @@ impl Default for Rest {
             speed: 1e-3,
             coarsest: 200,
             coarse_steps: 30,
-            finest_steps: 200,
+            finest_steps: 500,
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
         }
@@ -534,8 +534,7 @@ impl<'a> Work<'a> {
         let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
         let layers =
             self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let cloths = self.cloths.iter().map(|c| Stiffness::of(c)).collect();
-        let elastic = Elastic::new(sheet, cloths, |t| pieces.cloth(t));
+        let elastic = Elastic::new(sheet, &self.cloths, |t| pieces.cloth(t));
         System {
             elastic,
             masses: sheet.masses().to_vec(),
@@ -605,3 +604,5 @@ fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truth_tests;

@@ -43,7 +43,7 @@ fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
 #[test]
 fn a_skirt_is_sewn_and_comes_to_rest_from_ten_starts() {
     for seed in 0..10 {
-        let mut scene = generate::tube(15, 17);
+        let mut scene = generate::tube(22, 25);
         if seed > 0 {
             generate::jitter(&mut scene, 1e-3, seed);
         }
