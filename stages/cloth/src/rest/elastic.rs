@@ -50,6 +50,8 @@ pub struct Elastic {
     hinges: Vec<Hinge>,
     slots: Vec<[Slot; 6]>,
     bending: Vec<(u32, f64)>,
+    /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
+    foretold: Vec<[f64; 3]>,
 }
 
 /// Elements that one task evaluates.
@@ -64,7 +66,7 @@ impl Elastic {
     pub fn new(sheet: &Sheet, stiffness: Stiffness) -> Self {
         let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t)).collect();
         let hinges = sheet.edges().iter().filter_map(|e| hinge(sheet, e, stiffness.bend)).collect();
-        Self { stiffness, triangles, hinges, slots: Vec::new(), bending: Vec::new() }
+        Self { stiffness, triangles, hinges, slots: Vec::new(), bending: Vec::new(), foretold: Vec::new() }
     }
 
     /// The groups of nodes that it couples.
@@ -88,6 +90,13 @@ impl Elastic {
         }
         self.bending =
             bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
+    }
+
+    /// Remembers the stress that the linear model foretells for `moves` from `x`.
+    pub fn foretell(&mut self, x: &[Vec3], moves: &[Vec3]) {
+        let s = self.stiffness;
+        self.foretold =
+            self.triangles.par_iter().with_min_len(CHUNK).map(|t| t.foretell(&s, x, moves)).collect();
     }
 
     /// Energy, J.
@@ -124,11 +133,14 @@ impl Elastic {
         }
     }
 
-    /// Adds the positive semi-definite second derivative, N/m.
-    pub fn add_matrix(&self, x: &[Vec3], values: &mut [Matrix3<f64>]) {
-        let blocks = |t: &Triangle| t.blocks(&self.stiffness, x);
+    /// Adds the second derivative with the foretold stress, N/m; positive semi-definite without `compression`.
+    pub fn add_matrix(&self, x: &[Vec3], compression: bool, values: &mut [Matrix3<f64>]) {
+        let blocks = |(k, t): (usize, &Triangle)| {
+            let stress = self.foretold.get(k).copied().unwrap_or_else(|| t.stress(&self.stiffness, x));
+            t.blocks(&self.stiffness, if compression { square(stress) } else { tension(stress) }, x)
+        };
         let blocks: Vec<[Matrix3<f64>; 6]> =
-            self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
+            self.triangles.par_iter().enumerate().with_min_len(CHUNK).map(blocks).collect();
         for (blocks, slots) in blocks.iter().zip(&self.slots) {
             blocks.iter().zip(slots).for_each(|(block, slot)| add_at(values, *slot, block));
         }
@@ -153,10 +165,22 @@ impl Triangle {
         (a * sa.x + b * sb.x + c * sc.x, a * sa.y + b * sb.y + c * sc.y)
     }
 
-    fn blocks(&self, s: &Stiffness, x: &[Vec3]) -> [Matrix3<f64>; 6] {
+    fn stress(&self, s: &Stiffness, x: &[Vec3]) -> [f64; 3] {
         let (u, v) = self.columns(x);
         let (eu, ev, shear) = strain(&u, &v);
-        let stress = tension(s.weft * eu, s.warp * ev, s.shear * shear);
+        [s.weft * eu, s.warp * ev, s.shear * shear]
+    }
+
+    /// The stress after `moves` if strain were linear in them.
+    fn foretell(&self, s: &Stiffness, x: &[Vec3], moves: &[Vec3]) -> [f64; 3] {
+        let (u, v) = self.columns(x);
+        let (du, dv) = self.columns(moves);
+        let (eu, ev, shear) = strain(&u, &v);
+        [s.weft * (eu + u.dot(&du)), s.warp * (ev + v.dot(&dv)), s.shear * (shear + u.dot(&dv) + v.dot(&du))]
+    }
+
+    fn blocks(&self, s: &Stiffness, stress: Matrix2<f64>, x: &[Vec3]) -> [Matrix3<f64>; 6] {
+        let (u, v) = self.columns(x);
         let (uu, vv, uv) = (u * u.transpose(), v * v.transpose(), u * v.transpose());
         let a = (uu * s.weft + vv * s.shear) * self.area;
         let d = (vv * s.warp + uu * s.shear) * self.area;
@@ -183,8 +207,13 @@ fn strain(u: &Vec3, v: &Vec3) -> (f64, f64, f64) {
     (0.5 * (u.norm_squared() - 1.0), 0.5 * (v.norm_squared() - 1.0), u.dot(v))
 }
 
+/// The stress as a matrix.
+fn square([u, v, s]: [f64; 3]) -> Matrix2<f64> {
+    Matrix2::new(u, s, s, v)
+}
+
 /// The stress with its compressive part taken away.
-fn tension(u: f64, v: f64, s: f64) -> Matrix2<f64> {
+fn tension([u, v, s]: [f64; 3]) -> Matrix2<f64> {
     let (mean, half) = (0.5 * (u + v), (0.5 * (u - v)).hypot(s));
     let (low, high) = (mean - half, mean + half);
     if low >= 0.0 {
