@@ -382,7 +382,7 @@ impl<'a> Work<'a> {
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
-        x: &mut Vec<Vec3>,
+        x: &mut [Vec3],
         pace: &Pace,
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
