@@ -15,7 +15,7 @@ use crate::bending::{Calibration, Rigidity, flaps};
 use crate::fabric::Fabric;
 use crate::mesh::{Edge, Sheet, Side};
 use border::Border;
-use law::Law;
+use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
 
@@ -48,6 +48,8 @@ pub struct Elastic {
     borders: Vec<Border>,
     slots: Vec<[Slot; 6]>,
     bending: Vec<(u32, f64)>,
+    /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
+    foretold: Vec<[f64; 3]>,
 }
 
 /// Elements that one task evaluates.
@@ -68,7 +70,8 @@ impl Elastic {
             true => (Vec::new(), Vec::new()),
             false => bending(sheet, |t| &bends[of(t)]),
         };
-        Self { laws, triangles, hinges, borders, slots: Vec::new(), bending: Vec::new() }
+        let (slots, bending, foretold) = (Vec::new(), Vec::new(), Vec::new());
+        Self { laws, triangles, hinges, borders, slots, bending, foretold }
     }
 
     /// The groups of nodes that it couples.
@@ -95,6 +98,12 @@ impl Elastic {
         }
         self.bending =
             bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
+    }
+
+    /// Remembers the stress that the linear model foretells for `moves` from `x`.
+    pub fn foretell(&mut self, x: &[Vec3], moves: &[Vec3]) {
+        let foretell = |t: &Triangle| t.foretell(&self.laws[t.cloth as usize], x, moves);
+        self.foretold = self.triangles.par_iter().with_min_len(CHUNK).map(foretell).collect();
     }
 
     /// Energy, J.
@@ -128,11 +137,16 @@ impl Elastic {
         self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
     }
 
-    /// Adds the positive semi-definite second derivative, N/m.
-    pub fn add_matrix(&self, x: &[Vec3], values: &mut [Matrix3<f64>]) {
-        let blocks = |t: &Triangle| t.blocks(&self.laws[t.cloth as usize], x);
+    /// Adds the second derivative with the foretold stress, N/m; positive semi-definite without `compression`.
+    pub fn add_matrix(&self, x: &[Vec3], compression: bool, values: &mut [Matrix3<f64>]) {
+        let blocks = |(k, t): (usize, &Triangle)| {
+            let (u, v) = t.columns(x);
+            let response = self.laws[t.cloth as usize].response(metric(&u, &v));
+            let stress = self.foretold.get(k).copied().unwrap_or(response.stress);
+            t.blocks(&u, &v, &response.tangent, if compression { square(stress) } else { tension(stress) })
+        };
         let blocks: Vec<[Matrix3<f64>; 6]> =
-            self.triangles.par_iter().with_min_len(CHUNK).map(blocks).collect();
+            self.triangles.par_iter().enumerate().with_min_len(CHUNK).map(blocks).collect();
         for (blocks, slots) in blocks.iter().zip(&self.slots) {
             blocks.iter().zip(slots).for_each(|(block, slot)| add_at(values, *slot, block));
         }
@@ -157,12 +171,22 @@ impl Triangle {
         (a * sa.x + b * sb.x + c * sc.x, a * sa.y + b * sb.y + c * sc.y)
     }
 
-    fn blocks(&self, law: &Law, x: &[Vec3]) -> [Matrix3<f64>; 6] {
+    /// The stress after `moves` if strain were linear in them.
+    fn foretell(&self, law: &Law, x: &[Vec3], moves: &[Vec3]) -> [f64; 3] {
         let (u, v) = self.columns(x);
-        let response = law.response(metric(&u, &v));
-        let [su, sv, ss] = response.stress;
-        let stress = tension(su, sv, ss);
-        let [c11, c22, c33, c12, c13, c23] = response.tangent.map(|c| c * self.area);
+        let (du, dv) = self.columns(moves);
+        let Response { stress: [su, sv, ss], tangent: [c11, c22, c33, c12, c13, c23] } =
+            law.response(metric(&u, &v));
+        let (eu, ev, es) = (u.dot(&du), v.dot(&dv), u.dot(&dv) + v.dot(&du));
+        [
+            su + c11 * eu + c12 * ev + c13 * es,
+            sv + c12 * eu + c22 * ev + c23 * es,
+            ss + c13 * eu + c23 * ev + c33 * es,
+        ]
+    }
+
+    fn blocks(&self, u: &Vec3, v: &Vec3, tangent: &[f64; 6], stress: Matrix2<f64>) -> [Matrix3<f64>; 6] {
+        let [c11, c22, c33, c12, c13, c23] = tangent.map(|c| c * self.area);
         let (uu, vv, uv) = (u * u.transpose(), v * v.transpose(), u * v.transpose());
         let vu = uv.transpose();
         let mixed = uv + vu;
@@ -191,8 +215,13 @@ fn metric(u: &Vec3, v: &Vec3) -> [f64; 3] {
     [u.norm_squared(), v.norm_squared(), u.dot(v)]
 }
 
+/// The stress as a matrix.
+fn square([u, v, s]: [f64; 3]) -> Matrix2<f64> {
+    Matrix2::new(u, s, s, v)
+}
+
 /// The stress with its compressive part taken away.
-fn tension(u: f64, v: f64, s: f64) -> Matrix2<f64> {
+fn tension([u, v, s]: [f64; 3]) -> Matrix2<f64> {
     let (mean, half) = (0.5 * (u + v), (0.5 * (u - v)).hypot(s));
     let (low, high) = (mean - half, mean + half);
     if low >= 0.0 {

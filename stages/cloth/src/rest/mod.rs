@@ -3,8 +3,11 @@
 pub mod coarsen;
 pub mod dissect;
 pub mod elastic;
+mod front;
 pub mod layers;
+mod linear;
 pub mod multifrontal;
+mod nearby;
 pub mod newton;
 pub mod pattern;
 pub mod pieces;

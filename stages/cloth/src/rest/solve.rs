@@ -11,7 +11,7 @@
 use super::coarsen::{Coarser, coarsen};
 use super::elastic::Elastic;
 use super::layers::Layers;
-use super::multifrontal::NotPositive;
+use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
@@ -377,7 +377,7 @@ impl<'a> Work<'a> {
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
-            if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
+            if system.is_tangled() {
                 return Ok(Draped::Tangled { nodes: x.len() });
             }
             if k == 0 {
@@ -418,7 +418,7 @@ impl<'a> Work<'a> {
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
-        x: &mut Vec<Vec3>,
+        x: &mut [Vec3],
         pace: &Pace,
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
@@ -449,7 +449,12 @@ impl<'a> Work<'a> {
             }
             if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        report.outcome = relax(system, layout, tree.as_ref(), x, pace, &mut watch)?;
+        let late = || self.clock.elapsed() > self.rest.budget;
+        match relax(system, layout, tree.as_ref(), x, pace, &mut watch, &late) {
+            Ok(outcome) => report.outcome = outcome,
+            Err(Halt::NotPositive(error)) => return Err(error.into()),
+            Err(Halt::Stopped) => stop = Some(self.timeout()),
+        }
         match stop {
             Some(RestError::Timeout { seconds, level, levels, .. }) => {
                 Err(RestError::Timeout { seconds, level, levels, positions: self.carried(x) })
@@ -546,10 +551,8 @@ impl<'a> Work<'a> {
             touches: vec![],
             anchors: vec![None; n],
             slides: vec![Vec3::zeros(); n],
-            ease: super::newton::EASE.0,
-            holds: false,
-            slips: vec![false; n],
             loads: vec![0.0; n],
+            seen: vec![],
         }
     }
 }

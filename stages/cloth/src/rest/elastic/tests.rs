@@ -64,7 +64,7 @@ fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
     let pattern = Pattern::new(x.len(), elastic.couplings());
     elastic.bind(&pattern);
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
-    elastic.add_matrix(&x, &mut values);
+    elastic.add_matrix(&x, false, &mut values);
     let push: Vec<Vec3> =
         (0..x.len()).map(|i| Vec3::new(i as f64, 2.0 * i as f64, 1.0).map(f64::sin)).collect();
     let mut product = vec![Vec3::zeros(); x.len()];
