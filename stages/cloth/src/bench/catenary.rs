@@ -36,7 +36,7 @@ fn hang(models: Models, mesh: &Rectangle, span: f64, beta: f64) -> Result<(f64, 
     let fabric = Fabric::isotropic(1.0, 1.0 / beta, 0.0, RIGIDITY);
     let held = |v: usize| mesh.at_bottom(v) || mesh.at_top(v);
     let mut model = Model::of(&sheet).pinned(held).under(Vec3::new(0.0, -1.0, 0.0));
-    model.energies = models.energies(&sheet, &fabric, &model.fixed, None)?;
+    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
     let depth = reference::catenary(span, 0.0).sag;
     let start = |p: &nalgebra::Vector2<f64>| Vec3::new(span * p.y, -4.0 * depth * p.y * (1.0 - p.y), p.x);
     let mut state = State::at_rest(mesh.uv.iter().map(start).collect());

@@ -37,7 +37,7 @@ fn hanging_sheet(models: Models, layout: Layout, along: usize) -> Result<(Model,
     let sheet = mesh.sheet(1.0)?;
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(Vec3::new(0.0, -1.0, 0.0));
     model.energies =
-        models.energies(&sheet, &Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5), &model.fixed, None)?;
+        models.energies(&sheet, &Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5), &model.fixed)?;
     let shape = shape(&model, mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect(), |p| 1.0 - p.y)?;
     Ok((model, shape, reference::hanging_omega(1)))
 }
@@ -48,7 +48,7 @@ fn drumhead(models: Models, layout: Layout, along: usize) -> Result<(Model, Shap
     let sheet = mesh.sheet(1.0)?;
     let k = 1000.0;
     let mut model = Model::of(&sheet).pinned(|v| mesh.on_border(v)).under(Vec3::zeros());
-    model.energies = models.energies(&sheet, &Fabric::isotropic(1.0, k, 0.0, 1e-9), &model.fixed, None)?;
+    model.energies = models.energies(&sheet, &Fabric::isotropic(1.0, k, 0.0, 1e-9), &model.fixed)?;
     let side = 1.0 + PRESTRAIN;
     let start = mesh.uv.iter().map(|p| Vec3::new(side * p.x, side * p.y, 0.0)).collect();
     let shape = shape(&model, start, |p| {

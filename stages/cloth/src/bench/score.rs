@@ -151,8 +151,21 @@ impl Models {
         })
     }
 
-    /// Membrane and bending; border edges of `held` keep their slope, other borders are free where not `fixed`.
-    pub(super) fn energies(
+    /// Membrane and bending for a sheet of this fabric, its borders free where not `fixed`.
+    ///
+    /// # Errors
+    /// What the models find in sheet or fabric.
+    pub fn energies(
+        self,
+        sheet: &Sheet,
+        fabric: &Fabric,
+        fixed: &[bool],
+    ) -> Result<Vec<Box<dyn Energy>>, ClothError> {
+        self.energies_held(sheet, fabric, fixed, None)
+    }
+
+    /// The same, where border edges of `held` keep their slope.
+    pub(super) fn energies_held(
         self,
         sheet: &Sheet,
         fabric: &Fabric,

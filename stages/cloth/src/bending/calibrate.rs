@@ -28,7 +28,7 @@ const LARGEST_LEAN: f64 = 0.3;
 
 /// What a hinge mesh is, against the sheet it stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Calibration {
+pub(crate) struct Calibration {
     /// What to multiply the hinge stiffness by. 1 for a mesh too small to judge.
     pub factor: f64,
     /// Poisson's ratio of its bending, about -1/3.
@@ -53,7 +53,7 @@ impl Calibration {
     const NONE: Self = Self { factor: 1.0, poisson: -1.0 / 3.0, lean: 0.0 };
 
     /// Judges the rest mesh.
-    pub(super) fn of(sheet: &Sheet) -> Self {
+    pub(crate) fn of(sheet: &Sheet) -> Self {
         let flaps: Vec<Flap> =
             flaps(sheet, &Rigidity::uniform(1.0)).into_iter().filter(|f| one_frame(sheet, f)).collect();
         let panels = Panels::cut(sheet, &flaps);
@@ -66,7 +66,7 @@ impl Calibration {
     }
 
     /// The rigidity to build hinges with.
-    pub(super) fn corrected(&self, d: &Rigidity) -> Rigidity {
+    pub(crate) fn corrected(&self, d: &Rigidity) -> Rigidity {
         Rigidity { weft: d.weft * (1.0 + self.lean), warp: d.warp * (1.0 - self.lean) }
     }
 

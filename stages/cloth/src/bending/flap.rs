@@ -7,7 +7,7 @@ use crate::mesh::{Edge, Sheet, Side};
 
 /// A fold line and what stands on it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Flap {
+pub(crate) struct Flap {
     /// Edge start, edge end, left tip, right tip.
     pub vertices: [u32; 4],
     /// Small fold angle = sum of these times the lifts, 1/m.
@@ -37,7 +37,7 @@ impl Flap {
 }
 
 /// All inner edges of a sheet as flaps, in the order of the edges.
-pub(super) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
+pub(crate) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
     sheet.edges().iter().filter_map(|e| flap(sheet, rigidity, e)).collect()
 }
 

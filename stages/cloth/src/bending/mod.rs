@@ -22,7 +22,9 @@ mod skip;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use calibrate::Calibration;
 pub use clamp::Clamp;
+pub(crate) use flap::flaps;
 pub use free_edge::FreeEdge;
 pub use hinge::Hinge;
 pub use lone::{HingeTerm, LoneHinge, hinge_terms};

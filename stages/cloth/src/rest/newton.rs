@@ -14,7 +14,6 @@ use crate::contact::limit::limit;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
@@ -262,9 +261,8 @@ fn untangle(system: &mut System<'_>, tree: Option<&ClothTree>, x: &[Vec3]) {
 /// Ends moves that lead into the body just outside it.
 fn clear_of_body(system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
     let Some(s) = &system.support else { return };
-    moves.par_iter_mut().zip(x).zip(&s.offsets).with_min_len(64).for_each(|((m, p), offset)| {
-        *m = s.body.guard(p, m, 0.5 * offset);
-    });
+    let gaps: Vec<f64> = s.offsets.iter().map(|o| 0.5 * o).collect();
+    s.body.guard(x, moves, &gaps);
 }
 
 /// Makes the step or, where the potential does not fall, a share of it; the share.

@@ -9,17 +9,19 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 use super::coarsen::{Coarser, coarsen};
-use super::elastic::{Elastic, Stiffness};
+use super::elastic::Elastic;
 use super::layers::Layers;
 use super::multifrontal::NotPositive;
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
 use crate::contact::body::Body;
+use crate::contact::skin::Skin;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
+use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError, Seam};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -32,6 +34,9 @@ const CONTACT_STIFFNESS: f64 = 0.5;
 
 /// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
 const SEAM_PULL: f64 = 0.01;
+
+/// The same of seams that stay two rows of vertices held by thread: strong enough to carry the garment without a gap.
+const KEPT_PULL: f64 = 0.1;
 
 /// Factor by which a seam that stays open pulls harder, and how often.
 const HARDER: (f64, usize) = (3.0, 4);
@@ -59,7 +64,7 @@ impl Default for Rest {
             speed: 1e-3,
             coarsest: 200,
             coarse_steps: 30,
-            finest_steps: 200,
+            finest_steps: 500,
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
         }
@@ -79,6 +84,15 @@ pub struct LevelReport {
     pub seconds: f64,
 }
 
+/// Who wears the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Wearer<'a> {
+    /// The solid.
+    pub skin: &'a dyn Skin,
+    /// Coulomb's coefficient of cloth on it.
+    pub friction: f64,
+}
+
 /// A garment at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rested {
@@ -88,6 +102,8 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -98,6 +114,9 @@ pub struct Rested {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RestError {
     /// A fault of the input.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A fault of the mesh.
     #[error(transparent)]
     Cloth(#[from] ClothError),
     /// The matrix stayed indefinite.
@@ -180,11 +199,26 @@ impl Rest {
     /// # Errors
     /// Every [`RestError`].
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(body, friction)| Wearer { skin: body, friction: *friction });
+        self.solve_on(scene, wearer, progress)
+    }
+
+    /// Solves `scene` on a body that answers for itself; the scene's own body is not looked at.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve_on(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Rested, RestError> {
         let clock = Instant::now();
-        let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
+        scene.check()?;
         let mut coarsest = self.coarsest;
         loop {
-            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            let mut work = Work::new(self, coarsest, scene, wearer, clock)?;
             work.sew(progress)?;
             match work.drape(progress)? {
                 Draped::Rested(state) => return self.judge(*state),
@@ -214,7 +248,9 @@ enum Draped {
 struct Work<'a> {
     rest: &'a Rest,
     scene: &'a Scene,
-    body: Option<&'a Body>,
+    body: Option<Wearer<'a>>,
+    /// What no panel and what each panel is made of.
+    cloths: Vec<&'a Fabric>,
     clock: Instant,
     /// Fine to coarse.
     pieces: Vec<Pieces>,
@@ -233,7 +269,7 @@ impl<'a> Work<'a> {
         rest: &'a Rest,
         coarsest: usize,
         scene: &'a Scene,
-        body: Option<&'a Body>,
+        body: Option<Wearer<'a>>,
         clock: Instant,
     ) -> Result<Self, RestError> {
         let mut pieces = vec![Pieces::new(scene)];
@@ -253,6 +289,7 @@ impl<'a> Work<'a> {
             rest,
             scene,
             body,
+            cloths: cloths(scene),
             clock,
             pieces,
             coarser,
@@ -267,17 +304,18 @@ impl<'a> Work<'a> {
     fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
         let coarsest = self.pieces.len() - 1;
         let pieces = &self.pieces[coarsest];
-        let sheet = pieces.open_sheet(self.scene.material.area_density)?;
+        let sheet = pieces.open_sheet(&self.cloths)?;
         let mut x = self.starts[coarsest].clone();
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
         if self.scene.self_collision {
-            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::InitialCrossing { pairs });
             }
         }
-        let mut pull = SEAM_PULL * self.scene.material.stretch;
+        let mut pull = SEAM_PULL * self.strongest();
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
             if widest < self.rest.join_gap {
@@ -303,7 +341,7 @@ impl<'a> Work<'a> {
             let gap = widest(&x, &pairs);
             self.joined_at = Some(gap);
             if gap > self.rest.join_gap {
-                let seam = self.widest_seam(&x);
+                let seam = self.widest_seam(coarsest, &x);
                 return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
             }
         }
@@ -311,28 +349,22 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The name of the seam that is open widest on the coarsest level.
-    fn widest_seam(&self, x: &[Vec3]) -> String {
-        let mut names: Vec<Option<&str>> = vec![None; self.pieces[0].points];
-        for seam in &self.scene.seams {
-            seam.pairs
-                .iter()
-                .for_each(|p| names[self.pieces[0].point[p[0] as usize] as usize] = Some(&seam.name));
-        }
-        let fine_of = |v: u32| self.coarser.iter().rev().fold(v, |v, c| c.kept[v as usize]);
-        let coarsest = &self.pieces[self.pieces.len() - 1];
+    /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
+    fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
-        let worst = coarsest.seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let point = worst.map_or(0, |p| self.pieces[0].point[fine_of(p[0]) as usize]);
-        names[point as usize].unwrap_or("?").to_string()
+        let worst = self.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let fine_of = |v: u32| self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
+        let point = |v: u32| self.pieces[0].point[v as usize];
+        let at = worst.map(|p| point(fine_of(p[0])));
+        let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
+        self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
 
     /// Lets the sewn garment come to rest, level by level.
     fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
-        let density = self.scene.material.area_density;
         let mut slides = Vec::new();
         for k in (0..self.pieces.len()).rev() {
-            let sheet = self.pieces[k].sewn_sheet(density)?;
+            let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
             let mut system = self.system(&self.pieces[k], &sheet, false);
             let mut x = std::mem::take(&mut self.x);
@@ -341,6 +373,7 @@ impl<'a> Work<'a> {
             }
             let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
             let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
+            system.threads = self.kept(&self.pieces[k]);
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
@@ -348,6 +381,7 @@ impl<'a> Work<'a> {
                 return Ok(Draped::Tangled { nodes: x.len() });
             }
             if k == 0 {
+                self.check_kept(&x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
             }
             let finer = |values: &[Vec3]| {
@@ -365,7 +399,9 @@ impl<'a> Work<'a> {
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
-        let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        let energy = system.stored(&x);
+        let state =
+            Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -387,9 +423,13 @@ impl<'a> Work<'a> {
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
+        let sewing = self.joined_at.is_none() && !system.threads.is_empty();
         let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
+        let tree = match self.pieces.last() {
+            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
+            _ => tree,
+        };
         let start = Instant::now();
-        let sewing = !system.threads.is_empty();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
         let mut falling = 0;
@@ -428,29 +468,61 @@ impl<'a> Work<'a> {
     /// The level's nodes, sewn or open, carried to the finest vertices.
     fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let open = |p: &&Pieces| p.rest.len() == x.len();
-        let k = self.pieces.iter().position(|p| p.points == x.len() || open(&p)).unwrap_or(0);
-        let vertices = if self.pieces[k].points == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
+        let k = self.pieces.iter().position(|p| p.nodes == x.len() || open(&p)).unwrap_or(0);
+        let vertices = if self.pieces[k].nodes == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
         self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
+    /// Threads of the seams that are not joined.
+    fn kept(&self, pieces: &Pieces) -> Vec<Thread> {
+        let force = KEPT_PULL * self.strongest() * spacing(pieces, &pieces.seam_pairs());
+        let soft = 2.0 * self.rest.join_gap;
+        pieces.kept_pairs().into_iter().map(|nodes| Thread { nodes, force, soft }).collect()
+    }
+
+    /// Refuses seams that are not joined and stay open at the end.
+    fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
+        let gap = widest(x, &self.pieces[0].kept_pairs());
+        if gap <= self.rest.join_gap {
+            return Ok(());
+        }
+        let seam = self.widest_seam(0, &self.pieces[0].spread(x));
+        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * self.strongest() })
+    }
+
+    /// Stretch stiffness of the stiffest panel, N/m.
+    fn strongest(&self) -> f64 {
+        self.cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
+    }
+
     fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> System<'a> {
-        let m = &self.scene.material;
         let n = sheet.vertex_count();
         let mut pinned = vec![false; n];
+        let mut panel = vec![0; n];
         for (v, &p) in pieces.pinned.iter().enumerate() {
-            pinned[if open { v } else { pieces.point[v] as usize }] |= p;
+            let node = if open { v } else { pieces.node[v] as usize };
+            pinned[node] |= p;
+            panel[node] = pieces.panel[v] as usize;
         }
         let stiffness: Vec<f64> = sheet
             .masses()
             .iter()
-            .map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density)
+            .zip(&panel)
+            .map(|(w, &p)| (w, self.cloths[p]))
+            .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
             .collect();
         let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-        let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
-            body,
-            friction: b.friction,
-            offsets: vec![m.thickness; n],
-            offset: m.thickness,
+        let thickness = |p: &usize| self.cloths[*p].thickness;
+        let rub = |b: Wearer<'_>, p: usize| {
+            let own = p.checked_sub(1).and_then(|k| self.scene.panels[k].body_friction);
+            // Hands that sew a garment on a body let it slip into place.
+            if open { 0.0 } else { own.unwrap_or(b.friction) }
+        };
+        let support = self.body.map(|b| Support {
+            body: b.skin,
+            friction: panel.iter().map(|&p| rub(b, p)).collect(),
+            offsets: panel.iter().map(thickness).collect(),
+            offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
             depth: longest.clamp(0.02, 0.1),
             edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
             clear: pieces.rest.len() == self.scene.rest.len(),
@@ -459,11 +531,10 @@ impl<'a> Work<'a> {
         let mut corners = vec![0u16; n];
         sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
         let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
-        let thickness = m.thickness.min(LAYER_SHARE * shortest);
+        let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
         let layers =
             self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let elastic =
-            Elastic::new(sheet, Stiffness { weft: m.stretch, warp: m.stretch, shear: m.shear, bend: m.bend });
+        let elastic = Elastic::new(sheet, &self.cloths, |t| pieces.cloth(t));
         System {
             elastic,
             masses: sheet.masses().to_vec(),
@@ -483,6 +554,11 @@ impl<'a> Work<'a> {
     }
 }
 
+/// What no panel and what each panel is made of.
+fn cloths(scene: &Scene) -> Vec<&Fabric> {
+    std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
+}
+
 /// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
 const LAYER_SHARE: f64 = 0.25;
 
@@ -495,12 +571,13 @@ fn gravity(scene: &Scene) -> Vec3 {
 }
 
 /// The start with vertices that lie a little inside the body moved out.
-fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
+fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
     let mut start = scene.positions.clone();
     let Some(body) = body else { return Ok(start) };
     let (mut vertices, mut depth) = (0, 0.0f64);
-    for p in &mut start {
-        if let Some(n) = body.nearest(p, f64::INFINITY).filter(|n| n.distance < 0.0) {
+    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
+    for (p, n) in start.iter_mut().zip(near) {
+        if let Some(n) = n.filter(|n| n.distance < 0.0) {
             vertices += 1;
             depth = depth.max(-n.distance);
             *p = n.point + n.normal * scene.material.thickness;
@@ -527,3 +604,5 @@ fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truth_tests;

@@ -7,9 +7,9 @@
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pattern::{Pattern, Slot, add_at};
-use crate::contact::body::{Body, Nearest};
+use crate::contact::body::Nearest;
+use crate::contact::skin::Skin;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
@@ -41,9 +41,9 @@ pub struct Touch {
 #[derive(Debug, Clone)]
 pub struct Support<'a> {
     /// The body.
-    pub body: &'a Body,
-    /// Coefficient of friction.
-    pub friction: f64,
+    pub body: &'a dyn Skin,
+    /// Coefficient of friction, per node.
+    pub friction: Vec<f64>,
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
     /// The least of them, m.
@@ -105,7 +105,7 @@ impl System<'_> {
     /// The body nearest to each node, if within reach.
     fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
         let Some(s) = &self.support else { return vec![None; x.len()] };
-        x.par_iter().zip(&s.offsets).with_min_len(64).map(|(p, o)| s.nearest(p, *o)).collect()
+        s.nearest(x)
     }
 
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
@@ -125,6 +125,13 @@ impl System<'_> {
         let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
         self.elastic.value(x) + weight + threads + body + rub + layers
+    }
+
+    /// Elastic and gravitational energy at `x`, J.
+    #[must_use]
+    pub fn stored(&self, x: &[Vec3]) -> f64 {
+        let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
+        self.elastic.value(x) + weight
     }
 
     /// Finds the touches at `x`: call it at the start of each step.
@@ -189,13 +196,13 @@ impl System<'_> {
     fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
         let s = self.support.as_ref();
         self.touches.iter().filter_map(move |t| {
-            let s = s.filter(|s| s.friction > 0.0)?;
+            let s = s.filter(|s| s.friction[t.node as usize] > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
             Some(Rub {
                 node: t.node,
                 normal: t.normal,
                 anchor,
-                limit: s.friction * t.load,
+                limit: s.friction[t.node as usize] * t.load,
                 slips: self.slips[t.node as usize],
                 ease: self.ease,
                 holds: self.holds,
@@ -259,10 +266,15 @@ impl Support<'_> {
         }
     }
 
-    /// The body nearest to `p`, where it presses.
+    /// The body nearest to each node, where it presses.
     #[must_use]
-    pub fn nearest(&self, p: &Vec3, offset: f64) -> Option<Nearest> {
-        self.body.nearest(p, offset + self.depth).filter(|n| n.distance < NEAR * offset)
+    pub fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
+        let within: Vec<f64> = self.offsets.iter().map(|o| o + self.depth).collect();
+        let mut near = self.body.nearest(x, &within);
+        for (n, o) in near.iter_mut().zip(&self.offsets) {
+            *n = n.filter(|n| n.distance < NEAR * o);
+        }
+        near
     }
 }
 
