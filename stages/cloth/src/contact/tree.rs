@@ -123,7 +123,10 @@ impl ClothTree {
                     [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
                 {
                     found.extend(
-                        (0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| !e.iter().any(|&v| self.is_one_of(v, b)) && crosses(*e, b, x)).map(|e| (e, *b)),
+                        (0..3)
+                            .map(|k| [a[k], a[(k + 1) % 3]])
+                            .filter(|e| !e.iter().any(|&v| self.is_one_of(v, b)) && crosses(*e, b, x))
+                            .map(|e| (e, *b)),
                     );
                 }
             });
