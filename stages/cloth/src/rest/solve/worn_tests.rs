@@ -29,13 +29,9 @@ fn a_sleeve_is_sewn_around_an_arm_and_dips_into_it_nowhere() {
         let scene = generate::sleeve(nx, ny);
         let state = settle(&scene).unwrap();
         let x = &state.positions;
-        assert!(strains(&scene, x).iter().all(|s| *s < 0.02));
-        assert_eq!(state.dip, 0.0);
-            "{} {:?}",
-            deepest_anywhere(&scene, x),
-            (strain[strain.len() * 99 / 100], strain[strain.len() - 1])
-        );
         assert!(deepest_anywhere(&scene, x) < 0.0, "{}", deepest_anywhere(&scene, x));
+        assert_eq!(state.dip, 0.0);
+        assert!(strains(&scene, x).iter().all(|s| *s < 0.02));
         assert_eq!(crossings(&scene, x), 0);
         picture(&scene, x, &format!("sleeve_{nx}"));
     }
