@@ -8,6 +8,7 @@
 //! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
+use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
 use super::elastic::Elastic;
 use super::layers::Layers;
@@ -37,6 +38,12 @@ const SEAM_PULL: f64 = 0.01;
 
 /// The same of seams that stay two rows of vertices held by thread: strong enough to carry the garment without a gap.
 const KEPT_PULL: f64 = 0.1;
+
+/// How often nodes are moved out where triangles dip into the body.
+const CLEARINGS: usize = 4;
+
+/// First step of pseudo-time after that: the cloth hardly moves, s.
+const CLEAR_STEP: f64 = 0.2;
 
 /// Factor by which a seam that stays open pulls harder, and how often.
 const HARDER: (f64, usize) = (3.0, 4);
@@ -104,6 +111,8 @@ pub struct Rested {
     pub residual: f64,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
+    /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than the mesh can follow.
+    pub dip: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -377,6 +386,9 @@ impl<'a> Work<'a> {
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
+            if k == 0 {
+                self.clear(&mut system, &sheet, &place, &mut x, &pace, progress)?;
+            }
             if system.is_tangled() {
                 return Ok(Draped::Tangled { nodes: x.len() });
             }
@@ -394,14 +406,49 @@ impl<'a> Work<'a> {
         Err(ClothError::EmptyScene.into())
     }
 
+    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
+    fn clear(
+        &mut self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut Vec<Vec3>,
+        pace: &Pace,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
+        let pace = Pace { first: CLEAR_STEP, steps: 2 * self.rest.coarse_steps, ..*pace };
+        for _ in 0..CLEARINGS {
+            let Some(Clearance { lacks, depth, .. }) = self.body.map(|w| clearance(sheet, w.skin, x)) else {
+                break;
+            };
+            if depth == 0.0 {
+                break;
+            }
+            if let Some(s) = &mut system.support {
+                s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
+            }
+            let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
+            self.reports.push(report);
+        }
+        Ok(())
+    }
+
     fn finish(self, mut system: System<'_>, sheet: &Sheet, x: Vec<Vec3>) -> Result<Rested, RestError> {
         system.touch(&x);
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
-        let state =
-            Rested { positions, outcome, residual, energy, joined_at: self.joined_at, levels: self.reports };
+        let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let state = Rested {
+            positions,
+            outcome,
+            residual,
+            energy,
+            dip,
+            joined_at: self.joined_at,
+            levels: self.reports,
+        };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -609,3 +656,5 @@ fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
 mod tests;
 #[cfg(test)]
 mod truth_tests;
+#[cfg(test)]
+mod worn_tests;
