@@ -51,11 +51,7 @@ impl Xpbd {
         let strains = (0..sheet.triangles().len()).map(|t| {
             let m = sheet.inverse_rest()[t];
             let (g1, g2) = (m.row(0).transpose(), m.row(1).transpose());
-            StrainTerm {
-                vertices: sheet.triangles()[t],
-                shape: [g1, g2],
-                area: sheet.areas()[t],
-            }
+            StrainTerm { vertices: sheet.triangles()[t], shape: [g1, g2], area: sheet.areas()[t] }
         });
         Ok(Self {
             dt,
