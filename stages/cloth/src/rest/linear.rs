@@ -9,26 +9,26 @@ type Vec3 = Vector3<f64>;
 
 /// Steps below this are asked of the true second derivative: near rest it converges fast, far from it the one without
 /// compression does, m.
-const EXACT_BELOW: f64 = 2e-3;
+const EXACT_BELOW: f64 = 5e-3;
 
 /// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
 const MOST_INERTIA: f64 = 1e12;
 
 /// The matrix and its factor.
-pub(super) struct Linear<'a> {
-    layout: &'a [Vec3],
+pub(super) struct Linear {
+    layout: Vec<Vec3>,
     pattern: Pattern,
     symbolic: Symbolic,
     values: Vec<Matrix3<f64>>,
     factor: Factor,
 }
 
-impl<'a> Linear<'a> {
+impl Linear {
     /// Prepares the matrix; `layout` orders the elimination.
-    pub(super) fn new(system: &mut System<'_>, layout: &'a [Vec3]) -> Self {
+    pub(super) fn new(system: &mut System<'_>, layout: Vec<Vec3>) -> Self {
         let pattern = system.pattern();
         system.elastic.bind(&pattern);
-        let symbolic = Symbolic::new(&pattern, layout);
+        let symbolic = Symbolic::new(&pattern, &layout);
         Self { layout, pattern, symbolic, values: Vec::new(), factor: Factor::default() }
     }
 
@@ -36,8 +36,13 @@ impl<'a> Linear<'a> {
     pub(super) fn follow(&mut self, system: &mut System<'_>) {
         let known = system.layers.iter().flat_map(|l| l.groups()).all(|nodes| self.pattern.couples(nodes));
         if !known {
-            *self = Self::new(system, self.layout);
+            *self = Self::new(system, std::mem::take(&mut self.layout));
         }
+    }
+
+    /// Takes up elements whose stiffness has changed.
+    pub(super) fn bind(&self, system: &mut System<'_>) {
+        system.elastic.bind(&self.pattern);
     }
 
     /// The step of pseudo-time `dt` from `x`, the last step having moved nodes by up to `last`.

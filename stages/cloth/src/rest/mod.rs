@@ -1,5 +1,6 @@
 //! Straight to static equilibrium, coarse to fine.
 
+mod assemble;
 pub mod coarsen;
 pub mod dissect;
 pub mod elastic;

@@ -8,13 +8,12 @@
 //! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
+use super::assemble::{assemble, gravity};
 use super::coarsen::{Coarser, coarsen};
-use super::elastic::{Elastic, Stiffness};
-use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
-use super::system::{Support, System, Thread};
+use super::system::{System, Thread};
 use crate::contact::body::Body;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
@@ -25,10 +24,6 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 type Vec3 = Vector3<f64>;
-
-/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre of thickness: a cloth
-/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer converges sooner.
-const CONTACT_STIFFNESS: f64 = 0.5;
 
 /// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
 const SEAM_PULL: f64 = 0.01;
@@ -88,6 +83,8 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
+    pub slides: Vec<Vec3>,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -288,7 +285,7 @@ impl<'a> Work<'a> {
                 force: pull * spacing,
                 soft: 2.0 * self.rest.join_gap,
             };
-            let mut system = self.system(pieces, &sheet, true);
+            let mut system = assemble(self.scene, self.body, pieces, &sheet, true);
             system.threads = pairs.iter().map(thread).collect();
             let farthest = (0.2 * widest).max(0.05);
             let pace =
@@ -334,7 +331,7 @@ impl<'a> Work<'a> {
         for k in (0..self.pieces.len()).rev() {
             let sheet = self.pieces[k].sewn_sheet(density)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-            let mut system = self.system(&self.pieces[k], &sheet, false);
+            let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false);
             let mut x = std::mem::take(&mut self.x);
             if slides.len() == x.len() {
                 system.slides = std::mem::take(&mut slides);
@@ -365,7 +362,9 @@ impl<'a> Work<'a> {
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
-        let state = Rested { positions, outcome, residual, joined_at: self.joined_at, levels: self.reports };
+        let slides = self.pieces[0].spread(&system.held_back(&x));
+        let (joined_at, levels) = (self.joined_at, self.reports);
+        let state = Rested { positions, outcome, residual, slides, joined_at, levels };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -437,65 +436,10 @@ impl<'a> Work<'a> {
         let vertices = if self.pieces[k].points == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
         self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
-
-    fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> System<'a> {
-        let m = &self.scene.material;
-        let n = sheet.vertex_count();
-        let mut pinned = vec![false; n];
-        for (v, &p) in pieces.pinned.iter().enumerate() {
-            pinned[if open { v } else { pieces.point[v] as usize }] |= p;
-        }
-        let stiffness: Vec<f64> = sheet
-            .masses()
-            .iter()
-            .map(|w| CONTACT_STIFFNESS * m.stretch / m.thickness * w / m.area_density)
-            .collect();
-        let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-        let support = self.scene.body.as_ref().zip(self.body).map(|(b, body)| Support {
-            body,
-            friction: b.friction,
-            offsets: vec![m.thickness; n],
-            offset: m.thickness,
-            depth: longest.clamp(0.02, 0.1),
-            edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
-            clear: pieces.rest.len() == self.scene.rest.len(),
-            stiffness: stiffness.clone(),
-        });
-        let mut corners = vec![0u16; n];
-        sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
-        let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
-        let thickness = m.thickness.min(LAYER_SHARE * shortest);
-        let layers =
-            self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let elastic =
-            Elastic::new(sheet, Stiffness { weft: m.stretch, warp: m.stretch, shear: m.shear, bend: m.bend });
-        System {
-            elastic,
-            masses: sheet.masses().to_vec(),
-            gravity: if open { Vec3::zeros() } else { gravity(self.scene) },
-            pinned,
-            threads: vec![],
-            support,
-            layers,
-            touches: vec![],
-            anchors: vec![None; n],
-            slides: vec![Vec3::zeros(); n],
-            loads: vec![0.0; n],
-            seen: vec![],
-        }
-    }
 }
-
-/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
-const LAYER_SHARE: f64 = 0.25;
 
 /// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
 const DEEPEST_START: f64 = 0.05;
-
-/// The gravity in the end.
-fn gravity(scene: &Scene) -> Vec3 {
-    scene.phases.last().map(|p| p.gravity).unwrap_or_default()
-}
 
 /// The start with vertices that lie a little inside the body moved out.
 fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
