@@ -332,3 +332,12 @@ impl<A: Output, B: Output> Output for (A, B) {
         [self.0.pack(), self.1.pack()].concat()
     }
 }
+
+impl<A: Output, B: Output, C: Output, D: Output> Output for (A, B, C, D) {
+    fn ports() -> Vec<OutPort> {
+        [A::ports(), B::ports(), C::ports(), D::ports()].concat()
+    }
+    fn pack(self) -> Vec<PortValue> {
+        [self.0.pack(), self.1.pack(), self.2.pack(), self.3.pack()].concat()
+    }
+}

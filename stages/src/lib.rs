@@ -7,12 +7,14 @@ pub mod collide;
 pub mod denoise;
 pub mod drape;
 pub mod edges;
+pub mod engine;
 pub mod fabric;
 pub mod measure;
 pub mod mesh;
 pub mod photo;
 pub mod place;
 pub mod render;
+pub mod scene;
 pub mod smooth;
 pub mod stitch;
 pub mod style;
@@ -33,6 +35,7 @@ pub fn register(registry: &mut Registry) {
     body::register(registry);
     fabric::register(registry);
     place::register(registry);
+    scene::register(registry);
     collide::register(registry);
     stitch::register(registry);
     drape::register(registry);
@@ -47,6 +50,7 @@ fn sections(registry: &mut Registry) {
     registry.section(Section::table("photos", "Photos", "photos"));
     registry.section(Section::stage("style", Role::Style));
     registry.section(Section::table("seams", "Seams", "seams"));
+    registry.section(Section::stage("scene", Role::Reader));
     registry.section(Section::stage("body", Role::Body));
     registry.section(Section::stage("fabric", Role::Fabric));
 }

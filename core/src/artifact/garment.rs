@@ -79,6 +79,8 @@ pub struct Garment {
     pub seams: Vec<GarmentSeam>,
     /// For every vertex the least vertex it is joined to (itself where it is not joined).
     pub weld: Vec<u32>,
+    /// Vertices that stay where they are, ascending: a sheet held at its corners.
+    pub pinned: Vec<u32>,
     /// What the last solver says.
     pub status: SolveStatus,
 }
@@ -206,6 +208,7 @@ impl Artifact for Garment {
         d.floats(self.rest.iter().flat_map(|p| [p.x, p.y]));
         d.count(self.triangles.len()).indices(self.triangles.iter().flatten().copied());
         d.indices(self.weld.iter().copied());
+        d.count(self.pinned.len()).indices(self.pinned.iter().copied());
         for seam in &self.seams {
             d.text(&seam.name).indices(seam.pairs.iter().flatten().copied());
         }
@@ -248,6 +251,7 @@ impl Artifact for Garment {
         indices("a triangle", n, self.triangles.iter().flatten())?;
         indices("a seam", n, self.seams.iter().flat_map(|s| s.pairs.iter().flatten()))?;
         indices("a weld", n, self.weld.iter())?;
+        indices("a pin", n, self.pinned.iter())?;
         let least = |(i, &w): (usize, &u32)| w as usize <= i && self.weld[w as usize] == w;
         let joined = self.weld.iter().enumerate().all(least);
         ensure(joined, || "a weld is not the least vertex that it is joined to".to_owned())?;

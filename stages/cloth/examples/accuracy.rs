@@ -1,34 +1,33 @@
-//! Prints the scoreboard: `cargo run --release -p toile-cloth --example accuracy [E1 ..]`.
-#![allow(clippy::print_stdout)]
+//! Prints the scoreboard: `cargo run --release -p toile-cloth --example accuracy -- [E1 ..] [--all] [--seeds N] [--json]`.
+#![allow(clippy::print_stdout, clippy::print_stderr)]
 
-use toile_cloth::bench::{Layout, Models, Test, run};
+use std::ops::ControlFlow;
+
+use toile_cloth::bench::accuracy::{Options, accuracy};
+use toile_cloth::bench::{Layout, Models, Test};
 
 fn main() {
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
-    println!("| test | models | mesh | along | error | worst part | s |");
-    println!("|---|---|---|---|---|---|---|");
-    for test in Test::ALL
-        .into_iter()
-        .filter(|t| wanted.is_empty() || wanted.iter().any(|w| t.label().starts_with(w.as_str())))
+    let args: Vec<String> = std::env::args().skip(1).collect();
+    let has = |flag: &str| args.iter().any(|a| a == flag);
+    let wanted: Vec<&String> = args.iter().filter(|a| !a.starts_with("--")).collect();
+    let mut options = Options::default();
+    if !wanted.is_empty() {
+        let tests =
+            Test::ALL.into_iter().filter(|t| wanted.iter().any(|w| t.label().starts_with(w.as_str())));
+        options.tests = tests.collect();
+    }
+    if has("--all") {
+        options.models = Models::ALL.to_vec();
+    }
+    if let Some(n) =
+        args.iter().position(|a| a == "--seeds").and_then(|k| args.get(k + 1)?.parse::<u64>().ok())
     {
-        for models in &Models::ALL[..if std::env::var("ONE").is_ok() { 1 } else { 4 }] {
-            for layout in Layout::ALL {
-                for along in test.resolutions() {
-                    print_row(test, *models, layout, along);
-                }
-            }
-        }
+        options.layouts =
+            std::iter::once(Layout::Equilateral).chain((1..=n).map(Layout::Irregular)).collect();
     }
-}
-
-fn print_row(test: Test, models: Models, layout: Layout, along: usize) {
-    let head = format!("| {} | {} | {} | {along}", test.label(), models.name(), layout.name());
-    match run(test, models, layout, along) {
-        Ok(score) => {
-            let worst = score.parts.iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
-            let part = worst.map_or(String::new(), |p| format!("{} {:+.1e}", p.0, p.1));
-            println!("{head} | {:.5} | {part} | {:.2} |", score.error(), score.seconds);
-        }
-        Err(e) => println!("{head} | - | {e} | |"),
-    }
+    let report = accuracy(&options, &mut |share, what| {
+        eprintln!("{:3.0} % {what}", 100.0 * share);
+        ControlFlow::Continue(())
+    });
+    if has("--json") { println!("{}", report.to_json()) } else { println!("{report}") }
 }

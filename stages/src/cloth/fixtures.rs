@@ -135,6 +135,7 @@ pub(crate) fn garment(grids: &[(&str, &Grid)], fabric: &Arc<Fabric>) -> Garment 
         panels: Vec::new(),
         seams: Vec::new(),
         weld: Vec::new(),
+        pinned: Vec::new(),
         status: SolveStatus::default(),
     };
     for (name, grid) in grids {

@@ -26,6 +26,7 @@ pub use body_check::check_body;
 pub use body_index::{BodyIndex, OnSkin};
 pub use bvh_collider::{BvhCollider, Volume};
 pub use scheme::BvhScheme;
+pub use volume::Aabb;
 
 use toile_core::Registry;
 

@@ -237,6 +237,7 @@ impl<'a> Scene<'a> {
             panels: Vec::new(),
             seams: self.seams.clone(),
             weld: Vec::new(),
+            pinned: Vec::new(),
             status: SolveStatus::default(),
         };
         self.placed(raise)?.into_iter().for_each(|p| append(&mut g, p, &fabric));

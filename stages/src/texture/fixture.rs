@@ -61,6 +61,7 @@ pub(crate) fn garment(n: usize) -> Garment {
         panels: vec![part("front", 0), part("back", 1)],
         seams,
         weld,
+        pinned: Vec::new(),
         status: SolveStatus { steps: 120, converged: true, energy: 0.4, max_speed: 1e-4 },
         positions,
     }

@@ -85,12 +85,13 @@ impl PhotoTexturer {
                     material.texture = Some(model.textures.len() - 1);
                     material.unlit = self.light == Light::Replace;
                 }
+                None if photos.is_none() => {}
                 None => cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name)),
             }
             model.meshes.push(mesh);
             model.materials.push(material);
         }
-        if let (Some(body), BodyShown::Show) = (body, &self.body) {
+        if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
             model.meshes.push(parts::body_mesh(body, model.materials.len()));
             model.materials.push(parts::mannequin());
         }

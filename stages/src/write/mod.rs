@@ -1,6 +1,7 @@
 //! Writers: model and run to files.
 
 mod check;
+mod garment_obj;
 mod glb;
 mod names;
 mod obj;
@@ -8,15 +9,18 @@ mod ply;
 mod preview;
 mod report;
 mod report_data;
+mod scene_json;
 #[cfg(test)]
 mod tests;
 mod texture_file;
 
+pub use garment_obj::GarmentObj;
 pub use glb::Glb;
 pub use obj::Obj;
 pub use ply::Ply;
 pub use preview::{Framing, Preview};
 pub use report::Report;
+pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
 
 use toile_core::Registry;
@@ -24,8 +28,10 @@ use toile_core::Registry;
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Glb>();
+    registry.add::<GarmentObj>();
     registry.add::<Obj>();
     registry.add::<Ply>();
     registry.add::<Preview>();
     registry.add::<Report>();
+    registry.add::<SceneJson>();
 }

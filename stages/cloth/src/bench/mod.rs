@@ -2,7 +2,10 @@
 //!
 //! The references are ordinary differential equations and series solved here, to far more digits than any mesh reaches
 //! ([`mod@reference`]); nothing in them knows the engine. Each test gives one error, so that models can be compared; see [`Score`].
+//!
+//! [`accuracy()`] and [`stability()`] run it all and give reports that print as tables and turn into JSON.
 
+pub mod accuracy;
 mod cantilever;
 mod catenary;
 mod dynamics;
@@ -13,11 +16,19 @@ pub mod reference;
 mod score;
 pub mod stability;
 mod stretch;
+mod table;
 
 #[cfg(test)]
 mod stability_tests;
 #[cfg(test)]
 mod tests;
 
+use std::ops::ControlFlow;
+
+pub use accuracy::accuracy;
 pub use layout::Layout;
-pub use score::{Bending, Membrane, Models, Score, Test, all, run};
+pub use score::{Bending, Membrane, Models, Score, Test, run};
+pub use stability::stability;
+
+/// Hears how far a run is (0 to 1) and what comes next; may stop it there.
+pub type Progress<'p> = dyn FnMut(f64, &str) -> ControlFlow<()> + 'p;

@@ -5,6 +5,7 @@ pub mod ccd;
 pub mod closest;
 pub mod limit;
 pub mod pair;
+pub mod skin;
 pub mod tree;
 
 #[cfg(test)]

@@ -49,6 +49,8 @@ pub struct ClothTree {
     owns: Vec<([bool; 3], [bool; 3])>,
     branches: Vec<Branch>,
     leaves: Vec<u32>,
+    /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are neighbours.
+    point: Vec<u32>,
 }
 
 impl ClothTree {
@@ -66,7 +68,19 @@ impl ClothTree {
         order.iter().enumerate().for_each(|(k, &t)| place[t as usize] = k as u32);
         let owns = ownership(sheet, &triangles, &place);
         let leaves = (0..branches.len() as u32).filter(|&b| branches[b as usize].count > 0).collect();
-        Self { triangles, owns, branches, leaves }
+        let point = (0..layout.len() as u32).collect();
+        Self { triangles, owns, branches, leaves, point }
+    }
+
+    /// The same, where nodes with equal numbers are about to be sewn: features that share one are no pair.
+    #[must_use]
+    pub fn sewing(self, point: Vec<u32>) -> Self {
+        Self { point, ..self }
+    }
+
+    /// Whether a node is one of the others, or will be.
+    fn is_one_of(&self, v: u32, others: &[u32]) -> bool {
+        others.iter().any(|&o| self.point[o as usize] == self.point[v as usize])
     }
 
     /// Pairs that may come nearer than `reach` while the nodes move from `x` by `moves`, sorted.
@@ -109,7 +123,10 @@ impl ClothTree {
                     [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
                 {
                     found.extend(
-                        (0..3).map(|k| [a[k], a[(k + 1) % 3]]).filter(|e| crosses(*e, b, x)).map(|e| (e, *b)),
+                        (0..3)
+                            .map(|k| [a[k], a[(k + 1) % 3]])
+                            .filter(|e| !e.iter().any(|&v| self.is_one_of(v, b)) && crosses(*e, b, x))
+                            .map(|e| (e, *b)),
                     );
                 }
             });
@@ -166,7 +183,7 @@ impl ClothTree {
         let (a, b) = (&self.triangles[s], &self.triangles[t]);
         for (k, other, owner) in [(s, b, a), (t, a, b)] {
             for (own, v) in self.owns[k].0.iter().zip(owner) {
-                if *own && !other.contains(v) {
+                if *own && !self.is_one_of(*v, other) {
                     let nodes = [*v, other[0], other[1], other[2]];
                     keep(Pair { kind: Kind::VertexTriangle, nodes }, x, moves, reach, out);
                 }
@@ -176,7 +193,7 @@ impl ClothTree {
             let e = [a[i], a[(i + 1) % 3]];
             for j in (0..3).filter(|&j| self.owns[t].1[j]) {
                 let f = [b[j], b[(j + 1) % 3]];
-                if !e.contains(&f[0]) && !e.contains(&f[1]) {
+                if !self.is_one_of(f[0], &e) && !self.is_one_of(f[1], &e) {
                     keep(
                         Pair { kind: Kind::EdgeEdge, nodes: [e[0], e[1], f[0], f[1]] },
                         x,
@@ -192,9 +209,6 @@ impl ClothTree {
 
 /// Whether the edge passes through the triangle; features that share a node do not count.
 fn crosses(e: [u32; 2], t: &[u32; 3], x: &[Vec3]) -> bool {
-    if t.contains(&e[0]) || t.contains(&e[1]) {
-        return false;
-    }
     let (p, q) = (x[e[0] as usize], x[e[1] as usize]);
     let [a, b, c] = t.map(|v| x[v as usize]);
     let volume = |o: &Vec3, u: &Vec3, v: &Vec3, w: &Vec3| (u - o).dot(&(v - o).cross(&(w - o)));

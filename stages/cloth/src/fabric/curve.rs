@@ -46,6 +46,15 @@ impl Curve {
         Ok(Self { points: kept, last_slope })
     }
 
+    /// The (strain, force) points that it goes through after the origin; a straight line has one, at strain 1.
+    #[must_use]
+    pub fn points(&self) -> Vec<[f64; 2]> {
+        match self.points.len() {
+            0 | 1 => vec![[1.0, self.last_slope]],
+            _ => self.points[1..].iter().map(|p| [p[0], p[1]]).collect(),
+        }
+    }
+
     /// Force at `strain`.
     #[must_use]
     pub fn force(&self, strain: f64) -> f64 {

@@ -15,6 +15,9 @@ pub use presets::{PRESETS, Preset};
 
 use crate::error::{ClothError, check_parameter};
 
+/// Strain of a worn garment where it carries load.
+pub const IN_USE: f64 = 0.02;
+
 /// The mechanical values of one fabric. Warp runs along the rest shape's y, weft along x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fabric {
@@ -80,6 +83,12 @@ impl Fabric {
         }
         let product = self.poisson_squared();
         check_parameter("poisson", product, |v| v < 1.0, "so small that warp and weft stay stable together")
+    }
+
+    /// Tensile stiffness in use, N/m: the greater of warp and weft, as force over strain at [`IN_USE`].
+    #[must_use]
+    pub fn stretch(&self) -> f64 {
+        self.warp.force(IN_USE).max(self.weft.force(IN_USE)) / IN_USE
     }
 
     /// nu12 nu21 of the linear range.

@@ -71,6 +71,19 @@ impl Sheet {
         Ok(Self { triangles, rest, inverse_rest, areas, edges, triangle_edges, masses })
     }
 
+    /// The same sheet with a density of its own for every triangle, kg/m².
+    ///
+    /// # Errors
+    /// `InvalidParameter` for one that is not above 0.
+    pub fn weighing(mut self, density: impl Fn(usize) -> f64) -> Result<Self, ClothError> {
+        let weights: Vec<f64> = (0..self.areas.len()).map(|t| density(t) * self.areas[t]).collect();
+        for (t, w) in weights.iter().enumerate() {
+            check_parameter("density", density(t), |_| *w > 0.0, "above 0 kg/m^2")?;
+        }
+        self.masses = lump(self.masses.len(), &self.triangles, &weights, 1.0);
+        Ok(self)
+    }
+
     /// How many vertices there are, used by a triangle or not.
     #[must_use]
     pub fn vertex_count(&self) -> usize {

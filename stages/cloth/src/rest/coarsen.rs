@@ -63,27 +63,35 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
 }
 
 fn restrict(fine: &Pieces, kept: &[u32], triangles: Vec<[u32; 3]>) -> Pieces {
-    let mut number = vec![u32::MAX; fine.points];
-    let mut points = 0;
-    let point = kept
-        .iter()
-        .map(|&v| {
-            let n = &mut number[fine.point[v as usize] as usize];
-            if *n == u32::MAX {
-                *n = points;
-                points += 1;
-            }
-            *n
-        })
-        .collect();
+    let (point, points) = renumber(kept, &fine.point, fine.points);
+    let (node, nodes) = renumber(kept, &fine.node, fine.nodes);
     Pieces {
         rest: kept.iter().map(|&v| fine.rest[v as usize]).collect(),
         triangles,
         point,
-        points: points as usize,
+        points,
+        node,
+        nodes,
+        panel: kept.iter().map(|&v| fine.panel[v as usize]).collect(),
         piece: kept.iter().map(|&v| fine.piece[v as usize]).collect(),
         pinned: kept.iter().map(|&v| fine.pinned[v as usize]).collect(),
     }
+}
+
+/// The groups of the kept vertices, numbered by their first members.
+fn renumber(kept: &[u32], group: &[u32], groups: usize) -> (Vec<u32>, usize) {
+    let mut number = vec![u32::MAX; groups];
+    let mut count = 0;
+    let of = |&v: &u32| {
+        let n = &mut number[group[v as usize] as usize];
+        if *n == u32::MAX {
+            *n = count;
+            count += 1;
+        }
+        *n
+    };
+    let numbers = kept.iter().map(of).collect();
+    (numbers, count as usize)
 }
 
 struct Mesh {

@@ -1,34 +1,31 @@
 //! The sheet's own resistance, in the form the rest solver wants: one pass for the gradient and a positive semi-definite
-//! matrix.
+//! matrix. Every triangle has the law of its panel's fabric.
 //!
-//! Membrane: St Venant-Kirchhoff triangles with a warp, a weft and a shear modulus; the part of the second derivative that
-//! the stress makes is projected by clamping the two principal stresses at zero, which costs two square roots a triangle
-//! (the tension field of Choi and Ko 2002 put into Newton's matrix). Bending: the quadratic isometric model (Bergou et al.
-//! 2006), whose matrix never changes. Cost O(triangles).
+//! Membrane: woven triangles with measured curves (see `law`); the part of the second derivative that the stress makes is
+//! projected by clamping the two principal stresses at zero, which costs two square roots a triangle (the tension field of
+//! Choi and Ko 2002 put into Newton's matrix). Bending: the quadratic isometric model (Bergou et al. 2006) with the hinge's
+//! calibrated weights and the free edges' correction (see `border`), whose matrix never changes. Cost O(triangles), and once a
+//! mesh the calibration's sparse factor of one number a pair of nodes.
+
+mod border;
+mod law;
 
 use super::pattern::{Pattern, Slot, add_at};
-use crate::mesh::Sheet;
+use crate::bending::{Calibration, Rigidity, flaps};
+use crate::fabric::Fabric;
+use crate::mesh::{Edge, Sheet, Side};
+use border::Border;
+use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
-/// What the membrane and the bending resist with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stiffness {
-    /// Tensile stiffness along the rest x axis (weft), N/m.
-    pub weft: f64,
-    /// Tensile stiffness along the rest y axis (warp), N/m.
-    pub warp: f64,
-    /// Shear stiffness, N/m per unit of shear angle.
-    pub shear: f64,
-    /// Bending stiffness, N m.
-    pub bend: f64,
-}
-
 #[derive(Debug, Clone)]
 struct Triangle {
     nodes: [u32; 3],
+    /// Which law.
+    cloth: u32,
     /// Derivative of the deformation gradient's two columns by each corner.
     shape: [Vector2<f64>; 3],
     area: f64,
@@ -37,7 +34,7 @@ struct Triangle {
 #[derive(Debug, Clone)]
 struct Hinge {
     nodes: [u32; 4],
-    /// Cotangent weights; their sum is zero.
+    /// The small fold angle by the nodes' lifts; their sum is zero.
     weights: [f64; 4],
     stiffness: f64,
 }
@@ -45,9 +42,10 @@ struct Hinge {
 /// The elastic energy of a sheet.
 #[derive(Debug, Clone)]
 pub struct Elastic {
-    stiffness: Stiffness,
+    laws: Vec<Law>,
     triangles: Vec<Triangle>,
     hinges: Vec<Hinge>,
+    borders: Vec<Border>,
     slots: Vec<[Slot; 6]>,
     bending: Vec<(u32, f64)>,
     /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
@@ -61,12 +59,19 @@ const CHUNK: usize = 512;
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
 
 impl Elastic {
-    /// Prepares the sheet's elements.
+    /// Prepares the sheet's elements; triangle `t` is of `cloths[cloth(t)]`.
     #[must_use]
-    pub fn new(sheet: &Sheet, stiffness: Stiffness) -> Self {
-        let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t)).collect();
-        let hinges = sheet.edges().iter().filter_map(|e| hinge(sheet, e, stiffness.bend)).collect();
-        Self { stiffness, triangles, hinges, slots: Vec::new(), bending: Vec::new(), foretold: Vec::new() }
+    pub fn new(sheet: &Sheet, cloths: &[&Fabric], cloth: impl Fn(usize) -> usize) -> Self {
+        let of = |t: usize| cloth(t).min(cloths.len().saturating_sub(1));
+        let laws = cloths.iter().map(|c| Law::of(c)).collect();
+        let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t, of(t) as u32)).collect();
+        let bends: Vec<Rigidity> = cloths.iter().map(|c| Rigidity::of(c)).collect();
+        let (hinges, borders) = match bends.iter().all(|b| b.warp == 0.0 && b.weft == 0.0) {
+            true => (Vec::new(), Vec::new()),
+            false => bending(sheet, |t| &bends[of(t)]),
+        };
+        let (slots, bending, foretold) = (Vec::new(), Vec::new(), Vec::new());
+        Self { laws, triangles, hinges, borders, slots, bending, foretold }
     }
 
     /// The groups of nodes that it couples.
@@ -88,38 +93,36 @@ impl Elastic {
                 }
             }
         }
+        for b in &self.borders {
+            b.add_to(|i, j, k| bending[at(i, j).index as usize] += k);
+        }
         self.bending =
             bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
     }
 
     /// Remembers the stress that the linear model foretells for `moves` from `x`.
     pub fn foretell(&mut self, x: &[Vec3], moves: &[Vec3]) {
-        let s = self.stiffness;
-        self.foretold =
-            self.triangles.par_iter().with_min_len(CHUNK).map(|t| t.foretell(&s, x, moves)).collect();
+        let foretell = |t: &Triangle| t.foretell(&self.laws[t.cloth as usize], x, moves);
+        self.foretold = self.triangles.par_iter().with_min_len(CHUNK).map(foretell).collect();
     }
 
     /// Energy, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        let s = &self.stiffness;
         let membrane = |t: &Triangle| {
             let (u, v) = t.columns(x);
-            let (eu, ev, shear) = strain(&u, &v);
-            0.5 * t.area * (s.weft * eu * eu + s.warp * ev * ev + s.shear * shear * shear)
+            t.area * self.laws[t.cloth as usize].density(metric(&u, &v))
         };
         let bending = |h: &Hinge| 0.5 * h.stiffness * h.curvature(x).norm_squared();
-        sum(&self.triangles, membrane) + sum(&self.hinges, bending)
+        sum(&self.triangles, membrane) + sum(&self.hinges, bending) + sum(&self.borders, |b| b.value(x))
     }
 
     /// Adds the derivative of the energy, N.
     pub fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]) {
-        let s = &self.stiffness;
         let forces = |t: &Triangle| {
             let (u, v) = t.columns(x);
-            let (eu, ev, shear) = strain(&u, &v);
-            let (tu, tv, ts) = (s.weft * eu * t.area, s.warp * ev * t.area, s.shear * shear * t.area);
-            let (pu, pv) = (u * tu + v * ts, v * tv + u * ts);
+            let [su, sv, ss] = self.laws[t.cloth as usize].stress(metric(&u, &v)).map(|s| s * t.area);
+            let (pu, pv) = (u * su + v * ss, v * sv + u * ss);
             t.shape.map(|b| pu * b.x + pv * b.y)
         };
         let membrane: Vec<[Vec3; 3]> = self.triangles.par_iter().with_min_len(CHUNK).map(forces).collect();
@@ -131,13 +134,22 @@ impl Elastic {
         for (h, moment) in self.hinges.iter().zip(&moments) {
             h.nodes.iter().zip(&h.weights).for_each(|(&i, w)| gradient[i as usize] += moment * *w);
         }
+        self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
     }
 
-    /// Adds the second derivative with the foretold stress, N/m; positive semi-definite without `compression`.
-    pub fn add_matrix(&self, x: &[Vec3], compression: bool, values: &mut [Matrix3<f64>]) {
+    /// Adds the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite
+    /// without any.
+    pub fn add_matrix(&self, x: &[Vec3], compression: f64, values: &mut [Matrix3<f64>]) {
         let blocks = |(k, t): (usize, &Triangle)| {
-            let stress = self.foretold.get(k).copied().unwrap_or_else(|| t.stress(&self.stiffness, x));
-            t.blocks(&self.stiffness, if compression { square(stress) } else { tension(stress) }, x)
+            let (u, v) = t.columns(x);
+            let response = self.laws[t.cloth as usize].response(metric(&u, &v));
+            let stress = self.foretold.get(k).copied().unwrap_or(response.stress);
+            t.blocks(
+                &u,
+                &v,
+                &response.tangent,
+                tension(stress) * (1.0 - compression) + square(stress) * compression,
+            )
         };
         let blocks: Vec<[Matrix3<f64>; 6]> =
             self.triangles.par_iter().enumerate().with_min_len(CHUNK).map(blocks).collect();
@@ -165,26 +177,28 @@ impl Triangle {
         (a * sa.x + b * sb.x + c * sc.x, a * sa.y + b * sb.y + c * sc.y)
     }
 
-    fn stress(&self, s: &Stiffness, x: &[Vec3]) -> [f64; 3] {
-        let (u, v) = self.columns(x);
-        let (eu, ev, shear) = strain(&u, &v);
-        [s.weft * eu, s.warp * ev, s.shear * shear]
-    }
-
     /// The stress after `moves` if strain were linear in them.
-    fn foretell(&self, s: &Stiffness, x: &[Vec3], moves: &[Vec3]) -> [f64; 3] {
+    fn foretell(&self, law: &Law, x: &[Vec3], moves: &[Vec3]) -> [f64; 3] {
         let (u, v) = self.columns(x);
         let (du, dv) = self.columns(moves);
-        let (eu, ev, shear) = strain(&u, &v);
-        [s.weft * (eu + u.dot(&du)), s.warp * (ev + v.dot(&dv)), s.shear * (shear + u.dot(&dv) + v.dot(&du))]
+        let Response { stress: [su, sv, ss], tangent: [c11, c22, c33, c12, c13, c23] } =
+            law.response(metric(&u, &v));
+        let (eu, ev, es) = (u.dot(&du), v.dot(&dv), u.dot(&dv) + v.dot(&du));
+        [
+            su + c11 * eu + c12 * ev + c13 * es,
+            sv + c12 * eu + c22 * ev + c23 * es,
+            ss + c13 * eu + c23 * ev + c33 * es,
+        ]
     }
 
-    fn blocks(&self, s: &Stiffness, stress: Matrix2<f64>, x: &[Vec3]) -> [Matrix3<f64>; 6] {
-        let (u, v) = self.columns(x);
+    fn blocks(&self, u: &Vec3, v: &Vec3, tangent: &[f64; 6], stress: Matrix2<f64>) -> [Matrix3<f64>; 6] {
+        let [c11, c22, c33, c12, c13, c23] = tangent.map(|c| c * self.area);
         let (uu, vv, uv) = (u * u.transpose(), v * v.transpose(), u * v.transpose());
-        let a = (uu * s.weft + vv * s.shear) * self.area;
-        let d = (vv * s.warp + uu * s.shear) * self.area;
-        let b = uv.transpose() * (s.shear * self.area);
+        let vu = uv.transpose();
+        let mixed = uv + vu;
+        let a = uu * c11 + vv * c33 + mixed * c13;
+        let d = vv * c22 + uu * c33 + mixed * c23;
+        let b = vu * c33 + uv * c12 + uu * c13 + vv * c23;
         let bt = b.transpose();
         PAIRS.map(|(i, j)| {
             let (p, q) = (&self.shape[i], &self.shape[j]);
@@ -202,9 +216,9 @@ impl Hinge {
     }
 }
 
-/// Green strain along u, along v, and twice the one between.
-fn strain(u: &Vec3, v: &Vec3) -> (f64, f64, f64) {
-    (0.5 * (u.norm_squared() - 1.0), 0.5 * (v.norm_squared() - 1.0), u.dot(v))
+/// The squares and the product of the images of the rest x and y axes.
+fn metric(u: &Vec3, v: &Vec3) -> [f64; 3] {
+    [u.norm_squared(), v.norm_squared(), u.dot(v)]
 }
 
 /// The stress as a matrix.
@@ -226,31 +240,29 @@ fn tension([u, v, s]: [f64; 3]) -> Matrix2<f64> {
     Matrix2::new(u - low, s, s, v - low) * (high / (high - low))
 }
 
-fn triangle(sheet: &Sheet, t: usize) -> Triangle {
+fn triangle(sheet: &Sheet, t: usize, cloth: u32) -> Triangle {
     let inverse = sheet.inverse_rest()[t];
     let (b, c) = (inverse.row(0).transpose(), inverse.row(1).transpose());
-    Triangle { nodes: sheet.triangles()[t], shape: [-b - c, b, c], area: sheet.areas()[t] }
+    Triangle { nodes: sheet.triangles()[t], cloth, shape: [-b - c, b, c], area: sheet.areas()[t] }
 }
 
-fn hinge(sheet: &Sheet, edge: &crate::mesh::Edge, bend: f64) -> Option<Hinge> {
-    let other = edge.sides.1?;
-    let [i, j] = edge.vertices;
-    let cotangents = |side: &crate::mesh::Side| {
-        let t = side.triangle as usize;
-        let cot = |node: u32| {
-            let k = sheet.triangles()[t].iter().position(|&n| n == node).unwrap_or(0);
-            let r = &sheet.rest()[t];
-            let (p, q) = (r[(k + 1) % 3] - r[k], r[(k + 2) % 3] - r[k]);
-            p.dot(&q) / p.perp(&q)
-        };
-        (cot(i), cot(j), sheet.areas()[t])
+/// Calibrated hinges, and what takes their false Poisson's ratio out of the border.
+fn bending<'r>(sheet: &Sheet, bend: impl Fn(usize) -> &'r Rigidity) -> (Vec<Hinge>, Vec<Border>) {
+    let calibration = Calibration::of(sheet);
+    let across = |side: &Side| {
+        let (r, k) = (&sheet.rest()[side.triangle as usize], side.corner as usize);
+        let e = (r[(k + 2) % 3] - r[(k + 1) % 3]).normalize();
+        calibration.corrected(bend(side.triangle as usize)).along(&Vector2::new(e.y, -e.x))
     };
-    let ((ai, aj, a), (bi, bj, b)) = (cotangents(&edge.sides.0), cotangents(&other));
-    Some(Hinge {
-        nodes: [i, j, edge.sides.0.opposite, other.opposite],
-        weights: [aj + bj, ai + bi, -ai - aj, -bi - bj],
-        stiffness: 3.0 * bend / (a + b),
-    })
+    let rigidity = |e: &Edge| Some(0.5 * (across(&e.sides.0) + across(&e.sides.1?)));
+    let flaps = flaps(sheet, &Rigidity::uniform(1.0));
+    let hinges = flaps.iter().zip(sheet.edges().iter().filter_map(rigidity)).map(|(f, bend)| Hinge {
+        nodes: f.vertices,
+        weights: f.weights,
+        stiffness: calibration.factor * bend * f.slenderness,
+    });
+    let moment = |t: usize| -calibration.poisson * calibration.factor * 0.5 * (bend(t).warp + bend(t).weft);
+    (hinges.collect(), border::borders(sheet, moment))
 }
 
 #[cfg(test)]

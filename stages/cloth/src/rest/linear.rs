@@ -7,9 +7,12 @@ use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// Steps below this are asked of the true second derivative: near rest it converges fast, far from it the one without
-/// compression does, m.
-const EXACT_BELOW: f64 = 5e-3;
+/// Share of compression that the matrix has near rest, if it is positive definite with it. All of it is the true second
+/// derivative, which few limp states can factor; none of it makes folds that are about to form far too stiff.
+const COMPRESSION: f64 = 0.7;
+
+/// Steps below this are near rest; before, the matrix without compression converges sooner, m.
+const NEAR_REST: f64 = 5e-3;
 
 /// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
 const MOST_INERTIA: f64 = 1e12;
@@ -56,12 +59,12 @@ impl Linear {
         stop: &Stop,
     ) -> Result<Vec<Vec3>, Halt> {
         let mut shift = 1.0 / (dt * dt);
-        let mut compression = last < EXACT_BELOW;
+        let mut compression = if last < NEAR_REST { COMPRESSION } else { 0.0 };
         loop {
             system.matrix(x, &self.pattern, shift, compression, &mut self.values);
             match self.symbolic.factor(&self.values, &mut self.factor, stop) {
                 Ok(()) => break,
-                Err(Halt::NotPositive(_)) if compression => compression = false,
+                Err(Halt::NotPositive(_)) if compression > 0.0 => compression = 0.0,
                 // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
                 Err(Halt::NotPositive(_)) if shift <= MOST_INERTIA => shift *= 100.0,
                 Err(halt) => return Err(halt),

@@ -7,6 +7,7 @@ pub mod elastic;
 mod front;
 pub mod layers;
 mod linear;
+pub mod live;
 pub mod multifrontal;
 mod nearby;
 pub mod newton;

@@ -38,7 +38,7 @@ const LEAST_FALL: f64 = 1e-4;
 const MEMORY: usize = 8;
 
 /// Factor by which pseudo-time grows after a whole step.
-const GROWTH: f64 = 2.0;
+const GROWTH: f64 = 1.5;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
@@ -81,8 +81,8 @@ pub struct Outcome {
 pub type Watch<'w> = dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> ControlFlow<()> + 'w;
 
 /// Newton's method under way: what is kept from step to step.
-pub struct Descent<'t> {
-    nearby: Nearby<'t>,
+pub struct Descent {
+    nearby: Nearby,
     linear: Linear,
     outcome: Outcome,
     /// The potentials of the last steps.
@@ -94,12 +94,12 @@ pub struct Descent<'t> {
     last: f64,
 }
 
-impl<'t> Descent<'t> {
+impl Descent {
     /// Starts at `x`. `layout` orders the elimination, `tree` finds cloth near cloth.
     pub fn new(
         system: &mut System<'_>,
         layout: &[Vec3],
-        tree: Option<&'t ClothTree>,
+        tree: Option<ClothTree>,
         x: &[Vec3],
         first: f64,
     ) -> Self {
@@ -115,6 +115,11 @@ impl<'t> Descent<'t> {
     /// Takes up a system whose fabric, pins or body have changed.
     pub fn renew(&mut self, system: &mut System<'_>) {
         self.linear.bind(system);
+        self.wake();
+    }
+
+    /// What was at rest may be so no more.
+    pub fn wake(&mut self) {
         self.heights.clear();
         self.proves = false;
         self.outcome.at_rest = false;
@@ -177,6 +182,18 @@ impl<'t> Descent<'t> {
         self.proves = pace.prove && slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
     }
 
+    /// How it stands after the last step.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        self.outcome
+    }
+
+    /// How often triangles cross at `x`.
+    #[must_use]
+    pub fn crossings(&self, x: &[Vec3]) -> usize {
+        self.nearby.crossings(x)
+    }
+
     /// Looks for crossings that are left where some were being undone.
     fn finish(&self, system: &mut System<'_>, x: &[Vec3]) {
         if system.is_tangled() {
@@ -193,7 +210,7 @@ impl<'t> Descent<'t> {
 pub fn relax(
     system: &mut System<'_>,
     layout: &[Vec3],
-    tree: Option<&ClothTree>,
+    tree: Option<ClothTree>,
     x: &mut [Vec3],
     pace: &Pace,
     watch: &mut Watch<'_>,

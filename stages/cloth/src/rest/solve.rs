@@ -8,7 +8,8 @@
 //! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
-use super::assemble::{assemble, gravity};
+pub use super::assemble::Wearer;
+use super::assemble::{KEPT_PULL, assemble, cloths, gravity, kept_threads, spacing, strongest};
 use super::coarsen::{Coarser, coarsen};
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
@@ -17,8 +18,9 @@ use super::system::{System, Thread};
 use crate::contact::body::Body;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
+use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::Scene;
+use crate::scene::{Scene, SceneError, Seam};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -54,7 +56,7 @@ impl Default for Rest {
             speed: 1e-3,
             coarsest: 200,
             coarse_steps: 30,
-            finest_steps: 200,
+            finest_steps: 500,
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
         }
@@ -85,6 +87,10 @@ pub struct Rested {
     pub residual: f64,
     /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
     pub slides: Vec<Vec3>,
+    /// Distance at which the body begins to press on each vertex, m; none without a body.
+    pub offsets: Vec<f64>,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -95,6 +101,9 @@ pub struct Rested {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RestError {
     /// A fault of the input.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// A fault of the mesh.
     #[error(transparent)]
     Cloth(#[from] ClothError),
     /// The matrix stayed indefinite.
@@ -163,6 +172,9 @@ pub enum RestError {
         /// The state carried to the finest level.
         positions: Vec<Vec3>,
     },
+    /// A garment that is to go on has another mesh or other seams.
+    #[error("the mesh or its seams have changed; solve the scene from its start")]
+    Reshaped,
     /// The caller asked to stop.
     #[error("stopped")]
     Stopped,
@@ -177,11 +189,26 @@ impl Rest {
     /// # Errors
     /// Every [`RestError`].
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(body, friction)| Wearer { skin: body, friction: *friction });
+        self.solve_on(scene, wearer, progress)
+    }
+
+    /// Solves `scene` on a body that answers for itself; the scene's own body is not looked at.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve_on(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        progress: &mut Progress<'_>,
+    ) -> Result<Rested, RestError> {
         let clock = Instant::now();
-        let body = scene.body.as_ref().map(|b| Body::new(b.vertices.clone(), &b.triangles));
+        scene.check()?;
         let mut coarsest = self.coarsest;
         loop {
-            let mut work = Work::new(self, coarsest, scene, body.as_ref(), clock)?;
+            let mut work = Work::new(self, coarsest, scene, wearer, clock)?;
             work.sew(progress)?;
             match work.drape(progress)? {
                 Draped::Rested(state) => return self.judge(*state),
@@ -191,7 +218,7 @@ impl Rest {
         }
     }
 
-    fn judge(&self, state: Rested) -> Result<Rested, RestError> {
+    pub(super) fn judge(&self, state: Rested) -> Result<Rested, RestError> {
         match state.outcome.at_rest {
             true => Ok(state),
             false => Err(RestError::NotAtRest { wanted: self.speed, state: Box::new(state) }),
@@ -211,7 +238,9 @@ enum Draped {
 struct Work<'a> {
     rest: &'a Rest,
     scene: &'a Scene,
-    body: Option<&'a Body>,
+    body: Option<Wearer<'a>>,
+    /// What no panel and what each panel is made of.
+    cloths: Vec<&'a Fabric>,
     clock: Instant,
     /// Fine to coarse.
     pieces: Vec<Pieces>,
@@ -230,7 +259,7 @@ impl<'a> Work<'a> {
         rest: &'a Rest,
         coarsest: usize,
         scene: &'a Scene,
-        body: Option<&'a Body>,
+        body: Option<Wearer<'a>>,
         clock: Instant,
     ) -> Result<Self, RestError> {
         let mut pieces = vec![Pieces::new(scene)];
@@ -250,6 +279,7 @@ impl<'a> Work<'a> {
             rest,
             scene,
             body,
+            cloths: cloths(scene),
             clock,
             pieces,
             coarser,
@@ -264,17 +294,18 @@ impl<'a> Work<'a> {
     fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
         let coarsest = self.pieces.len() - 1;
         let pieces = &self.pieces[coarsest];
-        let sheet = pieces.open_sheet(self.scene.material.area_density)?;
+        let sheet = pieces.open_sheet(&self.cloths)?;
         let mut x = self.starts[coarsest].clone();
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
         if self.scene.self_collision {
-            let pairs = ClothTree::new(&sheet, &x).crossings(&x).len();
+            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::InitialCrossing { pairs });
             }
         }
-        let mut pull = SEAM_PULL * self.scene.material.stretch;
+        let mut pull = SEAM_PULL * strongest(&self.cloths);
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
             if widest < self.rest.join_gap {
@@ -300,7 +331,7 @@ impl<'a> Work<'a> {
             let gap = widest(&x, &pairs);
             self.joined_at = Some(gap);
             if gap > self.rest.join_gap {
-                let seam = self.widest_seam(&x);
+                let seam = self.widest_seam(coarsest, &x);
                 return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
             }
         }
@@ -308,28 +339,22 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The name of the seam that is open widest on the coarsest level.
-    fn widest_seam(&self, x: &[Vec3]) -> String {
-        let mut names: Vec<Option<&str>> = vec![None; self.pieces[0].points];
-        for seam in &self.scene.seams {
-            seam.pairs
-                .iter()
-                .for_each(|p| names[self.pieces[0].point[p[0] as usize] as usize] = Some(&seam.name));
-        }
-        let fine_of = |v: u32| self.coarser.iter().rev().fold(v, |v, c| c.kept[v as usize]);
-        let coarsest = &self.pieces[self.pieces.len() - 1];
+    /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
+    fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
-        let worst = coarsest.seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let point = worst.map_or(0, |p| self.pieces[0].point[fine_of(p[0]) as usize]);
-        names[point as usize].unwrap_or("?").to_string()
+        let worst = self.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let fine_of = |v: u32| self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
+        let point = |v: u32| self.pieces[0].point[v as usize];
+        let at = worst.map(|p| point(fine_of(p[0])));
+        let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
+        self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
 
     /// Lets the sewn garment come to rest, level by level.
     fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
-        let density = self.scene.material.area_density;
         let mut slides = Vec::new();
         for k in (0..self.pieces.len()).rev() {
-            let sheet = self.pieces[k].sewn_sheet(density)?;
+            let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
             let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false);
             let mut x = std::mem::take(&mut self.x);
@@ -338,6 +363,7 @@ impl<'a> Work<'a> {
             }
             let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
             let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
+            system.threads = kept_threads(self.scene, &self.pieces[k], self.rest.join_gap);
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
@@ -345,6 +371,7 @@ impl<'a> Work<'a> {
                 return Ok(Draped::Tangled { nodes: x.len() });
             }
             if k == 0 {
+                self.check_kept(&x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
             }
             let finer = |values: &[Vec3]| {
@@ -362,9 +389,11 @@ impl<'a> Work<'a> {
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
+        let energy = system.stored(&x);
         let slides = self.pieces[0].spread(&system.held_back(&x));
+        let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let state = Rested { positions, outcome, residual, slides, joined_at, levels };
+        let state = Rested { positions, outcome, residual, slides, offsets, energy, joined_at, levels };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -386,9 +415,13 @@ impl<'a> Work<'a> {
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
+        let sewing = self.joined_at.is_none() && !system.threads.is_empty();
         let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
+        let tree = match self.pieces.last() {
+            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
+            _ => tree,
+        };
         let start = Instant::now();
-        let sewing = !system.threads.is_empty();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
         let mut falling = 0;
@@ -409,7 +442,7 @@ impl<'a> Work<'a> {
             if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let late = || self.clock.elapsed() > self.rest.budget;
-        match relax(system, layout, tree.as_ref(), x, pace, &mut watch, &late) {
+        match relax(system, layout, tree, x, pace, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
             Err(Halt::NotPositive(error)) => return Err(error.into()),
             Err(Halt::Stopped) => stop = Some(self.timeout()),
@@ -432,9 +465,19 @@ impl<'a> Work<'a> {
     /// The level's nodes, sewn or open, carried to the finest vertices.
     fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let open = |p: &&Pieces| p.rest.len() == x.len();
-        let k = self.pieces.iter().position(|p| p.points == x.len() || open(&p)).unwrap_or(0);
-        let vertices = if self.pieces[k].points == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
+        let k = self.pieces.iter().position(|p| p.nodes == x.len() || open(&p)).unwrap_or(0);
+        let vertices = if self.pieces[k].nodes == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
         self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
+    }
+
+    /// Refuses seams that are not joined and stay open at the end.
+    fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
+        let gap = widest(x, &self.pieces[0].kept_pairs());
+        if gap <= self.rest.join_gap {
+            return Ok(());
+        }
+        let seam = self.widest_seam(0, &self.pieces[0].spread(x));
+        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.cloths) })
     }
 }
 
@@ -442,12 +485,13 @@ impl<'a> Work<'a> {
 const DEEPEST_START: f64 = 0.05;
 
 /// The start with vertices that lie a little inside the body moved out.
-fn clear_start(scene: &Scene, body: Option<&Body>) -> Result<Vec<Vec3>, RestError> {
+fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
     let mut start = scene.positions.clone();
     let Some(body) = body else { return Ok(start) };
     let (mut vertices, mut depth) = (0, 0.0f64);
-    for p in &mut start {
-        if let Some(n) = body.nearest(p, f64::INFINITY).filter(|n| n.distance < 0.0) {
+    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
+    for (p, n) in start.iter_mut().zip(near) {
+        if let Some(n) = n.filter(|n| n.distance < 0.0) {
             vertices += 1;
             depth = depth.max(-n.distance);
             *p = n.point + n.normal * scene.material.thickness;
@@ -460,17 +504,7 @@ fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
-/// Mean length of seam that a pair stands for, m.
-fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
-    let mut sewn = vec![false; pieces.rest.len()];
-    pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);
-    let edges = pieces.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
-    let along: Vec<f64> = edges
-        .filter(|e| e.iter().all(|&v| sewn[v as usize]))
-        .map(|[a, b]| (pieces.rest[a as usize] - pieces.rest[b as usize]).norm())
-        .collect();
-    if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
-}
-
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truth_tests;

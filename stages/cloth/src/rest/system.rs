@@ -8,9 +8,9 @@
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pattern::{Pattern, Slot, add_at};
-use crate::contact::body::{Body, Nearest};
+use crate::contact::body::Nearest;
+use crate::contact::skin::Skin;
 use nalgebra::{Matrix3, Vector3};
-use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
@@ -42,9 +42,9 @@ pub struct Touch {
 #[derive(Debug, Clone)]
 pub struct Support<'a> {
     /// The body.
-    pub body: &'a Body,
-    /// Coefficient of friction.
-    pub friction: f64,
+    pub body: &'a dyn Skin,
+    /// Coefficient of friction, per node.
+    pub friction: Vec<f64>,
     /// Distance at which contact begins, per node, m.
     pub offsets: Vec<f64>,
     /// The least of them, m.
@@ -112,17 +112,18 @@ impl System<'_> {
 
     /// The body nearest to each node, if it presses there.
     fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
-        let Some(s) = &self.support else { return vec![None; x.len()] };
-        let one = |(i, p): (usize, &Vec3)| s.look(p, s.offsets[i], self.seen.get(i)).1;
-        x.par_iter().enumerate().with_min_len(NODES).map(one).collect()
+        if self.support.is_none() {
+            return vec![None; x.len()];
+        }
+        self.looks(x).into_iter().map(|(_, near)| near).collect()
     }
 
     /// The same, remembering what was seen.
     fn look(&mut self, x: &[Vec3]) -> Vec<Option<Nearest>> {
-        let Some(s) = &self.support else { return vec![None; x.len()] };
-        let one = |(i, p): (usize, &Vec3)| s.look(p, s.offsets[i], self.seen.get(i));
-        let found: Vec<(Seen, Option<Nearest>)> =
-            x.par_iter().enumerate().with_min_len(NODES).map(one).collect();
+        if self.support.is_none() {
+            return vec![None; x.len()];
+        }
+        let found = self.looks(x);
         self.seen = found.iter().map(|(seen, _)| *seen).collect();
         found.into_iter().map(|(_, near)| near).collect()
     }
@@ -136,16 +137,41 @@ impl System<'_> {
         self.pulls.iter().any(|(node, to)| (to - x[*node as usize]).norm() > NUDGE)
     }
 
+    /// What each node sees of the body. What was seen earlier saves the search, or narrows it.
+    fn looks(&self, x: &[Vec3]) -> Vec<(Seen, Option<Nearest>)> {
+        let Some(s) = &self.support else { return Vec::new() };
+        let within: Vec<Option<f64>> =
+            x.iter().enumerate().map(|(i, p)| s.reach(p, s.offsets[i], self.seen.get(i))).collect();
+        let asked: Vec<usize> = (0..x.len()).filter(|&i| within[i].is_some()).collect();
+        let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
+        let reach: Vec<f64> = asked.iter().filter_map(|&i| within[i]).collect();
+        let mut found = s.body.nearest(&points, &reach).into_iter();
+        let one = |(i, p): (usize, &Vec3)| match (within[i], self.seen.get(i)) {
+            (None, Some(seen)) => (*seen, None),
+            (reach, _) => match found.next().flatten() {
+                Some(n) => {
+                    let seen = Seen { at: *p, distance: n.distance, exact: true };
+                    (seen, (n.distance < NEAR * s.offsets[i]).then_some(n))
+                }
+                None => (Seen { at: *p, distance: reach.unwrap_or(0.0), exact: false }, None),
+            },
+        };
+        x.iter().enumerate().map(one).collect()
+    }
+
     /// Ends moves that lead into the body just outside it.
     pub fn clear_of_body(&self, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(s) = &self.support else { return };
-        moves.par_iter_mut().enumerate().with_min_len(NODES).for_each(|(i, m)| {
-            let gap = 0.5 * s.offsets[i];
-            let free = self.seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - m.norm() > gap);
-            if !free {
-                *m = s.body.guard(&x[i], m, gap);
-            }
-        });
+        let gap = |i: usize| 0.5 * s.offsets[i];
+        let is_free = |i: usize| {
+            self.seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > gap(i))
+        };
+        let asked: Vec<usize> = (0..x.len()).filter(|&i| !is_free(i)).collect();
+        let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
+        let gaps: Vec<f64> = asked.iter().map(|&i| gap(i)).collect();
+        let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
+        s.body.guard(&points, &mut guarded, &gaps);
+        asked.iter().zip(guarded).for_each(|(&i, m)| moves[i] = m);
     }
 
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
@@ -165,6 +191,13 @@ impl System<'_> {
         let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
         self.elastic.value(x) + weight + threads + body + rub + layers
+    }
+
+    /// Elastic and gravitational energy at `x`, J.
+    #[must_use]
+    pub fn stored(&self, x: &[Vec3]) -> f64 {
+        let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
+        self.elastic.value(x) + weight
     }
 
     /// Whether crossings of the start are still being undone.
@@ -217,9 +250,10 @@ impl System<'_> {
     fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
         let s = self.support.as_ref();
         self.touches.iter().filter_map(move |t| {
-            let s = s.filter(|s| s.friction > 0.0)?;
+            let s = s.filter(|s| s.friction[t.node as usize] > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit: s.friction * t.load, soft: SOFT })
+            let limit = s.friction[t.node as usize] * t.load;
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit, soft: SOFT })
         })
     }
 
@@ -243,7 +277,7 @@ impl System<'_> {
         x: &[Vec3],
         pattern: &Pattern,
         inertia: f64,
-        compression: bool,
+        compression: f64,
         values: &mut Vec<Matrix3<f64>>,
     ) {
         values.clear();
@@ -286,25 +320,15 @@ impl Support<'_> {
         }
     }
 
-    /// The body nearest to `p`, where it presses, and what is known of its distance now. What was `seen` earlier saves
-    /// the search, or narrows it.
-    fn look(&self, p: &Vec3, offset: f64, seen: Option<&Seen>) -> (Seen, Option<Nearest>) {
-        let mut within = offset + self.depth;
-        if let Some(seen) = seen {
-            let way = (p - seen.at).norm();
-            if seen.distance - way > NEAR * offset {
-                return (*seen, None);
-            }
-            if seen.exact {
-                within = within.min(seen.distance.abs() + way + NUDGE);
-            }
-        }
-        match self.body.nearest(p, within) {
-            Some(n) => {
-                let seen = Seen { at: *p, distance: n.distance, exact: true };
-                (seen, (n.distance < NEAR * offset).then_some(n))
-            }
-            None => (Seen { at: *p, distance: within, exact: false }, None),
+    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that it is far.
+    fn reach(&self, p: &Vec3, offset: f64, seen: Option<&Seen>) -> Option<f64> {
+        let within = offset + self.depth;
+        let Some(seen) = seen else { return Some(within) };
+        let way = (p - seen.at).norm();
+        match seen.distance - way > NEAR * offset {
+            true => None,
+            false if seen.exact => Some(within.min(seen.distance.abs() + way + NUDGE)),
+            false => Some(within),
         }
     }
 }
@@ -351,9 +375,6 @@ impl Thread {
         add_at(values, pattern.slot(i, j).unwrap_or(Slot { index: i, flipped: false }), &-k);
     }
 }
-
-/// Nodes that one task looks up.
-const NODES: usize = 256;
 
 /// What a bound on a distance is widened by against rounding, m.
 const NUDGE: f64 = 1e-9;

@@ -2,8 +2,10 @@
 
 use super::{Scene, SceneError};
 use crate::error::{ClothError, check_parameter};
+use crate::fabric::Fabric;
 use nalgebra::Vector3;
 
+/// Checks everything.
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     let n = scene.rest.len();
     if scene.triangles.is_empty() {
@@ -22,7 +24,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     }
     check_panels(scene)?;
     check_seams(scene)?;
-    check_material(scene)?;
+    check_fabric(&scene.material)?;
     check_body(scene)
 }
 
@@ -52,6 +54,10 @@ fn refers<'a>(
 
 fn check_panels(scene: &Scene) -> Result<(), SceneError> {
     for panel in &scene.panels {
+        panel.material.iter().try_for_each(check_fabric)?;
+        if let Some(friction) = panel.body_friction {
+            check_parameter("body_friction", friction, |v| v >= 0.0, "0 or more")?;
+        }
         let both = [
             ("vertices", &panel.vertices, scene.rest.len()),
             ("triangles", &panel.triangles, scene.triangles.len()),
@@ -91,14 +97,12 @@ fn check_seams(scene: &Scene) -> Result<(), SceneError> {
     }
 }
 
-fn check_material(scene: &Scene) -> Result<(), ClothError> {
-    let m = &scene.material;
-    check_parameter("area_density", m.area_density, |v| v > 0.0, "above 0 kg/m^2")?;
-    check_parameter("stretch", m.stretch, |v| v > 0.0, "above 0 N/m")?;
-    check_parameter("shear", m.shear, |v| v >= 0.0, "0 N/m or more")?;
-    check_parameter("bend", m.bend, |v| v >= 0.0, "0 N m or more")?;
-    check_parameter("friction", m.friction, |v| v >= 0.0, "0 or more")?;
-    check_parameter("thickness", m.thickness, |v| v > 0.0, "above 0 m")
+/// What rest needs beyond a valid fabric: it must resist stretch from the start, and have a contact layer.
+fn check_fabric(fabric: &Fabric) -> Result<(), ClothError> {
+    fabric.check()?;
+    check_parameter("warp", fabric.warp.slope(0.0), |v| v > 0.0, "a slope above 0 N/m")?;
+    check_parameter("weft", fabric.weft.slope(0.0), |v| v > 0.0, "a slope above 0 N/m")?;
+    check_parameter("thickness", fabric.thickness, |v| v > 0.0, "above 0 m")
 }
 
 fn check_body(scene: &Scene) -> Result<(), SceneError> {

@@ -2,14 +2,17 @@
 //!
 //! They are what tests and measurements use, so that neither needs files.
 
-use super::{Material, Panel, Phase, Scene, SceneBody, Seam};
+use super::{Panel, Phase, Scene, SceneBody, Seam};
+use crate::fabric::{Fabric, PRESETS};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// A light woven cloth, the same in every standard scene.
-pub const CLOTH: Material =
-    Material { area_density: 0.15, stretch: 500.0, shear: 50.0, bend: 1e-5, friction: 0.4, thickness: 0.001 };
+#[must_use]
+pub fn cloth() -> Fabric {
+    PRESETS[0].fabric()
+}
 
 /// A flat patch: rest coordinates in the unit square and triangles.
 type Patch = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
@@ -34,8 +37,7 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
     let (points, triangles) = patch(cells, cells);
     let rest: Vec<Vector2<f64>> = points.iter().map(|p| p.add_scalar(-0.5)).collect();
     let positions: Vec<Vector3<f64>> = rest.iter().map(|p| Vector3::new(p.x, y, -p.y)).collect();
-    let panels =
-        vec![Panel { name: "square".into(), vertices: 0..rest.len(), triangles: 0..triangles.len() }];
+    let panels = vec![Panel::new("square", 0..rest.len(), 0..triangles.len())];
     Scene {
         name,
         rest,
@@ -45,7 +47,7 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
         seams: vec![],
         pinned: vec![],
         body: None,
-        material: CLOTH,
+        material: cloth(),
         phases: vec![phase("drape", 2.0, 9.81)],
         self_collision: false,
     }
@@ -84,9 +86,8 @@ pub fn tube(nx: u32, ny: u32) -> Scene {
     let back = cells.iter().map(|t| t.map(|v| v + n as u32));
     let triangles: Vec<[u32; 3]> = cells.iter().copied().chain(back).collect();
     let (t, column) = (cells.len(), |i: u32| (0..=ny).map(move |j| j * (nx + 1) + i));
-    let sew = |name: &str, front: u32, back: u32| Seam {
-        name: name.into(),
-        pairs: column(front).zip(column(back)).map(|(a, b)| [a, b + n as u32]).collect(),
+    let sew = |name: &str, front: u32, back: u32| {
+        Seam::new(name, column(front).zip(column(back)).map(|(a, b)| [a, b + n as u32]).collect())
     };
     let (vertices, faces) = form(96, 84);
     Scene {
@@ -94,14 +95,11 @@ pub fn tube(nx: u32, ny: u32) -> Scene {
         rest,
         positions,
         triangles,
-        panels: vec![
-            Panel { name: "front".into(), vertices: 0..n, triangles: 0..t },
-            Panel { name: "back".into(), vertices: n..2 * n, triangles: t..2 * t },
-        ],
+        panels: vec![Panel::new("front", 0..n, 0..t), Panel::new("back", n..2 * n, t..2 * t)],
         seams: vec![sew("side_left", 0, nx), sew("side_right", nx, 0)],
         pinned: vec![],
         body: Some(SceneBody { vertices, triangles: faces, friction: 0.4 }),
-        material: CLOTH,
+        material: cloth(),
         phases: vec![phase("sew", 0.5, 0.0), phase("drape", 1.5, 9.81)],
         self_collision: true,
     }

@@ -3,18 +3,23 @@
 //! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON form `garment-scene-1`
 //! (described in docs/scene.md), `generate` makes the standard ones.
 
+mod build;
 mod check;
 pub mod generate;
 mod obj;
 mod read;
+mod write;
 
 #[cfg(test)]
 mod tests;
 
+pub use build::GRAVITY;
 pub use obj::{ObjMesh, parse_obj, write_obj};
 pub use read::{parse, read};
+pub use write::{body_to_obj, to_json};
 
 use crate::error::ClothError;
+use crate::fabric::Fabric;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -38,8 +43,8 @@ pub struct Scene {
     pub pinned: Vec<u32>,
     /// What it is worn by.
     pub body: Option<SceneBody>,
-    /// What it is made of.
-    pub material: Material,
+    /// What panels are made of that do not say otherwise.
+    pub material: Fabric,
     /// What acts, one after the other.
     pub phases: Vec<Phase>,
     /// Whether a right answer needs cloth to collide with itself.
@@ -47,7 +52,7 @@ pub struct Scene {
 }
 
 /// A piece of cloth.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
     /// What it is called.
     pub name: String,
@@ -55,6 +60,10 @@ pub struct Panel {
     pub vertices: Range<usize>,
     /// Its triangles.
     pub triangles: Range<usize>,
+    /// What it is made of, if not of the scene's material.
+    pub material: Option<Fabric>,
+    /// Coefficient of friction on the body, if not the body's own.
+    pub body_friction: Option<f64>,
 }
 
 /// Pairs of vertices that end up at one place.
@@ -64,6 +73,8 @@ pub struct Seam {
     pub name: String,
     /// The pairs.
     pub pairs: Vec<[u32; 2]>,
+    /// Whether each pair becomes one point, without any gap; else threads keep holding two vertices together.
+    pub joined: bool,
 }
 
 /// A closed, static mesh whose triangles face outwards.
@@ -75,23 +86,6 @@ pub struct SceneBody {
     pub triangles: Vec<[u32; 3]>,
     /// Coefficient of friction of cloth on it.
     pub friction: f64,
-}
-
-/// Sheet quantities, each per unit width.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Material {
-    /// kg/m².
-    pub area_density: f64,
-    /// Tensile stiffness in warp and weft, N/m.
-    pub stretch: f64,
-    /// Shear stiffness, N/m.
-    pub shear: f64,
-    /// Bending stiffness, N m.
-    pub bend: f64,
-    /// Coefficient of friction of cloth on cloth.
-    pub friction: f64,
-    /// m.
-    pub thickness: f64,
 }
 
 /// A span of time with one gravity.
@@ -161,6 +155,18 @@ pub enum SceneError {
         pair: usize,
         /// What is wrong.
         why: &'static str,
+    },
+    /// A material that lacks a value.
+    #[error("the material of {of} has neither '{either}' nor both '{first}' and '{second}'")]
+    Material {
+        /// The scene or a panel.
+        of: String,
+        /// The value for both directions.
+        either: &'static str,
+        /// The value along the warp.
+        first: &'static str,
+        /// The value along the weft.
+        second: &'static str,
     },
     /// A line of an OBJ file.
     #[error("line {line} of the OBJ: {why}")]

@@ -1,6 +1,8 @@
 //! The JSON form `garment-scene-1`.
 
-use super::{Material, Panel, Phase, Scene, SceneBody, SceneError, Seam, check::check, obj::parse_obj};
+use super::{Panel, Phase, Scene, SceneBody, SceneError, Seam, check::check, obj::parse_obj};
+use crate::error::{ClothError, check_parameter};
+use crate::fabric::{Curve, Fabric};
 use nalgebra::{Vector2, Vector3};
 use serde::Deserialize;
 use std::path::Path;
@@ -35,12 +37,20 @@ struct RawPanel {
     name: String,
     vertices: [usize; 2],
     triangles: [usize; 2],
+    material: Option<RawMaterial>,
+    body_friction: Option<f64>,
 }
 
 #[derive(Deserialize)]
 struct RawSeam {
     name: String,
     pairs: Vec<[u32; 2]>,
+    #[serde(default = "yes")]
+    joined: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 #[derive(Deserialize)]
@@ -52,11 +62,26 @@ struct RawBody {
 #[derive(Deserialize)]
 struct RawMaterial {
     area_density: f64,
-    stretch: f64,
-    shear: f64,
-    bend: f64,
+    stretch: Option<RawCurve>,
+    warp: Option<RawCurve>,
+    weft: Option<RawCurve>,
+    #[serde(default)]
+    poisson: f64,
+    shear: RawCurve,
+    bend: Option<f64>,
+    bend_warp: Option<f64>,
+    bend_weft: Option<f64>,
     friction: f64,
     thickness: f64,
+    damping: Option<f64>,
+}
+
+/// A stiffness, or the points of a curve.
+#[derive(Deserialize, Clone)]
+#[serde(untagged)]
+enum RawCurve {
+    Straight(f64),
+    Points(Vec<[f64; 2]>),
 }
 
 #[derive(Deserialize)]
@@ -90,7 +115,7 @@ pub fn parse(text: &str, load: &dyn Fn(&str) -> Result<String, SceneError>) -> R
     }
     let raw: RawScene = serde_json::from_str(text).map_err(form)?;
     let body = raw.body.as_ref().map(|b| body(b, load)).transpose()?;
-    let scene = build(raw, body);
+    let scene = build(raw, body)?;
     check(&scene)?;
     Ok(scene)
 }
@@ -100,32 +125,69 @@ fn body(raw: &RawBody, load: &dyn Fn(&str) -> Result<String, SceneError>) -> Res
     Ok(SceneBody { vertices, triangles, friction: raw.friction })
 }
 
-fn build(raw: RawScene, body: Option<SceneBody>) -> Scene {
-    let m = raw.material;
-    let panel = |p: RawPanel| Panel {
-        name: p.name,
-        vertices: p.vertices[0]..p.vertices[1],
-        triangles: p.triangles[0]..p.triangles[1],
-    };
+fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
     let phase = |p: RawPhase| Phase { name: p.name, seconds: p.seconds, gravity: Vector3::from(p.gravity) };
-    Scene {
+    let seam = |s: RawSeam| Seam { name: s.name, pairs: s.pairs, joined: s.joined };
+    Ok(Scene {
         name: raw.name,
         rest: raw.rest_uv.into_iter().map(Vector2::from).collect(),
         positions: raw.positions.into_iter().map(Vector3::from).collect(),
         triangles: raw.triangles,
-        panels: raw.panels.into_iter().map(panel).collect(),
-        seams: raw.seams.into_iter().map(|s| Seam { name: s.name, pairs: s.pairs }).collect(),
+        panels: raw.panels.into_iter().map(panel).collect::<Result<_, _>>()?,
+        seams: raw.seams.into_iter().map(seam).collect(),
         pinned: raw.pinned,
         body,
-        material: Material {
-            area_density: m.area_density,
-            stretch: m.stretch,
-            shear: m.shear,
-            bend: m.bend,
-            friction: m.friction,
-            thickness: m.thickness,
-        },
+        material: fabric(raw.material, "the scene")?,
         phases: raw.phases.into_iter().map(phase).collect(),
         self_collision: raw.self_collision,
+    })
+}
+
+fn panel(raw: RawPanel) -> Result<Panel, SceneError> {
+    let of = format!("panel '{}'", raw.name);
+    let material = raw.material.map(|m| fabric(m, &of)).transpose()?;
+    let (vertices, triangles) = (raw.vertices[0]..raw.vertices[1], raw.triangles[0]..raw.triangles[1]);
+    Ok(Panel { material, body_friction: raw.body_friction, ..Panel::new(raw.name, vertices, triangles) })
+}
+
+fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
+    check_parameter("area_density", raw.area_density, |v| v > 0.0, "above 0 kg/m^2")?;
+    let lacks = |either, first, second| SceneError::Material { of: of.into(), either, first, second };
+    let tensile = |own: Option<RawCurve>, name| match own
+        .map(|c| (c, name))
+        .or(raw.stretch.clone().map(|c| (c, "stretch")))
+    {
+        Some((c, name)) => Ok(curve(c, name, true)?),
+        None => Err(lacks("stretch", "warp", "weft")),
+    };
+    let bending = |own: Option<f64>, name| match own.map(|b| (b, name)).or(raw.bend.map(|b| (b, "bend"))) {
+        Some((b, name)) => {
+            check_parameter(name, b, |v| v >= 0.0, "0 N m or more")?;
+            Ok(b)
+        }
+        None => Err(lacks("bend", "bend_warp", "bend_weft")),
+    };
+    Ok(Fabric {
+        density: raw.area_density,
+        warp: tensile(raw.warp, "warp")?,
+        weft: tensile(raw.weft, "weft")?,
+        poisson: raw.poisson,
+        shear: curve(raw.shear, "shear", false)?,
+        bending_warp: bending(raw.bend_warp, "bend_warp")?,
+        bending_weft: bending(raw.bend_weft, "bend_weft")?,
+        thickness: raw.thickness,
+        friction: raw.friction,
+        damping: raw.damping.unwrap_or(0.0),
+    })
+}
+
+fn curve(raw: RawCurve, name: &'static str, positive: bool) -> Result<Curve, ClothError> {
+    match raw {
+        RawCurve::Points(points) => Curve::through(&points),
+        RawCurve::Straight(k) => {
+            let range = if positive { "above 0 N/m" } else { "0 N/m or more" };
+            check_parameter(name, k, |k| k > 0.0 || (!positive && k == 0.0), range)?;
+            Ok(Curve::linear(k))
+        }
     }
 }

@@ -38,9 +38,52 @@ fn faults_are_named() {
     };
     assert_eq!(seam("[[1,1]]"), "seam 's': pair 0 sews a vertex to itself");
     assert_eq!(seam("[[0,1],[1,0]]"), "seam 's': pair 1 is sewn already");
-    assert!(
-        fault("\"stretch\": 10,", "").starts_with("not a garment-scene-1: missing field `stretch` at line")
+    assert!(fault("\"shear\": 1,", "").starts_with("not a garment-scene-1: missing field `shear` at line"));
+    assert_eq!(
+        fault("\"stretch\": 10,", "\"warp\": 10,"),
+        "the material of the scene has neither 'stretch' nor both 'warp' and 'weft'"
     );
+    assert_eq!(
+        fault("\"bend\": 1e-5,", "\"bend_warp\": 1e-5, \"bend_weft\": -1,"),
+        "bend_weft = -1 is out of range: 0 N m or more"
+    );
+    assert_eq!(
+        fault("\"stretch\": 10,", "\"stretch\": [[0.1, 5], [0.2, 4]],"),
+        "curve force = 4 is out of range: forces that never fall"
+    );
+    assert_eq!(fault("\"thickness\": 0.001", "\"thickness\": 0"), "thickness = 0 is out of range: above 0 m");
+    assert_eq!(
+        fault("\"name\": \"one\",", "\"name\": \"one\", \"body_friction\": -1,"),
+        "body_friction = -1 is out of range: 0 or more"
+    );
+}
+
+#[test]
+fn warp_and_weft_curves_and_panel_materials_are_read() {
+    let own = r#""name": "one", "body_friction": 0.1, "material": {"area_density": 0.3, "warp": [[0.02, 1], [0.04, 9]], "weft": 20,
+        "poisson": 0.1, "shear": [[0.1, 2]], "bend_warp": 2e-5, "bend_weft": 1e-5, "damping": 0.01, "friction": 0.2,
+        "thickness": 0.0005},"#;
+    let text = SMALL.replace("\"name\": \"one\",", own);
+    let scene = parse(&text, &|_| Ok(String::new())).unwrap();
+    assert_eq!((scene.material.density, scene.material.warp.slope(0.0)), (0.1, 10.0));
+    let panel = scene.fabric_of(0);
+    assert_eq!((panel.density, panel.warp.force(0.03), panel.weft.force(0.03)), (0.3, 5.0, 0.6));
+    assert_eq!((panel.bending_warp, panel.bending_weft, panel.shear.slope(0.0)), (2e-5, 1e-5, 20.0));
+    assert_eq!(scene.panels[0].body_friction, Some(0.1));
+}
+
+#[test]
+fn a_program_builds_what_a_file_says() {
+    let read = parse(SMALL, &|_| Ok(String::new())).unwrap();
+    let mut made = Scene::new("small", read.material.clone());
+    let added = made.add_panel("one", &read.rest, &read.positions, &read.triangles);
+    made.pinned.push(added.start);
+    (made.phases, made.self_collision) = (read.phases.clone(), false);
+    made.check().unwrap();
+    assert_eq!(made, read);
+    let second = made.add_panel("two", &read.rest, &read.positions[..2], &[[0, 1, 2]]);
+    assert_eq!((second, made.triangles[1]), (3..6, [3, 4, 5]));
+    assert_eq!(made.check().unwrap_err().to_string(), "positions has 5 entries, but there are 6 vertices");
 }
 
 #[test]

@@ -1,5 +1,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::*;
+use crate::fabric::Curve;
+use crate::force::Energy;
+use crate::membrane::{Triangles, Woven};
+use proptest::prelude::*;
 
 fn patch() -> (Sheet, Vec<Vec3>) {
     let uv =
@@ -11,14 +15,29 @@ fn patch() -> (Sheet, Vec<Vec3>) {
     (sheet, uv.iter().enumerate().map(bend).collect())
 }
 
-const SOFT: Stiffness = Stiffness { weft: 300.0, warp: 500.0, shear: 40.0, bend: 1e-2 };
+/// Curves with breaks, warp and weft apart, Poisson's ratio, bending in both directions.
+fn measured() -> Fabric {
+    Fabric {
+        warp: Curve::through(&[[0.02, 5.0], [0.05, 40.0]]).unwrap(),
+        weft: Curve::through(&[[0.03, 4.0], [0.3, 90.0]]).unwrap(),
+        shear: Curve::through(&[[0.1, 3.0], [0.4, 30.0]]).unwrap(),
+        bending_warp: 2e-2,
+        bending_weft: 1e-2,
+        ..Fabric::isotropic(0.1, 1.0, 0.1, 0.0)
+    }
+}
+
+fn gradient(elastic: &Elastic, x: &[Vec3]) -> Vec<Vec3> {
+    let mut g = vec![Vec3::zeros(); x.len()];
+    elastic.add_gradient(x, &mut g);
+    g
+}
 
 #[test]
 fn the_gradient_is_the_slope_of_the_energy() {
     let (sheet, mut x) = patch();
-    let elastic = Elastic::new(&sheet, SOFT);
-    let mut gradient = vec![Vec3::zeros(); x.len()];
-    elastic.add_gradient(&x, &mut gradient);
+    let elastic = Elastic::new(&sheet, &[&measured()], |_| 0);
+    let gradient = gradient(&elastic, &x);
     for i in 0..x.len() {
         for c in 0..3 {
             let h = 1e-6;
@@ -29,24 +48,23 @@ fn the_gradient_is_the_slope_of_the_energy() {
             let down = elastic.value(&x);
             x[i][c] = at;
             let slope = (up - down) / (2.0 * h);
-            assert!(
-                (slope - gradient[i][c]).abs() < 1e-6 * (1.0 + slope.abs()),
-                "{i} {c}: {slope} {}",
-                gradient[i][c]
-            );
+            let found = gradient[i][c];
+            assert!((slope - found).abs() < 1e-6 * (1.0 + slope.abs()), "{i} {c}: {slope} {found}");
         }
     }
 }
 
 #[test]
 fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
+    // Little shear: its curvature is what the matrix leaves out.
     let (sheet, mut x) = patch();
+    let fabric = Fabric { shear: Curve::linear(0.0), ..measured() };
     x.iter_mut().for_each(|p| *p *= 1.2);
-    let mut elastic = Elastic::new(&sheet, SOFT);
+    let mut elastic = Elastic::new(&sheet, &[&fabric], |_| 0);
     let pattern = Pattern::new(x.len(), elastic.couplings());
     elastic.bind(&pattern);
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
-    elastic.add_matrix(&x, false, &mut values);
+    elastic.add_matrix(&x, 0.0, &mut values);
     let push: Vec<Vec3> =
         (0..x.len()).map(|i| Vec3::new(i as f64, 2.0 * i as f64, 1.0).map(f64::sin)).collect();
     let mut product = vec![Vec3::zeros(); x.len()];
@@ -54,11 +72,69 @@ fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
     let h = 1e-6;
     let at = |s: f64| {
         let moved: Vec<Vec3> = x.iter().zip(&push).map(|(p, d)| p + d * s).collect();
-        let mut g = vec![Vec3::zeros(); x.len()];
-        elastic.add_gradient(&moved, &mut g);
-        g
+        gradient(&elastic, &moved)
     };
     for ((up, down), want) in at(h).iter().zip(&at(-h)).zip(&product) {
         assert!(((up - down) / (2.0 * h) - want).norm() < 1e-4 * (1.0 + want.norm()), "{want}");
+    }
+}
+
+/// The sheet's own weights leave a flat sheet alone, wherever it lies.
+#[test]
+fn a_flat_sheet_bends_nowhere() {
+    let (sheet, _) = patch();
+    let stiff = Fabric {
+        warp: Curve::linear(0.0),
+        weft: Curve::linear(0.0),
+        shear: Curve::linear(0.0),
+        ..measured()
+    };
+    let elastic = Elastic::new(&sheet, &[&stiff], |_| 0);
+    let mut flat = vec![Vec3::zeros(); 5];
+    for (t, rest) in sheet.triangles().iter().zip(sheet.rest()) {
+        for (&v, p) in t.iter().zip(rest) {
+            flat[v as usize] =
+                Vec3::new(1.0, 2.0, 3.0) + Vec3::new(0.6, 0.8, 0.0) * p.x + Vec3::z() * (1.1 * p.y);
+        }
+    }
+    assert!(gradient(&elastic, &flat).iter().all(|g| g.norm() < 1e-12));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// One element answers as the woven membrane does, on any piece of its curves.
+    #[test]
+    fn the_membrane_is_the_woven_one(places in proptest::array::uniform9(-0.03..0.03f64)) {
+        let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
+        let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
+        let fabric = Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() };
+        let elastic = Elastic::new(&sheet, &[&fabric], |_| 0);
+        let woven = Triangles::new(&sheet, Woven::new(&fabric).unwrap());
+        let x: Vec<Vec3> = uv.iter().zip(places.chunks(3)).map(|(p, d)| Vec3::new(p.x + d[0], p.y + d[1], d[2])).collect();
+        prop_assert!((elastic.value(&x) - woven.value(&x)).abs() < 1e-12 * (1.0 + woven.value(&x)));
+        let mut want = vec![Vec3::zeros(); 3];
+        woven.add_gradient(&x, &mut want);
+        for (g, w) in gradient(&elastic, &x).iter().zip(&want) {
+            prop_assert!((g - w).norm() < 1e-10 * (1.0 + w.norm()), "{} {}", g, w);
+        }
+    }
+
+    /// Whatever the state, the matrix does not go downhill.
+    #[test]
+    fn the_matrix_is_positive(places in proptest::array::uniform9(-0.1..0.1f64), push in proptest::array::uniform9(-1.0..1.0f64)) {
+        let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
+        let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
+        let mut elastic = Elastic::new(&sheet, &[&Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() }], |_| 0);
+        let pattern = Pattern::new(3, elastic.couplings());
+        elastic.bind(&pattern);
+        let mut values = vec![Matrix3::zeros(); pattern.blocks()];
+        let x: Vec<Vec3> = uv.iter().zip(places.chunks(3)).map(|(p, d)| Vec3::new(p.x + d[0], p.y + d[1], d[2])).collect();
+        elastic.add_matrix(&x, 0.0, &mut values);
+        let push: Vec<Vec3> = push.chunks(3).map(Vec3::from_column_slice).collect();
+        let mut product = vec![Vec3::zeros(); 3];
+        pattern.multiply_add(&values, &push, &mut product);
+        let work: f64 = product.iter().zip(&push).map(|(a, b)| a.dot(b)).sum();
+        prop_assert!(work > -1e-9, "{}", work);
     }
 }

@@ -35,7 +35,7 @@ fn deepest(scene: &Scene, x: &[Vec3]) -> f64 {
 
 fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
     let pieces = Pieces::new(scene);
-    let sheet = pieces.sewn_sheet(0.1).unwrap();
+    let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
     let nodes = pieces.sew(x, &vec![1.0; x.len()]);
     ClothTree::new(&sheet, &nodes).crossings(&nodes).len()
 }
@@ -43,7 +43,7 @@ fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
 #[test]
 fn a_skirt_is_sewn_and_comes_to_rest_from_ten_starts() {
     for seed in 0..10 {
-        let mut scene = generate::tube(15, 17);
+        let mut scene = generate::tube(22, 25);
         if seed > 0 {
             generate::jitter(&mut scene, 1e-3, seed);
         }
@@ -223,4 +223,48 @@ fn a_caller_can_stop_and_time_can_run_out() {
         RestError::Timeout { positions, .. } => assert_eq!(positions.len(), scene.rest.len()),
         error => panic!("{error}"),
     }
+}
+
+/// A strip of two panels that hangs from its upper edge: 0.2 m wide, each panel 0.4 m long.
+fn two_panel_strip(lower: Option<Fabric>, joined: bool) -> (Scene, f64) {
+    let part = generate::hang(8);
+    let rest: Vec<_> = part.rest.iter().map(|p| nalgebra::Vector2::new(0.2 * p.x, 0.4 * p.y)).collect();
+    let place = |y: f64| rest.iter().map(|p| Vec3::new(p.x, p.y + y, 0.0)).collect::<Vec<_>>();
+    let mut scene = Scene::new("strip", generate::cloth());
+    let top = scene.add_panel("top", &rest, &place(0.0), &part.triangles);
+    let bottom = scene.add_panel("bottom", &rest, &place(-0.401), &part.triangles);
+    scene.panels[1].material = lower;
+    let pairs = (0..9).map(|k| [top.start + k, bottom.start + 72 + k]).collect();
+    scene.seams = vec![Seam { joined, ..Seam::new("waist", pairs) }];
+    scene.pinned = (72..81).collect();
+    scene.self_collision = false;
+    let state = settle(&scene).unwrap();
+    (scene, state.positions[bottom.start as usize + 4].y)
+}
+
+#[test]
+fn each_panel_stretches_as_its_own_fabric_does() {
+    let heavy = Fabric { density: 0.6, warp: crate::fabric::Curve::linear(100.0), ..generate::cloth() };
+    let ends = [None, Some(heavy)].map(|m| two_panel_strip(m, true).1);
+    // Weight a metre of width over stiffness: the upper panel carries both, the lower one on average half of itself.
+    let long = |lower: f64, k: f64| {
+        let (g, l) = (9.81, 0.4);
+        let top = l * (0.5 * 0.15 * l + lower * l) * g / 500.0;
+        let bottom = l * 0.5 * lower * l * g / k;
+        -0.2 - l - top - bottom
+    };
+    for (end, want) in ends.iter().zip([long(0.15, 500.0), long(0.6, 100.0)]) {
+        assert!((end - want).abs() < 3e-4, "{end} {want}");
+    }
+}
+
+#[test]
+fn a_seam_that_is_not_joined_stays_two_rows_without_a_gap() {
+    let (scene, end) = two_panel_strip(None, false);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    let gaps: Vec<f64> =
+        scene.seams[0].pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).collect();
+    assert!(gaps.iter().all(|g| (1e-6..5e-4).contains(g)), "{gaps:?}");
+    assert!((end - two_panel_strip(None, true).1).abs() < 6e-4);
 }

@@ -2,7 +2,8 @@
 //!
 //! A case must converge, stay finite and gain no energy, or be refused with a typed error. Nothing else is allowed.
 
-use super::layout::{Layout, Rectangle};
+use super::{Check, Must, Verdict};
+use crate::bench::layout::{Layout, Rectangle};
 use crate::bending::{Hinge, Rigidity};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
@@ -172,5 +173,45 @@ impl Case {
             .with(Hinge::new(sheet, &Rigidity::of(&fabric))?)
             .pinned(|v| mesh.at_top(v))
             .under(Vec3::new(0.0, -9.81 * self.gravity, 0.0)))
+    }
+}
+
+/// Energy that may be gained, of the energies that moved.
+const MOST_GAIN: f64 = 1e-6;
+/// Steps of a case.
+const STEPS: usize = 4;
+
+/// Each value of each axis as a check.
+pub(super) fn singles(cells: usize) -> Vec<Check> {
+    let check = |axis: &'static Axis| {
+        axis.values.iter().map(move |&v| {
+            let mut case = Case::default();
+            (axis.set)(&mut case, v);
+            Check::new(axis.name, v, Must::Converge, move || case.verdict(cells))
+        })
+    };
+    AXES.iter().flat_map(check).collect()
+}
+
+/// All pairs of ends as checks.
+pub(super) fn pairs(cells: usize) -> Vec<Check> {
+    Case::pairs()
+        .map(|(name, case)| Check::new("pairs", name, Must::Converge, move || case.verdict(cells)))
+        .collect()
+}
+
+impl Case {
+    /// Runs and judges.
+    pub(in crate::bench) fn verdict(&self, cells: usize) -> Verdict {
+        match self.run(cells, STEPS) {
+            Ok(o) if o.converged && o.strain.is_finite() && o.energy_gain < MOST_GAIN => {
+                Verdict::Converged(format!(
+                    "residual {:.0e} weights, {} iterations, gain of energy {:+.0e}",
+                    o.residual, o.iterations, o.energy_gain
+                ))
+            }
+            Ok(o) => Verdict::Failed(format!("{o:?}")),
+            Err(e) => Verdict::Failed(e.to_string()),
+        }
     }
 }

@@ -1,0 +1,33 @@
+//! The body as a solver sees it: two questions, asked for many points at once.
+//!
+//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`Skin`].
+
+use super::body::{Body, Nearest};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+
+type Vec3 = Vector3<f64>;
+
+/// Points that one task looks after.
+const CHUNK: usize = 64;
+
+/// A solid that cloth stays outside of. The answers must not depend on the number of threads.
+pub trait Skin: Send + Sync + std::fmt::Debug {
+    /// For each point the surface nearest to it, where it is nearer than the point's `within` (m), inside or outside.
+    fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>>;
+
+    /// Ends each move that would lead into the solid its `gap` (m) outside it. A point inside may move as it likes.
+    fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]);
+}
+
+impl Skin for Body {
+    fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>> {
+        let near = |(p, w): (&Vec3, &f64)| Body::nearest(self, p, *w);
+        points.par_iter().zip(within).with_min_len(CHUNK).map(near).collect()
+    }
+
+    fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]) {
+        let guard = |((m, p), gap): ((&mut Vec3, &Vec3), &f64)| *m = Body::guard(self, p, m, *gap);
+        moves.par_iter_mut().zip(points).zip(gaps).with_min_len(CHUNK).for_each(guard);
+    }
+}

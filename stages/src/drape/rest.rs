@@ -1,0 +1,184 @@
+//! `Rest`: sews and drapes at once, straight to static equilibrium.
+//!
+//! Method: the engine's `Rest` (coarse to fine, Newton's method on the potential of sheet, seams, weight, contacts and
+//! friction). Cost: about a dozen factorizations of the finest mesh, O(triangles^1.5) each with a small factor. Limits:
+//! the way there is no motion: nothing of it may be shown as an animation; folds and friction have many states of rest, of
+//! which one is found.
+
+use super::ImplicitEuler;
+use crate::cloth::check_garment;
+use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::Duration;
+use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
+use toile_core::prelude::*;
+
+/// Sews the garment and brings it to rest, without the way there.
+///
+/// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
+/// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
+/// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
+/// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
+/// `steps`, the last state goes on with a warning. A scene that nothing holds has no rest: its fall is
+/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`.
+#[stage(
+    role = Draper,
+    source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
+    example = "Rest(speed: 0.001)",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
+)]
+pub struct Rest {
+    /// Downward acceleration; a scene's own phases come before it.
+    #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
+    pub gravity: f64,
+    /// At rest, no vertex gains more than this in a sixtieth of a second.
+    #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades)]
+    pub speed: f64,
+    /// Vertices of the coarsest mesh, on which the garment is sewn.
+    #[param(default = 200, min = 20, max = 100_000, unit = "vertices", trades)]
+    pub coarsest: usize,
+    /// Steps on every mesh but the finest.
+    #[param(default = 30, min = 1, max = 100_000, unit = "steps", trades)]
+    pub coarse_steps: usize,
+    /// Steps on the finest mesh, after which the drape stops as it is.
+    #[param(default = 200, min = 1, max = 100_000, unit = "steps", trades)]
+    pub steps: usize,
+    /// Gap below which a seam is joined.
+    #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
+    pub join_gap: Length,
+    /// Wall time after which the drape stops as it is. A run that meets it is not repeatable.
+    #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
+    pub time_limit: f64,
+    /// Distance at which cloth is held off itself where the pipeline names no collider.
+    #[param(default = Length::mm(1.0), min = 1e-5, max = 0.05)]
+    pub thickness: Length,
+}
+
+#[stage]
+impl Rest {
+    /// Runs the stage.
+    pub fn run(
+        &self,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        phases: Option<&Phases>,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
+        check_garment(garment)?;
+        let gravity =
+            phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
+        let card = collider.map(|c| c.scheme.card());
+        let setting = Setting {
+            gravity,
+            thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
+            self_collision: card.is_none_or(|c| c.self_collision),
+        };
+        let scene = scene_of(garment, &setting)?;
+        let friction = card.map_or(0.0, |c| c.friction);
+        let skin = collider.map(|c| SchemeSkin(c.scheme.as_ref()));
+        let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
+        let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
+        let result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
+        cx.check()?;
+        if let (Err(RestError::Falls), Some(phases)) = (&result, phases) {
+            cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
+            return ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(
+                garment,
+                collider,
+                Some(phases),
+                cx,
+            );
+        }
+        let steps = progress.steps;
+        let (state, converged) = self.judge(result, cx)?;
+        Ok(self.finish(garment, &state, steps, converged))
+    }
+
+    fn solver(&self) -> Solver {
+        Solver {
+            speed: self.speed,
+            coarsest: self.coarsest,
+            coarse_steps: self.coarse_steps,
+            finest_steps: self.steps,
+            join_gap: self.join_gap.metres(),
+            budget: Duration::from_secs_f64(self.time_limit),
+        }
+    }
+
+    /// The state to go on with, and whether it is at rest.
+    fn judge(&self, result: Result<Rested, RestError>, cx: &Context) -> Result<(Rested, bool), StageError> {
+        match result {
+            Ok(state) => Ok((state, true)),
+            Err(RestError::NotAtRest { state, .. }) => {
+                let (speed, steps) = (state.outcome.speed * 1e3, state.outcome.steps);
+                cx.warn(format!("the cloth still moves by {speed:.1} mm/s after {steps} steps of the drape"));
+                Ok((*state, false))
+            }
+            Err(RestError::Crossing { pairs, state }) => {
+                cx.warn(format!("cloth passes through cloth in {pairs} places"));
+                Ok((*state, false))
+            }
+            Err(error) => Err(rest_error(&error)),
+        }
+    }
+
+    fn finish(&self, garment: &Garment, state: &Rested, steps: usize, converged: bool) -> Garment {
+        let mut garment = garment.clone();
+        garment.positions = state.positions.iter().map(|p| Point3::from(*p)).collect();
+        garment.velocities.fill(Vector3::zeros());
+        weld_seams(&mut garment);
+        garment.status = SolveStatus {
+            steps: garment.status.steps + steps,
+            converged,
+            energy: state.energy,
+            max_speed: state.outcome.speed,
+        };
+        garment
+    }
+}
+
+/// Tells the user how far the solver has come, and stops it when asked to.
+struct Progress<'a> {
+    cx: &'a Context,
+    wanted: f64,
+    steps: usize,
+}
+
+impl Progress<'_> {
+    fn tell(&mut self, level: &LevelReport) -> ControlFlow<()> {
+        self.steps += 1;
+        if self.cx.check().is_err() {
+            return ControlFlow::Break(());
+        }
+        let (speed, doing) = (level.outcome.speed, if level.sewing { "sewing" } else { "draping" });
+        let text = format!("{doing} {} vertices, fastest {:.1} mm/s", level.nodes, speed * 1e3);
+        // From 1 m/s down to rest, by the logarithm.
+        let share = if speed > 0.0 { speed.ln() / self.wanted.ln() } else { 1.0 };
+        self.cx.progress(if level.sewing { 0.0 } else { share }, text);
+        ControlFlow::Continue(())
+    }
+}
+
+fn rest_error(error: &RestError) -> StageError {
+    let message = error.to_string();
+    let (text, hint) = match message.split_once("; ") {
+        Some((text, hint)) => (text.to_owned(), Some(hint.to_owned())),
+        None => (message, None),
+    };
+    let code = match error {
+        RestError::Cloth(e) => return cloth_error(e),
+        RestError::Scene(e) => return scene_error(e),
+        RestError::SeamNotClosed { .. } => ErrorCode::StitchingError,
+        RestError::InitialPenetration { .. } => ErrorCode::BodyIntersection,
+        RestError::InitialCrossing { .. } | RestError::Crossing { .. } => ErrorCode::SelfIntersection,
+        RestError::Timeout { .. } => ErrorCode::Timeout,
+        RestError::Stopped => ErrorCode::Cancelled,
+        _ => ErrorCode::StaticEquilibrium,
+    };
+    let e = StageError::new(code, text);
+    match hint {
+        Some(hint) => e.hint(hint),
+        None => e,
+    }
+}

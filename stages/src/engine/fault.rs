@@ -1,0 +1,30 @@
+//! The engine's errors as stage errors.
+
+use toile_cloth::error::ClothError;
+use toile_cloth::scene::SceneError;
+use toile_core::{ErrorCode, StageError};
+
+/// A fault of the numbers that the engine was given.
+pub fn cloth_error(error: &ClothError) -> StageError {
+    let code = match error {
+        ClothError::DegenerateTriangle { .. } | ClothError::ZeroLengthEdge { .. } => {
+            ErrorCode::DegenerateTriangles
+        }
+        ClothError::InvalidParameter { .. } => ErrorCode::InvalidParameter,
+        ClothError::Diverged { .. } => ErrorCode::StaticEquilibrium,
+        _ => ErrorCode::InvalidInput,
+    };
+    StageError::new(code, error.to_string())
+}
+
+/// A scene file that cannot be used.
+pub fn scene_error(error: &SceneError) -> StageError {
+    match error {
+        SceneError::Cloth(e) => cloth_error(e),
+        SceneError::File { .. } | SceneError::Form { .. } | SceneError::Format { .. } => {
+            StageError::new(ErrorCode::PatternLoading, error.to_string())
+                .hint("docs/scene.md describes the format")
+        }
+        _ => StageError::invalid(error.to_string()),
+    }
+}

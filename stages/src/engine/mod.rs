@@ -1,0 +1,11 @@
+//! Between artifacts and the cloth engine: garments become scenes, colliders become skins, errors become stage errors.
+//!
+//! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
+
+mod fault;
+mod scene;
+mod skin;
+
+pub use fault::{cloth_error, scene_error};
+pub use scene::{Setting, garment_of, scene_of, weld_seams};
+pub use skin::SchemeSkin;

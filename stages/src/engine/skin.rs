@@ -1,0 +1,48 @@
+//! A pipeline's collision scheme as the engine's skin.
+
+use nalgebra::Vector3;
+use toile_cloth::contact::body::Nearest;
+use toile_cloth::contact::skin::Skin;
+use toile_core::artifact::{BodyContact, Collide, Point3};
+
+/// The body of a collision scheme: one call a question, whatever the number of points.
+#[derive(Debug, Clone, Copy)]
+pub struct SchemeSkin<'a>(pub &'a dyn Collide);
+
+/// No garment is farther from its body, metres: stands for a reach without limit.
+const ANYWHERE: f64 = 100.0;
+
+impl Skin for SchemeSkin<'_> {
+    fn nearest(&self, points: &[Vector3<f64>], within: &[f64]) -> Vec<Option<Nearest>> {
+        let reach = within.iter().fold(0.0, |a: f64, b| a.max(*b)).min(ANYWHERE);
+        let mut contacts = Vec::new();
+        self.0.body_contacts(&points_of(points), reach, &mut contacts);
+        let mut near = vec![None; points.len()];
+        for c in contacts {
+            let i = c.vertex as usize;
+            if c.distance.abs() < within[i] {
+                near[i] = Some(nearest(&c));
+            }
+        }
+        near
+    }
+
+    fn guard(&self, points: &[Vector3<f64>], moves: &mut [Vector3<f64>], gaps: &[f64]) {
+        let from = points_of(points);
+        let to: Vec<Point3> = from.iter().zip(moves.iter()).map(|(p, m)| p + m).collect();
+        let mut hits = Vec::new();
+        self.0.body_hits(&from, &to, &mut hits);
+        for h in hits {
+            let i = h.vertex as usize;
+            moves[i] = h.point.coords + h.normal * gaps[i] - points[i];
+        }
+    }
+}
+
+fn nearest(c: &BodyContact) -> Nearest {
+    Nearest { distance: c.distance, normal: c.normal, point: c.point.coords }
+}
+
+fn points_of(points: &[Vector3<f64>]) -> Vec<Point3> {
+    points.iter().map(|p| Point3::from(*p)).collect()
+}

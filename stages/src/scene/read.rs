@@ -1,0 +1,90 @@
+//! `Scene`: a prepared scene in the form `garment-scene-1`.
+//!
+//! Method: the engine's reader checks every index and number; the body becomes a collider over boxes along the axes, as
+//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: one fabric a scene.
+
+use crate::collide::{Aabb, BvhScheme, check_body};
+use crate::engine::{garment_of, scene_error};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use toile_cloth::scene::{self, SceneError};
+use toile_core::artifact::Digester;
+use toile_core::prelude::*;
+
+/// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
+///
+/// The form is described in docs/scene.md; benchmarks of other programs use it as well. The
+/// garment's vertices keep the order of the file, so that a result can be held against it.
+#[stage(
+    role = Reader,
+    source = "garment-scene-1, docs/scene.md",
+    example = "Scene(file: \"skirt.json\")",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct Scene {
+    /// The file, relative to the pipeline; the body's OBJ lies beside it.
+    #[param(default = String::new())]
+    pub file: String,
+}
+
+#[stage]
+impl Scene {
+    /// Runs the stage.
+    pub fn run(&self, cx: &Context) -> Result<(Garment, Body, Collider, Phases), StageError> {
+        if self.file.is_empty() {
+            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the scene from");
+            return Err(e.hint("write `file: \"skirt.json\"`").at("file"));
+        }
+        let text = text(cx, &self.file)?;
+        let folder = std::path::Path::new(&self.file).parent().map(std::path::Path::to_path_buf);
+        let beside = |obj: &str| {
+            let path = folder.clone().unwrap_or_default().join(obj);
+            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
+            crate::scene::read::text(cx, &path.to_string_lossy()).map_err(unread)
+        };
+        let scene = scene::parse(&text, &beside).map_err(|e| scene_error(&e))?;
+        let body = body_of(&scene);
+        let collider = collider(&scene, &body, cx)?;
+        let phases = scene.phases.iter().map(|p| Phase {
+            name: p.name.clone(),
+            seconds: p.seconds,
+            gravity: p.gravity,
+        });
+        Ok((garment_of(&scene), body, collider, Phases(phases.collect())))
+    }
+}
+
+fn text(cx: &Context, file: &str) -> Result<String, StageError> {
+    String::from_utf8(cx.read(file)?).map_err(|_| {
+        StageError::new(ErrorCode::PatternLoading, format!("\"{file}\" is not a text"))
+            .hint("docs/scene.md describes the format")
+    })
+}
+
+fn collider(scene: &scene::Scene, body: &Body, cx: &Context) -> Result<Collider, StageError> {
+    let body = Some(body).filter(|b| !b.triangles.is_empty());
+    body.map(check_body).transpose()?;
+    let card = ColliderCard {
+        thickness: scene.material.thickness,
+        friction: scene.body.as_ref().map_or(scene.material.friction, |b| b.friction),
+        restitution: 0.0,
+        self_collision: scene.self_collision,
+        penalty: None,
+    };
+    let mut digester = Digester::new();
+    body.iter().for_each(|b| b.digest(&mut digester));
+    let signature = format!("Scene {card:?} body {}", digester.finish().short());
+    Ok(Collider { scheme: Arc::new(BvhScheme::<Aabb>::new(card, body, cx)?), signature })
+}
+
+/// The scene's body; one without vertices where it has none.
+fn body_of(scene: &scene::Scene) -> Body {
+    let (vertices, triangles) =
+        scene.body.as_ref().map_or((&[][..], &[][..]), |b| (&b.vertices, &b.triangles));
+    Body {
+        positions: vertices.iter().map(|p| Point3::from(*p)).collect(),
+        triangles: triangles.to_vec(),
+        landmarks: BTreeMap::new(),
+        measurements: BTreeMap::new(),
+    }
+}

@@ -1,0 +1,36 @@
+//! `GarmentObj`: the bare garment as Wavefront OBJ, vertex for vertex.
+
+use super::names::check_name;
+use std::fmt::Write;
+use toile_core::prelude::*;
+
+/// Writes the garment's surface alone, its vertices in the garment's own order.
+///
+/// For programs that compare a result with the scene it came from: every vertex of every panel is
+/// written, joined or not, to nine digits. Metres, Y up.
+#[stage(
+    role = Writer,
+    source = "Wavefront Technologies, Object Files, 1992",
+    example = "GarmentObj(name: \"result\")",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct GarmentObj {
+    /// The file's name without its extension.
+    #[param(default = "result".to_owned())]
+    pub name: String,
+}
+
+#[stage]
+impl GarmentObj {
+    pub(super) fn run(&self, garment: &Garment, _cx: &Context) -> Result<OutputFiles, StageError> {
+        check_name(&self.name)?;
+        let mut text = String::with_capacity(48 * garment.positions.len() + 24 * garment.triangles.len());
+        for p in &garment.positions {
+            let _ = writeln!(text, "v {:.9} {:.9} {:.9}", p.x, p.y, p.z);
+        }
+        for t in &garment.triangles {
+            let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
+        }
+        Ok(OutputFiles::one(&format!("{}.obj", self.name), text.into_bytes()))
+    }
+}
