@@ -137,13 +137,19 @@ impl Elastic {
         self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
     }
 
-    /// Adds the second derivative with the foretold stress, N/m; positive semi-definite without `compression`.
-    pub fn add_matrix(&self, x: &[Vec3], compression: bool, values: &mut [Matrix3<f64>]) {
+    /// Adds the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite
+    /// without any.
+    pub fn add_matrix(&self, x: &[Vec3], compression: f64, values: &mut [Matrix3<f64>]) {
         let blocks = |(k, t): (usize, &Triangle)| {
             let (u, v) = t.columns(x);
             let response = self.laws[t.cloth as usize].response(metric(&u, &v));
             let stress = self.foretold.get(k).copied().unwrap_or(response.stress);
-            t.blocks(&u, &v, &response.tangent, if compression { square(stress) } else { tension(stress) })
+            t.blocks(
+                &u,
+                &v,
+                &response.tangent,
+                tension(stress) * (1.0 - compression) + square(stress) * compression,
+            )
         };
         let blocks: Vec<[Matrix3<f64>; 6]> =
             self.triangles.par_iter().enumerate().with_min_len(CHUNK).map(blocks).collect();

@@ -7,28 +7,31 @@ use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// Steps below this are asked of the true second derivative: near rest it converges fast, far from it the one without
-/// compression does, m.
-const EXACT_BELOW: f64 = 2e-3;
+/// Share of compression that the matrix has near rest, if it is positive definite with it. All of it is the true second
+/// derivative, which few limp states can factor; none of it makes folds that are about to form far too stiff.
+const COMPRESSION: f64 = 0.7;
+
+/// Steps below this are near rest; before, the matrix without compression converges sooner, m.
+const NEAR_REST: f64 = 5e-3;
 
 /// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
 const MOST_INERTIA: f64 = 1e12;
 
 /// The matrix and its factor.
-pub(super) struct Linear<'a> {
-    layout: &'a [Vec3],
+pub(super) struct Linear {
+    layout: Vec<Vec3>,
     pattern: Pattern,
     symbolic: Symbolic,
     values: Vec<Matrix3<f64>>,
     factor: Factor,
 }
 
-impl<'a> Linear<'a> {
+impl Linear {
     /// Prepares the matrix; `layout` orders the elimination.
-    pub(super) fn new(system: &mut System<'_>, layout: &'a [Vec3]) -> Self {
+    pub(super) fn new(system: &mut System<'_>, layout: Vec<Vec3>) -> Self {
         let pattern = system.pattern();
         system.elastic.bind(&pattern);
-        let symbolic = Symbolic::new(&pattern, layout);
+        let symbolic = Symbolic::new(&pattern, &layout);
         Self { layout, pattern, symbolic, values: Vec::new(), factor: Factor::default() }
     }
 
@@ -36,8 +39,13 @@ impl<'a> Linear<'a> {
     pub(super) fn follow(&mut self, system: &mut System<'_>) {
         let known = system.layers.iter().flat_map(|l| l.groups()).all(|nodes| self.pattern.couples(nodes));
         if !known {
-            *self = Self::new(system, self.layout);
+            *self = Self::new(system, std::mem::take(&mut self.layout));
         }
+    }
+
+    /// Takes up elements whose stiffness has changed.
+    pub(super) fn bind(&self, system: &mut System<'_>) {
+        system.elastic.bind(&self.pattern);
     }
 
     /// The step of pseudo-time `dt` from `x`, the last step having moved nodes by up to `last`.
@@ -51,12 +59,12 @@ impl<'a> Linear<'a> {
         stop: &Stop,
     ) -> Result<Vec<Vec3>, Halt> {
         let mut shift = 1.0 / (dt * dt);
-        let mut compression = last < EXACT_BELOW;
+        let mut compression = if last < NEAR_REST { COMPRESSION } else { 0.0 };
         loop {
             system.matrix(x, &self.pattern, shift, compression, &mut self.values);
             match self.symbolic.factor(&self.values, &mut self.factor, stop) {
                 Ok(()) => break,
-                Err(Halt::NotPositive(_)) if compression => compression = false,
+                Err(Halt::NotPositive(_)) if compression > 0.0 => compression = 0.0,
                 // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
                 Err(Halt::NotPositive(_)) if shift <= MOST_INERTIA => shift *= 100.0,
                 Err(halt) => return Err(halt),

@@ -1,5 +1,6 @@
 //! Straight to static equilibrium, coarse to fine.
 
+mod assemble;
 pub mod clear;
 pub mod coarsen;
 pub mod dissect;
@@ -7,6 +8,7 @@ pub mod elastic;
 mod front;
 pub mod layers;
 mod linear;
+pub mod live;
 pub mod multifrontal;
 mod nearby;
 pub mod newton;

@@ -15,19 +15,19 @@ type Vec3 = Vector3<f64>;
 const SLACK: f64 = 1.5;
 
 /// What is near what, and where the nodes were when it was sought.
-pub(super) struct Nearby<'a> {
-    tree: Option<&'a ClothTree>,
+pub(super) struct Nearby {
+    tree: Option<ClothTree>,
     at: Vec<Vec3>,
 }
 
-impl<'a> Nearby<'a> {
-    pub(super) fn new(tree: Option<&'a ClothTree>) -> Self {
+impl Nearby {
+    pub(super) fn new(tree: Option<ClothTree>) -> Self {
         Self { tree, at: vec![] }
     }
 
     /// Sees to it that the pairs of the layers hold for `moves` from `x`.
     pub(super) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
-        let (Some(tree), Some(layers)) = (self.tree, &mut system.layers) else { return };
+        let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
         let slack = SLACK * layers.thickness;
         if self.at.len() == x.len() && within(&self.at, x, moves, slack) {
             return;
@@ -41,9 +41,14 @@ impl<'a> Nearby<'a> {
         }
     }
 
+    /// How often triangles cross at `x`.
+    pub(super) fn crossings(&self, x: &[Vec3]) -> usize {
+        self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
+    }
+
     /// Shortens moves that would lead cloth through cloth.
     pub(super) fn limit(&self, system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let (Some(_), Some(layers)) = (self.tree, &system.layers) else { return };
+        let (Some(_), Some(layers)) = (&self.tree, &system.layers) else { return };
         if layers.tangled.is_empty() {
             limit(x, moves, &layers.pairs);
         } else {
@@ -54,7 +59,7 @@ impl<'a> Nearby<'a> {
 
     /// Takes up crossings that the start has, or that are left of them.
     pub(super) fn untangle(&self, system: &mut System<'_>, x: &[Vec3]) {
-        if let (Some(tree), Some(layers)) = (self.tree, &mut system.layers) {
+        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
             layers.untangle(&tree.crossings(x), x);
         }
     }

@@ -80,65 +80,151 @@ pub struct Outcome {
 /// What a caller learns after each step; it may stop the level.
 pub type Watch<'w> = dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> ControlFlow<()> + 'w;
 
+/// Newton's method under way: what is kept from step to step.
+pub struct Descent {
+    nearby: Nearby,
+    linear: Linear,
+    outcome: Outcome,
+    /// The potentials of the last steps.
+    heights: Vec<f64>,
+    /// Whether the next step is to prove rest.
+    proves: bool,
+    dt: f64,
+    /// How far the last step wanted to go, m.
+    last: f64,
+}
+
+impl Descent {
+    /// Starts at `x`. `layout` orders the elimination, `tree` finds cloth near cloth.
+    pub fn new(
+        system: &mut System<'_>,
+        layout: &[Vec3],
+        tree: Option<ClothTree>,
+        x: &[Vec3],
+        first: f64,
+    ) -> Self {
+        let mut nearby = Nearby::new(tree);
+        nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
+        nearby.untangle(system, x);
+        system.touch(x);
+        let linear = Linear::new(system, layout.to_vec());
+        let outcome = Outcome { dt: first, ..Outcome::default() };
+        Self { nearby, linear, outcome, heights: vec![], proves: false, dt: first, last: f64::INFINITY }
+    }
+
+    /// Takes up a system whose fabric, pins or body have changed.
+    pub fn renew(&mut self, system: &mut System<'_>) {
+        self.linear.bind(system);
+        self.wake();
+    }
+
+    /// What was at rest may be so no more.
+    pub fn wake(&mut self) {
+        self.heights.clear();
+        self.proves = false;
+        self.outcome.at_rest = false;
+    }
+
+    /// One step; says at rest where nothing gains speed any more. `stop` is asked every few milliseconds.
+    ///
+    /// # Errors
+    /// [`Halt`]: `stop` said so, or no inertia makes the matrix positive definite, for the numbers are not finite.
+    pub fn step(
+        &mut self,
+        system: &mut System<'_>,
+        x: &mut [Vec3],
+        pace: &Pace,
+        stop: &Stop,
+    ) -> Result<Outcome, Halt> {
+        if system.is_tangled() {
+            self.nearby.untangle(system, x);
+        }
+        system.touch(x);
+        self.linear.follow(system);
+        let g = system.gradient(x);
+        let used = if self.proves { REST_STEP } else { self.dt };
+        let mut moves = self.linear.step(system, x, &g, used, self.last, stop)?;
+        let longest = greatest(&moves);
+        let residual = greatest(&g);
+        self.outcome = Outcome {
+            steps: self.outcome.steps + 1,
+            speed: longest / used,
+            residual,
+            dt: used,
+            ..self.outcome
+        };
+        self.last = longest;
+        shorten(&mut moves, pace.farthest / longest);
+        let pulled = system.pull(x, &mut moves, pace.farthest);
+        system.clear_of_body(x, &mut moves);
+        self.nearby.seek(system, x, &moves);
+        self.nearby.limit(system, x, &mut moves);
+        let share = if pulled { 1.0 } else { descend(system, x, &g, &mut moves, &mut self.heights) };
+        self.outcome.share = share;
+        system.elastic.foretell(x, &moves);
+        x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
+        self.plan(system, x, pulled, pace);
+        Ok(self.outcome)
+    }
+
+    /// What comes after a step.
+    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, pace: &Pace) {
+        let slow = self.outcome.speed < pace.speed && !pulled;
+        self.outcome.at_rest = slow && (self.proves || !pace.prove);
+        if self.proves {
+            self.proves = false;
+            return;
+        }
+        self.dt = next_dt(self.dt, self.outcome.share, pace);
+        if !slow {
+            system.drag(x);
+        }
+        self.proves = pace.prove && slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
+    }
+
+    /// How it stands after the last step.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        self.outcome
+    }
+
+    /// How often triangles cross at `x`.
+    #[must_use]
+    pub fn crossings(&self, x: &[Vec3]) -> usize {
+        self.nearby.crossings(x)
+    }
+
+    /// Looks for crossings that are left where some were being undone.
+    fn finish(&self, system: &mut System<'_>, x: &[Vec3]) {
+        if system.is_tangled() {
+            self.nearby.untangle(system, x);
+        }
+    }
+}
+
 /// Moves `x` to rest, or as far as the pace allows. `layout` orders the elimination, `tree` finds cloth near cloth; `stop`
 /// is asked every few milliseconds.
 ///
 /// # Errors
-/// [`Halt`]: `stop` said so, or no inertia makes the matrix positive definite, for the numbers are not finite.
+/// [`Halt`], as [`Descent::step`].
 pub fn relax(
     system: &mut System<'_>,
     layout: &[Vec3],
-    tree: Option<&ClothTree>,
+    tree: Option<ClothTree>,
     x: &mut [Vec3],
     pace: &Pace,
     watch: &mut Watch<'_>,
     stop: &Stop,
 ) -> Result<Outcome, Halt> {
-    let mut nearby = Nearby::new(tree);
-    nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
-    nearby.untangle(system, x);
-    system.touch(x);
-    let mut linear = Linear::new(system, layout);
-    let mut outcome = Outcome { dt: pace.first, ..Outcome::default() };
-    let mut heights = Vec::new();
-    let mut proves = false;
-    let mut dt = pace.first;
-    let mut last = f64::INFINITY;
-    for step in 1..=pace.steps {
-        if system.is_tangled() {
-            nearby.untangle(system, x);
-        }
-        system.touch(x);
-        linear.follow(system);
-        let g = system.gradient(x);
-        let used = if proves { REST_STEP } else { dt };
-        let mut moves = linear.step(system, x, &g, used, last, stop)?;
-        last = greatest(&moves);
-        outcome = Outcome { steps: step, speed: last / used, residual: greatest(&g), dt: used, ..outcome };
-        shorten(&mut moves, pace.farthest / last);
-        system.clear_of_body(x, &mut moves);
-        nearby.seek(system, x, &moves);
-        nearby.limit(system, x, &mut moves);
-        outcome.share = descend(system, x, &g, &mut moves, &mut heights);
-        system.elastic.foretell(x, &moves);
-        x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
-        let slow = outcome.speed < pace.speed;
-        outcome.at_rest = slow && (proves || !pace.prove);
+    let mut descent = Descent::new(system, layout, tree, x, pace.first);
+    while descent.outcome.steps < pace.steps {
+        let outcome = descent.step(system, x, pace, stop)?;
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        if !proves {
-            dt = next_dt(dt, outcome.share, pace);
-        }
-        if !proves && !slow {
-            system.drag(x);
-        }
-        proves = pace.prove && !proves && slow && outcome.share == 1.0 && outcome.dt >= SLOW_STEP;
     }
-    if system.is_tangled() {
-        nearby.untangle(system, x);
-    }
-    Ok(outcome)
+    descent.finish(system, x);
+    Ok(descent.outcome)
 }
 
 fn next_dt(dt: f64, share: f64, pace: &Pace) -> f64 {

@@ -1,6 +1,7 @@
 //! The cut pieces of a garment, flat: what one level of the solver works on.
 
 use super::pattern::Pattern;
+use super::system::{Support, System};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
@@ -78,6 +79,12 @@ impl Pieces {
             sum.1 += w;
         }
         sums.into_iter().map(|(v, w)| if w > 0.0 { v / w } else { v }).collect()
+    }
+
+    /// The distance at which the body presses on each vertex.
+    pub(super) fn offsets(&self, system: &System<'_>) -> Vec<f64> {
+        let of = |s: &Support<'_>| self.node.iter().map(|&n| s.offsets[n as usize]).collect();
+        system.support.as_ref().map_or_else(Vec::new, of)
     }
 
     /// The value of each vertex's node.

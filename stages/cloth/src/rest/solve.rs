@@ -8,16 +8,15 @@
 //! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
+pub use super::assemble::Wearer;
+use super::assemble::{KEPT_PULL, assemble, cloths, gravity, kept_threads, spacing, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
-use super::elastic::Elastic;
-use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
-use super::system::{Support, System, Thread};
+use super::system::{System, Thread};
 use crate::contact::body::Body;
-use crate::contact::skin::Skin;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
@@ -29,21 +28,17 @@ use std::time::{Duration, Instant};
 
 type Vec3 = Vector3<f64>;
 
-/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre of thickness: a cloth
-/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer converges sooner.
-const CONTACT_STIFFNESS: f64 = 0.5;
-
 /// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
 const SEAM_PULL: f64 = 0.01;
-
-/// The same of seams that stay two rows of vertices held by thread: strong enough to carry the garment without a gap.
-const KEPT_PULL: f64 = 0.1;
 
 /// How often nodes are moved out where triangles dip into the body.
 const CLEARINGS: usize = 4;
 
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
+
+/// Factor by which the coarsest level has more nodes where sewing on it failed.
+const FINER: usize = 3;
 
 /// Factor by which a seam that stays open pulls harder, and how often.
 const HARDER: (f64, usize) = (3.0, 4);
@@ -91,15 +86,6 @@ pub struct LevelReport {
     pub seconds: f64,
 }
 
-/// Who wears the garment.
-#[derive(Debug, Clone, Copy)]
-pub struct Wearer<'a> {
-    /// The solid.
-    pub skin: &'a dyn Skin,
-    /// Coulomb's coefficient of cloth on it.
-    pub friction: f64,
-}
-
 /// A garment at rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rested {
@@ -109,6 +95,10 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
+    pub slides: Vec<Vec3>,
+    /// Distance at which the body begins to press on each vertex, m; none without a body.
+    pub offsets: Vec<f64>,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
     /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than the mesh can follow.
@@ -194,9 +184,19 @@ pub enum RestError {
         /// The state carried to the finest level.
         positions: Vec<Vec3>,
     },
+    /// A garment that is to go on has another mesh or other seams.
+    #[error("the mesh or its seams have changed; solve the scene from its start")]
+    Reshaped,
     /// The caller asked to stop.
     #[error("stopped")]
     Stopped,
+}
+
+impl RestError {
+    /// Whether a finer mesh to sew on may help.
+    fn is_of_a_coarse_mesh(&self) -> bool {
+        matches!(self, Self::SeamNotClosed { .. } | Self::Cloth(ClothError::NonManifoldEdge { .. }))
+    }
 }
 
 /// What a caller learns while solving; it may stop the solver.
@@ -227,17 +227,18 @@ impl Rest {
         scene.check()?;
         let mut coarsest = self.coarsest;
         loop {
-            let mut work = Work::new(self, coarsest, scene, wearer, clock)?;
-            work.sew(progress)?;
-            match work.drape(progress)? {
-                Draped::Rested(state) => return self.judge(*state),
+            match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
+                Ok(Draped::Rested(state)) => return self.judge(*state),
                 // From its own start the level keeps free of crossings by itself, if slowly.
-                Draped::Tangled { nodes } => coarsest = nodes,
+                Ok(Draped::Tangled { nodes }) => coarsest = nodes,
+                // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
+                Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
+                Err(e) => return Err(e),
             }
         }
     }
 
-    fn judge(&self, state: Rested) -> Result<Rested, RestError> {
+    pub(super) fn judge(&self, state: Rested) -> Result<Rested, RestError> {
         match state.outcome.at_rest {
             true => Ok(state),
             false => Err(RestError::NotAtRest { wanted: self.speed, state: Box::new(state) }),
@@ -309,6 +310,12 @@ impl<'a> Work<'a> {
         })
     }
 
+    /// Sews and drapes.
+    fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
+        self.sew(progress)?;
+        self.drape(progress)
+    }
+
     /// Closes the seams on the coarsest level and joins them.
     fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
         let coarsest = self.pieces.len() - 1;
@@ -324,7 +331,7 @@ impl<'a> Work<'a> {
                 return Err(RestError::InitialCrossing { pairs });
             }
         }
-        let mut pull = SEAM_PULL * self.strongest();
+        let mut pull = SEAM_PULL * strongest(&self.cloths);
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
             if widest < self.rest.join_gap {
@@ -335,7 +342,7 @@ impl<'a> Work<'a> {
                 force: pull * spacing,
                 soft: 2.0 * self.rest.join_gap,
             };
-            let mut system = self.system(pieces, &sheet, true);
+            let mut system = assemble(self.scene, self.body, pieces, &sheet, true);
             system.threads = pairs.iter().map(thread).collect();
             let farthest = (0.2 * widest).max(0.05);
             let pace =
@@ -375,14 +382,14 @@ impl<'a> Work<'a> {
         for k in (0..self.pieces.len()).rev() {
             let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-            let mut system = self.system(&self.pieces[k], &sheet, false);
+            let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false);
             let mut x = std::mem::take(&mut self.x);
             if slides.len() == x.len() {
                 system.slides = std::mem::take(&mut slides);
             }
             let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
             let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
-            system.threads = self.kept(&self.pieces[k]);
+            system.threads = kept_threads(self.scene, &self.pieces[k], self.rest.join_gap);
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
@@ -440,15 +447,10 @@ impl<'a> Work<'a> {
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
         let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
-        let state = Rested {
-            positions,
-            outcome,
-            residual,
-            energy,
-            dip,
-            joined_at: self.joined_at,
-            levels: self.reports,
-        };
+        let slides = self.pieces[0].spread(&system.held_back(&x));
+        let offsets = self.pieces[0].offsets(&system);
+        let (joined_at, levels) = (self.joined_at, self.reports);
+        let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -497,7 +499,7 @@ impl<'a> Work<'a> {
             if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         let late = || self.clock.elapsed() > self.rest.budget;
-        match relax(system, layout, tree.as_ref(), x, pace, &mut watch, &late) {
+        match relax(system, layout, tree, x, pace, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
             Err(Halt::NotPositive(error)) => return Err(error.into()),
             Err(Halt::Stopped) => stop = Some(self.timeout()),
@@ -525,13 +527,6 @@ impl<'a> Work<'a> {
         self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
-    /// Threads of the seams that are not joined.
-    fn kept(&self, pieces: &Pieces) -> Vec<Thread> {
-        let force = KEPT_PULL * self.strongest() * spacing(pieces, &pieces.seam_pairs());
-        let soft = 2.0 * self.rest.join_gap;
-        pieces.kept_pairs().into_iter().map(|nodes| Thread { nodes, force, soft }).collect()
-    }
-
     /// Refuses seams that are not joined and stay open at the end.
     fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
         let gap = widest(x, &self.pieces[0].kept_pairs());
@@ -539,86 +534,12 @@ impl<'a> Work<'a> {
             return Ok(());
         }
         let seam = self.widest_seam(0, &self.pieces[0].spread(x));
-        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * self.strongest() })
-    }
-
-    /// Stretch stiffness of the stiffest panel, N/m.
-    fn strongest(&self) -> f64 {
-        self.cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
-    }
-
-    fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> System<'a> {
-        let n = sheet.vertex_count();
-        let mut pinned = vec![false; n];
-        let mut panel = vec![0; n];
-        for (v, &p) in pieces.pinned.iter().enumerate() {
-            let node = if open { v } else { pieces.node[v] as usize };
-            pinned[node] |= p;
-            panel[node] = pieces.panel[v] as usize;
-        }
-        let stiffness: Vec<f64> = sheet
-            .masses()
-            .iter()
-            .zip(&panel)
-            .map(|(w, &p)| (w, self.cloths[p]))
-            .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
-            .collect();
-        let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
-        let thickness = |p: &usize| self.cloths[*p].thickness;
-        let rub = |b: Wearer<'_>, p: usize| {
-            let own = p.checked_sub(1).and_then(|k| self.scene.panels[k].body_friction);
-            // Hands that sew a garment on a body let it slip into place.
-            if open { 0.0 } else { own.unwrap_or(b.friction) }
-        };
-        let support = self.body.map(|b| Support {
-            body: b.skin,
-            friction: panel.iter().map(|&p| rub(b, p)).collect(),
-            offsets: panel.iter().map(thickness).collect(),
-            offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
-            depth: longest.clamp(0.02, 0.1),
-            edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
-            clear: pieces.rest.len() == self.scene.rest.len(),
-            stiffness: stiffness.clone(),
-        });
-        let mut corners = vec![0u16; n];
-        sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
-        let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
-        let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
-        let layers =
-            self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let elastic = Elastic::new(sheet, &self.cloths, |t| pieces.cloth(t));
-        System {
-            elastic,
-            masses: sheet.masses().to_vec(),
-            gravity: if open { Vec3::zeros() } else { gravity(self.scene) },
-            pinned,
-            threads: vec![],
-            support,
-            layers,
-            touches: vec![],
-            anchors: vec![None; n],
-            slides: vec![Vec3::zeros(); n],
-            loads: vec![0.0; n],
-            seen: vec![],
-        }
+        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.cloths) })
     }
 }
-
-/// What no panel and what each panel is made of.
-fn cloths(scene: &Scene) -> Vec<&Fabric> {
-    std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
-}
-
-/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
-const LAYER_SHARE: f64 = 0.25;
 
 /// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
 const DEEPEST_START: f64 = 0.05;
-
-/// The gravity in the end.
-fn gravity(scene: &Scene) -> Vec3 {
-    scene.phases.last().map(|p| p.gravity).unwrap_or_default()
-}
 
 /// The start with vertices that lie a little inside the body moved out.
 fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
@@ -638,18 +559,6 @@ fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, Res
 
 fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
-}
-
-/// Mean length of seam that a pair stands for, m.
-fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
-    let mut sewn = vec![false; pieces.rest.len()];
-    pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);
-    let edges = pieces.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
-    let along: Vec<f64> = edges
-        .filter(|e| e.iter().all(|&v| sewn[v as usize]))
-        .map(|[a, b]| (pieces.rest[a as usize] - pieces.rest[b as usize]).norm())
-        .collect();
-    if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
 }
 
 #[cfg(test)]

@@ -84,6 +84,8 @@ pub struct System<'a> {
     pub slides: Vec<Vec3>,
     /// What presses each node on the body, a mean over the last steps, N.
     pub loads: Vec<f64>,
+    /// Nodes that are being led somewhere, and where to: they must be pinned.
+    pub pulls: Vec<(u32, Vec3)>,
     /// Where each node was last seen from the body; empty before the first step.
     pub seen: Vec<Seen>,
 }
@@ -124,6 +126,15 @@ impl System<'_> {
         let found = self.looks(x);
         self.seen = found.iter().map(|(seen, _)| *seen).collect();
         found.into_iter().map(|(_, near)| near).collect()
+    }
+
+    /// Leads the pulled nodes on, by up to `farthest`; whether any of them still has a way to go.
+    pub fn pull(&self, x: &[Vec3], moves: &mut [Vec3], farthest: f64) -> bool {
+        for (node, to) in &self.pulls {
+            let way = to - x[*node as usize];
+            moves[*node as usize] = way * (farthest / way.norm().max(farthest));
+        }
+        self.pulls.iter().any(|(node, to)| (to - x[*node as usize]).norm() > NUDGE)
     }
 
     /// What each node sees of the body. What was seen earlier saves the search, or narrows it.
@@ -266,7 +277,7 @@ impl System<'_> {
         x: &[Vec3],
         pattern: &Pattern,
         inertia: f64,
-        compression: bool,
+        compression: f64,
         values: &mut Vec<Matrix3<f64>>,
     ) {
         values.clear();

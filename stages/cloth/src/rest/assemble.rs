@@ -1,0 +1,130 @@
+//! What acts on the nodes of one level: a scene turned into a [`System`].
+
+use super::elastic::Elastic;
+use super::layers::Layers;
+use super::pieces::Pieces;
+use super::system::{Support, System, Thread};
+use crate::contact::skin::Skin;
+use crate::fabric::Fabric;
+use crate::mesh::Sheet;
+use crate::scene::Scene;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre of thickness: a cloth
+/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer converges sooner.
+const CONTACT_STIFFNESS: f64 = 0.5;
+
+/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
+const LAYER_SHARE: f64 = 0.25;
+
+/// Who wears the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Wearer<'a> {
+    /// The solid.
+    pub skin: &'a dyn Skin,
+    /// Coulomb's coefficient of cloth on it.
+    pub friction: f64,
+}
+
+/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn point.
+pub(super) fn assemble<'a>(
+    scene: &Scene,
+    body: Option<Wearer<'a>>,
+    pieces: &Pieces,
+    sheet: &Sheet,
+    open: bool,
+) -> System<'a> {
+    let cloths = cloths(scene);
+    let n = sheet.vertex_count();
+    let mut pinned = vec![false; n];
+    let mut panel = vec![0; n];
+    for (v, &p) in pieces.pinned.iter().enumerate() {
+        let node = if open { v } else { pieces.node[v] as usize };
+        pinned[node] |= p;
+        panel[node] = pieces.panel[v] as usize;
+    }
+    let stiffness: Vec<f64> = sheet
+        .masses()
+        .iter()
+        .zip(&panel)
+        .map(|(w, &p)| (w, cloths[p]))
+        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
+        .collect();
+    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+    let thickness = |p: &usize| cloths[*p].thickness;
+    let rub = |b: Wearer<'_>, p: usize| {
+        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
+        // Hands that sew a garment on a body let it slip into place.
+        if open { 0.0 } else { own.unwrap_or(b.friction) }
+    };
+    let support = body.map(|b| Support {
+        body: b.skin,
+        friction: panel.iter().map(|&p| rub(b, p)).collect(),
+        offsets: panel.iter().map(thickness).collect(),
+        offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
+        depth: longest.clamp(0.02, 0.1),
+        edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
+        clear: pieces.rest.len() == scene.rest.len(),
+        stiffness: stiffness.clone(),
+    });
+    let mut corners = vec![0u16; n];
+    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+    let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
+    let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
+    let layers = scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
+    let elastic = Elastic::new(sheet, &cloths, |t| pieces.cloth(t));
+    System {
+        elastic,
+        masses: sheet.masses().to_vec(),
+        gravity: if open { Vec3::zeros() } else { gravity(scene) },
+        pinned,
+        threads: vec![],
+        support,
+        layers,
+        touches: vec![],
+        anchors: vec![None; n],
+        slides: vec![Vec3::zeros(); n],
+        loads: vec![0.0; n],
+        seen: vec![],
+        pulls: vec![],
+    }
+}
+
+/// What no panel and what each panel is made of.
+pub(super) fn cloths(scene: &Scene) -> Vec<&Fabric> {
+    std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
+}
+
+/// The gravity in the end.
+pub(super) fn gravity(scene: &Scene) -> Vec3 {
+    scene.phases.last().map(|p| p.gravity).unwrap_or_default()
+}
+
+/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch stiffness: strong enough to
+/// carry the garment without a gap.
+pub(super) const KEPT_PULL: f64 = 0.1;
+
+/// Threads of the seams that are not joined.
+pub(super) fn kept_threads(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<Thread> {
+    let force = KEPT_PULL * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
+    pieces.kept_pairs().into_iter().map(|nodes| Thread { nodes, force, soft: 2.0 * join_gap }).collect()
+}
+
+/// Stretch stiffness of the stiffest panel, N/m.
+pub(super) fn strongest(cloths: &[&Fabric]) -> f64 {
+    cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
+}
+
+/// Mean length of seam that a pair stands for, m.
+pub(super) fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
+    let mut sewn = vec![false; pieces.rest.len()];
+    pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);
+    let edges = pieces.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
+    let along: Vec<f64> = edges
+        .filter(|e| e.iter().all(|&v| sewn[v as usize]))
+        .map(|[a, b]| (pieces.rest[a as usize] - pieces.rest[b as usize]).norm())
+        .collect();
+    if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
+}

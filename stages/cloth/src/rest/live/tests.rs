@@ -1,0 +1,113 @@
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+use super::*;
+use crate::contact::body::Body;
+use crate::fabric::{Curve, Fabric};
+use crate::scene::generate;
+use std::ops::ControlFlow;
+
+const GO_ON: fn(&LevelReport) -> ControlFlow<()> = |_| ControlFlow::Continue(());
+
+fn fresh(scene: &Scene) -> Rested {
+    Rest::default().solve(scene, &mut GO_ON.clone()).unwrap()
+}
+
+fn farthest(a: &[Vec3], b: &[Vec3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// A cloth stiff enough to hang in one way only.
+fn stiff() -> Scene {
+    let mut scene = generate::hang(10);
+    (scene.material.bending_warp, scene.material.bending_weft) = (2e-3, 2e-3);
+    scene
+}
+
+/// The fabric after `share` of a slide of all its values.
+fn slide(fabric: &Fabric, share: f64) -> Fabric {
+    let times = |k: f64| 1.0 + share * (k - 1.0);
+    let stretch = fabric.stretch() * times(0.6);
+    Fabric {
+        density: fabric.density * times(1.5),
+        warp: Curve::linear(stretch),
+        weft: Curve::linear(stretch),
+        shear: Curve::linear(50.0 * times(0.5)),
+        bending_warp: fabric.bending_warp * times(2.0),
+        bending_weft: fabric.bending_weft * times(2.0),
+        ..fabric.clone()
+    }
+}
+
+#[test]
+fn a_changed_fabric_hangs_as_a_fresh_one_does() {
+    let scene = stiff();
+    let cloth = scene.material.clone();
+    let mut live = Live::new(Rest::default(), scene.clone(), None, &fresh(&scene)).unwrap();
+    for k in 1..=10 {
+        live.change(|s| s.material = slide(&cloth, 0.1 * f64::from(k))).unwrap();
+        live.follow(2).unwrap();
+    }
+    let state = live.settle(&mut GO_ON.clone()).unwrap();
+    assert!(state.outcome.at_rest);
+    let want = fresh(&Scene { material: slide(&cloth, 1.0), ..scene });
+    let off = farthest(&state.positions, &want.positions);
+    assert!(off < 2e-3, "{off}");
+}
+
+#[test]
+fn a_skirt_follows_its_fabric_and_comes_to_rest() {
+    let scene = generate::tube(12, 14);
+    let b = scene.body.as_ref().unwrap();
+    let body = Body::new(b.vertices.clone(), &b.triangles);
+    let wearer = Wearer { skin: &body, friction: b.friction };
+    let cloth = scene.material.clone();
+    let mut live = Live::new(Rest::default(), scene.clone(), Some(wearer), &fresh(&scene)).unwrap();
+    for k in 1..=15 {
+        let share = f64::from(k) / 15.0;
+        live.change(|s| {
+            s.material = slide(&cloth, share);
+            s.body.as_mut().unwrap().friction = 0.4 - 0.1 * share;
+        })
+        .unwrap();
+        let outcome = live.follow(3).unwrap();
+        // What is left over is far below what the garment weighs, some 0.6 N.
+        assert!(outcome.residual < 0.3, "{}", outcome.residual);
+    }
+    let state = live.settle(&mut GO_ON.clone()).unwrap();
+    assert!(state.outcome.at_rest && state.outcome.speed < 1e-3);
+    let deepest = state.positions.iter().filter_map(|p| body.nearest(p, 1.0)).map(|n| -n.distance);
+    assert!(deepest.fold(f64::NEG_INFINITY, f64::max) < 1e-4);
+}
+
+#[test]
+fn a_pin_that_is_pulled_takes_the_cloth_along() {
+    let scene = stiff();
+    let corner = scene.pinned[0];
+    let mut live = Live::new(Rest::default(), scene.clone(), None, &fresh(&scene)).unwrap();
+    let to = scene.positions[corner as usize] + Vec3::new(0.1, 0.0, 0.05);
+    assert!(live.pull(corner, to));
+    assert!(!live.pull(corner + 1, to));
+    let state = live.settle(&mut GO_ON.clone()).unwrap();
+    assert!((state.positions[corner as usize] - to).norm() < 1e-8);
+}
+
+#[test]
+fn what_is_at_rest_takes_no_steps() {
+    let scene = stiff();
+    let state = fresh(&scene);
+    let mut live = Live::new(Rest::default(), scene, None, &state).unwrap();
+    let settled = live.settle(&mut GO_ON.clone()).unwrap();
+    assert!(farthest(&settled.positions, &state.positions) < 1e-4);
+    let before = live.positions();
+    assert!(live.follow(5).unwrap().at_rest);
+    assert_eq!(live.positions(), before);
+}
+
+#[test]
+fn another_mesh_is_refused() {
+    let scene = stiff();
+    let mut live = Live::new(Rest::default(), scene.clone(), None, &fresh(&scene)).unwrap();
+    let error = live.change(|s| s.triangles.swap(0, 1)).unwrap_err();
+    assert_eq!(error.to_string(), "the mesh or its seams have changed; solve the scene from its start");
+    let error = live.change(|s| s.material.density = -1.0).unwrap_err();
+    assert_eq!(error.to_string(), "density = -1 is out of range: above 0 kg/m^2");
+}
