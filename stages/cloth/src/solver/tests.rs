@@ -291,3 +291,35 @@ fn st_venant_kirchhoff_hangs_by_its_own_law() {
     let exact = 0.5 * crate::bench::reference::hanging_stvk(alpha);
     assert!((tip / exact - 1.0).abs() < 0.005, "{tip} against {exact}");
 }
+
+/// Internal forces alone change neither momentum of a free sheet, whatever shape and speeds it starts with.
+#[test]
+fn central_differences_keep_both_momenta() {
+    for seed in 1..6_u32 {
+        let (_, _, mut model, mut state) = square(Layout::Irregular(u64::from(seed)), 4);
+        model = model.under(Vec3::zeros());
+        let s = f64::from(seed);
+        for (k, v) in state.v.iter_mut().enumerate() {
+            let k = k as f64;
+            *v = Vec3::new((s * k).sin(), (1.3 * k + s).cos(), (0.7 * s * k).sin()) * 0.5;
+        }
+        let mut solver = CentralDifferences::adaptive(1e-3);
+        // Velocities lie between two states: turning momentum is taken with the mean of both.
+        let mut momenta = Vec::new();
+        for _ in 0..200 {
+            let before = state.x.clone();
+            solver.advance(&model, &mut state).unwrap();
+            let linear: Vec3 = state.v.iter().zip(&model.masses).map(|(v, m)| v * *m).sum();
+            let middle = |v: usize| 0.5 * (before[v] + state.x[v]);
+            let turning: Vec3 =
+                (0..state.x.len()).map(|v| middle(v).cross(&state.v[v]) * model.masses[v]).sum();
+            momenta.push((linear, turning));
+        }
+        let (linear, turning) = momenta[0];
+        let size: f64 = state.v.iter().zip(&model.masses).map(|(v, m)| v.norm() * m).sum();
+        for (l, t) in momenta {
+            assert!((l - linear).norm() < 1e-12 * size, "{seed}: {:e}", (l - linear).norm());
+            assert!((t - turning).norm() < 1e-9 * size, "{seed}: {:e}", (t - turning).norm());
+        }
+    }
+}

@@ -16,6 +16,9 @@ const CLOSED: f64 = 1e-3;
 /// A vertex may be this deep in the body, m.
 const DEEPEST: f64 = 1e-4;
 
+/// What makes a scene wrong.
+type Spoil = fn(&mut Scene);
+
 pub(super) fn checks(large: bool) -> Vec<Check> {
     let must = Must::Converge;
     let mut checks = Vec::new();
@@ -41,7 +44,7 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
     checks.push(Check::new("empty", "no panels", Must::Refuse, || {
         named(&Scene::new("empty", generate::cloth()))
     }));
-    let seams: [(&str, fn(&mut Scene)); 3] = [
+    let seams: [(&str, Spoil); 3] = [
         ("same seam twice", |s| s.seams.push(s.seams[0].clone())),
         ("seam to itself", |s| s.seams.push(Seam::new("itself", vec![[3, 3]]))),
         ("a vertex that is not there", |s| s.seams.push(Seam::new("short", vec![[0, u32::MAX]]))),
@@ -49,7 +52,7 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
     for (name, spoil) in seams {
         checks.push(Check::new("duplicated_seam", name, Must::Refuse, move || spoiled(spoil)));
     }
-    let numbers: [(&str, fn(&mut Scene)); 4] = [
+    let numbers: [(&str, Spoil); 4] = [
         ("scene positions NaN", |s| s.positions[4].y = f64::NAN),
         ("scene gravity inf", |s| s.phases[1].gravity.y = f64::INFINITY),
         ("scene density NaN", |s| s.material.density = f64::NAN),
@@ -190,7 +193,7 @@ fn faults(scene: &Scene, x: &[Vector3<f64>]) -> (String, f64) {
     (text, sheet.greatest_strain(x).1)
 }
 
-fn spoiled(spoil: fn(&mut Scene)) -> Verdict {
+fn spoiled(spoil: Spoil) -> Verdict {
     let mut scene = generate::tube(3, 3);
     spoil(&mut scene);
     named(&scene)
