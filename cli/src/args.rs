@@ -50,6 +50,18 @@ pub(crate) enum Command {
 pub(crate) enum Bench {
     /// Six tests against exact references, at several resolutions on several meshes
     Accuracy(AccuracyArgs),
+    /// Every solver on the same problems of rest: error beside time
+    Solvers {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Figures without limits: buckling, sliding, loops, shear, swinging, drape
+    Diagnostics {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
     /// Extreme parameters, sizes and inputs: each converges or is refused by name
     Stability(StabilityArgs),
 }

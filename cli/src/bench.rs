@@ -6,6 +6,7 @@ use crate::{Streams, exit};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::ops::ControlFlow;
 use toile_cloth::bench::accuracy::Options as Accuracy;
+use toile_cloth::bench::solvers::Way;
 use toile_cloth::bench::stability::Options as Stability;
 use toile_cloth::bench::{self, Layout, Models, Test};
 
@@ -31,6 +32,32 @@ pub(crate) fn accuracy(args: &AccuracyArgs, streams: &mut Streams<'_>) -> u8 {
     bar.finish_and_clear();
     streams.say(if args.json { report.to_json() } else { report.to_string() });
     verdict(report.stopped, report.pass())
+}
+
+/// Runs every solver on the same problems.
+pub(crate) fn solvers(json: bool, streams: &mut Streams<'_>) -> u8 {
+    let bar = bar();
+    let report = bench::solvers(&Way::ALL, &mut |share, what| tell(&bar, share, what));
+    bar.finish_and_clear();
+    match report {
+        Ok(report) => {
+            streams.say(if json { report.to_json() } else { report.to_string() });
+            verdict(report.stopped, true)
+        }
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            exit::INVALID
+        }
+    }
+}
+
+/// Runs the diagnostics.
+pub(crate) fn diagnostics(json: bool, streams: &mut Streams<'_>) -> u8 {
+    let bar = bar();
+    let report = bench::diagnostics(&mut |share, what| tell(&bar, share, what));
+    bar.finish_and_clear();
+    streams.say(if json { report.to_json() } else { report.to_string() });
+    verdict(report.stopped, true)
 }
 
 /// Runs the extremes; fails where an outcome is not the one that is required.

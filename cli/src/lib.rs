@@ -105,6 +105,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
+        Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
+        Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
         Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }

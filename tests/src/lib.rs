@@ -33,4 +33,4 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 4] = ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron"];
+pub const PIPELINES: [&str; 5] = ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron"];

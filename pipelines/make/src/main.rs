@@ -1,4 +1,4 @@
-//! Makes the sample photos under `pipelines/samples`, each with its true mask and outline.
+//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, and a prepared scene.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the only argument.
@@ -11,6 +11,7 @@ mod near;
 mod noise;
 mod print;
 mod render;
+mod scene;
 mod truth;
 
 use cloth::{Finish, Structure};
@@ -32,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         write(&folder.join("vest"), side, &vest_shot(side), &garment::vest(side))?;
         write(&folder.join("tshirt"), side, &tshirt_shot(side), &garment::tshirt(side))?;
     }
-    Ok(())
+    scene::write(&folder.join("scene"))
 }
 
 fn vest_shot(side: Side) -> Shot {
@@ -93,6 +94,14 @@ mod tests {
     #![allow(clippy::unwrap_used)]
 
     use super::*;
+
+    #[test]
+    fn the_committed_scene_is_that_of_this_program() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples/scene");
+        for (name, text) in scene::files() {
+            assert!(std::fs::read_to_string(folder.join(name)).unwrap() == text, "{name}: run the program");
+        }
+    }
 
     #[test]
     fn the_committed_outlines_are_those_of_this_program() {

@@ -1,1 +1,135 @@
-//! Scenes from files.
+//! Scenes from files, and through the solvers.
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use super::Scene;
+use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, Xpbd};
+use std::path::Path;
+use std::sync::Arc;
+use toile_cloth::scene::{body_to_obj, generate, to_json};
+use toile_core::Cancel;
+use toile_core::prelude::*;
+
+type Made = (Garment, Body, Collider, Phases);
+
+/// Writes a scene into a folder and reads it as a pipeline there would.
+fn through_files(scene: &toile_cloth::scene::Scene) -> Result<Made, StageError> {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("scene.json"), to_json(scene, "body.obj")).unwrap();
+    std::fs::write(dir.path().join("body.obj"), body_to_obj(scene)).unwrap();
+    read(dir.path(), "scene.json")
+}
+
+fn read(folder: &Path, file: &str) -> Result<Made, StageError> {
+    let cx = Context::new("Scene", folder, Cancel::new(), Arc::new(()));
+    Scene { file: file.into() }.run(&cx)
+}
+
+#[test]
+fn a_scene_becomes_a_placed_garment_its_body_and_its_phases() {
+    let scene = generate::tube(4, 5);
+    let (garment, body, collider, phases) = through_files(&scene).unwrap();
+    assert_eq!(garment.positions.len(), scene.positions.len());
+    assert_eq!(garment.triangles, scene.triangles);
+    assert_eq!(garment.seams.len(), scene.seams.len());
+    assert!(garment.check().is_ok() && phases.check().is_ok());
+    assert_eq!(garment.panels[0].boundary.len(), 2 * (4 + 5));
+    assert_eq!(body.triangles.len(), scene.body.as_ref().unwrap().triangles.len());
+    assert_eq!(collider.scheme.card().thickness, scene.material.thickness);
+    assert_eq!(phases.last_gravity().unwrap().y, -9.81);
+    let far = garment.positions.iter().zip(&scene.positions).map(|(a, b)| (a.coords - b).norm());
+    assert!(far.fold(0.0, f64::max) < 1e-12);
+}
+
+#[test]
+fn a_scene_without_a_body_has_an_empty_one_and_keeps_its_pins() {
+    let scene = generate::hang(4);
+    let (garment, body, _, _) = through_files(&scene).unwrap();
+    assert!(body.triangles.is_empty());
+    assert_eq!(garment.pinned, scene.pinned);
+}
+
+#[test]
+fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
+    let scene = generate::tube(6, 8);
+    let (garment, _, collider, phases) = through_files(&scene).unwrap();
+    let cx = Context::quiet();
+    let draped = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
+    assert!(draped.status.converged && draped.status.max_speed < 1e-3, "{:?}", draped.status);
+    assert_eq!(draped.seam_gap_max(), 0.0);
+    assert!(draped.seams.iter().all(|s| s.state == SeamState::Closed) && draped.check().is_ok());
+    let mut inside = Vec::new();
+    collider.scheme.body_contacts(&draped.positions, 0.0, &mut inside);
+    assert!(inside.is_empty(), "{inside:?}");
+    assert!(draped.edge_strains().last().unwrap() < &0.05);
+}
+
+#[test]
+fn rest_holds_what_is_pinned() {
+    let (garment, _, collider, phases) = through_files(&generate::hang(6)).unwrap();
+    let cx = Context::quiet();
+    let draped = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
+    for &p in &garment.pinned {
+        assert_eq!(draped.positions[p as usize], garment.positions[p as usize]);
+    }
+    assert!(draped.status.converged);
+}
+
+#[test]
+fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() {
+    let mut scene = generate::hang(3);
+    scene.pinned.clear();
+    scene.phases.iter_mut().for_each(|p| p.seconds = 0.4);
+    let (g, _, c, p) = through_files(&scene).unwrap();
+    let (cx, c, p) = (Context::quiet(), Some(&c), Some(&p));
+    let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
+    let way = 0.5 * 9.81 * seconds * seconds;
+    let fallen = [
+        Rest::default().run(&g, c, p, &cx).unwrap(),
+        ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
+        Xpbd { drag: 0.0, ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
+        Projective { drag: 0.0, ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
+        CentralDifferences { drag: 0.0, ..CentralDifferences::default() }.run(&g, c, p, &cx).unwrap(),
+    ];
+    for (k, f) in fallen.iter().enumerate() {
+        let fell = g.positions[5].y - f.positions[5].y;
+        assert!((fell - way).abs() < 1e-4, "{k}: {fell} m, not {way} m");
+    }
+    let (_, warnings) = cx.take_notes();
+    assert_eq!(
+        warnings,
+        ["nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases"]
+    );
+}
+
+#[test]
+fn a_stopped_rest_stops() {
+    let (garment, _, collider, phases) = through_files(&generate::tube(6, 8)).unwrap();
+    let cancel = Cancel::new();
+    cancel.cancel();
+    let cx = Context::new("Rest", Path::new("."), cancel, Arc::new(()));
+    let error = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap_err();
+    assert_eq!(error.code, ErrorCode::Cancelled);
+}
+
+#[test]
+fn files_that_are_no_scenes_are_refused_with_their_fault() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = |name: &str, text: &str| {
+        std::fs::write(dir.path().join(name), text).unwrap();
+        let e = read(dir.path(), name).unwrap_err();
+        (e.code, e.message)
+    };
+    let (code, message) = refused("a.json", "{");
+    assert_eq!(code, ErrorCode::PatternLoading);
+    assert!(message.starts_with("not a garment-scene-1: EOF while parsing an object"), "{message}");
+    assert_eq!(refused("b.json", "{\"format\": \"x\"}").1, "the format is 'x', not 'garment-scene-1'");
+    let e = read(dir.path(), "nowhere.json").unwrap_err();
+    assert_eq!(e.message, "cannot read \"nowhere.json\": no such file");
+    let e = read(dir.path(), "").unwrap_err();
+    assert_eq!(e.message, "no file is named to read the scene from");
+    let mut scene = generate::hang(2);
+    scene.triangles[0] = [0, 1, 99];
+    std::fs::write(dir.path().join("c.json"), to_json(&scene, "")).unwrap();
+    let e = read(dir.path(), "c.json").unwrap_err();
+    assert_eq!(e.message, "triangle 0 refers to vertex 99, but there are 9");
+}

@@ -85,7 +85,6 @@ impl PhotoTexturer {
                     material.texture = Some(model.textures.len() - 1);
                     material.unlit = self.light == Light::Replace;
                 }
-                None if photos.is_none() => {}
                 None => cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name)),
             }
             model.meshes.push(mesh);

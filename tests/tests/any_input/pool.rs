@@ -4,7 +4,7 @@ use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::artifact::{Artifact, Kind};
+use toile_core::artifact::{Artifact, Kind, Phase, Phases, Vector3};
 use toile_core::pipeline::{Override, Pipeline, load};
 use toile_core::{Cancel, Listener, RunOptions, add_implicit, run};
 
@@ -30,6 +30,8 @@ impl Pool {
                 pool.entry(value.kind()).or_default().insert(name.to_owned(), artifact.clone());
             }
         }
+        let phases: Arc<dyn Artifact> = Arc::new(phases());
+        pool.entry(phases.kind()).or_default().insert(String::new(), phases);
         let log: Arc<dyn Artifact> = Arc::new(result.log);
         pool.entry(log.kind()).or_default().insert(String::new(), log);
         Pool(pool.into_iter().map(|(kind, set)| (kind, set.into_iter().collect())).collect())
@@ -39,6 +41,13 @@ impl Pool {
     pub(crate) fn of(&self, kind: Kind) -> &[Named] {
         self.0.get(&kind).map_or(&[], Vec::as_slice)
     }
+}
+
+/// What acts in a prepared scene, which the vest is not.
+fn phases() -> Phases {
+    let phase =
+        |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
+    Phases(vec![phase("sew", 0.0), phase("drape", 9.81)])
 }
 
 fn small_vest(dir: &Path) -> Pipeline {

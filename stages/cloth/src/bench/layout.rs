@@ -107,6 +107,19 @@ impl Rectangle {
     }
 }
 
+/// A disc of this radius about the origin in rings, ring k of 6 k vertices on the k-th multiple of `radius / rings`.
+#[must_use]
+pub fn disc(radius: f64, rings: usize) -> (Vec<Vector2<f64>>, Vec<[u32; 3]>) {
+    let mut uv = vec![Vector2::zeros()];
+    for ring in 1..=rings {
+        let (r, count) = (radius * ring as f64 / rings as f64, 6 * ring);
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / count as f64;
+        uv.extend((0..count).map(|k| Vector2::new(r * angle(k).cos(), r * angle(k).sin())));
+    }
+    let triangles = delaunay(&uv);
+    (uv, triangles)
+}
+
 type Mesh = (Vec<Vector2<f64>>, Vec<[u32; 3]>);
 
 fn grid(size: Vector2<f64>, nx: usize, ny: usize, rising: impl Fn(usize, usize) -> bool) -> Mesh {

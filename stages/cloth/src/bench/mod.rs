@@ -3,17 +3,19 @@
 //! The references are ordinary differential equations and series solved here, to far more digits than any mesh reaches
 //! ([`mod@reference`]); nothing in them knows the engine. Each test gives one error, so that models can be compared; see [`Score`].
 //!
-//! [`accuracy()`] and [`stability()`] run it all and give reports that print as tables and turn into JSON.
+//! [`accuracy()`], [`solvers()`], [`diagnostics()`] and [`stability()`] run it all and give reports that print as tables and turn into JSON.
 
 pub mod accuracy;
 mod cantilever;
 mod catenary;
+pub mod diagnostics;
 mod dynamics;
 mod friction;
 pub mod layout;
 mod plate;
 pub mod reference;
 mod score;
+pub mod solvers;
 pub mod stability;
 mod stretch;
 mod table;
@@ -26,8 +28,10 @@ mod tests;
 use std::ops::ControlFlow;
 
 pub use accuracy::accuracy;
+pub use diagnostics::diagnostics;
 pub use layout::Layout;
 pub use score::{Bending, Membrane, Models, Score, Test, run};
+pub use solvers::solvers;
 pub use stability::stability;
 
 /// Hears how far a run is (0 to 1) and what comes next; may stop it there.

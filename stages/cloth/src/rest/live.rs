@@ -6,6 +6,7 @@
 //! remember, the state may be another one than a fresh start would find; both are states of rest.
 
 use super::assemble::{Wearer, assemble, cloths, kept_threads};
+use super::clear::clearance;
 use super::multifrontal::Halt;
 use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
@@ -195,6 +196,7 @@ impl<'a> Live<'a> {
             slides: self.pieces.spread(&self.system.held_back(&self.x)),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
+            dip: self.wearer.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
             joined_at: None,
             levels: vec![self.report(clock, first)],
         };

@@ -1,6 +1,7 @@
 //! Straight to static equilibrium, coarse to fine.
 
 mod assemble;
+pub mod clear;
 pub mod coarsen;
 pub mod dissect;
 pub mod elastic;

@@ -10,6 +10,7 @@
 
 pub use super::assemble::Wearer;
 use super::assemble::{KEPT_PULL, assemble, cloths, gravity, kept_threads, spacing, strongest};
+use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
@@ -29,6 +30,12 @@ type Vec3 = Vector3<f64>;
 
 /// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
 const SEAM_PULL: f64 = 0.01;
+
+/// How often nodes are moved out where triangles dip into the body.
+const CLEARINGS: usize = 4;
+
+/// First step of pseudo-time after that: the cloth hardly moves, s.
+const CLEAR_STEP: f64 = 0.2;
 
 /// Factor by which a seam that stays open pulls harder, and how often.
 const HARDER: (f64, usize) = (3.0, 4);
@@ -91,6 +98,8 @@ pub struct Rested {
     pub offsets: Vec<f64>,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
+    /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than the mesh can follow.
+    pub dip: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine.
@@ -367,6 +376,9 @@ impl<'a> Work<'a> {
             let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
             let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
             self.reports.push(report);
+            if k == 0 {
+                self.clear(&mut system, &sheet, &place, &mut x, &pace, progress)?;
+            }
             if system.is_tangled() {
                 return Ok(Draped::Tangled { nodes: x.len() });
             }
@@ -384,6 +396,33 @@ impl<'a> Work<'a> {
         Err(ClothError::EmptyScene.into())
     }
 
+    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
+    fn clear(
+        &mut self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut [Vec3],
+        pace: &Pace,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
+        let pace = Pace { first: CLEAR_STEP, steps: 2 * self.rest.coarse_steps, ..*pace };
+        for _ in 0..CLEARINGS {
+            let Some(Clearance { lacks, depth, .. }) = self.body.map(|w| clearance(sheet, w.skin, x)) else {
+                break;
+            };
+            if depth == 0.0 {
+                break;
+            }
+            if let Some(s) = &mut system.support {
+                s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
+            }
+            let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
+            self.reports.push(report);
+        }
+        Ok(())
+    }
+
     fn finish(self, mut system: System<'_>, sheet: &Sheet, x: Vec<Vec3>) -> Result<Rested, RestError> {
         system.touch(&x);
         let residual = super::newton::greatest(&system.gradient(&x));
@@ -393,7 +432,8 @@ impl<'a> Work<'a> {
         let slides = self.pieces[0].spread(&system.held_back(&x));
         let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let state = Rested { positions, outcome, residual, slides, offsets, energy, joined_at, levels };
+        let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
         if self.scene.self_collision {
             let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
             if pairs > 0 {
@@ -508,3 +548,5 @@ fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
 mod tests;
 #[cfg(test)]
 mod truth_tests;
+#[cfg(test)]
+mod worn_tests;

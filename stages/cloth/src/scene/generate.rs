@@ -2,6 +2,10 @@
 //!
 //! They are what tests and measurements use, so that neither needs files.
 
+mod worn;
+
+pub use worn::sleeve;
+
 use super::{Panel, Phase, Scene, SceneBody, Seam};
 use crate::fabric::{Fabric, PRESETS};
 use nalgebra::{Vector2, Vector3};

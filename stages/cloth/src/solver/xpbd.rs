@@ -17,9 +17,10 @@ use crate::membrane::Woven;
 use crate::mesh::Sheet;
 
 struct StrainTerm {
-    vertices: [usize; 3],
-    shape: [nalgebra::Vector2<f64>; 3],
-    compliance: Matrix3<f64>,
+    vertices: [u32; 3],
+    /// Rest gradients of the shape functions of the second and third corner.
+    shape: [nalgebra::Vector2<f64>; 2],
+    area: f64,
 }
 
 /// The solver, with the constraints of one sheet.
@@ -29,6 +30,8 @@ pub struct Xpbd {
     /// Small steps in it.
     pub substeps: usize,
     strains: Vec<StrainTerm>,
+    /// Strains per tension, m/N.
+    compliance: Matrix3<f64>,
     hinges: Vec<HingeTerm>,
 }
 
@@ -48,16 +51,13 @@ impl Xpbd {
         let strains = (0..sheet.triangles().len()).map(|t| {
             let m = sheet.inverse_rest()[t];
             let (g1, g2) = (m.row(0).transpose(), m.row(1).transpose());
-            StrainTerm {
-                vertices: sheet.triangles()[t].map(|v| v as usize),
-                shape: [-g1 - g2, g1, g2],
-                compliance: inverse / sheet.areas()[t],
-            }
+            StrainTerm { vertices: sheet.triangles()[t], shape: [g1, g2], area: sheet.areas()[t] }
         });
         Ok(Self {
             dt,
             substeps,
             strains: strains.collect(),
+            compliance: inverse,
             hinges: hinge_terms(sheet, &Rigidity::of(fabric))?,
         })
     }
@@ -72,7 +72,7 @@ impl Xpbd {
             }
         }
         for s in &self.strains {
-            s.project(&mut state.x, inverse_mass, h);
+            s.project(&self.compliance, &mut state.x, inverse_mass, h);
         }
         for hinge in &self.hinges {
             project_hinge(hinge, &mut state.x, inverse_mass, h);
@@ -93,23 +93,25 @@ impl Xpbd {
 }
 
 impl StrainTerm {
-    fn project(&self, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
-        let p = self.vertices.map(|v| x[v]);
-        let f: [Vec3; 2] = std::array::from_fn(|k| (0..3).map(|c| p[c] * self.shape[c][k]).sum());
+    fn project(&self, compliance: &Matrix3<f64>, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
+        let vertices = self.vertices.map(|v| v as usize);
+        let shape = [-self.shape[0] - self.shape[1], self.shape[0], self.shape[1]];
+        let p = vertices.map(|v| x[v]);
+        let f: [Vec3; 2] = std::array::from_fn(|k| (0..3).map(|c| p[c] * shape[c][k]).sum());
         let (strain, by_column) = Woven::strains(&f);
         // Row r of the Jacobian at corner c.
         let jacobian: [[Vec3; 3]; 3] = std::array::from_fn(|r| {
-            std::array::from_fn(|c| by_column[r][0] * self.shape[c].x + by_column[r][1] * self.shape[c].y)
+            std::array::from_fn(|c| by_column[r][0] * shape[c].x + by_column[r][1] * shape[c].y)
         });
-        let w = self.vertices.map(|v| inverse_mass[v]);
+        let w = vertices.map(|v| inverse_mass[v]);
         let system = Matrix3::from_fn(|r, s| {
             (0..3).map(|c| w[c] * jacobian[r][c].dot(&jacobian[s][c])).sum::<f64>()
-                + self.compliance[(r, s)] / (h * h)
+                + compliance[(r, s)] / (self.area * h * h)
         });
         let Some(pull) = system.cholesky().map(|c| c.solve(&-strain)) else { return };
         for c in 0..3 {
             let d: Vec3 = (0..3).map(|r| jacobian[r][c] * pull[r]).sum();
-            x[self.vertices[c]] += d * w[c];
+            x[vertices[c]] += d * w[c];
         }
     }
 }

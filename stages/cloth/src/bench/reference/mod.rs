@@ -4,6 +4,7 @@
 
 mod beam;
 mod cable;
+mod elastica;
 mod plate;
 mod stretch;
 mod swing;
@@ -13,6 +14,7 @@ mod tests;
 
 pub use beam::{Elastica, cantilever};
 pub use cable::{Catenary, catenary};
+pub use elastica::{Curve, heart_loop, lateral_buckling, plate_pendulum, pressed_column};
 pub use plate::{clamped_plate, supported_plate};
 pub use stretch::{Orthotropic, hanging_linear, hanging_piecewise, hanging_stvk};
 pub use swing::{backward_euler_loss, backward_euler_period, bessel_zero, hanging_omega, membrane_frequency};

@@ -72,3 +72,33 @@ fn frequencies_of_the_books() {
     close(membrane_frequency(1.0, 1.0, 1.0, 4.0, 1.0), 2.0_f64.sqrt(), 1e-12);
     close((-1000.0 * backward_euler_loss(1.0, 0.1)).exp(), 1.01_f64.powf(-500.0), 1e-9);
 }
+
+#[test]
+fn heart_loop_of_peirce() {
+    close(heart_loop(0.0).value, 0.133860372, 1e-7);
+    // Peirce's formula: with t = 32.85 degrees (l - l0) / l0 the bending length is l0 (cos t / tan t)^(1/3).
+    for gamma in [5.0, 20.0, 80.0] {
+        let loops = heart_loop(gamma);
+        let t = (32.85 * (loops.value - 0.1337) / 0.1337_f64).to_radians();
+        close(0.1337 * (t.cos() / t.tan()).cbrt(), gamma.cbrt().recip(), 0.03);
+        let (first, last) = (loops.places[0], loops.places[loops.places.len() - 1]);
+        assert!((first[0] - last[0]).abs() < 1e-9 && (first[1] - last[1]).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn columns_slip_where_the_books_say() {
+    // Little pressed: tan k = k, and with m the ratio of forces y = m (x - sin(k x) / (k cos k)), shortening = integral of y'²/2.
+    let (small, k) = (pressed_column(1e-3), 4.493409457909064_f64);
+    let slope =
+        |m: f64| super::integral(0.0, 1.0, 400, |x| 0.5 * (m * (1.0 - (k * x).cos() / k.cos())).powi(2));
+    close(small.value, (1e-3 / slope(1.0)).sqrt(), 2e-2);
+    assert!(pressed_column(0.3).value > pressed_column(0.1).value);
+}
+
+#[test]
+fn pendulum_limits() {
+    close(plate_pendulum(1e-4), 2.0 * std::f64::consts::PI * (2.0_f64 / 3.0).sqrt(), 1e-8);
+    // 60 degrees: 7.32 % slower.
+    close(plate_pendulum(std::f64::consts::FRAC_PI_3) / plate_pendulum(1e-6), 1.0731820, 1e-6);
+}

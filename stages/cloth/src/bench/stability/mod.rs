@@ -4,7 +4,10 @@
 //! hang, no silent wrong answer.
 
 mod case;
+mod garment;
 mod model;
+mod strip;
+mod world;
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -115,9 +118,20 @@ pub fn stability(options: &Options, progress: &mut Progress<'_>) -> Report {
     report
 }
 
-fn checks(_large: bool) -> Vec<Check> {
+fn checks(large: bool) -> Vec<Check> {
     let mut checks = case::singles(20);
+    checks.extend(strip::checks());
     checks.extend(model::checks());
+    checks.extend(world::checks(large));
+    checks.extend(garment::checks(large));
+    // One axis after the other, in the order of their first checks.
+    let mut order: Vec<&str> = Vec::new();
+    checks.iter().for_each(|c| {
+        if !order.contains(&c.axis) {
+            order.push(c.axis);
+        }
+    });
+    checks.sort_by_key(|c| order.iter().position(|a| *a == c.axis));
     checks
 }
 

@@ -2,12 +2,12 @@
 use super::*;
 use crate::scene::{Phase, SceneBody, generate};
 
-fn settle(scene: &Scene) -> Result<Rested, RestError> {
+pub(super) fn settle(scene: &Scene) -> Result<Rested, RestError> {
     Rest::default().solve(scene, &mut |_| ControlFlow::Continue(()))
 }
 
 /// The same, where a state that still moves a little is good enough.
-fn roughly(scene: &Scene) -> Rested {
+pub(super) fn roughly(scene: &Scene) -> Rested {
     match settle(scene) {
         Ok(state) => state,
         Err(RestError::NotAtRest { state, .. }) => *state,
@@ -16,7 +16,7 @@ fn roughly(scene: &Scene) -> Rested {
 }
 
 /// Strain of every edge, sorted by size.
-fn strains(scene: &Scene, x: &[Vec3]) -> Vec<f64> {
+pub(super) fn strains(scene: &Scene, x: &[Vec3]) -> Vec<f64> {
     let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
     let strain = |[a, b]: [u32; 2]| {
         let (a, b) = (a as usize, b as usize);
@@ -27,17 +27,30 @@ fn strains(scene: &Scene, x: &[Vec3]) -> Vec<f64> {
     all
 }
 
-fn deepest(scene: &Scene, x: &[Vec3]) -> f64 {
+pub(super) fn deepest(scene: &Scene, x: &[Vec3]) -> f64 {
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
     x.iter().filter_map(|p| body.nearest(p, 1.0)).map(|n| -n.distance).fold(f64::NEG_INFINITY, f64::max)
 }
 
-fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
+pub(super) fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
     let nodes = pieces.sew(x, &vec![1.0; x.len()]);
     ClothTree::new(&sheet, &nodes).crossings(&nodes).len()
+}
+
+/// Writes the state to `TOILE_PICTURES`/name.obj where that is set, to be looked at.
+pub(super) fn picture(scene: &Scene, x: &[Vec3], name: &str) {
+    let Ok(folder) = std::env::var("TOILE_PICTURES") else { return };
+    let mut all = x.to_vec();
+    let mut triangles = scene.triangles.clone();
+    if let Some(b) = &scene.body {
+        triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + x.len() as u32)));
+        all.extend(&b.vertices);
+    }
+    crate::scene::write_obj(&std::path::Path::new(&folder).join(format!("{name}.obj")), &all, &triangles)
+        .unwrap();
 }
 
 #[test]
