@@ -12,7 +12,7 @@ type Vec3 = Vector3<f64>;
 const COMPRESSION: f64 = 0.7;
 
 /// Steps below this are near rest; before, the matrix without compression converges sooner, m.
-const NEAR_REST: f64 = 5e-3;
+const NEAR_REST: f64 = 2e-3;
 
 /// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
 const MOST_INERTIA: f64 = 1e12;

@@ -419,7 +419,7 @@ impl<'a> Work<'a> {
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
-        x: &mut Vec<Vec3>,
+        x: &mut [Vec3],
         pace: &Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
