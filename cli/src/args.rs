@@ -39,6 +39,52 @@ pub(crate) enum Command {
         #[command(subcommand)]
         verb: Verb,
     },
+    /// Hold the cloth engine against exact references and extremes
+    Bench {
+        #[command(subcommand)]
+        what: Bench,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Bench {
+    /// Six tests against exact references, at several resolutions on several meshes
+    Accuracy(AccuracyArgs),
+    /// Extreme parameters, sizes and inputs: each converges or is refused by name
+    Stability(StabilityArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AccuracyArgs {
+    /// Tests, like E1 [default: all]
+    pub(crate) tests: Vec<String>,
+    /// A mesh, like irregular; may be given again [default: all]
+    #[arg(long = "mesh", value_name = "MESH")]
+    pub(crate) layouts: Vec<String>,
+    /// Triangles along the longest side; may be given again [default: each test's own three]
+    #[arg(long, value_name = "COUNT", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=2000))]
+    pub(crate) along: Vec<usize>,
+    /// Every membrane and bending model, not the default ones alone
+    #[arg(long)]
+    pub(crate) models: bool,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StabilityArgs {
+    /// Axes, like friction [default: all]
+    pub(crate) axes: Vec<String>,
+    /// All pairs of ends as well: minutes
+    #[arg(long)]
+    pub(crate) pairs: bool,
+    /// Also the sizes that take minutes and gigabytes
+    #[arg(long)]
+    pub(crate) large: bool,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Subcommand)]

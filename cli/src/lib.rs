@@ -4,6 +4,8 @@
 //! of time or stopped; 70 a bug.
 
 mod args;
+mod at_hand;
+mod bench;
 mod cards;
 mod explain;
 mod golden;
@@ -12,7 +14,7 @@ mod progress;
 mod run;
 mod validate;
 
-use args::{Arguments, Command, Verb};
+use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
@@ -102,6 +104,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Stage { name, json } => cards::show(&name, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
+        Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
+        Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }
 }

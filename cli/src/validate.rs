@@ -17,7 +17,8 @@ pub(crate) fn open(
     let text = std::fs::read(path).map_err(|e| unreadable(&file, &e.to_string()))?;
     let text = String::from_utf8(text).map_err(|_| unreadable(&file, "it is not UTF-8 text"))?;
     let base = path.parent().unwrap_or(Path::new("."));
-    let mut pipeline = load(&text, &file, base, registry, overrides).map_err(Box::new)?;
+    let overrides = crate::at_hand::found(overrides);
+    let mut pipeline = load(&text, &file, base, registry, &overrides).map_err(Box::new)?;
     add_implicit(&mut pipeline, registry);
     Ok(pipeline)
 }

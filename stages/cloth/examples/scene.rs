@@ -1,4 +1,4 @@
-//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--trace]`; prints one line of JSON.
+//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--trace] [--jitter SEED]`; prints one line of JSON.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -13,7 +13,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: scene SCENE.json RESULT.obj [--trace]".into());
     };
     let trace = args.iter().any(|a| a == "--trace");
-    let scene = scene::read(Path::new(file))?;
+    let mut scene = scene::read(Path::new(file))?;
+    if let Some(seed) = args.iter().position(|a| a == "--jitter").and_then(|k| args.get(k + 1)) {
+        scene::generate::jitter(&mut scene, 1e-3, seed.parse()?);
+    }
     let clock = Instant::now();
     let mut steps = 0;
     let solved = Rest::default().solve(&scene, &mut |level| {

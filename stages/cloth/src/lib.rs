@@ -13,6 +13,7 @@ pub mod force;
 pub mod linear;
 pub mod membrane;
 pub mod mesh;
+pub mod motion;
 pub mod rest;
 pub mod scene;
 pub mod solver;

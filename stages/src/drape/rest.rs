@@ -5,6 +5,7 @@
 //! the way there is no motion: nothing of it may be shown as an animation; folds and friction have many states of rest, of
 //! which one is found.
 
+use super::ImplicitEuler;
 use crate::cloth::check_garment;
 use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
@@ -19,7 +20,8 @@ use toile_core::prelude::*;
 /// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
-/// `steps` or `time_limit`, the last state goes on with a warning.
+/// `steps`, the last state goes on with a warning. A scene that nothing holds has no rest: its fall is
+/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`.
 #[stage(
     role = Draper,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
@@ -79,6 +81,15 @@ impl Rest {
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
         let result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
         cx.check()?;
+        if let (Err(RestError::Falls), Some(phases)) = (&result, phases) {
+            cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
+            return ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(
+                garment,
+                collider,
+                Some(phases),
+                cx,
+            );
+        }
         let steps = progress.steps;
         let (state, converged) = self.judge(result, cx)?;
         Ok(self.finish(garment, &state, steps, converged))

@@ -2,6 +2,7 @@
 
 use super::cloth_error;
 use nalgebra::Vector3;
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric as engine;
@@ -40,10 +41,12 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
         positions: garment.positions.iter().map(|p| p.coords).collect(),
         triangles: garment.triangles.clone(),
         panels,
-        seams: garment.seams.iter().map(seam).collect(),
+        seams: seams(garment),
+        bands: vec![],
         pinned: garment.pinned.clone(),
         body: None,
         material: material.unwrap_or_else(|| engine::Fabric::isotropic(0.1, 500.0, 0.0, 1e-5)),
+        strain_limit: None,
         phases: vec![Phase { name: "drape".into(), seconds: 0.0, gravity: setting.gravity }],
         self_collision: setting.self_collision,
     })
@@ -68,8 +71,14 @@ fn fabric(f: &Fabric, thickness: f64) -> Result<engine::Fabric, ClothError> {
     })
 }
 
-fn seam(s: &GarmentSeam) -> Seam {
-    Seam::new(s.name.clone(), s.pairs.clone())
+/// The garment's seams; a pair in which two seams meet belongs to the first.
+fn seams(garment: &Garment) -> Vec<Seam> {
+    let mut known = BTreeSet::new();
+    let mut seam = |s: &GarmentSeam| {
+        let is_new = |p: &&[u32; 2]| known.insert([p[0].min(p[1]), p[0].max(p[1])]);
+        Seam::new(s.name.clone(), s.pairs.iter().filter(is_new).copied().collect())
+    };
+    garment.seams.iter().map(&mut seam).collect()
 }
 
 /// A scene as a garment, at its start.

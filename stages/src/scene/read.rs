@@ -79,7 +79,8 @@ fn collider(scene: &scene::Scene, body: &Body, cx: &Context) -> Result<Collider,
 
 /// The scene's body; one without vertices where it has none.
 fn body_of(scene: &scene::Scene) -> Body {
-    let (vertices, triangles) = scene.body.as_ref().map_or((&[][..], &[][..]), |b| (&b.vertices, &b.triangles));
+    let (vertices, triangles) =
+        scene.body.as_ref().map_or((&[][..], &[][..]), |b| (&b.vertices, &b.triangles));
     Body {
         positions: vertices.iter().map(|p| Point3::from(*p)).collect(),
         triangles: triangles.to_vec(),

@@ -9,6 +9,7 @@ mod ply;
 mod preview;
 mod report;
 mod report_data;
+mod scene_json;
 #[cfg(test)]
 mod tests;
 mod texture_file;
@@ -19,6 +20,7 @@ pub use obj::Obj;
 pub use ply::Ply;
 pub use preview::{Framing, Preview};
 pub use report::Report;
+pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
 
 use toile_core::Registry;
@@ -31,4 +33,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Ply>();
     registry.add::<Preview>();
     registry.add::<Report>();
+    registry.add::<SceneJson>();
 }

@@ -2,7 +2,7 @@
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::Models;
+use super::score::{Held, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::Vec3;
@@ -32,8 +32,8 @@ fn tip_drop(models: Models, mesh: &Rectangle, gamma: f64) -> Result<f64, ClothEr
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, LEAST_STIFFNESS.max(STIFFNESS_OVER_WEIGHT * gamma), 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v)).under(Vec3::new(0.0, -gamma, 0.0));
-    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
-    model.energies.push(models.clamp(&sheet, &fabric, |v| mesh.at_bottom(v as usize), |_| -Vec3::x())?);
+    let held = Held { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
+    model.energies = models.energies_held(&sheet, &fabric, &model.fixed, Some(&held))?;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, 0.0, p.x)).collect());
     Static::to(1e-7 * gamma).advance(&model, &mut state)?;
     let tip: Vec<f64> = (0..mesh.uv.len()).filter(|&v| mesh.at_top(v)).map(|v| -state.x[v].y).collect();

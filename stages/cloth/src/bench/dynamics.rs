@@ -36,7 +36,8 @@ fn hanging_sheet(models: Models, layout: Layout, along: usize) -> Result<(Model,
     let mesh = Rectangle::new(layout, WIDTH, 1.0, along);
     let sheet = mesh.sheet(1.0)?;
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(Vec3::new(0.0, -1.0, 0.0));
-    model.energies = models.energies(&sheet, &Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5), &model.fixed)?;
+    model.energies =
+        models.energies(&sheet, &Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5), &model.fixed)?;
     let shape = shape(&model, mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect(), |p| 1.0 - p.y)?;
     Ok((model, shape, reference::hanging_omega(1)))
 }

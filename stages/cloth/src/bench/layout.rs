@@ -139,7 +139,7 @@ fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
     (uv, triangles)
 }
 
-/// Columns near `nx` and an even number of rows whose triangles are closest to equilateral.
+/// About `nx` columns, a little more rather than less, and an even number of rows whose triangles are closest to equilateral.
 fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize) {
     let misfit = |n: usize| {
         let wanted = size.y / (size.x / n as f64 * 0.75_f64.sqrt());
@@ -147,7 +147,7 @@ fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize
         ((wanted / rows as f64).ln().abs(), n, rows)
     };
     let nominal = nx.max(1).min(8 * ny);
-    let near = (nominal * 4 / 5).max(1)..=nominal + nominal / 4;
+    let near = (nominal - (nominal / 20).max(1)).max(1)..=nominal + (nominal / 10).max(1);
     near.map(misfit).min_by(|a, b| a.0.total_cmp(&b.0)).map_or((nominal, 2 * ny), |m| (m.1, m.2))
 }
 

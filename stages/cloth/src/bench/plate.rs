@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::Models;
+use super::score::{Held, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::Vec3;
@@ -28,11 +28,8 @@ fn deflection(models: Models, mesh: &Rectangle, clamped: bool, coefficient: f64)
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, 1e4, 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.on_border(v)).under(Vec3::new(0.0, 0.0, -load));
-    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
-    if clamped {
-        let outward = |v: u32| outward(mesh, v as usize);
-        model.energies.push(models.clamp(&sheet, &fabric, |v| mesh.on_border(v as usize), outward)?);
-    }
+    let held = Held { chosen: &|v| mesh.on_border(v as usize), outward: &|v| outward(mesh, v as usize) };
+    model.energies = models.energies_held(&sheet, &fabric, &model.fixed, clamped.then_some(&held))?;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     Static::to(1e-7 * load).advance(&model, &mut state)?;
     Ok(centre(mesh, &state.x) / DEFLECTION)

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::{Layout, cantilever, catenary, dynamics, friction, plate, stretch};
-use crate::bending::{Clamp, FreeEdge, Hinge, QuadraticHinge, Rigidity, SkipOne};
+use crate::bending::{Clamp, FreeEdge, Hinge, LoneHinge, QuadraticHinge, Rigidity, SkipOne};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::{Energy, Vec3};
@@ -87,9 +87,11 @@ pub enum Membrane {
 /// Which bending.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bending {
-    /// Calibrated hinge.
+    /// Coupled hinges.
     Hinge,
-    /// Quadratic hinge.
+    /// Hinges each on its own, calibrated, with free edges mended.
+    LoneHinge,
+    /// Quadratic hinges.
     Quadratic,
     /// Skip-one springs.
     SkipOne,
@@ -109,10 +111,11 @@ impl Models {
     pub const DEFAULT: Self = Self { membrane: Membrane::Woven, bending: Bending::Hinge };
 
     /// What the table compares.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::DEFAULT,
         Self { membrane: Membrane::StVenantKirchhoff, bending: Bending::Hinge },
         Self { membrane: Membrane::Woven, bending: Bending::Quadratic },
+        Self { membrane: Membrane::Woven, bending: Bending::LoneHinge },
         Self { membrane: Membrane::Springs, bending: Bending::SkipOne },
     ];
 
@@ -126,6 +129,7 @@ impl Models {
         };
         let bending = match self.bending {
             Bending::Hinge => "hinge",
+            Bending::LoneHinge => "lone hinge",
             Bending::Quadratic => "quadratic",
             Bending::SkipOne => "skip-one",
         };
@@ -147,37 +151,54 @@ impl Models {
         })
     }
 
-    pub(super) fn energies(
+    /// Membrane and bending for a sheet of this fabric, its borders free where not `fixed`.
+    ///
+    /// # Errors
+    /// What the models find in sheet or fabric.
+    pub fn energies(
         self,
         sheet: &Sheet,
         fabric: &Fabric,
         fixed: &[bool],
     ) -> Result<Vec<Box<dyn Energy>>, ClothError> {
-        let d = Rigidity::of(fabric);
-        let bending: Box<dyn Energy> = match self.bending {
-            Bending::Hinge => Box::new(Hinge::new(sheet, &d)?),
-            Bending::Quadratic => Box::new(QuadraticHinge::new(sheet, &d)?),
-            Bending::SkipOne => Box::new(SkipOne::new(sheet, &d)?),
-        };
-        let mut energies = vec![self.membrane_energy(sheet, fabric)?, bending];
-        if self.bending != Bending::SkipOne {
-            energies.push(Box::new(FreeEdge::new(sheet, &d, |v| !fixed[v])?));
-        }
-        Ok(energies)
+        self.energies_held(sheet, fabric, fixed, None)
     }
 
-    /// A clamp beside this bending model.
-    pub(super) fn clamp(
+    /// The same, where border edges of `held` keep their slope.
+    pub(super) fn energies_held(
         self,
         sheet: &Sheet,
         fabric: &Fabric,
-        chosen: impl Fn(u32) -> bool,
-        outward: impl Fn(u32) -> Vec3,
-    ) -> Result<Box<dyn Energy>, ClothError> {
+        fixed: &[bool],
+        held: Option<&Held<'_>>,
+    ) -> Result<Vec<Box<dyn Energy>>, ClothError> {
         let d = Rigidity::of(fabric);
-        let factor = Hinge::new(sheet, &d)?.0.factor();
-        Ok(Box::new(Clamp::new(sheet, &d, factor, chosen, outward)?))
+        let beyond =
+            |[a, b]: [u32; 2]| held.filter(|h| (h.chosen)(a) && (h.chosen)(b)).map(|h| (h.outward)(a));
+        let mut energies = vec![self.membrane_energy(sheet, fabric)?];
+        match self.bending {
+            Bending::Hinge => energies.push(Box::new(Hinge::clamped(sheet, &d, beyond)?)),
+            Bending::Quadratic => energies.push(Box::new(QuadraticHinge::clamped(sheet, &d, beyond)?)),
+            Bending::SkipOne => energies.push(Box::new(SkipOne::new(sheet, &d)?)),
+            Bending::LoneHinge => {
+                energies.push(Box::new(LoneHinge::new(sheet, &d)?));
+                energies.push(Box::new(FreeEdge::new(sheet, &d, |v| !fixed[v])?));
+            }
+        }
+        if let (Some(held), Bending::LoneHinge | Bending::SkipOne) = (held, self.bending) {
+            let factor = LoneHinge::new(sheet, &d)?.0.factor();
+            energies.push(Box::new(Clamp::new(sheet, &d, factor, held.chosen, held.outward)?));
+        }
+        Ok(energies)
     }
+}
+
+/// Border edges with a clamped slope.
+pub(super) struct Held<'a> {
+    /// Whether a vertex is clamped; an edge is if both its ends are.
+    pub chosen: &'a dyn Fn(u32) -> bool,
+    /// The direction in which the sheet would go on beyond the edge.
+    pub outward: &'a dyn Fn(u32) -> Vec3,
 }
 
 /// One row of the scoreboard.

@@ -5,7 +5,7 @@ use nalgebra::{Rotation2, Vector2};
 use super::layout::{Layout, Rectangle};
 use super::reference::{self, Orthotropic};
 use super::score::{Membrane, Models};
-use crate::bending::{Hinge, Rigidity};
+use crate::bending::{LoneHinge, Rigidity};
 use crate::error::ClothError;
 use crate::fabric::{Curve, Fabric};
 use crate::force::{DeadLoad, Energy, Vec3};
@@ -57,7 +57,7 @@ fn hanging_tip(models: Models, layout: Layout, along: usize, alpha: f64) -> Resu
 
 /// A trace of bending, so that the plane is not left where nothing pulls.
 fn steadying(sheet: &Sheet) -> Result<Box<dyn Energy>, ClothError> {
-    Ok(Box::new(Hinge::with_factor(sheet, &Rigidity::uniform(1e-8), 1.0)?))
+    Ok(Box::new(LoneHinge::with_factor(sheet, &Rigidity::uniform(1e-8), 1.0)?))
 }
 
 /// Force per width over mean strain of a strip whose length runs at `angle` to the warp, its ends free to shear.

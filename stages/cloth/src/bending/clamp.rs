@@ -1,4 +1,4 @@
-//! A held slope along a boundary edge: the sheet is continued beyond the edge by its own mirror image in a fixed plane.
+//! A held slope along a boundary edge, beside lone hinges: the sheet is continued beyond the edge by its own mirror image in a fixed plane.
 //!
 //! The mirrored half takes half the energy of a fold of twice the angle, so `E = k theta² / 2` with `k = f D |e|² / A`, theta the
 //! angle between the edge's triangle and the plane. Pinning a second row of vertices in place of this makes the
@@ -43,7 +43,7 @@ impl Clamp {
         let edges = sheet.edges().iter().filter(|e| e.is_boundary() && e.vertices.iter().all(|&v| chosen(v)));
         let held = edges.map(|e| {
             let side = e.sides.0;
-            let d = rigidity.along(&leaf(sheet, &side).across);
+            let d = rigidity.along(&leaf(sheet, side.triangle as usize, side.corner as usize).across);
             let area = sheet.areas()[side.triangle as usize];
             Held {
                 vertices: [e.vertices[0], e.vertices[1], side.opposite],

@@ -24,6 +24,18 @@ pub(crate) struct Flap {
     pub triangles: [u32; 2],
 }
 
+impl Flap {
+    /// Its triangles, each with the corner opposite the fold.
+    pub(super) fn sides(&self, sheet: &Sheet) -> [(usize, usize); 2] {
+        let side = |k: usize| {
+            let corners = &sheet.triangles()[self.triangles[k] as usize];
+            let tip = corners.iter().position(|&v| !self.vertices[..2].contains(&v));
+            (self.triangles[k] as usize, tip.unwrap_or(0))
+        };
+        [side(0), side(1)]
+    }
+}
+
 /// All inner edges of a sheet as flaps, in the order of the edges.
 pub(crate) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
     sheet.edges().iter().filter_map(|e| flap(sheet, rigidity, e)).collect()
@@ -31,7 +43,7 @@ pub(crate) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
 
 fn flap(sheet: &Sheet, rigidity: &Rigidity, e: &Edge) -> Option<Flap> {
     let (left, right) = (e.sides.0, e.sides.1?);
-    let (l, r) = (leaf(sheet, &left), leaf(sheet, &right));
+    let (l, r) = (leaf_of(sheet, &left), leaf_of(sheet, &right));
     // The right triangle runs through the edge backwards, so its share along the edge counts from the other end.
     let weights = [
         -(1.0 - l.along) / l.height - r.along / r.height,
@@ -62,9 +74,13 @@ pub(super) struct RestLeaf {
     pub across: Vector2<f64>,
 }
 
-pub(super) fn leaf(sheet: &Sheet, side: &Side) -> RestLeaf {
-    let corners = &sheet.rest()[side.triangle as usize];
-    let k = side.corner as usize;
+fn leaf_of(sheet: &Sheet, side: &Side) -> RestLeaf {
+    leaf(sheet, side.triangle as usize, side.corner as usize)
+}
+
+/// Triangle `t` seen from the edge opposite corner `k`.
+pub(super) fn leaf(sheet: &Sheet, t: usize, k: usize) -> RestLeaf {
+    let corners = &sheet.rest()[t];
     let (a, b, p) = (corners[(k + 1) % 3], corners[(k + 2) % 3], corners[k]);
     let e = b - a;
     let length = e.norm();

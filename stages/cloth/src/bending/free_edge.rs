@@ -1,6 +1,6 @@
-//! Takes the hinge's false Poisson's ratio out of free edges.
+//! Takes the lone hinge's false Poisson's ratio out of free edges.
 //!
-//! Hinges on equilateral triangles bend with Poisson's ratio -1/3: a narrow strip, free to curl across, is 11 % too soft, although a
+//! Lone hinges on equilateral triangles bend with Poisson's ratio -1/3: a narrow strip, free to curl across, is 11 % too soft, although a
 //! plate is right. The part of the bending energy that carries the ratio is `-(1 - nu) D` times the integral of Gaussian curvature, and
 //! by Gauss and Bonnet that integral is the sum of the corner angles along the border, up to a constant. So raising the
 //! ratio from `nu_mesh` to 0 is the energy `-D f nu_mesh (sum of border angles)`: exact, local to the border, and without

@@ -18,24 +18,38 @@ fn folded() -> Vec<Vec3> {
         .to_vec()
 }
 
-fn models() -> Vec<Box<dyn Energy>> {
+/// Models that do not know where space is.
+fn free_models() -> Vec<Box<dyn Energy>> {
     let (s, d) = (sheet(), Rigidity { warp: 2e-5, weft: 1e-5 });
-    let mut pressed = Hinge::new(&s, &d).unwrap();
-    pressed.0.rest_at(&folded().iter().map(|p| Vec3::new(p.x, p.y, 0.3 * p.z)).collect::<Vec<_>>());
-    let outward = |_| Vec3::new(0.3, -1.0, 0.2).normalize();
     vec![
         Box::new(Hinge::new(&s, &d).unwrap()),
-        Box::new(pressed),
+        Box::new(LoneHinge::new(&s, &d).unwrap()),
         Box::new(QuadraticHinge::new(&s, &d).unwrap()),
         Box::new(FreeEdge::new(&s, &d, |v| v != 2).unwrap()),
         Box::new(SkipOne::new(&s, &d).unwrap()),
-        Box::new(Clamp::new(&s, &d, 1.0, |v| v == 4 || v == 1, outward).unwrap()),
+    ]
+}
+
+/// Models with a rest shape or a direction of their own.
+fn bound_models() -> Vec<Box<dyn Energy>> {
+    let (s, d) = (sheet(), Rigidity { warp: 2e-5, weft: 1e-5 });
+    let half: Vec<Vec3> = folded().iter().map(|p| Vec3::new(p.x, p.y, 0.3 * p.z)).collect();
+    let (mut pressed, mut lone) = (Hinge::new(&s, &d).unwrap(), LoneHinge::new(&s, &d).unwrap());
+    pressed.0.rest_at(&half);
+    lone.0.rest_at(&half);
+    let outward = Vec3::new(0.3, -1.0, 0.2).normalize();
+    vec![
+        Box::new(pressed),
+        Box::new(lone),
+        Box::new(Hinge::clamped(&s, &d, |e| (e == [4, 1]).then_some(outward)).unwrap()),
+        Box::new(QuadraticHinge::clamped(&s, &d, |e| (e == [4, 1]).then_some(outward)).unwrap()),
+        Box::new(Clamp::new(&s, &d, 1.0, |v| v == 4 || v == 1, |_| outward).unwrap()),
     ]
 }
 
 #[test]
 fn derivatives_agree_with_differences() {
-    for m in models() {
+    for m in free_models().into_iter().chain(bound_models()) {
         assert!(gradient_error(&*m, &folded(), 1e-6) < 1e-6, "{} gradient", m.name());
         let error = hessian_error(&*m, &folded(), 1e-6);
         assert!(error < 1e-6, "{} Hessian {error:e}", m.name());
@@ -49,13 +63,7 @@ fn a_flat_sheet_has_no_moment() {
     for (t, corners) in s.triangles().iter().zip(s.rest()) {
         t.iter().zip(corners).for_each(|(&v, c)| x[v as usize] = Vec3::new(c.x, c.y, 2.0));
     }
-    for m in models()
-        .into_iter()
-        .filter(|m| m.name() != "clamped edge")
-        .enumerate()
-        .filter(|m| m.0 != 1)
-        .map(|m| m.1)
-    {
+    for m in free_models() {
         assert!(m.value(&x).abs() < 1e-19, "{}: {:e}", m.name(), m.value(&x));
     }
 }
@@ -74,7 +82,7 @@ fn equilateral(n: usize) -> Sheet {
 
 #[test]
 fn equilateral_mesh_needs_no_calibration_but_for_its_border() {
-    let factor = |n: usize| Hinge::new(&equilateral(n), &Rigidity::uniform(1.0)).unwrap().0.factor();
+    let factor = |n: usize| LoneHinge::new(&equilateral(n), &Rigidity::uniform(1.0)).unwrap().0.factor();
     let (coarse, fine) = ((factor(12) - 1.0).abs(), (factor(24) - 1.0).abs());
     assert!(coarse < 0.06 && fine < 0.03, "{coarse} {fine}");
 }
@@ -91,12 +99,13 @@ fn calibration_does_not_see_seams() {
             one.triangles().iter().copied().chain(one.triangles().iter().map(|t| t.map(second))).collect();
         let far = Vector2::new(50.0, 3.0);
         let rest = one.rest().iter().copied().chain(one.rest().iter().map(|r| r.map(|p| p + far))).collect();
-        Hinge::new(&Sheet::new(2 * n as usize, t, rest, 0.2).unwrap(), &Rigidity::uniform(1.0))
-            .unwrap()
-            .0
-            .factor()
+        let sheet = Sheet::new(2 * n as usize, t, rest, 0.2).unwrap();
+        let factor = LoneHinge::new(&sheet, &Rigidity::uniform(1.0)).unwrap().0.factor();
+        (factor, calibrate::calibrated(&sheet, &Rigidity::uniform(1.0)))
     };
-    assert!((joined(true) - joined(false)).abs() < 1e-9, "{} {}", joined(true), joined(false));
+    let (sewn, apart) = (joined(true), joined(false));
+    assert!((sewn.0 - apart.0).abs() < 1e-9, "{} {}", sewn.0, apart.0);
+    assert!(sewn.1.iter().zip(&apart.1).all(|(a, b)| (a - b).norm() < 1e-9));
 }
 
 /// The cylinder's energy per area, rows counted without the border, must be D kappa²/2 whatever its direction.
@@ -128,13 +137,40 @@ fn cylinder_costs_the_same_in_every_direction() {
     }
 }
 
+/// A sheet bent to a quadratic surface, of small slopes, costs what the plate costs, triangle by triangle, before calibration.
+#[test]
+fn a_quadratic_surface_has_its_energy_on_any_mesh() {
+    use crate::bench::layout::{Layout, Rectangle};
+    let d = Rigidity { warp: 3.0, weft: 2.0 };
+    for layout in Layout::ALL {
+        let mesh = Rectangle::new(layout, 1.0, 1.0, 8);
+        let sheet = mesh.sheet(1.0).unwrap();
+        for k in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.5], [0.3, -0.7, 1.2]] {
+            let k = nalgebra::Vector3::from(k);
+            let lift = |p: &Vector2<f64>| 0.5 * k.x * p.x * p.x + 0.5 * k.y * p.y * p.y + k.z * p.x * p.y;
+            let exact = 0.5 * k.dot(&(d.tensor() * k));
+            for p in patch::patches(&sheet, |_| None) {
+                if p.beyond.contains(&patch::Beyond::Free) {
+                    continue;
+                }
+                let angle = |w: &[f64; 6]| -> f64 {
+                    w.iter().zip(p.vertices).map(|(w, v)| w * lift(&mesh.uv[v as usize])).sum()
+                };
+                let angles = nalgebra::Vector3::from(p.weights.each_ref().map(angle));
+                let energy = 0.5 * angles.dot(&(p.stiffness(&d.tensor()) * angles)) / p.area;
+                assert!((energy / exact - 1.0).abs() < 1e-8, "{}: {energy} not {exact}", layout.name());
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
     #[test]
     fn energy_does_not_see_rigid_motion(r in prop::array::uniform3(-3.0..3.0f64), t in prop::array::uniform3(-9.0..9.0f64)) {
         let turn = nalgebra::Rotation3::new(Vec3::from(r));
         let moved: Vec<Vec3> = folded().iter().map(|p| turn * p + Vec3::from(t)).collect();
-        for m in models().iter().filter(|m| m.name() != "clamped edge") {
+        for m in free_models() {
             prop_assert!((m.value(&moved) / m.value(&folded()) - 1.0).abs() < 1e-8, "{}", m.name());
         }
     }
@@ -142,7 +178,7 @@ proptest! {
     #[test]
     fn internal_forces_cancel(seed in 0..1000u32) {
         let x: Vec<Vec3> = folded().iter().enumerate().map(|(i, p)| p + Vec3::new((f64::from(seed) + i as f64).sin(), (f64::from(seed) * 1.7 + i as f64).cos(), 0.0) * 0.02).collect();
-        for m in models().iter().filter(|m| m.name() != "clamped edge") {
+        for m in free_models() {
             let mut g = vec![Vec3::zeros(); x.len()];
             m.add_gradient(&x, &mut g);
             let scale: f64 = g.iter().map(|v| v.norm()).sum();

@@ -9,14 +9,12 @@
 //! factor, about 0.5 GB at 50,000 nodes.
 
 use super::dissect::{Part, dissect};
+use super::front::Dense;
 use super::pattern::Pattern;
-use nalgebra::{DMatrixView, DMatrixViewMut, Dyn, Matrix3, Vector3};
-
-/// Columns eliminated together: wide enough for fast products, narrow enough to stay in the cache.
-const STRIP: usize = 48;
+use nalgebra::{Matrix3, Vector3};
 
 /// Fronts above this many unknowns are worth a task of their own.
-const TASK_UNKNOWNS: usize = 120;
+const TASK_UNKNOWNS: usize = 400;
 
 /// The matrix is not positive definite at this node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -25,6 +23,20 @@ pub struct NotPositive {
     /// The node whose pivot failed.
     pub node: u32,
 }
+
+/// Why there is no factor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Halt {
+    /// The matrix is not positive definite.
+    #[error(transparent)]
+    NotPositive(#[from] NotPositive),
+    /// The caller wanted no more.
+    #[error("stopped on request")]
+    Stopped,
+}
+
+/// Asked now and then whether to stop.
+pub type Stop<'s> = dyn Fn() -> bool + Sync + 's;
 
 /// What of the factor does not depend on the values.
 #[derive(Debug, Clone)]
@@ -99,46 +111,66 @@ impl Symbolic {
         self.fronts.iter().map(front).sum()
     }
 
-    /// Factors the matrix of these block values.
-    pub fn factor(&self, values: &[Matrix3<f64>]) -> Result<Factor, NotPositive> {
-        let Some(root) = self.fronts.len().checked_sub(1) else {
-            return Ok(Factor::default());
-        };
-        let (_, mut done) = self.eliminate(root, values)?;
-        done.sort_unstable_by_key(|(k, _)| *k);
-        Ok(Factor { columns: done.into_iter().map(|(_, c)| c).collect() })
+    /// Factors the matrix of these block values into the memory of `factor`. `stop` is asked before every front.
+    ///
+    /// # Errors
+    /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
+    pub fn factor(&self, values: &[Matrix3<f64>], factor: &mut Factor, stop: &Stop) -> Result<(), Halt> {
+        factor.columns.resize(self.fronts.len(), Vec::new());
+        match self.fronts.len().checked_sub(1) {
+            Some(root) => self.eliminate(root, values, &mut factor.columns, stop).map(drop),
+            None => Ok(()),
+        }
     }
 
-    /// Factors the front `k` and all below it: what it leaves to its parent, and the finished columns.
-    fn eliminate(&self, k: usize, values: &[Matrix3<f64>]) -> Result<(Vec<f64>, Vec<Finished>), NotPositive> {
+    /// Factors the front `k` and all below it, whose columns are the last of `columns`: what it leaves to its parent.
+    fn eliminate(
+        &self,
+        k: usize,
+        values: &[Matrix3<f64>],
+        columns: &mut [Vec<f64>],
+        stop: &Stop,
+    ) -> Result<Vec<f64>, Halt> {
         let front = &self.fronts[k];
-        let below = self.eliminate_children(front, values)?;
-        let m = front.unknowns();
-        let mut a = vec![0.0; m * m];
+        let Some((mine, below)) = columns.split_last_mut() else { return Ok(Vec::new()) };
+        let below = self.eliminate_children(front, values, below, stop)?;
+        if stop() {
+            return Err(Halt::Stopped);
+        }
+        let mut dense = Dense::zeros(mine, front.unknowns(), 3 * front.nodes.len());
         for &(slot, row, column, flipped) in &front.entries {
-            put(&mut a, m, row as usize, column as usize, &values[slot as usize], flipped);
+            dense.put(row as usize, column as usize, &values[slot as usize], flipped);
         }
-        let mut done = Vec::new();
-        for ((update, finished), rows) in below.into_iter().zip(&front.child_rows) {
-            extend_add(&mut a, m, &update, rows);
-            done.extend(finished);
+        for (update, rows) in below.iter().zip(&front.child_rows) {
+            dense.extend_add(update, rows);
         }
-        let own = 3 * front.nodes.len();
-        partial_cholesky(&mut a, m, own).map_err(|c| NotPositive { node: front.nodes[c / 3] })?;
-        let update = schur(&a, m, own);
-        a.truncate(m * own);
-        a.shrink_to_fit();
-        done.push((k, a));
-        Ok((update, done))
+        drop(below);
+        dense.eliminate().map_err(|c| NotPositive { node: front.nodes[c / 3] })?;
+        Ok(dense.border)
     }
 
-    fn eliminate_children(&self, front: &Front, values: &[Matrix3<f64>]) -> Result<Vec<Below>, NotPositive> {
+    fn eliminate_children(
+        &self,
+        front: &Front,
+        values: &[Matrix3<f64>],
+        columns: &mut [Vec<f64>],
+        stop: &Stop,
+    ) -> Result<Vec<Vec<f64>>, Halt> {
         match front.children[..] {
-            [a, b] if self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS => {
-                let (a, b) = rayon::join(|| self.eliminate(a, values), || self.eliminate(b, values));
+            [] => Ok(vec![]),
+            [a] => Ok(vec![self.eliminate(a, values, columns, stop)?]),
+            [a, b, ..] => {
+                // Children come one after the other, each after all below it.
+                let (left, right) = columns.split_at_mut(columns.len() - (b - a));
+                let mut left = || self.eliminate(a, values, left, stop);
+                let mut right = || self.eliminate(b, values, right, stop);
+                let (a, b) = if self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS {
+                    rayon::join(left, right)
+                } else {
+                    (left(), right())
+                };
                 Ok(vec![a?, b?])
             }
-            _ => front.children.iter().map(|&c| self.eliminate(c, values)).collect(),
         }
     }
 
@@ -158,9 +190,6 @@ impl Symbolic {
         }
     }
 }
-
-type Finished = (usize, Vec<f64>);
-type Below = (Vec<f64>, Vec<Finished>);
 
 fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fronts: &[Front]) -> Front {
     let last_own = part.nodes.iter().map(|&i| order[i as usize]).max().unwrap_or(0);
@@ -189,134 +218,6 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
     );
     let weight = 3 * part.nodes.len() + part.children.iter().map(|&c| fronts[c].weight).sum::<usize>();
     Front { nodes: part.nodes, border, children: part.children, child_rows, entries, weight }
-}
-
-fn put(a: &mut [f64], m: usize, row: usize, column: usize, block: &Matrix3<f64>, flipped: bool) {
-    for c in 0..3 {
-        for r in 0..3 {
-            a[(3 * column + c) * m + 3 * row + r] += if flipped { block[(c, r)] } else { block[(r, c)] };
-        }
-    }
-}
-
-/// Adds a child's update, a dense lower triangle over its border, into the front.
-fn extend_add(a: &mut [f64], m: usize, update: &[f64], rows: &[u32]) {
-    let n = 3 * rows.len();
-    for (cb, &column) in rows.iter().enumerate() {
-        for c in 0..3 {
-            let from = &update[(3 * cb + c) * n..][..n];
-            let to = &mut a[(3 * column as usize + c) * m..][..m];
-            for (rb, &row) in rows.iter().enumerate().skip(cb) {
-                for r in 0..3 {
-                    to[3 * row as usize + r] += from[3 * rb + r];
-                }
-            }
-        }
-    }
-}
-
-fn schur(a: &[f64], m: usize, own: usize) -> Vec<f64> {
-    let n = m - own;
-    let mut update = Vec::with_capacity(n * n);
-    for c in own..m {
-        update.extend_from_slice(&a[c * m + own..(c + 1) * m]);
-    }
-    update
-}
-
-/// Eliminates the first `own` columns of the lower triangle of `a`, `m` by `m`, by columns; the failed column on error.
-fn partial_cholesky(a: &mut [f64], m: usize, own: usize) -> Result<(), usize> {
-    let mut inverse = [0.0; STRIP * STRIP];
-    let mut panel = Vec::new();
-    for start in (0..own).step_by(STRIP) {
-        let width = STRIP.min(own - start);
-        let end = start + width;
-        dense_cholesky(a, m, start, width)?;
-        if end == m {
-            break;
-        }
-        invert_lower(a, m, start, width, &mut inverse);
-        let (strip, rest) = a[start * m..].split_at_mut(width * m);
-        scale_panel(strip, m, end, width, &inverse, &mut panel);
-        update_rest(strip, rest, m, end, width);
-    }
-    Ok(())
-}
-
-fn dense_cholesky(a: &mut [f64], m: usize, start: usize, width: usize) -> Result<(), usize> {
-    for j in start..start + width {
-        for k in start..j {
-            let l = a[k * m + j];
-            let (left, right) = a.split_at_mut(j * m);
-            let (from, to) = (&left[k * m + j..k * m + start + width], &mut right[j..start + width]);
-            to.iter_mut().zip(from).for_each(|(t, f)| *t -= l * f);
-        }
-        let pivot = a[j * m + j];
-        if !(pivot > 0.0 && pivot.is_finite()) {
-            return Err(j);
-        }
-        let scale = 1.0 / pivot.sqrt();
-        a[j * m + j..j * m + start + width].iter_mut().for_each(|v| *v *= scale);
-    }
-    Ok(())
-}
-
-/// The inverse of the lower triangle at `start`, by columns, `width` rows each.
-fn invert_lower(a: &[f64], m: usize, start: usize, width: usize, inverse: &mut [f64]) {
-    inverse[..width * width].fill(0.0);
-    for c in 0..width {
-        let column = &mut inverse[c * width..(c + 1) * width];
-        column[c] = 1.0;
-        for k in c..width {
-            let l = &a[(start + k) * m + start..][..width];
-            let v = column[k] / l[k];
-            column[k] = v;
-            for r in k + 1..width {
-                column[r] -= v * l[r];
-            }
-        }
-    }
-}
-
-/// Multiplies the strip's rows from `end` on by the inverse of its triangle, transposed.
-fn scale_panel(strip: &mut [f64], m: usize, end: usize, width: usize, inverse: &[f64], panel: &mut Vec<f64>) {
-    let rows = m - end;
-    panel.clear();
-    for c in 0..width {
-        panel.extend_from_slice(&strip[c * m + end..(c + 1) * m]);
-    }
-    let from = DMatrixView::from_slice_with_strides_generic(panel, Dyn(rows), Dyn(width), Dyn(1), Dyn(rows));
-    let by =
-        DMatrixView::from_slice_with_strides_generic(inverse, Dyn(width), Dyn(width), Dyn(width), Dyn(1));
-    let to = &mut strip[end..];
-    let mut to = DMatrixViewMut::from_slice_with_strides_generic(to, Dyn(rows), Dyn(width), Dyn(1), Dyn(m));
-    to.gemm(1.0, &from, &by, 0.0);
-}
-
-/// Takes the strip's product with itself from the columns after it, lower triangle only.
-fn update_rest(strip: &[f64], rest: &mut [f64], m: usize, end: usize, width: usize) {
-    for first in (end..m).step_by(STRIP) {
-        let columns = STRIP.min(m - first);
-        let rows = m - first;
-        let left = DMatrixView::from_slice_with_strides_generic(
-            &strip[first..],
-            Dyn(rows),
-            Dyn(width),
-            Dyn(1),
-            Dyn(m),
-        );
-        let right = DMatrixView::from_slice_with_strides_generic(
-            &strip[first..],
-            Dyn(width),
-            Dyn(columns),
-            Dyn(m),
-            Dyn(1),
-        );
-        let to = &mut rest[(first - end) * m + first..];
-        let mut to =
-            DMatrixViewMut::from_slice_with_strides_generic(to, Dyn(rows), Dyn(columns), Dyn(1), Dyn(m));
-        to.gemm(-1.0, &left, &right, 1.0);
-    }
 }
 
 fn gather(front: &Front, x: &[Vector3<f64>], local: &mut Vec<f64>) {

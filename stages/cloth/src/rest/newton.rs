@@ -3,17 +3,21 @@
 //! Each step minimises the potential plus the inertia of a step of pseudo-time (a sheet at rest that is let go), which
 //! grows as long as steps succeed: far from rest the cloth falls without overshooting, near rest the steps are Newton's
 //! own. A step is first kept out of the body, then cut back where cloth would meet cloth, then shortened until the
-//! potential falls.
+//! potential lies below the highest of the last few (Grippo, Lampariello, Lucidi 1986): cloth hardly stretches but bends
+//! freely, so a good step may first raise the potential.
 //!
-//! Cost of a step: one factorization, O(n^1.5), which is nine tenths of it.
+//! For the same reason the matrix takes the stress that the last step foretold, not that of the new places, whose strain
+//! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
+//! be many times longer. It leaves the answer alone, for the forces are those of the places.
+//!
+//! Cost of a step: one factorization, O(n^1.5), and O(n) for all else.
 
-use super::multifrontal::{Factor, NotPositive, Symbolic};
-use super::pattern::Pattern;
+use super::linear::Linear;
+use super::multifrontal::{Halt, Stop};
+use super::nearby::Nearby;
 use super::system::System;
-use crate::contact::limit::limit;
-use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
@@ -30,20 +34,14 @@ const ROUNDING: f64 = 1e-10;
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
 
-/// Least and greatest share of friction's stiffness in the matrix where nodes slide.
-pub(super) const EASE: (f64, f64) = (0.05, 1.0);
+/// Steps whose highest potential a new one is measured by. More lets the cloth pass through worse states to better ones.
+const MEMORY: usize = 8;
 
-/// Friction of a node that slides, as a share of the limit at which it starts to: below 1 it comes to a stop.
-const SLIDING: f64 = 0.7;
+/// Factor by which pseudo-time grows after a whole step.
+const GROWTH: f64 = 1.5;
 
-/// Friction asked for beyond its limit after a proof of rest, as a share of all friction: cloth that needs more slides on.
-const EXCESS: f64 = 0.02;
-
-/// Least step of pseudo-time in which the speed tells that sliding is over, s.
-const HOLD_STEP: f64 = 0.1;
-
-/// Multiple of the speed of rest below which the last slides are settled with friction that holds.
-const HOLD: f64 = 5.0;
+/// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
+const SLOW_STEP: f64 = 0.1;
 
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
@@ -82,160 +80,72 @@ pub struct Outcome {
 /// What a caller learns after each step; it may stop the level.
 pub type Watch<'w> = dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> ControlFlow<()> + 'w;
 
-/// The matrix and its factor, kept from step to step.
-struct Linear<'a> {
-    layout: &'a [Vec3],
-    pattern: Pattern,
-    symbolic: Symbolic,
-    values: Vec<Matrix3<f64>>,
-}
-
-impl<'a> Linear<'a> {
-    fn new(system: &mut System<'_>, layout: &'a [Vec3]) -> Self {
-        let pattern = system.pattern();
-        system.elastic.bind(&pattern);
-        let symbolic = Symbolic::new(&pattern, layout);
-        Self { layout, pattern, symbolic, values: Vec::new() }
-    }
-
-    /// Follows the contacts: new pairs need new places in the matrix.
-    fn follow(&mut self, system: &mut System<'_>) {
-        let known = system.layers.iter().flat_map(|l| l.groups()).all(|nodes| self.pattern.couples(nodes));
-        if !known {
-            *self = Self { values: std::mem::take(&mut self.values), ..Self::new(system, self.layout) };
-        }
-    }
-
-    /// The step of pseudo-time `dt` from `x`.
-    fn step(
-        &mut self,
-        system: &System<'_>,
-        x: &[Vec3],
-        g: &[Vec3],
-        dt: f64,
-    ) -> Result<Vec<Vec3>, NotPositive> {
-        let mut shift = 1.0 / (dt * dt);
-        let factor: Factor = loop {
-            system.matrix(x, &self.pattern, shift, &mut self.values);
-            match self.symbolic.factor(&self.values) {
-                Ok(factor) => break factor,
-                // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
-                Err(e) if shift > 1e12 => return Err(e),
-                Err(_) => shift *= 100.0,
-            }
-        };
-        let mut step: Vec<Vec3> = g.iter().map(|g| -g).collect();
-        self.symbolic.solve(&factor, &mut step);
-        Ok(step)
-    }
-}
-
-/// Moves `x` to rest, or as far as the pace allows. `layout` orders the elimination, `tree` finds cloth near cloth.
+/// Moves `x` to rest, or as far as the pace allows. `layout` orders the elimination, `tree` finds cloth near cloth; `stop`
+/// is asked every few milliseconds.
 ///
 /// # Errors
-/// [`NotPositive`] where no inertia makes the matrix positive definite: the numbers are not finite.
+/// [`Halt`]: `stop` said so, or no inertia makes the matrix positive definite, for the numbers are not finite.
 pub fn relax(
     system: &mut System<'_>,
     layout: &[Vec3],
     tree: Option<&ClothTree>,
-    x: &mut Vec<Vec3>,
+    x: &mut [Vec3],
     pace: &Pace,
     watch: &mut Watch<'_>,
-) -> Result<Outcome, NotPositive> {
-    if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
-        layers.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], layers.thickness);
-    }
-    untangle(system, tree, x);
+    stop: &Stop,
+) -> Result<Outcome, Halt> {
+    let mut nearby = Nearby::new(tree);
+    nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
+    nearby.untangle(system, x);
     system.touch(x);
     let mut linear = Linear::new(system, layout);
     let mut outcome = Outcome { dt: pace.first, ..Outcome::default() };
-    let mut stage = Stage::Slide;
+    let mut heights = Vec::new();
+    let mut proves = false;
     let mut dt = pace.first;
+    let mut last = f64::INFINITY;
     for step in 1..=pace.steps {
-        if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
-            untangle(system, tree, x);
+        if system.is_tangled() {
+            nearby.untangle(system, x);
         }
         system.touch(x);
         linear.follow(system);
         let g = system.gradient(x);
-        let used = if stage == Stage::Prove { REST_STEP } else { dt };
-        let mut moves = linear.step(system, x, &g, used)?;
-        let longest = greatest(&moves);
-        outcome = Outcome { steps: step, speed: longest / used, residual: greatest(&g), dt: used, ..outcome };
+        let used = if proves { REST_STEP } else { dt };
+        let mut moves = linear.step(system, x, &g, used, last, stop)?;
+        last = greatest(&moves);
+        outcome = Outcome { steps: step, speed: last / used, residual: greatest(&g), dt: used, ..outcome };
+        shorten(&mut moves, pace.farthest / last);
+        system.clear_of_body(x, &mut moves);
+        nearby.seek(system, x, &moves);
+        nearby.limit(system, x, &mut moves);
+        outcome.share = descend(system, x, &g, &mut moves, &mut heights);
+        system.elastic.foretell(x, &moves);
+        x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let slow = outcome.speed < pace.speed;
-        shorten(&mut moves, pace.farthest / longest);
-        clear_of_body(system, x, &mut moves);
-        if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
-            layers.pairs = tree.pairs(x, &moves, layers.thickness);
-            let strict: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
-            limit(x, &mut moves, &strict);
-        }
-        outcome.share = descend(system, x, &g, &moves);
-        let stays = || stage == Stage::Prove && system.excess(x) < EXCESS;
-        outcome.at_rest = slow && (!pace.prove || stays());
+        outcome.at_rest = slow && (proves || !pace.prove);
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        dt = next_pace(system, dt, outcome.share, pace);
-        stage = next_stage(system, x, stage, &outcome, pace);
+        if !proves {
+            dt = next_dt(dt, outcome.share, pace);
+        }
+        if !proves && !slow {
+            system.drag(x);
+        }
+        proves = pace.prove && !proves && slow && outcome.share == 1.0 && outcome.dt >= SLOW_STEP;
     }
-    if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
-        untangle(system, tree, x);
+    if system.is_tangled() {
+        nearby.untangle(system, x);
     }
     Ok(outcome)
 }
 
-/// What a step may do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Stage {
-    /// Nodes slide where friction is at its limit.
-    Slide,
-    /// Friction holds without limit, so that the rest comes to rest; a smooth problem, soon solved.
-    Hold,
-    /// A step of [`REST_STEP`] from standstill with friction cut back to its limit.
-    Prove,
-}
-
-fn next_stage(system: &mut System<'_>, x: &[Vec3], stage: Stage, outcome: &Outcome, pace: &Pace) -> Stage {
-    let slow = outcome.speed < pace.speed && outcome.share == 1.0;
-    let (next, share) = match stage {
-        _ if !pace.prove => (Stage::Slide, SLIDING),
-        Stage::Slide if outcome.speed < HOLD * pace.speed && outcome.dt >= HOLD_STEP => {
-            (Stage::Hold, SLIDING)
-        }
-        Stage::Slide => (Stage::Slide, SLIDING),
-        Stage::Hold if slow => (Stage::Prove, 1.0),
-        Stage::Hold => (Stage::Hold, f64::INFINITY),
-        Stage::Prove => (Stage::Slide, SLIDING),
-    };
-    if share.is_finite() {
-        system.drag(x, share);
-    }
-    system.holds = next == Stage::Hold;
-    if next == Stage::Prove {
-        // What was held beyond its limit must prove that it stays without the spring that held it.
-        system.ease = 0.0;
-    }
-    next
-}
-
-/// The next step of time. Where a step overshot, sliding nodes are stiffened first, then the step shortened.
-fn next_pace(system: &mut System<'_>, dt: f64, share: f64, pace: &Pace) -> f64 {
-    let slides = system.slips.contains(&true);
-    if system.ease == 0.0 {
-        system.ease = EASE.0;
-        return dt;
-    }
-    if share == 1.0 {
-        system.ease = (0.5 * system.ease).max(EASE.0);
-        (dt * 1.5).min(pace.longest)
-    } else if slides && system.ease < EASE.1 {
-        system.ease = (4.0 * system.ease).min(EASE.1);
-        dt
-    } else if share < 0.5 {
-        (dt * 0.6).max(1e-3)
-    } else {
-        dt
+fn next_dt(dt: f64, share: f64, pace: &Pace) -> f64 {
+    match share {
+        1.0 => (dt * GROWTH).min(pace.longest),
+        s if s < 0.5 => (dt * 0.6).max(1e-3),
+        _ => dt,
     }
 }
 
@@ -251,40 +161,27 @@ fn shorten(moves: &mut [Vec3], share: f64) {
     }
 }
 
-/// Looks for crossings that the start has, or that are left of them.
-fn untangle(system: &mut System<'_>, tree: Option<&ClothTree>, x: &[Vec3]) {
-    if let (Some(tree), Some(layers)) = (tree, &mut system.layers) {
-        layers.untangle(&tree.crossings(x), x);
-    }
-}
-
-/// Ends moves that lead into the body just outside it.
-fn clear_of_body(system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-    let Some(s) = &system.support else { return };
-    let gaps: Vec<f64> = s.offsets.iter().map(|o| 0.5 * o).collect();
-    s.body.guard(x, moves, &gaps);
-}
-
-/// Makes the step or, where the potential does not fall, a share of it; the share.
-fn descend(system: &System<'_>, x: &mut Vec<Vec3>, g: &[Vec3], moves: &[Vec3]) -> f64 {
+/// Shortens the step until the potential falls below the highest of the last ones; the share that is left.
+fn descend(system: &System<'_>, x: &[Vec3], g: &[Vec3], moves: &mut [Vec3], heights: &mut Vec<f64>) -> f64 {
     if greatest(moves) < ROUNDING {
-        x.iter_mut().zip(moves).for_each(|(p, m)| *p += m);
         return 1.0;
     }
-    let slope: f64 = g.iter().zip(moves).map(|(g, d)| g.dot(d)).sum();
+    let slope: f64 = g.iter().zip(moves.iter()).map(|(g, d)| g.dot(d)).sum();
     let start = system.value(x);
+    heights.push(start);
+    if heights.len() > MEMORY {
+        heights.remove(0);
+    }
+    // Rounding of the sum hides changes smaller than this.
+    let highest = heights.iter().copied().fold(start, f64::max) + 1e-13 * start.abs();
     let mut share = 1.0;
-    for tries in 0..=MOST_HALVINGS {
-        let trial: Vec<Vec3> = x.iter().zip(moves).map(|(p, d)| p + d * share).collect();
-        // Rounding of the sum hides changes smaller than this.
-        let noise = 1e-13 * start.abs();
-        if tries == MOST_HALVINGS
-            || system.value(&trial) <= start + LEAST_FALL * share * slope.min(0.0) + noise
-        {
-            *x = trial;
+    for _ in 0..MOST_HALVINGS {
+        let trial: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(p, d)| p + d).collect();
+        if system.value(&trial) <= highest + LEAST_FALL * share * slope.min(0.0) {
             break;
         }
         share *= 0.5;
+        shorten(moves, 0.5);
     }
     share
 }

@@ -12,7 +12,7 @@ use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
 use super::elastic::Elastic;
 use super::layers::Layers;
-use super::multifrontal::NotPositive;
+use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
@@ -232,7 +232,10 @@ impl Rest {
             match work.drape(progress)? {
                 Draped::Rested(state) => return self.judge(*state),
                 // From its own start the level keeps free of crossings by itself, if slowly.
-                Draped::Tangled { nodes } => coarsest = nodes,
+                Draped::Tangled { pairs, levels: 1, .. } => return Err(RestError::InitialCrossing { pairs }),
+                Draped::Tangled { nodes, .. } => {
+                    coarsest = if nodes > coarsest { nodes } else { 4 * coarsest }
+                }
             }
         }
     }
@@ -251,6 +254,10 @@ enum Draped {
     /// The state carried to the level of so many nodes crosses itself and could not be undone.
     Tangled {
         nodes: usize,
+        /// Crossings left.
+        pairs: usize,
+        /// How many levels there were.
+        levels: usize,
     },
 }
 
@@ -291,6 +298,18 @@ impl<'a> Work<'a> {
             pieces.push(next.pieces.clone());
             coarser.push(next);
         }
+        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
+        while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
+            let pairs = crossings_at_start(scene, coarse, start)?;
+            if pairs == 0 {
+                break;
+            }
+            if coarser.pop().is_none() {
+                return Err(RestError::InitialCrossing { pairs });
+            }
+            pieces.pop();
+            starts.pop();
+        }
         if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
             return Err(RestError::Falls);
         }
@@ -317,13 +336,6 @@ impl<'a> Work<'a> {
         let mut x = self.starts[coarsest].clone();
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
-        if self.scene.self_collision {
-            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
-            let pairs = tree.crossings(&x).len();
-            if pairs > 0 {
-                return Err(RestError::InitialCrossing { pairs });
-            }
-        }
         let mut pull = SEAM_PULL * self.strongest();
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
@@ -335,7 +347,7 @@ impl<'a> Work<'a> {
                 force: pull * spacing,
                 soft: 2.0 * self.rest.join_gap,
             };
-            let mut system = self.system(pieces, &sheet, true);
+            let mut system = self.system(pieces, &sheet, true)?;
             system.threads = pairs.iter().map(thread).collect();
             let farthest = (0.2 * widest).max(0.05);
             let pace =
@@ -375,7 +387,7 @@ impl<'a> Work<'a> {
         for k in (0..self.pieces.len()).rev() {
             let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-            let mut system = self.system(&self.pieces[k], &sheet, false);
+            let mut system = self.system(&self.pieces[k], &sheet, false)?;
             let mut x = std::mem::take(&mut self.x);
             if slides.len() == x.len() {
                 system.slides = std::mem::take(&mut slides);
@@ -389,11 +401,13 @@ impl<'a> Work<'a> {
             if k == 0 {
                 self.clear(&mut system, &sheet, &place, &mut x, &pace, progress)?;
             }
-            if system.layers.as_ref().is_some_and(|l| !l.tangled.is_empty()) {
-                return Ok(Draped::Tangled { nodes: x.len() });
+            if system.is_tangled() {
+                let pairs = system.layers.as_ref().map_or(0, |l| l.tangles.len());
+                return Ok(Draped::Tangled { nodes: x.len(), pairs, levels: self.pieces.len() });
             }
             if k == 0 {
                 self.check_kept(&x)?;
+                self.check_strain(&system, &x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
             }
             let finer = |values: &[Vec3]| {
@@ -412,7 +426,7 @@ impl<'a> Work<'a> {
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
-        x: &mut Vec<Vec3>,
+        x: &mut [Vec3],
         pace: &Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
@@ -439,6 +453,7 @@ impl<'a> Work<'a> {
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
+        let tree = self.tree(sheet, &x, false);
         let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
         let state = Rested {
             positions,
@@ -450,12 +465,23 @@ impl<'a> Work<'a> {
             levels: self.reports,
         };
         if self.scene.self_collision {
-            let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::Crossing { pairs, state: Box::new(state) });
             }
         }
         Ok(state)
+    }
+
+    /// The tree of a level; what thread holds together is no obstacle to itself.
+    fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
+        let tree = ClothTree::new(sheet, layout);
+        let kept = || self.scene.seams.iter().any(|s| !s.joined);
+        match self.pieces.iter().rev().find(|p| if sewing { p.rest.len() } else { p.nodes } == layout.len()) {
+            Some(p) if sewing => tree.sewing(p.point.clone()),
+            Some(p) if kept() => tree.sewing(p.node_points()),
+            _ => tree,
+        }
     }
 
     /// Runs one level.
@@ -465,17 +491,13 @@ impl<'a> Work<'a> {
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
-        x: &mut Vec<Vec3>,
+        x: &mut [Vec3],
         pace: &Pace,
         done: &dyn Fn(&[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
-        let tree = match self.pieces.last() {
-            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
-            _ => tree,
-        };
+        let tree = self.scene.self_collision.then(|| self.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
@@ -496,7 +518,12 @@ impl<'a> Work<'a> {
             }
             if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        report.outcome = relax(system, layout, tree.as_ref(), x, pace, &mut watch)?;
+        let late = || self.clock.elapsed() > self.rest.budget;
+        match relax(system, layout, tree.as_ref(), x, pace, &mut watch, &late) {
+            Ok(outcome) => report.outcome = outcome,
+            Err(Halt::NotPositive(error)) => return Err(error.into()),
+            Err(Halt::Stopped) => stop = Some(self.timeout()),
+        }
         match stop {
             Some(RestError::Timeout { seconds, level, levels, .. }) => {
                 Err(RestError::Timeout { seconds, level, levels, positions: self.carried(x) })
@@ -537,12 +564,22 @@ impl<'a> Work<'a> {
         Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * self.strongest() })
     }
 
+    /// Refuses cloth that the strain limit could not hold.
+    fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
+        match self.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
+            Some((index, strain, limit)) => {
+                Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
+            }
+            None => Ok(()),
+        }
+    }
+
     /// Stretch stiffness of the stiffest panel, N/m.
     fn strongest(&self) -> f64 {
         self.cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
     }
 
-    fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> System<'a> {
+    fn system(&self, pieces: &Pieces, sheet: &Sheet, open: bool) -> Result<System<'a>, RestError> {
         let n = sheet.vertex_count();
         let mut pinned = vec![false; n];
         let mut panel = vec![0; n];
@@ -579,10 +616,21 @@ impl<'a> Work<'a> {
         sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
         let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
         let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
-        let layers =
-            self.scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-        let elastic = Elastic::new(sheet, &self.cloths, |t| pieces.cloth(t));
-        System {
+        let order = |p: &usize| p.checked_sub(1).map_or(0, |k| self.scene.panels[k].layer);
+        let ordered = self.scene.panels.iter().any(|p| p.layer > 0);
+        let layers = self.scene.self_collision.then(|| Layers {
+            thickness,
+            stiffness,
+            corners,
+            order: if ordered { panel.iter().map(order).collect() } else { vec![] },
+            ..Layers::default()
+        });
+        let cut = pieces.uncut().transpose()?;
+        let cut = cut.as_ref().unwrap_or(sheet);
+        let limit = self.scene.strain_limit;
+        let elastic = Elastic::calibrated_on(cut, sheet, &self.cloths, limit, |t| pieces.cloth(t))
+            .with(pieces.springs(open));
+        Ok(System {
             elastic,
             masses: sheet.masses().to_vec(),
             gravity: if open { Vec3::zeros() } else { gravity(self.scene) },
@@ -593,12 +641,27 @@ impl<'a> Work<'a> {
             touches: vec![],
             anchors: vec![None; n],
             slides: vec![Vec3::zeros(); n],
-            ease: super::newton::EASE.0,
-            holds: false,
-            slips: vec![false; n],
             loads: vec![0.0; n],
-        }
+            seen: vec![],
+        })
     }
+}
+
+/// Crossings of a level before it is sewn; none where they do not matter.
+fn crossings_at_start(scene: &Scene, pieces: &Pieces, start: &[Vec3]) -> Result<usize, ClothError> {
+    if !scene.self_collision {
+        return Ok(0);
+    }
+    let sheet = pieces.open_sheet(&cloths(scene))?;
+    let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
+    Ok(unordered(scene, pieces, &tree.crossings(start)))
+}
+
+/// Crossings of vertices of one layer: those of two layers are resolved by their order.
+fn unordered(scene: &Scene, pieces: &Pieces, crossings: &[([u32; 2], [u32; 3])]) -> usize {
+    let of = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let layers = Layers { order: pieces.panel.iter().map(of).collect(), ..Layers::default() };
+    layers.unordered(crossings)
 }
 
 /// What no panel and what each panel is made of.
@@ -649,6 +712,8 @@ fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
     if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
 }
 
+#[cfg(test)]
+mod sewn_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Everything that acts on one level's nodes, as one potential: value, gradient and matrix.
 //!
 //! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its surface, so that
-//! vertices rest outside it), and friction as a potential about anchors that stick and, when the limit is reached, are
-//! dragged along (the elastic-plastic form of Coulomb's law). Normals and limits of friction are those of the step's start.
+//! vertices rest outside it), and friction as a potential about anchors: a force that grows with the way slid and nears
+//! Coulomb's limit without reaching it, so that every state of rest keeps the law. Anchors are dragged along while the
+//! cloth moves fast. Normals and limits of friction are those of the step's start.
 
 use super::elastic::Elastic;
 use super::layers::Layers;
@@ -81,16 +82,21 @@ pub struct System<'a> {
     pub anchors: Vec<Option<Vec3>>,
     /// How far friction holds each node back when it first touches: what the coarser level found, m.
     pub slides: Vec<Vec3>,
-    /// Whether friction holds without limit for now: the last slides are settled by springs, and the limit is looked at
-    /// when they have come to rest.
-    pub holds: bool,
-    /// Share of friction's stiffness that nodes which slide put into the matrix: little, or they would hardly slide;
-    /// more where steps overshoot.
-    pub ease: f64,
-    /// Nodes that slid in the last step.
-    pub slips: Vec<bool>,
     /// What presses each node on the body, a mean over the last steps, N.
     pub loads: Vec<f64>,
+    /// Where each node was last seen from the body; empty before the first step.
+    pub seen: Vec<Seen>,
+}
+
+/// How far a node was from the body when that was last looked up: it bounds how far it can be now.
+#[derive(Debug, Clone, Copy)]
+pub struct Seen {
+    /// Where the node was.
+    pub at: Vec3,
+    /// Its distance, negative inside, or a bound below it, m.
+    pub distance: f64,
+    /// Whether the distance is exact.
+    pub exact: bool,
 }
 
 impl System<'_> {
@@ -102,10 +108,59 @@ impl System<'_> {
         Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads).chain(layers))
     }
 
-    /// The body nearest to each node, if within reach.
+    /// The body nearest to each node, if it presses there.
     fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
-        let Some(s) = &self.support else { return vec![None; x.len()] };
-        s.nearest(x)
+        if self.support.is_none() {
+            return vec![None; x.len()];
+        }
+        self.looks(x).into_iter().map(|(_, near)| near).collect()
+    }
+
+    /// The same, remembering what was seen.
+    fn look(&mut self, x: &[Vec3]) -> Vec<Option<Nearest>> {
+        if self.support.is_none() {
+            return vec![None; x.len()];
+        }
+        let found = self.looks(x);
+        self.seen = found.iter().map(|(seen, _)| *seen).collect();
+        found.into_iter().map(|(_, near)| near).collect()
+    }
+
+    /// What each node sees of the body. What was seen earlier saves the search, or narrows it.
+    fn looks(&self, x: &[Vec3]) -> Vec<(Seen, Option<Nearest>)> {
+        let Some(s) = &self.support else { return Vec::new() };
+        let within: Vec<Option<f64>> =
+            x.iter().enumerate().map(|(i, p)| s.reach(p, s.offsets[i], self.seen.get(i))).collect();
+        let asked: Vec<usize> = (0..x.len()).filter(|&i| within[i].is_some()).collect();
+        let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
+        let reach: Vec<f64> = asked.iter().filter_map(|&i| within[i]).collect();
+        let mut found = s.body.nearest(&points, &reach).into_iter();
+        let one = |(i, p): (usize, &Vec3)| match (within[i], self.seen.get(i)) {
+            (None, Some(seen)) => (*seen, None),
+            (reach, _) => match found.next().flatten() {
+                Some(n) => {
+                    let seen = Seen { at: *p, distance: n.distance, exact: true };
+                    (seen, (n.distance < NEAR * s.offsets[i]).then_some(n))
+                }
+                None => (Seen { at: *p, distance: reach.unwrap_or(0.0), exact: false }, None),
+            },
+        };
+        x.iter().enumerate().map(one).collect()
+    }
+
+    /// Ends moves that lead into the body just outside it.
+    pub fn clear_of_body(&self, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(s) = &self.support else { return };
+        let gap = |i: usize| 0.5 * s.offsets[i];
+        let is_free = |i: usize| {
+            self.seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > gap(i))
+        };
+        let asked: Vec<usize> = (0..x.len()).filter(|&i| !is_free(i)).collect();
+        let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
+        let gaps: Vec<f64> = asked.iter().map(|&i| gap(i)).collect();
+        let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
+        s.body.guard(&points, &mut guarded, &gaps);
+        asked.iter().zip(guarded).for_each(|(&i, m)| moves[i] = m);
     }
 
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
@@ -134,12 +189,18 @@ impl System<'_> {
         self.elastic.value(x) + weight
     }
 
+    /// Whether crossings of the start are still being undone.
+    #[must_use]
+    pub fn is_tangled(&self) -> bool {
+        self.layers.as_ref().is_some_and(|l| !l.tangled.is_empty())
+    }
+
     /// Finds the touches at `x`: call it at the start of each step.
     pub fn touch(&mut self, x: &[Vec3]) {
         if let Some(l) = &mut self.layers {
             l.contacts = l.touching(x);
         }
-        let near = self.nearest(x);
+        let near = self.look(x);
         let Some(s) = &mut self.support else { return };
         s.allow_for_sag(&near, x);
         let mut anchors = vec![None; x.len()];
@@ -149,7 +210,10 @@ impl System<'_> {
             let Some(n) = n else { continue };
             let force = s.stiffness[i] * (s.offsets[i] - n.distance).max(0.0);
             // While Newton's steps swing between touching and not, friction follows the mean.
-            loads[i] = if self.anchors[i].is_some() { 0.5 * (self.loads[i] + force) } else { force };
+            // A node that has just come down will carry its weight at least.
+            let weight = -self.masses[i] * self.gravity.dot(&n.normal);
+            let first = if n.distance < 1.1 * s.offsets[i] { force.max(weight) } else { force };
+            loads[i] = if self.anchors[i].is_some() { 0.5 * (self.loads[i] + force) } else { first };
             if force > 0.0 || loads[i] > 0.0 {
                 anchors[i] = Some(self.anchors[i].unwrap_or(x[i] - std::mem::take(&mut self.slides[i])));
                 self.touches.push(Touch { node: i as u32, normal: n.normal, force, load: loads[i] });
@@ -158,38 +222,17 @@ impl System<'_> {
         (self.anchors, self.loads) = (anchors, loads);
     }
 
-    /// Drags anchors along where friction is beyond its limit, until it is `share` of the limit: call it at the end of each
-    /// step that may slide.
-    pub fn drag(&mut self, x: &[Vec3], share: f64) {
-        let dragged: Vec<(u32, (bool, Vec3))> = self.rubs().map(|r| (r.node, r.dragged(x, share))).collect();
-        self.slips.fill(false);
-        for (i, (slips, anchor)) in dragged {
-            self.anchors[i as usize] = Some(anchor);
-            self.slips[i as usize] = slips;
-        }
+    /// Drags anchors along behind nodes that slide: call it at the end of each step that moves far.
+    pub fn drag(&mut self, x: &[Vec3]) {
+        let dragged: Vec<(u32, Vec3)> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
+        dragged.into_iter().for_each(|(i, anchor)| self.anchors[i as usize] = Some(anchor));
     }
 
-    /// Friction that the sheet as a whole asks for beyond its limit, as a share of all it can give: what single nodes ask
-    /// for against each other cancels, for they may slide and stop.
-    #[must_use]
-    pub fn excess(&self, x: &[Vec3]) -> f64 {
-        let (mut excess, mut limit) = (Vec3::zeros(), 0.0);
-        for r in self.rubs() {
-            let (along, s) = r.slide(x);
-            let beyond = s * r.stiffness - r.limit;
-            if beyond > 0.0 {
-                excess += along * (beyond / s);
-            }
-            limit += r.limit;
-        }
-        if limit > 0.0 { excess.norm() / limit } else { 0.0 }
-    }
-
-    /// How far friction holds each node back at `x`, m. It is force over stiffness, so it is the same on a finer mesh.
+    /// How far each node has slid from its anchor at `x`, m; the same on a finer mesh.
     #[must_use]
     pub fn held_back(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut slides = vec![Vec3::zeros(); x.len()];
-        self.rubs().for_each(|r| slides[r.node as usize] = r.slide(x).0);
+        self.rubs().for_each(|r| slides[r.node as usize] = r.slide(x).0 * r.soft);
         slides
     }
 
@@ -198,16 +241,8 @@ impl System<'_> {
         self.touches.iter().filter_map(move |t| {
             let s = s.filter(|s| s.friction[t.node as usize] > 0.0)?;
             let anchor = self.anchors[t.node as usize]?;
-            Some(Rub {
-                node: t.node,
-                normal: t.normal,
-                anchor,
-                limit: s.friction[t.node as usize] * t.load,
-                slips: self.slips[t.node as usize],
-                ease: self.ease,
-                holds: self.holds,
-                stiffness: s.stiffness[t.node as usize],
-            })
+            let limit = s.friction[t.node as usize] * t.load;
+            Some(Rub { node: t.node, normal: t.normal, anchor, limit, soft: SOFT })
         })
     }
 
@@ -224,11 +259,19 @@ impl System<'_> {
         g
     }
 
-    /// Positive definite matrix at the step's start: second derivative plus `inertia` times the masses.
-    pub fn matrix(&self, x: &[Vec3], pattern: &Pattern, inertia: f64, values: &mut Vec<Matrix3<f64>>) {
+    /// Matrix at the step's start: second derivative plus `inertia` times the masses. Without `compression` it is positive
+    /// definite.
+    pub fn matrix(
+        &self,
+        x: &[Vec3],
+        pattern: &Pattern,
+        inertia: f64,
+        compression: bool,
+        values: &mut Vec<Matrix3<f64>>,
+    ) {
         values.clear();
         values.resize(pattern.blocks(), Matrix3::zeros());
-        self.elastic.add_matrix(x, values);
+        self.elastic.add_matrix(x, compression, values);
         for (v, m) in values.iter_mut().zip(&self.masses) {
             (0..3).for_each(|c| v[(c, c)] += m * inertia);
         }
@@ -266,15 +309,16 @@ impl Support<'_> {
         }
     }
 
-    /// The body nearest to each node, where it presses.
-    #[must_use]
-    pub fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
-        let within: Vec<f64> = self.offsets.iter().map(|o| o + self.depth).collect();
-        let mut near = self.body.nearest(x, &within);
-        for (n, o) in near.iter_mut().zip(&self.offsets) {
-            *n = n.filter(|n| n.distance < NEAR * o);
+    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that it is far.
+    fn reach(&self, p: &Vec3, offset: f64, seen: Option<&Seen>) -> Option<f64> {
+        let within = offset + self.depth;
+        let Some(seen) = seen else { return Some(within) };
+        let way = (p - seen.at).norm();
+        match seen.distance - way > NEAR * offset {
+            true => None,
+            false if seen.exact => Some(within.min(seen.distance.abs() + way + NUDGE)),
+            false => Some(within),
         }
-        near
     }
 }
 
@@ -321,67 +365,56 @@ impl Thread {
     }
 }
 
+/// What a bound on a distance is widened by against rounding, m.
+const NUDGE: f64 = 1e-9;
+
 /// Share of the offset up to which a node that has touched keeps its place on the body.
 const NEAR: f64 = 1.5;
 
-/// Friction of one node.
+/// Friction of one node: a potential of how far it has slid from its anchor, whose slope nears the limit.
 struct Rub {
     node: u32,
-    slips: bool,
-    ease: f64,
-    holds: bool,
     normal: Vec3,
     anchor: Vec3,
     limit: f64,
-    stiffness: f64,
+    soft: f64,
 }
 
 impl Rub {
+    /// The way from the anchor along the body, and the root of one plus its square in units of the soft way.
     fn slide(&self, x: &[Vec3]) -> (Vec3, f64) {
         let d = x[self.node as usize] - self.anchor;
-        let along = d - self.normal * self.normal.dot(&d);
-        (along, along.norm())
+        let along = (d - self.normal * self.normal.dot(&d)) / self.soft;
+        (along, (1.0 + along.norm_squared()).sqrt())
     }
 
     fn value(&self, x: &[Vec3]) -> f64 {
-        let (_, s) = self.slide(x);
-        if self.holds || s * self.stiffness <= self.limit {
-            0.5 * self.stiffness * s * s
-        } else {
-            self.limit * (s - 0.5 * self.limit / self.stiffness)
-        }
+        self.limit * self.soft * (self.slide(x).1 - 1.0)
     }
 
     fn gradient(&self, x: &[Vec3]) -> Vec3 {
-        let (along, s) = self.slide(x);
-        if self.holds || s * self.stiffness <= self.limit {
-            along * self.stiffness
-        } else {
-            along * (self.limit / s)
-        }
+        let (along, root) = self.slide(x);
+        along * (self.limit / root)
     }
 
     fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
+        let (along, root) = self.slide(x);
         let flat = Matrix3::identity() - self.normal * self.normal.transpose();
-        if self.holds || !self.slips {
-            return flat * self.stiffness;
-        }
-        let (along, s) = self.slide(x);
-        let way = if s > 0.0 { along / s } else { along };
-        (flat - way * way.transpose() * (1.0 - ALONG)) * (self.stiffness * self.ease)
+        (flat - along * along.transpose() / (root * root)) * (self.limit / (self.soft * root))
     }
 
-    /// Whether the step has dragged it beyond the limit, and where the anchor is then.
-    fn dragged(&self, x: &[Vec3], share: f64) -> (bool, Vec3) {
-        let (along, s) = self.slide(x);
-        let most = self.limit / self.stiffness;
-        if s <= most {
-            (false, self.anchor)
-        } else {
-            (true, x[self.node as usize] - along * (share * most / s))
-        }
+    /// Where the anchor is after it has been dragged along.
+    fn dragged(&self, x: &[Vec3]) -> Vec3 {
+        let (along, _) = self.slide(x);
+        let r = along.norm();
+        if r <= DRAG { self.anchor } else { x[self.node as usize] - along * (self.soft * DRAG / r) }
     }
 }
 
-/// Share of its stiffness that friction keeps in the matrix along the way that a node slides.
-const ALONG: f64 = 0.1;
+/// How far behind an anchor is dragged, in soft ways: friction is then half of its limit, so that what slides stops with
+/// some to spare.
+const DRAG: f64 = 0.577;
+
+/// The way that a node slides before friction comes near its limit, m: at this way it is 0.7 of it. Longer converges
+/// sooner; cloth creeps that far before it holds.
+const SOFT: f64 = 1e-4;

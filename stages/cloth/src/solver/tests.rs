@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{FreeEdge, Hinge, Rigidity};
+use crate::bending::{Hinge, Rigidity};
 use crate::constraint::Plane;
 use crate::fabric::Fabric;
 use crate::force::Vec3;
@@ -21,8 +21,7 @@ fn square(layout: Layout, n: usize) -> (Rectangle, Sheet, Model, State) {
     let d = Rigidity::of(&fabric());
     let model = Model::of(&sheet)
         .with(Triangles::new(&sheet, Woven::new(&fabric()).unwrap()))
-        .with(Hinge::new(&sheet, &d).unwrap())
-        .with(FreeEdge::new(&sheet, &d, |_| true).unwrap());
+        .with(Hinge::new(&sheet, &d).unwrap());
     let state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     (mesh, sheet, model, state)
 }

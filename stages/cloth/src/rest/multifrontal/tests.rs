@@ -28,12 +28,17 @@ fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
     (pattern, values, layout)
 }
 
+fn factored(symbolic: &Symbolic, values: &[Matrix3<f64>]) -> Result<Factor, Halt> {
+    let mut factor = Factor::default();
+    symbolic.factor(values, &mut factor, &|| false).map(|()| factor)
+}
+
 #[test]
 fn the_solution_solves() {
     for n in [2, 3, 7, 20, 45] {
         let (pattern, values, layout) = sheet(n);
         let symbolic = Symbolic::new(&pattern, &layout);
-        let factor = symbolic.factor(&values).unwrap();
+        let factor = factored(&symbolic, &values).unwrap();
         let want: Vec<Vector3<f64>> =
             (0..n * n).map(|i| Vector3::new(i as f64, 1.0, -2.0 * i as f64).map(f64::cos)).collect();
         let mut x = vec![Vector3::zeros(); n * n];
@@ -48,7 +53,7 @@ fn the_solution_solves() {
 fn an_indefinite_matrix_is_named() {
     let (pattern, mut values, layout) = sheet(9);
     values[40] -= Matrix3::identity() * 100.0;
-    let error = Symbolic::new(&pattern, &layout).factor(&values).unwrap_err();
+    let error = factored(&Symbolic::new(&pattern, &layout), &values).unwrap_err();
     assert!(error.to_string().starts_with("the stiffness matrix is not positive definite at node"));
 }
 
@@ -58,7 +63,7 @@ fn one_thread_and_many_give_the_same_bits() {
     let symbolic = Symbolic::new(&pattern, &layout);
     let with = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| symbolic.factor(&values).unwrap().columns)
+        pool.install(|| factored(&symbolic, &values).unwrap().columns)
     };
     assert_eq!(with(1), with(4));
 }
@@ -84,7 +89,7 @@ fn speed() {
         let symbolic = Symbolic::new(&pattern, &layout);
         let t1 = t.elapsed();
         let t = std::time::Instant::now();
-        let factor = symbolic.factor(&values).unwrap();
+        let factor = factored(&symbolic, &values).unwrap();
         let t2 = t.elapsed();
         let t = std::time::Instant::now();
         let mut x = vec![Vector3::new(1.0, 2.0, 3.0); n * n];
@@ -98,4 +103,12 @@ fn speed() {
             t.elapsed()
         );
     }
+}
+
+#[test]
+fn a_factorization_can_be_stopped() {
+    let (pattern, values, layout) = sheet(20);
+    let mut factor = Factor::default();
+    let stopped = Symbolic::new(&pattern, &layout).factor(&values, &mut factor, &|| true);
+    assert_eq!(stopped, Err(Halt::Stopped));
 }

@@ -1,0 +1,72 @@
+//! The solvers that step, made for one sheet.
+
+use crate::bending::Rigidity;
+use crate::error::ClothError;
+use crate::fabric::Fabric;
+use crate::force::Vec3;
+use crate::mesh::Sheet;
+use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
+
+/// Share of the explicit limit that the steps start with: cloth stiffens.
+const STABLE: f64 = 0.8;
+
+/// A solver and what it trades.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// Explicit, second order, undamped; as many small steps as stability asks for.
+    CentralDifferences,
+    /// Stable at any step, damps what the step does not resolve.
+    ImplicitEuler {
+        /// Force left on a vertex, N.
+        tolerance: f64,
+        /// Conjugate gradients to this relative residual instead of a factor.
+        relative: Option<f64>,
+    },
+    /// Positions by Gauss-Seidel in small steps: always a picture, too soft where steps are few.
+    Xpbd {
+        /// Small steps in a step.
+        substeps: usize,
+    },
+    /// Local and global turns with one factor.
+    Projective {
+        /// Turns a step.
+        iterations: usize,
+    },
+}
+
+impl Method {
+    /// The solver for steps of `dt`, s.
+    pub(super) fn solver(
+        self,
+        sheet: &Sheet,
+        model: &Model,
+        x: &[Vec3],
+        fabric: &Fabric,
+        dt: f64,
+    ) -> Result<Box<dyn Solver>, ClothError> {
+        Ok(match self {
+            Self::CentralDifferences => {
+                // A whole number of stable steps, so that an end in time is met by whole steps.
+                let steps = (dt / (STABLE * CentralDifferences::limit(model, x))).ceil().max(1.0);
+                Box::new(CentralDifferences::adaptive(dt / steps))
+            }
+            Self::ImplicitEuler { tolerance, relative } => {
+                let mut solver = ImplicitEuler::new(dt, tolerance);
+                if let Some(tolerance) = relative {
+                    solver.newton.linear = LinearMethod::ConjugateGradients { tolerance };
+                }
+                Box::new(solver)
+            }
+            Self::Xpbd { substeps } => Box::new(Xpbd::new(sheet, fabric, dt, substeps)?),
+            Self::Projective { iterations } => {
+                let rigidity = Rigidity::of(fabric);
+                Box::new(Projective::new(sheet, model, fabric.stretch(), &rigidity, dt, iterations)?)
+            }
+        })
+    }
+
+    /// Whether it takes shorter steps than it is given: an end in time is then met to one of them.
+    pub(super) fn chooses_its_step(self) -> bool {
+        matches!(self, Self::CentralDifferences)
+    }
+}

@@ -1,0 +1,260 @@
+//! `Motion`: a whole scene in time, with any of the solvers that step.
+//!
+//! Method: a step of the solver for the sheet alone, then three corrections of where it wants to go: seams close at a
+//! set speed as if by hands, cloth stays off cloth, cloth stays off the body with Coulomb's friction; at last the step is cut
+//! short wherever anything would pass through anything. Pairs that have met become one vertex, with their momentum.
+//! Cost: steps times one solver step; contacts are linear in the triangles. Limit: corrections after the step are of first
+//! order in time whatever the solver is, and a stack of many layers settles slowly.
+
+mod contact;
+mod error;
+mod method;
+mod moving;
+mod seams;
+
+#[cfg(test)]
+mod tests;
+
+pub use error::MotionError;
+pub use method::Method;
+
+use crate::bench::Models;
+use crate::fabric::Fabric;
+use crate::rest::pieces::Pieces;
+use crate::rest::solve::Wearer;
+use crate::scene::Scene;
+use moving::Moving;
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+type Vec3 = Vector3<f64>;
+
+/// When a motion ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Until {
+    /// After the phases of the scene, each for its seconds.
+    Phases,
+    /// Sewn without weight, then at rest under the last phase's gravity, or after so many seconds of either.
+    Rest {
+        /// Way of every vertex in a sixtieth of a second, as a speed, m/s.
+        speed: f64,
+        /// Change of the energy in that time as a share of itself.
+        energy: f64,
+        /// Longest time for sewing, and again for draping, s.
+        longest: f64,
+    },
+}
+
+/// Settings of a motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Motion {
+    /// The solver.
+    pub method: Method,
+    /// Membrane and bending, for solvers that take them as energies.
+    pub models: Models,
+    /// Time between two looks at contacts, s. Above 1/120 s a tight garment slips off: contacts hold after the step, not in it.
+    pub dt: f64,
+    /// Mass-proportional drag, 1/s.
+    pub drag: f64,
+    /// Stiffness-proportional damping time, s; of implicit Euler and central differences.
+    pub viscosity: f64,
+    /// Speed at which the two sides of a seam are brought together, m/s.
+    pub closing: f64,
+    /// Seams are joined when their gaps are below this, m.
+    pub join_gap: f64,
+    /// When to end.
+    pub until: Until,
+    /// Wall time before giving up.
+    pub budget: Duration,
+}
+
+impl Default for Motion {
+    fn default() -> Self {
+        Self {
+            method: Method::ImplicitEuler { tolerance: 1e-4, relative: None },
+            models: Models::DEFAULT,
+            dt: 1.0 / 240.0,
+            drag: 0.0,
+            viscosity: 0.0,
+            closing: 0.5,
+            join_gap: 5e-4,
+            until: Until::Phases,
+            budget: Duration::from_secs(600),
+        }
+    }
+}
+
+/// How far a motion has come.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Progress {
+    /// Simulated time, s.
+    pub time: f64,
+    /// Steps made.
+    pub steps: usize,
+    /// Greatest way of a vertex since the last look, as a speed, m/s.
+    pub speed: f64,
+    /// Widest open seam, m; 0 once all are joined.
+    pub gap: f64,
+    /// Greatest force that the solver's equations leave, N.
+    pub residual: f64,
+}
+
+/// Where a motion ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Moved {
+    /// Position of every vertex of the scene, m.
+    pub positions: Vec<Vec3>,
+    /// Its velocity, m/s.
+    pub velocities: Vec<Vec3>,
+    /// How it ended.
+    pub progress: Progress,
+    /// Whether it is at rest; after [`Until::Phases`] always true, for that is all that was asked.
+    pub converged: bool,
+    /// Elastic and gravitational energy, J.
+    pub energy: f64,
+    /// Widest seam when it was joined, m; nothing where there are none.
+    pub joined_at: Option<f64>,
+}
+
+/// Time between two looks at speed and energy, s.
+const LOOK: f64 = 1.0 / 60.0;
+
+/// Times nearer than this are the same, s.
+const SAME_TIME: f64 = 1e-9;
+
+impl Motion {
+    /// Moves `scene`; `progress` hears of every step and may stop it.
+    ///
+    /// # Errors
+    /// Every [`MotionError`].
+    pub fn run(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Moved, MotionError> {
+        scene.check()?;
+        let fabric = one_fabric(scene)?;
+        let pieces = Pieces::new(scene);
+        let start = contact::clear_start(scene, wearer)?;
+        let mut run = Run { settings: self, scene, wearer, fabric, pieces, clock: Instant::now(), progress };
+        let open = Moving::open(&run, start)?;
+        match self.until {
+            Until::Phases => run.phases(open),
+            Until::Rest { speed, energy, longest } => run.rest(open, speed, energy, longest),
+        }
+    }
+}
+
+/// The fabric of all panels.
+fn one_fabric(scene: &Scene) -> Result<&Fabric, MotionError> {
+    let first = scene.fabric_of(0);
+    match (0..scene.panels.len()).find(|&k| scene.fabric_of(k) != first) {
+        Some(k) => Err(MotionError::Fabrics { panel: scene.panels[k].name.clone() }),
+        None => Ok(first),
+    }
+}
+
+/// A motion under way.
+struct Run<'a> {
+    settings: &'a Motion,
+    scene: &'a Scene,
+    wearer: Option<Wearer<'a>>,
+    fabric: &'a Fabric,
+    pieces: Pieces,
+    clock: Instant,
+    progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
+}
+
+impl Run<'_> {
+    fn phases(&mut self, mut moving: Moving) -> Result<Moved, MotionError> {
+        for phase in &self.scene.phases {
+            moving.set_gravity(phase.gravity);
+            let end = moving.progress.time + phase.seconds;
+            while end - moving.progress.time > SAME_TIME {
+                self.step(&mut moving, end)?;
+                if moving.seams_met(self.settings.join_gap) {
+                    moving = moving.join(self)?;
+                }
+            }
+        }
+        self.closed(&moving)?;
+        Ok(self.finish(&moving, true))
+    }
+
+    fn rest(
+        &mut self,
+        mut moving: Moving,
+        speed: f64,
+        energy: f64,
+        longest: f64,
+    ) -> Result<Moved, MotionError> {
+        moving.set_gravity(Vec3::zeros());
+        while !moving.seams.is_empty() && moving.progress.time < longest {
+            self.step(&mut moving, f64::INFINITY)?;
+            if moving.seams_met(self.settings.join_gap) {
+                moving = moving.join(self)?;
+            }
+        }
+        self.closed(&moving)?;
+        moving.set_gravity(self.scene.phases.last().map(|p| p.gravity).unwrap_or_default());
+        let end = moving.progress.time + longest;
+        let mut stored = f64::INFINITY;
+        while moving.progress.time < end {
+            let look = moving.progress.time + LOOK;
+            let before = moving.state.x.clone();
+            while look - moving.progress.time > SAME_TIME {
+                self.step(&mut moving, look)?;
+            }
+            let way = before.iter().zip(&moving.state.x).map(|(a, b)| (b - a).norm()).fold(0.0, f64::max);
+            let now = moving.energy();
+            let settled = (now - stored).abs() <= energy * now.abs().max(f64::MIN_POSITIVE);
+            stored = now;
+            moving.progress.speed = way / LOOK;
+            if moving.progress.speed < speed && settled {
+                return Ok(self.finish(&moving, true));
+            }
+        }
+        Ok(self.finish(&moving, false))
+    }
+
+    fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
+        moving.step(self.settings, self.wearer, end)?;
+        if (self.progress)(&moving.progress).is_break() {
+            return Err(MotionError::Stopped);
+        }
+        if self.clock.elapsed() > self.settings.budget {
+            return Err(MotionError::Timeout {
+                seconds: self.clock.elapsed().as_secs_f64(),
+                time: moving.progress.time,
+            });
+        }
+        Ok(())
+    }
+
+    fn closed(&self, moving: &Moving) -> Result<(), MotionError> {
+        match moving.seams.widest(&moving.state.x) {
+            Some((pair, gap)) => {
+                let seam = seams::name_of(self.scene, &self.pieces, pair);
+                Err(MotionError::SeamNotClosed { seam, gap, time: moving.progress.time })
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn finish(&self, moving: &Moving, converged: bool) -> Moved {
+        let spread = |values: &[Vec3]| match moving.is_joined {
+            true => self.pieces.spread(values),
+            false => values.to_vec(),
+        };
+        Moved {
+            positions: spread(&moving.state.x),
+            velocities: spread(&moving.state.v),
+            progress: moving.progress,
+            converged,
+            energy: moving.energy(),
+            joined_at: moving.joined_at,
+        }
+    }
+}

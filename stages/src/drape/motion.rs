@@ -1,0 +1,121 @@
+//! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
+
+use crate::cloth::check_garment;
+use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::Duration;
+use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Until};
+use toile_cloth::rest::solve::Wearer;
+use toile_cloth::scene::{Phase as ScenePhase, Scene};
+use toile_core::prelude::*;
+
+/// Settings that all of them share.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Course {
+    pub(super) method: Method,
+    pub(super) gravity: f64,
+    pub(super) dt: f64,
+    pub(super) drag: f64,
+    pub(super) speed: f64,
+    pub(super) longest: f64,
+    pub(super) join_gap: f64,
+    pub(super) time_limit: f64,
+}
+
+/// Distance at which cloth is held off itself where there is no collider, m.
+const THICKNESS: f64 = 1e-3;
+/// Change of energy in a sixtieth of a second at rest, as a share.
+const SETTLED: f64 = 1e-3;
+
+/// Sews the garment and lets it come to rest, or follows the phases of a scene.
+pub(super) fn drape(
+    course: &Course,
+    garment: &Garment,
+    collider: Option<&Collider>,
+    phases: Option<&Phases>,
+    cx: &Context,
+) -> Result<Garment, StageError> {
+    check_garment(garment)?;
+    let card = collider.map(|c| c.scheme.card());
+    let setting = Setting {
+        gravity: Vector3::new(0.0, -course.gravity, 0.0),
+        thickness: card.map_or(THICKNESS, |c| c.thickness),
+        self_collision: card.is_none_or(|c| c.self_collision),
+    };
+    let scene = with_phases(scene_of(garment, &setting)?, phases);
+    let skin = collider.map(|c| SchemeSkin(c.scheme.as_ref()));
+    let friction = card.map_or(0.0, |c| c.friction);
+    let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
+    let until = match phases {
+        Some(_) => Until::Phases,
+        None => Until::Rest { speed: course.speed, energy: SETTLED, longest: course.longest },
+    };
+    let motion = Motion {
+        method: course.method,
+        dt: course.dt,
+        drag: course.drag,
+        join_gap: course.join_gap,
+        until,
+        budget: Duration::from_secs_f64(course.time_limit),
+        ..Motion::default()
+    };
+    let moved = motion.run(&scene, wearer, &mut |p| tell(p, course.longest, cx));
+    cx.check()?;
+    let moved = moved.map_err(|e| motion_error(&e))?;
+    if !moved.converged {
+        let (speed, time) = (moved.progress.speed * 1e3, moved.progress.time);
+        cx.warn(format!("the cloth still moves by {speed:.0} mm/s after {time:.1} s"));
+    }
+    cx.figure("motion_time", moved.progress.time, "s");
+    Ok(finish(garment, &moved))
+}
+
+fn with_phases(scene: Scene, phases: Option<&Phases>) -> Scene {
+    let Some(phases) = phases else { return scene };
+    let phase = |p: &Phase| ScenePhase { name: p.name.clone(), seconds: p.seconds, gravity: p.gravity };
+    Scene { phases: phases.0.iter().map(phase).collect(), ..scene }
+}
+
+fn tell(p: &Progress, longest: f64, cx: &Context) -> ControlFlow<()> {
+    if cx.check().is_err() {
+        return ControlFlow::Break(());
+    }
+    let gap = if p.gap > 0.0 { format!(", seam gap {:.1} mm", p.gap * 1e3) } else { String::new() };
+    cx.progress(p.time / longest, format!("{:.2} s, fastest {:.0} mm/s{gap}", p.time, p.speed * 1e3));
+    ControlFlow::Continue(())
+}
+
+fn finish(garment: &Garment, moved: &Moved) -> Garment {
+    let mut garment = garment.clone();
+    garment.positions = moved.positions.iter().map(|p| Point3::from(*p)).collect();
+    garment.velocities.clone_from(&moved.velocities);
+    weld_seams(&mut garment);
+    garment.status = SolveStatus {
+        steps: garment.status.steps + moved.progress.steps,
+        converged: moved.converged,
+        energy: moved.energy,
+        max_speed: moved.progress.speed,
+    };
+    garment
+}
+
+pub(super) fn motion_error(error: &MotionError) -> StageError {
+    let message = error.to_string();
+    let (text, hint) = message.split_once("; ").map_or((&*message, None), |(t, h)| (t, Some(h)));
+    let code = match error {
+        MotionError::Cloth(e) => return cloth_error(e),
+        MotionError::Scene(e) => return scene_error(e),
+        MotionError::SeamNotClosed { .. } => ErrorCode::StitchingError,
+        MotionError::InitialPenetration { .. } => ErrorCode::BodyIntersection,
+        MotionError::InitialCrossing { .. } => ErrorCode::SelfIntersection,
+        MotionError::Timeout { .. } => ErrorCode::Timeout,
+        MotionError::Stopped => ErrorCode::Cancelled,
+        MotionError::Fabrics { .. } => ErrorCode::InvalidInput,
+    };
+    let e = StageError::new(code, text);
+    match hint {
+        Some(hint) => e.hint(hint),
+        None => e,
+    }
+}
