@@ -14,7 +14,7 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
     let body = scene.body.as_ref().map(|b| json!({ "obj": body_obj, "friction": b.friction }));
     let phases = scene.phases.iter().map(|p| json!({ "name": p.name, "seconds": p.seconds, "gravity": [p.gravity.x, p.gravity.y, p.gravity.z] }));
-    let seams = scene.seams.iter().map(|s| seam(s));
+    let seams = scene.seams.iter().map(seam);
     let bands = scene.bands.iter().map(
         |b| json!({ "name": b.name, "vertices": b.vertices, "ratio": b.ratio, "stiffness": b.stiffness }),
     );
