@@ -42,9 +42,11 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
         triangles: garment.triangles.clone(),
         panels,
         seams: seams(garment),
+        bands: vec![],
         pinned: garment.pinned.clone(),
         body: None,
         material: material.unwrap_or_else(|| engine::Fabric::isotropic(0.1, 500.0, 0.0, 1e-5)),
+        strain_limit: None,
         phases: vec![Phase { name: "drape".into(), seconds: 0.0, gravity: setting.gravity }],
         self_collision: setting.self_collision,
     })

@@ -5,6 +5,7 @@ use super::layers::Layers;
 use super::pieces::Pieces;
 use super::system::{Support, System, Thread};
 use crate::contact::skin::Skin;
+use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -35,7 +36,7 @@ pub(super) fn assemble<'a>(
     pieces: &Pieces,
     sheet: &Sheet,
     open: bool,
-) -> System<'a> {
+) -> Result<System<'a>, ClothError> {
     let cloths = cloths(scene);
     let n = sheet.vertex_count();
     let mut pinned = vec![false; n];
@@ -73,9 +74,22 @@ pub(super) fn assemble<'a>(
     sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
-    let layers = scene.self_collision.then(|| Layers { thickness, stiffness, corners, ..Layers::default() });
-    let elastic = Elastic::new(sheet, &cloths, |t| pieces.cloth(t));
-    System {
+    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let ordered = scene.panels.iter().any(|p| p.layer > 0);
+    let layers = scene.self_collision.then(|| Layers {
+        thickness,
+        stiffness,
+        corners,
+        order: if ordered { panel.iter().map(order).collect() } else { vec![] },
+        ..Layers::default()
+    });
+    let uncut = pieces.uncut().transpose()?;
+    let elastic =
+        Elastic::calibrated_on(uncut.as_ref().unwrap_or(sheet), sheet, &cloths, scene.strain_limit, |t| {
+            pieces.cloth(t)
+        })
+        .with(pieces.springs(open));
+    Ok(System {
         elastic,
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
@@ -89,7 +103,7 @@ pub(super) fn assemble<'a>(
         loads: vec![0.0; n],
         seen: vec![],
         pulls: vec![],
-    }
+    })
 }
 
 /// What no panel and what each panel is made of.

@@ -65,6 +65,8 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
 fn restrict(fine: &Pieces, kept: &[u32], triangles: Vec<[u32; 3]>) -> Pieces {
     let (point, points) = renumber(kept, &fine.point, fine.points);
     let (node, nodes) = renumber(kept, &fine.node, fine.nodes);
+    let mut number = vec![u32::MAX; fine.rest.len()];
+    kept.iter().enumerate().for_each(|(k, &v)| number[v as usize] = k as u32);
     Pieces {
         rest: kept.iter().map(|&v| fine.rest[v as usize]).collect(),
         triangles,
@@ -73,6 +75,8 @@ fn restrict(fine: &Pieces, kept: &[u32], triangles: Vec<[u32; 3]>) -> Pieces {
         node,
         nodes,
         panel: kept.iter().map(|&v| fine.panel[v as usize]).collect(),
+        gathered: kept.iter().map(|&v| fine.gathered[v as usize]).collect(),
+        bands: fine.bands.iter().map(|b| b.restrict(&number)).collect(),
         piece: kept.iter().map(|&v| fine.piece[v as usize]).collect(),
         pinned: kept.iter().map(|&v| fine.pinned[v as usize]).collect(),
     }

@@ -9,11 +9,15 @@
 
 mod border;
 mod law;
+mod spring;
+
+pub use spring::Spring;
 
 use super::pattern::{Pattern, Slot, add_at};
 use crate::bending::{Calibration, Rigidity, flaps};
 use crate::fabric::Fabric;
 use crate::mesh::{Edge, Sheet, Side};
+use crate::scene::StrainLimit;
 use border::Border;
 use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -46,6 +50,7 @@ pub struct Elastic {
     triangles: Vec<Triangle>,
     hinges: Vec<Hinge>,
     borders: Vec<Border>,
+    springs: Vec<Spring>,
     slots: Vec<[Slot; 6]>,
     bending: Vec<(u32, f64)>,
     /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
@@ -61,28 +66,54 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 
 impl Elastic {
     /// Prepares the sheet's elements; triangle `t` is of `cloths[cloth(t)]`.
     #[must_use]
-    pub fn new(sheet: &Sheet, cloths: &[&Fabric], cloth: impl Fn(usize) -> usize) -> Self {
+    pub fn new(
+        sheet: &Sheet,
+        cloths: &[&Fabric],
+        limit: Option<StrainLimit>,
+        cloth: impl Fn(usize) -> usize,
+    ) -> Self {
+        Self::calibrated_on(sheet, sheet, cloths, limit, cloth)
+    }
+
+    /// The same for a sheet whose rest shapes do not fit together everywhere, with the bending of the `cut` pieces.
+    #[must_use]
+    pub fn calibrated_on(
+        cut: &Sheet,
+        sheet: &Sheet,
+        cloths: &[&Fabric],
+        limit: Option<StrainLimit>,
+        cloth: impl Fn(usize) -> usize,
+    ) -> Self {
         let of = |t: usize| cloth(t).min(cloths.len().saturating_sub(1));
-        let laws = cloths.iter().map(|c| Law::of(c)).collect();
+        let laws = cloths.iter().map(|c| Law::of(c, limit)).collect();
         let triangles = (0..sheet.triangles().len()).map(|t| triangle(sheet, t, of(t) as u32)).collect();
         let bends: Vec<Rigidity> = cloths.iter().map(|c| Rigidity::of(c)).collect();
         let (hinges, borders) = match bends.iter().all(|b| b.warp == 0.0 && b.weft == 0.0) {
             true => (Vec::new(), Vec::new()),
-            false => bending(sheet, |t| &bends[of(t)]),
+            false => bending(&Calibration::of(cut), sheet, |t| &bends[of(t)]),
         };
         let (slots, bending, foretold) = (Vec::new(), Vec::new(), Vec::new());
-        Self { laws, triangles, hinges, borders, slots, bending, foretold }
+        Self { laws, triangles, hinges, borders, springs: Vec::new(), slots, bending, foretold }
+    }
+
+    /// The same with elastic bands.
+    #[must_use]
+    pub fn with(self, springs: Vec<Spring>) -> Self {
+        Self { springs, ..self }
     }
 
     /// The groups of nodes that it couples.
     pub fn couplings(&self) -> impl Iterator<Item = &[u32]> {
-        self.triangles.iter().map(|t| &t.nodes[..]).chain(self.hinges.iter().map(|h| &h.nodes[..]))
+        let sheet =
+            self.triangles.iter().map(|t| &t.nodes[..]).chain(self.hinges.iter().map(|h| &h.nodes[..]));
+        sheet.chain(self.springs.iter().map(|s| &s.nodes[..]))
     }
 
     /// Looks up where its blocks go. The pattern must hold its couplings.
     pub fn bind(&mut self, pattern: &Pattern) {
         let none = Slot { index: 0, flipped: false };
         let at = |i: u32, j: u32| pattern.slot(i, j).unwrap_or(none);
+        self.springs.iter_mut().for_each(|s| s.slot = at(s.nodes[0], s.nodes[1]));
         self.slots = self.triangles.iter().map(|t| PAIRS.map(|(a, b)| at(t.nodes[a], t.nodes[b]))).collect();
         let mut bending = vec![0.0; pattern.blocks()];
         for h in &self.hinges {
@@ -114,7 +145,10 @@ impl Elastic {
             t.area * self.laws[t.cloth as usize].density(metric(&u, &v))
         };
         let bending = |h: &Hinge| 0.5 * h.stiffness * h.curvature(x).norm_squared();
-        sum(&self.triangles, membrane) + sum(&self.hinges, bending) + sum(&self.borders, |b| b.value(x))
+        sum(&self.triangles, membrane)
+            + sum(&self.hinges, bending)
+            + sum(&self.borders, |b| b.value(x))
+            + sum(&self.springs, |s| s.value(x))
     }
 
     /// Adds the derivative of the energy, N.
@@ -135,6 +169,7 @@ impl Elastic {
             h.nodes.iter().zip(&h.weights).for_each(|(&i, w)| gradient[i as usize] += moment * *w);
         }
         self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
+        self.springs.iter().for_each(|s| s.add_gradient(x, gradient));
     }
 
     /// Adds the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite
@@ -160,6 +195,22 @@ impl Elastic {
             let block = &mut values[slot as usize];
             (0..3).for_each(|c| block[(c, c)] += k);
         }
+        self.springs.iter().for_each(|s| s.add_matrix(x, values));
+    }
+
+    /// Greatest excess of a triangle over the strain limit: the triangle, its strain along that yarn and the limit.
+    #[must_use]
+    pub fn over(&self, x: &[Vec3], limit: &StrainLimit) -> Option<(usize, f64, f64)> {
+        let mut worst: Option<(usize, f64, f64)> = None;
+        for (k, t) in self.triangles.iter().enumerate() {
+            let (u, v) = t.columns(x);
+            for (strain, limit) in [(u.norm() - 1.0, limit.weft), (v.norm() - 1.0, limit.warp)] {
+                if strain > limit && worst.is_none_or(|(_, s, l)| strain / limit > s / l) {
+                    worst = Some((k, strain, limit));
+                }
+            }
+        }
+        worst
     }
 }
 
@@ -247,8 +298,11 @@ fn triangle(sheet: &Sheet, t: usize, cloth: u32) -> Triangle {
 }
 
 /// Calibrated hinges, and what takes their false Poisson's ratio out of the border.
-fn bending<'r>(sheet: &Sheet, bend: impl Fn(usize) -> &'r Rigidity) -> (Vec<Hinge>, Vec<Border>) {
-    let calibration = Calibration::of(sheet);
+fn bending<'r>(
+    calibration: &Calibration,
+    sheet: &Sheet,
+    bend: impl Fn(usize) -> &'r Rigidity,
+) -> (Vec<Hinge>, Vec<Border>) {
     let across = |side: &Side| {
         let (r, k) = (&sheet.rest()[side.triangle as usize], side.corner as usize);
         let e = (r[(k + 2) % 3] - r[(k + 1) % 3]).normalize();

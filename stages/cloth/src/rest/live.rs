@@ -55,7 +55,7 @@ impl<'a> Live<'a> {
         }
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene))?;
-        let mut system = assemble(&scene, wearer, &pieces, &sheet, false);
+        let mut system = assemble(&scene, wearer, &pieces, &sheet, false)?;
         system.threads = kept_threads(&scene, &pieces, rest.join_gap);
         let even = vec![1.0; scene.rest.len()];
         let x = pieces.sew(&state.positions, &even);
@@ -129,7 +129,7 @@ impl<'a> Live<'a> {
         self.pieces.pinned.fill(false);
         self.scene.pinned.iter().for_each(|&p| self.pieces.pinned[p as usize] = true);
         self.sheet = self.pieces.sewn_sheet(&cloths(&self.scene))?;
-        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false);
+        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false)?;
         new.threads = kept_threads(&self.scene, &self.pieces, self.rest.join_gap);
         let old = &mut self.system;
         std::mem::swap(&mut new.anchors, &mut old.anchors);

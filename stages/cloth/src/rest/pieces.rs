@@ -1,11 +1,12 @@
 //! The cut pieces of a garment, flat: what one level of the solver works on.
 
+use super::elastic::Spring;
 use super::pattern::Pattern;
 use super::system::{Support, System};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::Scene;
+use crate::scene::{Band, Scene};
 use nalgebra::{Vector2, Vector3};
 
 /// Flat pieces and which of their vertices are sewn into one.
@@ -25,10 +26,54 @@ pub struct Pieces {
     pub nodes: usize,
     /// The panel that each vertex belongs to, counted from 1; 0 for a vertex of none.
     pub panel: Vec<u32>,
+    /// Whether a vertex lies on a seam that gathers.
+    pub gathered: Vec<bool>,
+    /// Elastic bands.
+    pub bands: Vec<Path>,
     /// The connected piece that each vertex belongs to.
     pub piece: Vec<u32>,
     /// Whether a vertex must stay where it is.
     pub pinned: Vec<bool>,
+}
+
+/// An elastic band on one level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Path {
+    /// Its vertices.
+    pub vertices: Vec<u32>,
+    /// Length of each piece between them, unstretched, m; 0 from one side of a seam to the other.
+    pub lengths: Vec<f64>,
+    /// N per unit of strain.
+    pub stiffness: f64,
+}
+
+impl Path {
+    fn new(band: &Band, scene: &Scene, point: &[u32]) -> Self {
+        let length = |w: &[u32]| {
+            let (a, b) = (w[0] as usize, w[1] as usize);
+            if point[a] == point[b] { 0.0 } else { band.ratio * (scene.rest[a] - scene.rest[b]).norm() }
+        };
+        let lengths = band.vertices.windows(2).map(length).collect();
+        Self { vertices: band.vertices.clone(), lengths, stiffness: band.stiffness }
+    }
+
+    /// The path over the vertices that `number` keeps (others are `u32::MAX`).
+    #[must_use]
+    pub fn restrict(&self, number: &[u32]) -> Self {
+        let mut out = Self { vertices: vec![], lengths: vec![], stiffness: self.stiffness };
+        let mut length = 0.0;
+        for (k, &v) in self.vertices.iter().enumerate() {
+            if number[v as usize] != u32::MAX {
+                if !out.vertices.is_empty() {
+                    out.lengths.push(length);
+                }
+                out.vertices.push(number[v as usize]);
+                length = 0.0;
+            }
+            length += self.lengths.get(k).copied().unwrap_or(0.0);
+        }
+        out
+    }
 }
 
 impl Pieces {
@@ -47,20 +92,83 @@ impl Pieces {
         let (piece, _) = groups(n, sides);
         let mut pinned = vec![false; n];
         scene.pinned.iter().for_each(|&p| pinned[p as usize] = true);
+        let mut gathered = vec![false; n];
+        let gathers = scene.seams.iter().filter(|s| s.gather.is_some());
+        gathers.flat_map(|s| &s.pairs).flatten().for_each(|&v| gathered[v as usize] = true);
+        let bands = scene.bands.iter().map(|b| Path::new(b, scene, &point)).collect();
         let (rest, triangles) = (scene.rest.clone(), scene.triangles.clone());
-        Self { rest, triangles, point, points, node, nodes, panel, piece, pinned }
+        Self { rest, triangles, point, points, node, nodes, panel, gathered, bands, piece, pinned }
     }
 
     /// The sheet before sewing: every vertex a node of its own.
     pub fn open_sheet(&self, cloths: &[&Fabric]) -> Result<Sheet, ClothError> {
-        Sheet::flat(&self.rest, &self.triangles, 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
+        Sheet::new(self.rest.len(), self.triangles.clone(), self.corners(), 1.0)?
+            .weighing(|t| cloths[self.cloth(t)].density)
     }
 
     /// The sheet after sewing: every sewn point a node.
     pub fn sewn_sheet(&self, cloths: &[&Fabric]) -> Result<Sheet, ClothError> {
         let nodes = self.triangles.iter().map(|t| t.map(|v| self.node[v as usize])).collect();
-        let corners = self.triangles.iter().map(|t| t.map(|v| self.rest[v as usize])).collect();
-        Sheet::new(self.nodes, nodes, corners, 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
+        Sheet::new(self.nodes, nodes, self.corners(), 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
+    }
+
+    /// The pieces as they are cut, where gathers have changed the sheets; nothing where none do.
+    #[must_use]
+    pub fn uncut(&self) -> Option<Result<Sheet, ClothError>> {
+        self.gathered.contains(&true).then(|| Sheet::flat(&self.rest, &self.triangles, 1.0))
+    }
+
+    /// Rest corners of every triangle; along a gathered seam the longer side's are drawn together to the length of the shorter.
+    fn corners(&self) -> Vec<[Vector2<f64>; 3]> {
+        let mut corners: Vec<[Vector2<f64>; 3]> =
+            self.triangles.iter().map(|t| t.map(|v| self.rest[v as usize])).collect();
+        let mut sides = Vec::new();
+        for (t, v) in self.triangles.iter().enumerate() {
+            for k in 0..3 {
+                let ends = [v[(k + 1) % 3], v[(k + 2) % 3]];
+                if ends.iter().all(|&v| self.gathered[v as usize]) {
+                    let mut key = ends.map(|v| self.point[v as usize]);
+                    key.sort_unstable();
+                    let length = (corners[t][(k + 1) % 3] - corners[t][(k + 2) % 3]).norm();
+                    sides.push((key, t, k, length));
+                }
+            }
+        }
+        sides.sort_unstable_by_key(|s| (s.0, s.1, s.2));
+        for pair in sides.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() == 2) {
+            let shorter = pair[0].3.min(pair[1].3);
+            for &(_, t, k, length) in pair {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let inwards = (corners[t][j] - corners[t][i]) * (0.5 * (1.0 - shorter / length));
+                corners[t][i] += inwards;
+                corners[t][j] -= inwards;
+            }
+        }
+        corners
+    }
+
+    /// The sewn point of every node.
+    #[must_use]
+    pub fn node_points(&self) -> Vec<u32> {
+        let mut points = vec![0; self.nodes];
+        self.node.iter().zip(&self.point).for_each(|(&n, &p)| points[n as usize] = p);
+        points
+    }
+
+    /// Pieces of the bands between two nodes: vertices where seams are open, else nodes.
+    #[must_use]
+    pub fn springs(&self, open: bool) -> Vec<Spring> {
+        let mut springs = Vec::new();
+        for band in &self.bands {
+            for (w, &length) in band.vertices.windows(2).zip(&band.lengths) {
+                let one = self.piece[w[0] as usize] == self.piece[w[1] as usize];
+                let nodes = [w[0], w[1]].map(|v| if open { v } else { self.node[v as usize] });
+                if length > 0.0 && nodes[0] != nodes[1] && (one || !open) {
+                    springs.push(Spring::new(nodes, length, band.stiffness));
+                }
+            }
+        }
+        springs
     }
 
     /// The panel of a triangle, counted from 1; 0 for none.

@@ -12,6 +12,7 @@ pub use super::assemble::Wearer;
 use super::assemble::{KEPT_PULL, assemble, cloths, gravity, kept_threads, spacing, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
+use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
@@ -230,7 +231,12 @@ impl Rest {
             match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
                 Ok(Draped::Rested(state)) => return self.judge(*state),
                 // From its own start the level keeps free of crossings by itself, if slowly.
-                Ok(Draped::Tangled { nodes }) => coarsest = nodes,
+                Ok(Draped::Tangled { pairs, levels: 1, .. }) => {
+                    return Err(RestError::InitialCrossing { pairs });
+                }
+                Ok(Draped::Tangled { nodes, .. }) => {
+                    coarsest = if nodes > coarsest { nodes } else { FINER * coarsest }
+                }
                 // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
                 Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
                 Err(e) => return Err(e),
@@ -252,6 +258,10 @@ enum Draped {
     /// The state carried to the level of so many nodes crosses itself and could not be undone.
     Tangled {
         nodes: usize,
+        /// Crossings left.
+        pairs: usize,
+        /// How many levels there were.
+        levels: usize,
     },
 }
 
@@ -292,6 +302,18 @@ impl<'a> Work<'a> {
             pieces.push(next.pieces.clone());
             coarser.push(next);
         }
+        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
+        while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
+            let pairs = crossings_at_start(scene, coarse, start)?;
+            if pairs == 0 {
+                break;
+            }
+            if coarser.pop().is_none() {
+                return Err(RestError::InitialCrossing { pairs });
+            }
+            pieces.pop();
+            starts.pop();
+        }
         if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
             return Err(RestError::Falls);
         }
@@ -324,13 +346,6 @@ impl<'a> Work<'a> {
         let mut x = self.starts[coarsest].clone();
         let pairs = pieces.seam_pairs();
         let spacing = spacing(pieces, &pairs);
-        if self.scene.self_collision {
-            let tree = ClothTree::new(&sheet, &x).sewing(pieces.point.clone());
-            let pairs = tree.crossings(&x).len();
-            if pairs > 0 {
-                return Err(RestError::InitialCrossing { pairs });
-            }
-        }
         let mut pull = SEAM_PULL * strongest(&self.cloths);
         for _ in 0..HARDER.1 {
             let widest = widest(&x, &pairs);
@@ -342,7 +357,7 @@ impl<'a> Work<'a> {
                 force: pull * spacing,
                 soft: 2.0 * self.rest.join_gap,
             };
-            let mut system = assemble(self.scene, self.body, pieces, &sheet, true);
+            let mut system = assemble(self.scene, self.body, pieces, &sheet, true)?;
             system.threads = pairs.iter().map(thread).collect();
             let farthest = (0.2 * widest).max(0.05);
             let pace =
@@ -382,7 +397,7 @@ impl<'a> Work<'a> {
         for k in (0..self.pieces.len()).rev() {
             let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
             let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-            let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false);
+            let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false)?;
             let mut x = std::mem::take(&mut self.x);
             if slides.len() == x.len() {
                 system.slides = std::mem::take(&mut slides);
@@ -397,10 +412,12 @@ impl<'a> Work<'a> {
                 self.clear(&mut system, &sheet, &place, &mut x, &pace, progress)?;
             }
             if system.is_tangled() {
-                return Ok(Draped::Tangled { nodes: x.len() });
+                let pairs = system.layers.as_ref().map_or(0, |l| l.tangles.len());
+                return Ok(Draped::Tangled { nodes: x.len(), pairs, levels: self.pieces.len() });
             }
             if k == 0 {
                 self.check_kept(&x)?;
+                self.check_strain(&system, &x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
             }
             let finer = |values: &[Vec3]| {
@@ -446,18 +463,30 @@ impl<'a> Work<'a> {
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
+        let tree = self.tree(sheet, &x, false);
         let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
         let slides = self.pieces[0].spread(&system.held_back(&x));
         let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
         let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
         if self.scene.self_collision {
-            let pairs = ClothTree::new(sheet, &x).crossings(&x).len();
+            let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::Crossing { pairs, state: Box::new(state) });
             }
         }
         Ok(state)
+    }
+
+    /// The tree of a level; what thread holds together is no obstacle to itself.
+    fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
+        let tree = ClothTree::new(sheet, layout);
+        let kept = || self.scene.seams.iter().any(|s| !s.joined);
+        match self.pieces.iter().rev().find(|p| if sewing { p.rest.len() } else { p.nodes } == layout.len()) {
+            Some(p) if sewing => tree.sewing(p.point.clone()),
+            Some(p) if kept() => tree.sewing(p.node_points()),
+            _ => tree,
+        }
     }
 
     /// Runs one level.
@@ -473,11 +502,7 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let tree = self.scene.self_collision.then(|| ClothTree::new(sheet, layout));
-        let tree = match self.pieces.last() {
-            Some(p) if sewing => tree.map(|t| t.sewing(p.point.clone())),
-            _ => tree,
-        };
+        let tree = self.scene.self_collision.then(|| self.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let mut stop = None;
@@ -536,6 +561,33 @@ impl<'a> Work<'a> {
         let seam = self.widest_seam(0, &self.pieces[0].spread(x));
         Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.cloths) })
     }
+
+    /// Refuses cloth that the strain limit could not hold.
+    fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
+        match self.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
+            Some((index, strain, limit)) => {
+                Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Crossings of a level before it is sewn; none where they do not matter.
+fn crossings_at_start(scene: &Scene, pieces: &Pieces, start: &[Vec3]) -> Result<usize, ClothError> {
+    if !scene.self_collision {
+        return Ok(0);
+    }
+    let sheet = pieces.open_sheet(&cloths(scene))?;
+    let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
+    Ok(unordered(scene, pieces, &tree.crossings(start)))
+}
+
+/// Crossings of vertices of one layer: those of two layers are resolved by their order.
+fn unordered(scene: &Scene, pieces: &Pieces, crossings: &[([u32; 2], [u32; 3])]) -> usize {
+    let of = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let layers = Layers { order: pieces.panel.iter().map(of).collect(), ..Layers::default() };
+    layers.unordered(crossings)
 }
 
 /// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
@@ -561,6 +613,8 @@ fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
+#[cfg(test)]
+mod sewn_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]

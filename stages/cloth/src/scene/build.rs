@@ -39,9 +39,11 @@ impl Scene {
             triangles: vec![],
             panels: vec![],
             seams: vec![],
+            bands: vec![],
             pinned: vec![],
             body: None,
             material,
+            strain_limit: None,
             phases: vec![phase("sew", 0.0), phase("drape", GRAVITY)],
             self_collision: true,
         }
@@ -84,7 +86,7 @@ impl Panel {
     /// A panel of the scene's material.
     #[must_use]
     pub fn new(name: impl Into<String>, vertices: Range<usize>, triangles: Range<usize>) -> Self {
-        Self { name: name.into(), vertices, triangles, material: None, body_friction: None }
+        Self { name: name.into(), vertices, triangles, material: None, body_friction: None, layer: 0 }
     }
 }
 
@@ -92,7 +94,7 @@ impl Seam {
     /// A seam whose pairs become one point each.
     #[must_use]
     pub fn new(name: impl Into<String>, pairs: Vec<[u32; 2]>) -> Self {
-        Self { name: name.into(), pairs, joined: true }
+        Self { name: name.into(), pairs, joined: true, gather: None }
     }
 }
 

@@ -24,7 +24,13 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     }
     check_panels(scene)?;
     check_seams(scene)?;
+    check_gathers(scene)?;
+    check_bands(scene)?;
     check_fabric(&scene.material)?;
+    if let Some(limit) = scene.strain_limit {
+        check_parameter("strain_limit.warp", limit.warp, |v| v > 0.0, "above 0")?;
+        check_parameter("strain_limit.weft", limit.weft, |v| v > 0.0, "above 0")?;
+    }
     check_body(scene)
 }
 
@@ -95,6 +101,54 @@ fn check_seams(scene: &Scene) -> Result<(), SceneError> {
         }
         None => Ok(()),
     }
+}
+
+/// Difference of a gathered seam's ratio from the stated one that is rounding of the pattern.
+const GATHER_SLACK: f64 = 0.05;
+
+fn check_gathers(scene: &Scene) -> Result<(), SceneError> {
+    for seam in &scene.seams {
+        let Some(stated) = seam.gather else { continue };
+        check_parameter("gather", stated, |v| v >= 1.0, "1 or more")?;
+        let side = |k: usize| -> f64 {
+            let way =
+                seam.pairs.windows(2).map(|w| scene.rest[w[1][k] as usize] - scene.rest[w[0][k] as usize]);
+            way.map(|d| d.norm()).sum()
+        };
+        let (a, b) = (side(0), side(1));
+        let found = a.max(b) / a.min(b);
+        if found.is_nan() || (found / stated - 1.0).abs() > GATHER_SLACK {
+            return Err(SceneError::Gather { seam: seam.name.clone(), stated, found });
+        }
+    }
+    Ok(())
+}
+
+fn check_bands(scene: &Scene) -> Result<(), SceneError> {
+    refers(
+        "band vertex",
+        scene.bands.iter().flat_map(|b| &b.vertices).map(std::slice::from_ref),
+        scene.rest.len(),
+    )?;
+    let panel = |v: u32| scene.panels.iter().position(|p| p.vertices.contains(&(v as usize)));
+    for band in &scene.bands {
+        check_parameter("band.ratio", band.ratio, |v| v > 0.0, "above 0")?;
+        check_parameter("band.stiffness", band.stiffness, |v| v >= 0.0, "0 N or more")?;
+        let fault = |why: String| SceneError::BandPath { band: band.name.clone(), why };
+        if band.vertices.len() < 2 {
+            return Err(fault("its path needs two vertices".into()));
+        }
+        let sewn =
+            |a: u32, b: u32| scene.seams.iter().flat_map(|s| &s.pairs).any(|p| *p == [a, b] || *p == [b, a]);
+        for w in band.vertices.windows(2) {
+            if panel(w[0]) != panel(w[1]) && !sewn(w[0], w[1]) {
+                let why =
+                    format!("vertices {} and {} lie on two panels and are not sewn together", w[0], w[1]);
+                return Err(fault(why));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What rest needs beyond a valid fabric: it must resist stretch from the start, and have a contact layer.

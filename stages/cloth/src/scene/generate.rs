@@ -2,9 +2,11 @@
 //!
 //! They are what tests and measurements use, so that neither needs files.
 
+mod sewn;
 mod worn;
 
-pub use worn::sleeve;
+pub use sewn::{banded, dart, gathered, pleat};
+pub use worn::{layered, sleeve};
 
 use super::{Panel, Phase, Scene, SceneBody, Seam};
 use crate::fabric::{Fabric, PRESETS};
@@ -49,9 +51,11 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
         triangles,
         panels,
         seams: vec![],
+        bands: vec![],
         pinned: vec![],
         body: None,
         material: cloth(),
+        strain_limit: None,
         phases: vec![phase("drape", 2.0, 9.81)],
         self_collision: false,
     }
@@ -101,9 +105,11 @@ pub fn tube(nx: u32, ny: u32) -> Scene {
         triangles,
         panels: vec![Panel::new("front", 0..n, 0..t), Panel::new("back", n..2 * n, t..2 * t)],
         seams: vec![sew("side_left", 0, nx), sew("side_right", nx, 0)],
+        bands: vec![],
         pinned: vec![],
         body: Some(SceneBody { vertices, triangles: faces, friction: 0.4 }),
         material: cloth(),
+        strain_limit: None,
         phases: vec![phase("sew", 0.5, 0.0), phase("drape", 1.5, 9.81)],
         self_collision: true,
     }

@@ -39,12 +39,16 @@ pub struct Scene {
     pub panels: Vec<Panel>,
     /// What has to be sewn.
     pub seams: Vec<Seam>,
+    /// Elastic bands sewn to it.
+    pub bands: Vec<Band>,
     /// Vertices that stay where they start.
     pub pinned: Vec<u32>,
     /// What it is worn by.
     pub body: Option<SceneBody>,
     /// What panels are made of that do not say otherwise.
     pub material: Fabric,
+    /// Strain that warp and weft may reach; none where it is the fabric's affair.
+    pub strain_limit: Option<StrainLimit>,
     /// What acts, one after the other.
     pub phases: Vec<Phase>,
     /// Whether a right answer needs cloth to collide with itself.
@@ -64,10 +68,13 @@ pub struct Panel {
     pub material: Option<Fabric>,
     /// Coefficient of friction on the body, if not the body's own.
     pub body_friction: Option<f64>,
+    /// Which layer it is worn in: panels of a higher number lie outside those of a lower one, wherever both are. The outside is the
+    /// side from which its triangles run counter-clockwise.
+    pub layer: u32,
 }
 
 /// Pairs of vertices that end up at one place.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Seam {
     /// What it is called.
     pub name: String,
@@ -75,6 +82,31 @@ pub struct Seam {
     pub pairs: Vec<[u32; 2]>,
     /// Whether each pair becomes one point, without any gap; else threads keep holding two vertices together.
     pub joined: bool,
+    /// How many times longer one side is than the other, where it is gathered: its folds, too small for the mesh, then take up the
+    /// difference, and do not press the other side long. The pairs must follow the seam.
+    pub gather: Option<f64>,
+}
+
+/// An elastic band along a path of vertices: a waistband, a cuff.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Band {
+    /// What it is called.
+    pub name: String,
+    /// The vertices along it; neighbours lie on one panel or are sewn together.
+    pub vertices: Vec<u32>,
+    /// Its length unstretched, as a share of the cloth's along the path.
+    pub ratio: f64,
+    /// Force per unit of strain, N. It does not resist being pressed together.
+    pub stiffness: f64,
+}
+
+/// Strain that cloth may reach, beyond which it stiffens. Shares of the length at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StrainLimit {
+    /// Along the warp.
+    pub warp: f64,
+    /// Along the weft.
+    pub weft: f64,
 }
 
 /// A closed, static mesh whose triangles face outwards.
@@ -155,6 +187,24 @@ pub enum SceneError {
         pair: usize,
         /// What is wrong.
         why: &'static str,
+    },
+    /// A gathered seam whose sides are not as they are said to be.
+    #[error("seam '{seam}' is to gather {stated} to 1, but its sides are {found:.3} to 1")]
+    Gather {
+        /// The seam.
+        seam: String,
+        /// The ratio asked for.
+        stated: f64,
+        /// The ratio of its sides.
+        found: f64,
+    },
+    /// A band whose path jumps.
+    #[error("band '{band}': {why}")]
+    BandPath {
+        /// The band.
+        band: String,
+        /// What is wrong, with the place.
+        why: String,
     },
     /// A material that lacks a value.
     #[error("the material of {of} has neither '{either}' nor both '{first}' and '{second}'")]

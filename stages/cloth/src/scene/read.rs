@@ -1,6 +1,8 @@
 //! The JSON form `garment-scene-1`.
 
-use super::{Panel, Phase, Scene, SceneBody, SceneError, Seam, check::check, obj::parse_obj};
+use super::{
+    Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, check::check, obj::parse_obj,
+};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::{Curve, Fabric};
 use nalgebra::{Vector2, Vector3};
@@ -24,9 +26,12 @@ struct RawScene {
     #[serde(default)]
     seams: Vec<RawSeam>,
     #[serde(default)]
+    bands: Vec<RawBand>,
+    #[serde(default)]
     pinned: Vec<u32>,
     body: Option<RawBody>,
     material: RawMaterial,
+    strain_limit: Option<RawLimit>,
     phases: Vec<RawPhase>,
     #[serde(default)]
     self_collision: bool,
@@ -39,6 +44,8 @@ struct RawPanel {
     triangles: [usize; 2],
     material: Option<RawMaterial>,
     body_friction: Option<f64>,
+    #[serde(default)]
+    layer: u32,
 }
 
 #[derive(Deserialize)]
@@ -47,6 +54,21 @@ struct RawSeam {
     pairs: Vec<[u32; 2]>,
     #[serde(default = "yes")]
     joined: bool,
+    gather: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct RawBand {
+    name: String,
+    vertices: Vec<u32>,
+    ratio: f64,
+    stiffness: f64,
+}
+
+#[derive(Deserialize)]
+struct RawLimit {
+    warp: f64,
+    weft: f64,
 }
 
 fn yes() -> bool {
@@ -127,7 +149,9 @@ fn body(raw: &RawBody, load: &dyn Fn(&str) -> Result<String, SceneError>) -> Res
 
 fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
     let phase = |p: RawPhase| Phase { name: p.name, seconds: p.seconds, gravity: Vector3::from(p.gravity) };
-    let seam = |s: RawSeam| Seam { name: s.name, pairs: s.pairs, joined: s.joined };
+    let seam = |s: RawSeam| Seam { name: s.name, pairs: s.pairs, joined: s.joined, gather: s.gather };
+    let band =
+        |b: RawBand| Band { name: b.name, vertices: b.vertices, ratio: b.ratio, stiffness: b.stiffness };
     Ok(Scene {
         name: raw.name,
         rest: raw.rest_uv.into_iter().map(Vector2::from).collect(),
@@ -135,9 +159,11 @@ fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
         triangles: raw.triangles,
         panels: raw.panels.into_iter().map(panel).collect::<Result<_, _>>()?,
         seams: raw.seams.into_iter().map(seam).collect(),
+        bands: raw.bands.into_iter().map(band).collect(),
         pinned: raw.pinned,
         body,
         material: fabric(raw.material, "the scene")?,
+        strain_limit: raw.strain_limit.map(|l| StrainLimit { warp: l.warp, weft: l.weft }),
         phases: raw.phases.into_iter().map(phase).collect(),
         self_collision: raw.self_collision,
     })
@@ -147,7 +173,8 @@ fn panel(raw: RawPanel) -> Result<Panel, SceneError> {
     let of = format!("panel '{}'", raw.name);
     let material = raw.material.map(|m| fabric(m, &of)).transpose()?;
     let (vertices, triangles) = (raw.vertices[0]..raw.vertices[1], raw.triangles[0]..raw.triangles[1]);
-    Ok(Panel { material, body_friction: raw.body_friction, ..Panel::new(raw.name, vertices, triangles) })
+    let (body_friction, layer) = (raw.body_friction, raw.layer);
+    Ok(Panel { material, body_friction, layer, ..Panel::new(raw.name, vertices, triangles) })
 }
 
 fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {

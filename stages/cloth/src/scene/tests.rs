@@ -99,6 +99,19 @@ fn an_obj_is_read_and_its_faults_have_lines() {
 }
 
 #[test]
+fn what_sewing_needs_is_written_and_read_back() {
+    let mut made = generate::gathered(8, 4, 1.5);
+    made.bands = generate::banded(8, 4, 0.7).bands;
+    made.strain_limit = Some(StrainLimit { warp: 0.02, weft: 0.03 });
+    made.panels[1].layer = 2;
+    let read = parse(&to_json(&made, "body.obj"), &|_| Ok(String::new())).unwrap();
+    assert_eq!((&read.bands, &read.strain_limit), (&made.bands, &made.strain_limit));
+    assert_eq!((&read.seams, read.panels[1].layer), (&made.seams, 2));
+    // The parser may miss the last bit.
+    assert!(read.rest.iter().zip(&made.rest).all(|(a, b)| (a - b).norm() < 1e-15));
+}
+
+#[test]
 fn the_standard_scenes_are_good() {
     for scene in [generate::hang(5), generate::drape(6), generate::tube(4, 5)] {
         check::check(&scene).unwrap();

@@ -1,6 +1,6 @@
 //! Writing the JSON form `garment-scene-1`, so that a garment of ours can be given to other programs.
 
-use super::{Panel, Scene};
+use super::{Panel, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -14,7 +14,11 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
     let body = scene.body.as_ref().map(|b| json!({ "obj": body_obj, "friction": b.friction }));
     let phases = scene.phases.iter().map(|p| json!({ "name": p.name, "seconds": p.seconds, "gravity": [p.gravity.x, p.gravity.y, p.gravity.z] }));
-    let seams = scene.seams.iter().map(|s| json!({ "name": s.name, "pairs": s.pairs, "joined": s.joined }));
+    let seams = scene.seams.iter().map(seam);
+    let bands = scene.bands.iter().map(
+        |b| json!({ "name": b.name, "vertices": b.vertices, "ratio": b.ratio, "stiffness": b.stiffness }),
+    );
+    let limit = scene.strain_limit.map(|l| json!({ "warp": l.warp, "weft": l.weft }));
     json!({
         "format": "garment-scene-1",
         "name": scene.name,
@@ -24,6 +28,8 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
         "triangles": scene.triangles,
         "panels": scene.panels.iter().map(panel).collect::<Vec<_>>(),
         "seams": seams.collect::<Vec<_>>(),
+        "bands": bands.collect::<Vec<_>>(),
+        "strain_limit": limit,
         "pinned": scene.pinned,
         "body": body,
         "material": material(&scene.material),
@@ -47,11 +53,20 @@ pub fn body_to_obj(scene: &Scene) -> String {
     text
 }
 
+fn seam(s: &Seam) -> Value {
+    let mut value = json!({ "name": s.name, "pairs": s.pairs, "joined": s.joined });
+    if let Some(ratio) = s.gather {
+        value["gather"] = json!(ratio);
+    }
+    value
+}
+
 fn panel(p: &Panel) -> Value {
     let mut value = json!({
         "name": p.name,
         "vertices": [p.vertices.start, p.vertices.end],
         "triangles": [p.triangles.start, p.triangles.end],
+        "layer": p.layer,
     });
     if let Some(own) = &p.material {
         value["material"] = material(own);

@@ -6,6 +6,7 @@
 //! arc sine. Limits: a yarn pressed shorter than half its length and yarns sheared beyond 72 degrees keep the slopes that they have there.
 
 use crate::fabric::{Curve, Fabric};
+use crate::scene::StrainLimit;
 use nalgebra::Vector3;
 
 /// Length of a yarn direction below which strains no longer follow it: its derivatives would grow without bound.
@@ -14,13 +15,62 @@ const SHORTEST: f64 = 0.5;
 /// Sine of the shear angle above which the angle goes on in a straight line: no cloth shears so far, but a start may.
 const GREATEST_SINE: f64 = 0.95;
 
+/// Share of a strain limit from which cloth stiffens: later is truer to the curve below, earlier is easier to solve.
+const STOP_FROM: f64 = 0.8;
+
+/// What a yarn carries at its limit beyond its curve, in strains of the curve's stiffness: ten times what seams pull with, and more
+/// than any weight.
+const STOP_STRAIN: f64 = 0.5;
+
 /// What one fabric resists with. Weft along the rest x axis, warp along y.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Law {
-    weft: Curve,
-    warp: Curve,
+    weft: Yarn,
+    warp: Yarn,
     coupling: f64,
     shear: Curve,
+}
+
+/// One yarn direction: its curve, and what stiffens it before its strain limit.
+#[derive(Debug, Clone, PartialEq)]
+struct Yarn {
+    curve: Curve,
+    stop: Option<Stop>,
+}
+
+/// A tension that grows with the square of the strain beyond `start`; its slope begins at zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Stop {
+    start: f64,
+    /// N/m per squared unit of strain.
+    growth: f64,
+}
+
+impl Yarn {
+    fn new(curve: Curve, limit: Option<f64>) -> Self {
+        let stop = limit.map(|limit| {
+            let span = (1.0 - STOP_FROM) * limit;
+            Stop { start: limit - span, growth: STOP_STRAIN * curve.force(limit) / limit / (span * span) }
+        });
+        Self { curve, stop }
+    }
+
+    /// The stop and the strain beyond its start.
+    fn beyond(&self, strain: f64) -> Option<(Stop, f64)> {
+        self.stop.map(|s| (s, strain - s.start)).filter(|(_, over)| *over > 0.0)
+    }
+
+    fn force(&self, strain: f64) -> f64 {
+        self.curve.force(strain) + self.beyond(strain).map_or(0.0, |(s, over)| s.growth * over * over)
+    }
+
+    fn slope(&self, strain: f64) -> f64 {
+        self.curve.slope(strain) + self.beyond(strain).map_or(0.0, |(s, over)| 2.0 * s.growth * over)
+    }
+
+    fn energy(&self, strain: f64) -> f64 {
+        self.curve.energy(strain) + self.beyond(strain).map_or(0.0, |(s, over)| s.growth * over.powi(3) / 3.0)
+    }
 }
 
 /// Stress and tangent by (weft, warp, shear) strain, N/m. The tangent is positive semi-definite.
@@ -62,13 +112,13 @@ impl Shape {
 }
 
 impl Law {
-    /// Of a fabric; the measured tension is that of a free strip, so Poisson's ratio is taken out of it.
+    /// Of a fabric, stiffened before the limit; the measured tension is that of a free strip, so Poisson's ratio is taken out of it.
     #[must_use]
-    pub(super) fn of(fabric: &Fabric) -> Self {
+    pub(super) fn of(fabric: &Fabric, limit: Option<StrainLimit>) -> Self {
         let held = 1.0 / (1.0 - fabric.poisson_squared());
         Self {
-            weft: fabric.weft.scaled(held),
-            warp: fabric.warp.scaled(held),
+            weft: Yarn::new(fabric.weft.scaled(held), limit.map(|l| l.weft)),
+            warp: Yarn::new(fabric.warp.scaled(held), limit.map(|l| l.warp)),
             coupling: fabric.poisson * fabric.weft.slope(0.0) * held,
             shear: fabric.shear.clone(),
         }

@@ -36,7 +36,7 @@ fn gradient(elastic: &Elastic, x: &[Vec3]) -> Vec<Vec3> {
 #[test]
 fn the_gradient_is_the_slope_of_the_energy() {
     let (sheet, mut x) = patch();
-    let elastic = Elastic::new(&sheet, &[&measured()], |_| 0);
+    let elastic = Elastic::new(&sheet, &[&measured()], None, |_| 0);
     let gradient = gradient(&elastic, &x);
     for i in 0..x.len() {
         for c in 0..3 {
@@ -60,7 +60,7 @@ fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
     let (sheet, mut x) = patch();
     let fabric = Fabric { shear: Curve::linear(0.0), ..measured() };
     x.iter_mut().for_each(|p| *p *= 1.2);
-    let mut elastic = Elastic::new(&sheet, &[&fabric], |_| 0);
+    let mut elastic = Elastic::new(&sheet, &[&fabric], None, |_| 0);
     let pattern = Pattern::new(x.len(), elastic.couplings());
     elastic.bind(&pattern);
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
@@ -89,7 +89,7 @@ fn a_flat_sheet_bends_nowhere() {
         shear: Curve::linear(0.0),
         ..measured()
     };
-    let elastic = Elastic::new(&sheet, &[&stiff], |_| 0);
+    let elastic = Elastic::new(&sheet, &[&stiff], None, |_| 0);
     let mut flat = vec![Vec3::zeros(); 5];
     for (t, rest) in sheet.triangles().iter().zip(sheet.rest()) {
         for (&v, p) in t.iter().zip(rest) {
@@ -109,7 +109,7 @@ proptest! {
         let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
         let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
         let fabric = Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() };
-        let elastic = Elastic::new(&sheet, &[&fabric], |_| 0);
+        let elastic = Elastic::new(&sheet, &[&fabric], None, |_| 0);
         let woven = Triangles::new(&sheet, Woven::new(&fabric).unwrap());
         let x: Vec<Vec3> = uv.iter().zip(places.chunks(3)).map(|(p, d)| Vec3::new(p.x + d[0], p.y + d[1], d[2])).collect();
         prop_assert!((elastic.value(&x) - woven.value(&x)).abs() < 1e-12 * (1.0 + woven.value(&x)));
@@ -125,7 +125,7 @@ proptest! {
     fn the_matrix_is_positive(places in proptest::array::uniform9(-0.1..0.1f64), push in proptest::array::uniform9(-1.0..1.0f64)) {
         let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
         let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
-        let mut elastic = Elastic::new(&sheet, &[&Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() }], |_| 0);
+        let mut elastic = Elastic::new(&sheet, &[&Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() }], None, |_| 0);
         let pattern = Pattern::new(3, elastic.couplings());
         elastic.bind(&pattern);
         let mut values = vec![Matrix3::zeros(); pattern.blocks()];

@@ -1,6 +1,6 @@
-//! Scenes of what is worn: a sleeve around an arm.
+//! Scenes of what is worn: a sleeve around an arm, a skirt over a skirt.
 
-use super::{cloth, lathe, patch, ring};
+use super::{cloth, lathe, patch, ring, tube};
 use crate::scene::{Scene, SceneBody, Seam};
 use nalgebra::{Rotation3, Vector2, Vector3};
 
@@ -59,4 +59,33 @@ fn arm(around: u32, rings: u32) -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
     };
     let rows: Vec<_> = (0..rings).map(row).collect();
     lathe(&rows, Vector3::new(0.0, low - 0.02, 0.0), Vector3::new(0.0, high + 0.02, 0.0))
+}
+
+/// The skirt of [`tube`], and over it a wider and shorter one of other cells, of layer 1.
+#[must_use]
+pub fn layered(nx: u32, ny: u32) -> Scene {
+    let (mut scene, over) = (tube(nx, ny), tube(nx - 1, ny - 2));
+    let (wider, shorter) = (1.15, 0.8);
+    let first = scene.rest.len() as u32;
+    for panel in &over.panels {
+        let rest: Vec<Vector2<f64>> = over.rest[panel.vertices.clone()]
+            .iter()
+            .map(|p| Vector2::new(p.x * wider, p.y * shorter))
+            .collect();
+        // Its waist at the height of the other's, its panels farther out.
+        let waist = scene.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+        let out = |p: &Vector3<f64>| Vector3::new(p.x * wider, waist + (p.y - waist) * shorter, p.z * 1.4);
+        let positions: Vec<_> = over.positions[panel.vertices.clone()].iter().map(out).collect();
+        let own = panel.vertices.start as u32;
+        let triangles: Vec<_> =
+            over.triangles[panel.triangles.clone()].iter().map(|t| t.map(|v| v - own)).collect();
+        scene.add_panel(format!("over_{}", panel.name), &rest, &positions, &triangles);
+        scene.panels.last_mut().into_iter().for_each(|p| p.layer = 1);
+    }
+    let sewn = |s: &Seam| {
+        Seam::new(format!("over_{}", s.name), s.pairs.iter().map(|p| p.map(|v| v + first)).collect())
+    };
+    scene.seams.extend(over.seams.iter().map(sewn));
+    scene.name = format!("layered_{nx}x{ny}");
+    scene
 }

@@ -1,0 +1,140 @@
+//! What sewing does beside plain seams, looked at in the result.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+use super::tests::*;
+use super::*;
+use crate::scene::{SceneError, StrainLimit, generate};
+
+fn gap(scene: &Scene, x: &[Vec3]) -> f64 {
+    let pairs = scene.seams.iter().flat_map(|s| &s.pairs);
+    pairs.map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}
+
+fn length(x: &[Vec3], path: &[u32]) -> f64 {
+    path.windows(2).map(|w| (x[w[1] as usize] - x[w[0] as usize]).norm()).sum()
+}
+
+#[test]
+fn gathers_take_up_a_longer_edge_and_leave_the_shorter_one_alone() {
+    let scene = generate::gathered(24, 12, 1.6);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "gathered");
+    assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+    let seam: Vec<u32> = scene.seams[0].pairs.iter().map(|p| p[0]).collect();
+    let long = length(x, &seam);
+    assert!((long - 0.3).abs() < 0.01, "{long}");
+    // Evenly: every cell of the frill is drawn together as much as the others.
+    let cells: Vec<f64> = seam.windows(2).map(|w| length(x, w) / 0.0125).collect();
+    assert!(cells.iter().all(|c| (c - 1.0).abs() < 0.05), "{cells:?}");
+    // Below, the frill has its own width: it waves.
+    let hem: Vec<u32> = (125..150).collect();
+    let width = (x[149] - x[125]).norm();
+    assert!((length(x, &hem) - 0.48).abs() < 0.005 && width < 0.42, "{} {width}", length(x, &hem));
+    assert!(strains(&scene, x)[strains(&scene, x).len() * 9 / 10] < 0.02);
+}
+
+#[test]
+fn a_dart_closes_and_its_panel_bulges() {
+    let scene = generate::dart(10, 20);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "dart");
+    assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+    let all = strains(&scene, x);
+    assert!(all[all.len() * 98 / 100] < 0.02, "{}", all[all.len() * 98 / 100]);
+    // The lower edge was 0.46 m wide and has lost the dart's 0.06.
+    let ends = (x[0] - x[20]).norm();
+    assert!(ends < 0.405, "{ends}");
+    let deep = x.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max)
+        - x.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    assert!(deep > 0.005, "{deep}");
+}
+
+#[test]
+fn a_pleat_stays_folded_where_it_is_sewn() {
+    let scene = generate::pleat(20, 15, 3);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "pleat");
+    assert!(gap(&scene, x) < 5e-4, "{}", gap(&scene, x));
+    assert_eq!(crossings_of_two_rows(&scene, x), 0);
+    assert!(strains(&scene, x)[strains(&scene, x).len() * 98 / 100] < 0.02);
+}
+
+/// Crossings where the seam's two rows count as one.
+fn crossings_of_two_rows(scene: &Scene, x: &[Vec3]) -> usize {
+    let pieces = Pieces::new(scene);
+    let sheet = pieces.open_sheet(&cloths(scene)).unwrap();
+    ClothTree::new(&sheet, x).sewing(pieces.point.clone()).crossings(x).len()
+}
+
+#[test]
+fn an_elastic_band_draws_its_edge_together() {
+    let at = |ratio: f64| {
+        let scene = generate::banded(20, 15, ratio);
+        let state = settle(&scene).unwrap();
+        picture(&scene, &state.positions, &format!("banded_{ratio}"));
+        assert_eq!(crossings(&scene, &state.positions), 0);
+        (
+            length(&state.positions, &scene.bands[0].vertices),
+            (state.positions[20] - state.positions[0]).norm(),
+        )
+    };
+    // A band as long as the cloth does nothing.
+    let (loose, _) = at(1.0);
+    assert!((loose - 0.4).abs() < 1e-3, "{loose}");
+    let (drawn, ends) = at(0.7);
+    assert!(drawn < 0.39 && ends < 0.36, "{drawn} {ends}");
+}
+
+#[test]
+fn what_is_wrong_with_gathers_and_bands_is_named() {
+    let mut scene = generate::gathered(8, 4, 1.5);
+    scene.seams[0].gather = Some(2.0);
+    let text = "seam 'gathers' is to gather 2 to 1, but its sides are 1.500 to 1";
+    assert_eq!(scene.check().unwrap_err().to_string(), text);
+    let mut scene = generate::gathered(8, 4, 1.5);
+    let band =
+        |vertices: Vec<u32>| crate::scene::Band { name: "b".into(), vertices, ratio: 0.9, stiffness: 1.0 };
+    scene.bands = vec![band(vec![0, 60])];
+    let text = "band 'b': vertices 0 and 60 lie on two panels and are not sewn together";
+    assert_eq!(scene.check().unwrap_err().to_string(), text);
+    scene.bands = vec![band(vec![0])];
+    assert_eq!(scene.check().unwrap_err().to_string(), "band 'b': its path needs two vertices");
+    scene.bands = vec![band(vec![0, 600])];
+    assert_eq!(
+        scene.check().unwrap_err().to_string(),
+        "band vertex 1 refers to vertex 600, but there are 90"
+    );
+    scene.bands = vec![];
+    scene.strain_limit = Some(StrainLimit { warp: 0.0, weft: 0.1 });
+    assert!(matches!(scene.check(), Err(SceneError::Cloth(_))));
+    assert_eq!(scene.check().unwrap_err().to_string(), "strain_limit.warp = 0 is out of range: above 0");
+}
+
+#[test]
+fn a_strain_limit_holds_or_is_named() {
+    // A sheet held at two corners strains by more than 2 % there.
+    let mut scene = generate::hang(12);
+    let greatest = |x: &[Vec3]| {
+        let sheet = Pieces::new(&scene).sewn_sheet(&cloths(&scene)).unwrap();
+        let yarn =
+            |t: usize| sheet.deformation(t, x).column_iter().map(|c| c.norm() - 1.0).fold(0.0, f64::max);
+        (0..scene.triangles.len()).map(yarn).fold(0.0, f64::max)
+    };
+    let free = greatest(&settle(&scene).unwrap().positions);
+    assert!(free > 0.02, "{free}");
+    let mut limited = scene.clone();
+    limited.strain_limit = Some(StrainLimit { warp: 0.01, weft: 0.01 });
+    let held = greatest(&settle(&limited).unwrap().positions);
+    assert!(held <= 0.01, "{held}");
+    // A weight of tons is more than any fabric holds.
+    scene.material.density = 300.0;
+    scene.strain_limit = Some(StrainLimit { warp: 0.01, weft: 0.01 });
+    match settle(&scene).unwrap_err() {
+        RestError::Cloth(ClothError::StrainLimitExceeded { strain, limit, .. }) => {
+            assert!(strain > 0.01 && limit == 0.01);
+        }
+        error => panic!("{error}"),
+    }
+}

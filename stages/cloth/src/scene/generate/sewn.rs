@@ -1,0 +1,115 @@
+//! Scenes of what sewing does beside plain seams: gathers, darts, pleats, elastic bands.
+
+use super::{cloth, patch};
+use crate::scene::{Band, Scene, Seam};
+use nalgebra::{Vector2, Vector3};
+
+/// Places in the upright plane before the eye, from flat coordinates.
+fn upright(rest: &[Vector2<f64>], by: Vector3<f64>) -> Vec<Vector3<f64>> {
+    rest.iter().map(|p| Vector3::new(p.x, p.y, 0.0) + by).collect()
+}
+
+/// A flat panel `width` by `height`, the origin in the middle of its upper edge.
+fn panel(nx: u32, ny: u32, width: f64, height: f64) -> (Vec<Vector2<f64>>, Vec<[u32; 3]>) {
+    let (points, triangles) = patch(nx, ny);
+    (points.iter().map(|p| Vector2::new((p.x - 0.5) * width, (p.y - 1.0) * height)).collect(), triangles)
+}
+
+/// A frill of `nx` by `ny` cells, `ratio` times as wide as the strip of 0.3 m that it is gathered to; the strip is held at its upper edge.
+#[must_use]
+pub fn gathered(nx: u32, ny: u32, ratio: f64) -> Scene {
+    let (strip, strip_cells) = panel(nx, 4, 0.3, 0.06);
+    let (frill, frill_cells) = panel(nx, ny, 0.3 * ratio, 0.2);
+    let mut scene = Scene::new(format!("gathered_{nx}x{ny}"), cloth());
+    let top = scene.add_panel("strip", &strip, &upright(&strip, Vector3::zeros()), &strip_cells).start;
+    // Laid in slight waves, for a flat sheet pressed together does not know which way to give.
+    let wave = |p: &Vector2<f64>| {
+        let across = p.x / ratio;
+        Vector3::new(across, p.y - 0.08, 0.02 * (across * 70.0).sin())
+    };
+    let waves: Vec<_> = frill.iter().map(wave).collect();
+    let below = scene.add_panel("frill", &frill, &waves, &frill_cells).start;
+    let pairs = (0..=nx).map(|i| [top + i, below + ny * (nx + 1) + i]).collect();
+    scene.seams = vec![Seam { gather: Some(ratio), ..Seam::new("gathers", pairs) }];
+    scene.pinned = (0..=nx).map(|i| top + 4 * (nx + 1) + i).collect();
+    scene
+}
+
+/// A panel of `2 nx` by `ny` cells, held at its upper edge, with a dart from its lower edge half way up, 0.06 m wide.
+#[must_use]
+pub fn dart(nx: u32, ny: u32) -> Scene {
+    let (width, height, open) = (0.4, 0.4, 0.06);
+    let (mut rest, mut triangles) = panel(2 * nx, ny, width, height);
+    let (row, tip) = (2 * nx + 1, ny / 2);
+    // The legs: the middle column below the tip, once for each side.
+    let left = rest.len() as u32;
+    let right_of = |j: u32| j * row + nx;
+    rest.extend((0..tip).map(|j| rest[right_of(j) as usize]).collect::<Vec<_>>());
+    for t in &mut triangles {
+        let middle = t.iter().map(|&v| rest[v as usize].x).sum::<f64>();
+        if middle < 0.0 {
+            t.iter_mut().filter(|v| **v % row == nx && **v < tip * row).for_each(|v| *v = left + *v / row);
+        }
+    }
+    let widen = |v: u32, p: &Vector2<f64>| {
+        let y = (1.0 + p.y / height) * f64::from(ny) / f64::from(tip);
+        let leftwards = v >= left || p.x < 0.0;
+        let half = 0.5 * open * (1.0 - y).max(0.0) * if leftwards { -1.0 } else { 1.0 };
+        Vector2::new(p.x + half, p.y)
+    };
+    let rest: Vec<Vector2<f64>> = rest.iter().enumerate().map(|(v, p)| widen(v as u32, p)).collect();
+    let mut scene = Scene::new(format!("dart_{nx}x{ny}"), cloth());
+    // Bulged a little: what is quite flat does not know which way to give.
+    let bulge = |p: &Vector2<f64>| {
+        let (x, y) = (2.0 * p.x / (width + open), p.y / height);
+        Vector3::new(p.x, p.y, -0.03 * y * (1.0 - x * x))
+    };
+    let positions: Vec<_> = rest.iter().map(bulge).collect();
+    scene.add_panel("front", &rest, &positions, &triangles);
+    scene.seams = vec![Seam::new("dart", (0..tip).map(|j| [left + j, right_of(j)]).collect())];
+    scene.pinned = (ny * row..(ny + 1) * row).collect();
+    scene
+}
+
+/// A panel of `nx` by `ny` cells, folded to a knife pleat of `deep` cells in its middle, whose upper third is sewn down; held at its upper
+/// edge beside the pleat.
+#[must_use]
+pub fn pleat(nx: u32, ny: u32, deep: u32) -> Scene {
+    let cell = 0.02;
+    let (rest, triangles) = panel(nx, ny, cell * f64::from(nx), 0.3);
+    let first = nx / 2 - deep;
+    let (back, last) = (first + deep, first + 2 * deep);
+    let behind = 0.006;
+    let fold = |i: u32| {
+        let (i, first, back) = (f64::from(i), f64::from(first), f64::from(back));
+        let there = (i - first).clamp(0.0, back - first);
+        // Each turn lies a layer behind the one before it.
+        let layer = |at: f64| (i - at + 0.5).clamp(0.0, 1.0);
+        (cell * (i - 2.0 * there), -behind * (layer(first) + layer(back)))
+    };
+    let place = |v: u32, p: &Vector2<f64>| {
+        let (x, z) = fold(v % (nx + 1));
+        Vector3::new(x, p.y, z)
+    };
+    let positions: Vec<_> = rest.iter().enumerate().map(|(v, p)| place(v as u32, p)).collect();
+    let mut scene = Scene::new(format!("pleat_{nx}x{ny}"), cloth());
+    scene.add_panel("front", &rest, &positions, &triangles);
+    let at = |i: u32, j: u32| j * (nx + 1) + i;
+    let pairs = (ny - ny / 3..=ny).map(|j| [at(first, j), at(last, j)]).collect();
+    scene.seams = vec![Seam { joined: false, ..Seam::new("pleat", pairs) }];
+    scene.pinned = (0..first).chain(last + 1..=nx).map(|i| at(i, ny)).collect();
+    scene
+}
+
+/// A panel of `nx` by `ny` cells and 0.4 m width, held at its upper edge; its lower edge has an elastic band of `ratio` its length.
+#[must_use]
+pub fn banded(nx: u32, ny: u32, ratio: f64) -> Scene {
+    let (rest, triangles) = panel(nx, ny, 0.4, 0.3);
+    let wave = |p: &Vector2<f64>| Vector3::new(p.x, p.y, 0.004 * (p.x * 60.0).sin());
+    let positions: Vec<_> = rest.iter().map(wave).collect();
+    let mut scene = Scene::new(format!("banded_{nx}x{ny}"), cloth());
+    scene.add_panel("front", &rest, &positions, &triangles);
+    scene.bands = vec![Band { name: "cuff".into(), vertices: (0..=nx).collect(), ratio, stiffness: 20.0 }];
+    scene.pinned = (ny * (nx + 1)..(ny + 1) * (nx + 1)).collect();
+    scene
+}
