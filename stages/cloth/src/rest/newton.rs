@@ -40,6 +40,9 @@ const MEMORY: usize = 8;
 /// Factor by which pseudo-time grows after a whole step.
 const GROWTH: f64 = 1.5;
 
+/// Steps of [`REST_STEP`] in a row before the cloth is let go on.
+const MOST_PROOFS: usize = 3;
+
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
@@ -89,6 +92,8 @@ pub struct Descent {
     heights: Vec<f64>,
     /// Whether the next step is to prove rest.
     proves: bool,
+    /// Steps of it made in a row.
+    proofs: usize,
     dt: f64,
     /// How far the last step wanted to go, m.
     last: f64,
@@ -109,7 +114,16 @@ impl Descent {
         system.touch(x);
         let linear = Linear::new(system, layout.to_vec());
         let outcome = Outcome { dt: first, ..Outcome::default() };
-        Self { nearby, linear, outcome, heights: vec![], proves: false, dt: first, last: f64::INFINITY }
+        Self {
+            nearby,
+            linear,
+            outcome,
+            heights: vec![],
+            proves: false,
+            proofs: 0,
+            dt: first,
+            last: f64::INFINITY,
+        }
     }
 
     /// Takes up a system whose fabric, pins or body have changed.
@@ -172,9 +186,12 @@ impl Descent {
         let slow = self.outcome.speed < pace.speed && !pulled;
         self.outcome.at_rest = slow && (self.proves || !pace.prove);
         if self.proves {
-            self.proves = false;
+            // A long step leaves strain of second order behind, which the first short ones take away.
+            self.proofs += 1;
+            self.proves = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
             return;
         }
+        self.proofs = 0;
         self.dt = next_dt(self.dt, self.outcome.share, pace);
         if !slow {
             system.drag(x);
