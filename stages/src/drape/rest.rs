@@ -36,13 +36,13 @@ pub struct Rest {
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades)]
     pub speed: f64,
     /// Vertices of the coarsest mesh, on which the garment is sewn.
-    #[param(default = 200, min = 20, max = 100_000, unit = "vertices", trades)]
+    #[param(default = 500, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
     /// Steps on every mesh but the finest.
     #[param(default = 30, min = 1, max = 100_000, unit = "steps", trades)]
     pub coarse_steps: usize,
     /// Steps on the finest mesh, after which the drape stops as it is.
-    #[param(default = 200, min = 1, max = 100_000, unit = "steps", trades)]
+    #[param(default = 500, min = 1, max = 100_000, unit = "steps", trades)]
     pub steps: usize,
     /// Gap below which a seam is joined.
     #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
