@@ -61,8 +61,9 @@ fn a_skirt_follows_its_fabric_and_comes_to_rest() {
     let wearer = Wearer { skin: &body, friction: b.friction };
     let cloth = scene.material.clone();
     let mut live = Live::new(Rest::default(), scene.clone(), Some(wearer), &fresh(&scene)).unwrap();
-    for k in 1..=15 {
-        let share = f64::from(k) / 15.0;
+    // A second of a slider's way, a state every thirtieth.
+    for k in 1..=30 {
+        let share = f64::from(k) / 30.0;
         live.change(|s| {
             s.material = slide(&cloth, share);
             s.body.as_mut().unwrap().friction = 0.4 - 0.1 * share;
