@@ -147,19 +147,25 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
-    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already.
+    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already. The last one is short: it takes away
+    /// the strain that long ones leave. The residual is that of the state it ends in.
     ///
     /// # Errors
     /// [`RestError::NotPositive`], where no inertia makes the matrix positive definite.
     pub fn follow(&mut self, steps: usize) -> Result<Outcome, RestError> {
         let pace = self.pace();
-        for _ in 0..steps {
+        for left in (0..steps).rev() {
             if self.descent.outcome().at_rest {
                 break;
             }
+            if left == 0 {
+                self.descent.shorten_next();
+            }
             self.step(&pace, &|| false)?;
         }
-        Ok(self.descent.outcome())
+        self.system.touch(&self.x);
+        let residual = greatest(&self.system.gradient(&self.x));
+        Ok(Outcome { residual, ..self.descent.outcome() })
     }
 
     fn pace(&self) -> Pace {

@@ -139,6 +139,11 @@ impl Descent {
         self.outcome.at_rest = false;
     }
 
+    /// Makes the next step one of [`REST_STEP`].
+    pub fn shorten_next(&mut self) {
+        self.proves = true;
+    }
+
     /// One step; says at rest where nothing gains speed any more. `stop` is asked every few milliseconds.
     ///
     /// # Errors
