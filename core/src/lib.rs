@@ -46,6 +46,8 @@ pub mod pipeline;
 mod registry;
 mod run;
 mod stage;
+#[cfg(any(test, feature = "testkit"))]
+pub mod testkit;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
