@@ -170,7 +170,7 @@ pub fn large_value(port: &InPort) -> Option<PortValue> {
     let artifact: Arc<dyn Artifact> = match port.kind {
         k if k == Photo::KIND => Arc::new(enlarged(&shapes::photo())),
         k if k == Mask::KIND => Arc::new(enlarged_mask(&shapes::mask())),
-        k if k == Outline::KIND => Arc::new(shapes::scaled(&shapes::outline(), 8.0)),
+        k if k == Outline::KIND => Arc::new(shapes::scaled(&shapes::outline(), 3.0)),
         k if k == Panel::KIND && port.arity != Arity::All => Arc::new(shapes::panel(300, 300, 3.0, 3.0)),
         _ => return default_value(port),
     };

@@ -84,7 +84,4 @@ fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Adds this crate's stages.
-pub fn register(registry: &mut Registry) {
-    registry.add::<LatticeMesher>();
-}
+toile_core::plugin!(LatticeMesher);

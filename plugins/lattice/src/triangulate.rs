@@ -36,7 +36,7 @@ pub(crate) fn mesh(division: &Division, seeds: Vec<Seed>, h: f64, cx: &Context) 
     let mut near: Vec<bool> = vec![false; fixed];
     near.extend(seeds.iter().map(|s| s.near));
     let (loops, segments) = (division.loop_segments(), division.segments());
-    let mut triangles = inside_triangles(&points, &loops, &segments)?;
+    let mut triangles = inside_triangles(&points, &loops, &segments, cx)?;
     for round in 0..ROUNDS {
         cx.progress(0.3 + 0.6 * round as f64 / ROUNDS as f64, format!("{} triangles", triangles.len()));
         let moved = relax(&mut points, &triangles, &near, cx)?;
@@ -45,7 +45,7 @@ pub(crate) fn mesh(division: &Division, seeds: Vec<Seed>, h: f64, cx: &Context) 
         if !moved && added == 0 {
             break;
         }
-        triangles = inside_triangles(&points, &loops, &segments)?;
+        triangles = inside_triangles(&points, &loops, &segments, cx)?;
     }
     let (points, triangles) = without_unused(points, triangles, fixed);
     Ok(Meshed { points, triangles })
@@ -55,8 +55,10 @@ fn inside_triangles(
     points: &[Point2],
     loops: &[[u32; 2]],
     segments: &[[u32; 2]],
+    cx: &Context,
 ) -> Result<Vec<[u32; 3]>, StageError> {
-    let hull = hull_triangles(points, segments)?;
+    let hull = hull_triangles(points, segments, cx)?;
+    cx.check()?;
     let mut sides: Vec<([u32; 2], u32)> = Vec::with_capacity(3 * hull.len());
     for (t, [a, b, c]) in hull.iter().enumerate() {
         sides.extend([[*a, *b], [*b, *c], [*c, *a]].map(|s| (s, t as u32)));
@@ -81,19 +83,32 @@ fn inside_triangles(
     Ok(hull.into_iter().zip(inside).filter(|(_, inside)| *inside).map(|(t, _)| t).collect())
 }
 
-/// All triangles of the hull, counter-clockwise.
-fn hull_triangles(points: &[Point2], segments: &[[u32; 2]]) -> Result<Vec<[u32; 3]>, StageError> {
+/// Vertices entered between two looks at the stop flag: a few milliseconds.
+const CHECK_EVERY: usize = 2000;
+
+/// All triangles of the hull, counter-clockwise. Points come row by row, so entering them one by one costs little
+/// more than all at once, and can be stopped.
+fn hull_triangles(points: &[Point2], segments: &[[u32; 2]], cx: &Context) -> Result<Vec<[u32; 3]>, StageError> {
     let fault = |what: &str| StageError::internal(format!("the triangulation failed: {what}"));
     // spade's exact predicates underflow at numbers below.
     let tiny = |x: f64| if x.abs() < 1e-40 { 0.0 } else { x };
-    let vertices = points.iter().map(|p| spade::Point2::new(tiny(p.x), tiny(p.y))).collect();
-    let edges = segments.iter().map(|s| s.map(|v| v as usize)).collect();
-    let mut conflicts = 0;
-    let cdt =
-        ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::try_bulk_load_cdt(vertices, edges, |_| conflicts += 1)
-            .map_err(|e| fault(&e.to_string()))?;
-    if conflicts > 0 || cdt.num_vertices() != points.len() {
-        return Err(fault("segments cross or points coincide"));
+    let mut cdt = ConstrainedDelaunayTriangulation::<spade::Point2<f64>>::new();
+    let mut handles = Vec::with_capacity(points.len());
+    for (k, p) in points.iter().enumerate() {
+        if k % CHECK_EVERY == 0 {
+            cx.check()?;
+        }
+        let handle = cdt.insert(spade::Point2::new(tiny(p.x), tiny(p.y))).map_err(|e| fault(&e.to_string()))?;
+        if handle.index() != k {
+            return Err(fault("points coincide"));
+        }
+        handles.push(handle);
+    }
+    for [a, b] in segments.iter().map(|s| s.map(|v| handles[v as usize])) {
+        if !cdt.can_add_constraint(a, b) {
+            return Err(fault("segments cross"));
+        }
+        cdt.add_constraint(a, b);
     }
     Ok(cdt.inner_faces().map(|f| f.vertices().map(|v| v.index() as u32)).collect())
 }

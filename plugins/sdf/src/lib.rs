@@ -94,7 +94,4 @@ impl SdfCollider {
     }
 }
 
-/// Adds this crate's stages.
-pub fn register(registry: &mut Registry) {
-    registry.add::<SdfCollider>();
-}
+toile_core::plugin!(SdfCollider);

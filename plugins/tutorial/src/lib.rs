@@ -55,7 +55,4 @@ fn cleaned(photo: &RgbImage, x: u32, y: u32, step: u8) -> Rgb<u8> {
     pixel
 }
 
-/// Adds this crate's stages.
-pub fn register(registry: &mut Registry) {
-    registry.add::<Dust>();
-}
+toile_core::plugin!(Dust);
