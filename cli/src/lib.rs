@@ -7,11 +7,14 @@ mod args;
 mod at_hand;
 mod bench;
 mod cards;
+mod doctor;
 mod explain;
 mod golden;
 mod interrupt;
+mod new_stage;
 mod progress;
 mod run;
+mod schema;
 mod validate;
 
 use args::{Arguments, Bench, Command, Verb};
@@ -33,6 +36,8 @@ pub mod exit {
     pub const QUALITY: u8 = 4;
     /// Out of time or stopped.
     pub const STOPPED: u8 = 5;
+    /// A fault of the program or of a stage.
+    pub const BUG: u8 = 70;
 }
 
 /// Where a command writes: `out` for its answer, `err` for progress and messages.
@@ -100,7 +105,14 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
     match command {
         Command::Run(args) => run::run(&args, registry, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),
-        Command::Stages { json } => cards::list(json, registry, streams),
+        Command::Stages { schema: true, .. } => cards::schema(registry, streams),
+        Command::Stages { json, .. } => cards::list(json, registry, streams),
+        Command::Doctor { json } => doctor::doctor(json, registry, streams),
+        Command::NewStage(args) => {
+            let (name, role) = (args.name.as_str(), args.role.as_str());
+            let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
+            new_stage::new_stage(&asked, registry, streams)
+        }
         Command::Stage { name, json } => cards::show(&name, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
