@@ -302,16 +302,28 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
         if name.contains(['/', '\\']) || name.contains("..") {
             continue;
         }
-        if let Some(bytes) = file(registry, extension) {
+        let bytes = match extension {
+            "obj" => Some(body_file(example.contains("up: Z"))),
+            _ => file(registry, extension),
+        };
+        if let Some(bytes) = bytes {
             std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))?;
         }
     }
     Ok(())
 }
 
+/// The body as an OBJ file, lying on its back where z is to be up.
+fn body_file(z_up: bool) -> Vec<u8> {
+    let mut body = body();
+    if z_up {
+        body.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
+    }
+    body.export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
+}
+
 fn file(registry: &Registry, extension: &str) -> Option<Vec<u8>> {
     let format = match extension {
-        "obj" => return body().export().pop().map(|(_, bytes)| bytes),
         "jpg" | "jpeg" => image::ImageFormat::Jpeg,
         "png" => image::ImageFormat::Png,
         _ => return registry.cards().find_map(|card| written(registry, card, extension)),
