@@ -98,7 +98,7 @@ where
 }
 
 /// The registry with the plugins that the arguments name. A refused one ends the command, but for the
-/// list of stages, which shows it with its reason.
+/// list of stages and the doctor, which show it with its reason.
 fn with_plugins(
     registry: &Registry,
     arguments: &Arguments,
@@ -106,7 +106,7 @@ fn with_plugins(
 ) -> Result<Registry, u8> {
     let mut registry = registry.clone();
     let loads: Vec<_> = arguments.plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
-    if matches!(arguments.command, Command::Stages { .. }) {
+    if matches!(arguments.command, Command::Stages { .. } | Command::Doctor { .. }) {
         return Ok(registry);
     }
     let refused: Vec<_> = loads.into_iter().filter_map(Result::err).collect();

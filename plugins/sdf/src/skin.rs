@@ -1,5 +1,8 @@
 //! The body's triangles, with the normals that give a distance its sign.
 //!
+//! The closest triangle of a place is found from a good guess by walking over the mesh: where the closest point lies on
+//! a side or a corner, the triangles around it are tried, until none is nearer.
+//!
 //! The sign comes from the angle-weighted normal of the closest feature, which is right for faces, edges and
 //! corners alike (Baerentzen & Aanaes 2005). That needs a closed mesh that faces outwards, so it is checked first.
 
@@ -17,7 +20,23 @@ pub(crate) struct Skin {
     faces: Vec<Vector3>,
     sides: Vec<[Vector3; 3]>,
     points: Vec<[Vector3; 3]>,
+    triangles: Vec<[u32; 3]>,
+    /// Triangles at each vertex, as offsets into one list.
+    fan_start: Vec<u32>,
+    fans: Vec<u32>,
 }
+
+/// The closest point of the skin.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct OnSkin {
+    pub(crate) distance: f64,
+    pub(crate) normal: Vector3,
+}
+
+/// A walk over the mesh ends after this many steps, wherever it is.
+const MAX_STEPS: usize = 16;
+/// Nearer to the skin than this the direction to it is noise, metres.
+const ON_SKIN: f64 = 1e-9;
 
 impl Skin {
     /// Checks a body and takes its normals.
@@ -41,10 +60,71 @@ impl Skin {
             pair.iter().for_each(|u| sides[u.3 as usize][u.4] = sum);
         }
         let points = point_normals(body, &corners, &faces);
-        Ok(Skin { corners, faces, sides, points })
+        let (fan_start, fans) = fans(body);
+        Ok(Skin { corners, faces, sides, points, triangles: body.triangles.clone(), fan_start, fans })
     }
 
-    /// Signed distance of `p` from the closest point of triangle `t`, as its square and its sign.
+    /// The closest point, looked for from the best of a few triangles.
+    pub(crate) fn closest(&self, p: &Point3, guesses: impl Iterator<Item = u32>) -> Option<OnSkin> {
+        let mut best: Option<(f64, u32, [f64; 3])> = None;
+        let mut last = u32::MAX;
+        for t in guesses {
+            // The nodes of a cell mostly share their triangle.
+            if t != last {
+                self.take(p, t, &mut best);
+                last = t;
+            }
+        }
+        for _ in 0..MAX_STEPS {
+            let (before, t, weights) = best?;
+            if weights.iter().all(|w| *w > 0.0) {
+                break;
+            }
+            for k in (0..3).filter(|&k| weights[k] > 0.0) {
+                let v = self.triangles[t as usize][k] as usize;
+                let fan = self.fan_start[v] as usize..self.fan_start[v + 1] as usize;
+                self.fans[fan].iter().for_each(|&u| self.take(p, u, &mut best));
+            }
+            if best.is_none_or(|b| b.0 >= before) {
+                break;
+            }
+        }
+        best.map(|(_, t, weights)| self.reading(p, t as usize, &weights))
+    }
+
+    fn take(&self, p: &Point3, t: u32, best: &mut Option<(f64, u32, [f64; 3])>) {
+        let corners = &self.corners[t as usize];
+        let weights = on_triangle(p, corners);
+        let d = (p - at(corners, &weights)).norm_squared();
+        if best.is_none_or(|b| d < b.0 || (d == b.0 && t < b.1)) {
+            *best = Some((d, t, weights));
+        }
+    }
+
+    fn reading(&self, p: &Point3, t: usize, weights: &[f64; 3]) -> OnSkin {
+        let gap = p - at(&self.corners[t], weights);
+        let pseudo = self.pseudo_normal(t, weights);
+        let length = gap.norm();
+        let distance = if gap.dot(&pseudo) < 0.0 { -length } else { length };
+        let face = weights.iter().all(|w| *w > 0.0);
+        let normal = if face || length <= ON_SKIN { pseudo } else { gap / distance };
+        OnSkin { distance, normal }
+    }
+
+    /// The normal of the feature that a closest point lies on.
+    fn pseudo_normal(&self, t: usize, weights: &[f64; 3]) -> Vector3 {
+        match weights.map(|w| w != 0.0) {
+            [true, true, true] => self.faces[t],
+            [true, true, false] => self.sides[t][0],
+            [false, true, true] => self.sides[t][1],
+            [true, false, true] => self.sides[t][2],
+            [_, false, false] => self.points[t][0],
+            [false, true, false] => self.points[t][1],
+            _ => self.points[t][2],
+        }
+    }
+
+    /// Squared distance of `p` from triangle `t`.
     pub(crate) fn distance_squared(&self, p: &Point3, t: usize) -> f64 {
         let corners = &self.corners[t];
         (p - at(corners, &on_triangle(p, corners))).norm_squared()
@@ -55,15 +135,7 @@ impl Skin {
         let corners = &self.corners[t];
         let weights = on_triangle(p, corners);
         let gap = p - at(corners, &weights);
-        let normal = match weights.map(|w| w != 0.0) {
-            [true, true, true] => self.faces[t],
-            [true, true, false] => self.sides[t][0],
-            [false, true, true] => self.sides[t][1],
-            [true, false, true] => self.sides[t][2],
-            [_, false, false] => self.points[t][0],
-            [false, true, false] => self.points[t][1],
-            _ => self.points[t][2],
-        };
+        let normal = self.pseudo_normal(t, &weights);
         if gap.dot(&normal) < 0.0 { -gap.norm() } else { gap.norm() }
     }
 }
@@ -125,4 +197,18 @@ fn point_normals(body: &Body, corners: &[[Point3; 3]], faces: &[Vector3]) -> Vec
         }
     }
     body.triangles.iter().map(|nodes| nodes.map(|i| unit(sums[i as usize]))).collect()
+}
+
+fn fans(body: &Body) -> (Vec<u32>, Vec<u32>) {
+    let mut start = vec![0u32; body.positions.len() + 1];
+    body.triangles.iter().flatten().for_each(|&v| start[v as usize + 1] += 1);
+    (0..body.positions.len()).for_each(|v| start[v + 1] += start[v]);
+    let (mut next, mut fans) = (start.clone(), vec![0; 3 * body.triangles.len()]);
+    for (t, nodes) in body.triangles.iter().enumerate() {
+        for &v in nodes {
+            fans[next[v as usize] as usize] = t as u32;
+            next[v as usize] += 1;
+        }
+    }
+    (start, fans)
 }
