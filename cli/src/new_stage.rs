@@ -8,14 +8,42 @@ use toile_core::{Registry, Role, write_files};
 
 /// The roles that have a template.
 const TEMPLATES: [(&str, Role, Template); 8] = [
-    ("denoiser", Role::Denoiser, Template { source: include_str!("new_stage/denoiser.txt"), dependencies: IMAGE }),
-    ("binariser", Role::Binariser, Template { source: include_str!("new_stage/binariser.txt"), dependencies: IMAGE }),
-    ("edge-detector", Role::EdgeDetector, Template { source: include_str!("new_stage/edge_detector.txt"), dependencies: "" }),
+    (
+        "denoiser",
+        Role::Denoiser,
+        Template { source: include_str!("new_stage/denoiser.txt"), dependencies: IMAGE },
+    ),
+    (
+        "binariser",
+        Role::Binariser,
+        Template { source: include_str!("new_stage/binariser.txt"), dependencies: IMAGE },
+    ),
+    (
+        "edge-detector",
+        Role::EdgeDetector,
+        Template { source: include_str!("new_stage/edge_detector.txt"), dependencies: "" },
+    ),
     ("mesher", Role::Mesher, Template { source: include_str!("new_stage/mesher.txt"), dependencies: "" }),
-    ("smoother", Role::Smoother, Template { source: include_str!("new_stage/smoother.txt"), dependencies: "" }),
-    ("stitcher", Role::Stitcher, Template { source: include_str!("new_stage/stitcher.txt"), dependencies: "" }),
-    ("collider", Role::Collider, Template { source: include_str!("new_stage/collider.txt"), dependencies: "" }),
-    ("texturer", Role::Texturer, Template { source: include_str!("new_stage/texturer.txt"), dependencies: "" }),
+    (
+        "smoother",
+        Role::Smoother,
+        Template { source: include_str!("new_stage/smoother.txt"), dependencies: "" },
+    ),
+    (
+        "stitcher",
+        Role::Stitcher,
+        Template { source: include_str!("new_stage/stitcher.txt"), dependencies: "" },
+    ),
+    (
+        "collider",
+        Role::Collider,
+        Template { source: include_str!("new_stage/collider.txt"), dependencies: "" },
+    ),
+    (
+        "texturer",
+        Role::Texturer,
+        Template { source: include_str!("new_stage/texturer.txt"), dependencies: "" },
+    ),
 ];
 
 const IMAGE: &str = "image = { version = \"0.25\", default-features = false }\n";
@@ -45,7 +73,8 @@ pub(crate) fn new_stage(asked: &Asked<'_>, registry: &Registry, streams: &mut St
             let (show, library) = (folder.display(), snake(asked.name));
             streams.say(format!("wrote {show}"));
             streams.say(format!("  cd {show} && cargo test && cargo build --release"));
-            streams.say(format!("  toile stage {} --plugin {show}/target/release/lib{library}.so", asked.name));
+            streams
+                .say(format!("  toile stage {} --plugin {show}/target/release/lib{library}.so", asked.name));
             exit::DONE
         }
         Err((code, message)) => {
@@ -70,8 +99,10 @@ fn written(asked: &Asked<'_>, registry: &Registry) -> Result<PathBuf, Refusal> {
         return Err(usage(format!("{} is there already; choose another name or `--dir`", folder.display())));
     }
     let core = core_dependency(asked.core)?;
-    let files: Vec<(String, Vec<u8>)> =
-        files(asked.name, &template, &core).into_iter().map(|(path, text)| (path.to_owned(), text.into_bytes())).collect();
+    let files: Vec<(String, Vec<u8>)> = files(asked.name, &template, &core)
+        .into_iter()
+        .map(|(path, text)| (path.to_owned(), text.into_bytes()))
+        .collect();
     let files = files.into_iter().map(|(path, bytes)| toile_core::artifact::OutputFile { path, bytes });
     write_files(&folder, &files.collect::<Vec<_>>())
         .map_err(|e| (exit::INVALID, format!("cannot write {}: {e}", folder.display())))?;
@@ -99,14 +130,17 @@ fn template(role: &str) -> Result<Template, Refusal> {
 const RESERVED: [&str; 6] = ["Self", "Test", "Core", "Std", "Alloc", "Box"];
 
 fn check_name(name: &str, registry: &Registry) -> Result<(), Refusal> {
-    let word = name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(|c| c.is_ascii_alphanumeric());
+    let word =
+        name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(|c| c.is_ascii_alphanumeric());
     if !word || name.len() < 2 || name.len() > MAX_NAME || RESERVED.contains(&name) {
         return Err(usage(format!(
             "\"{name}\" cannot name a stage; write one word that begins with a capital, like FineMesher"
         )));
     }
     match registry.named(name).next() {
-        Some(card) => Err(usage(format!("there is a {} `{name}` already; choose another name", card.role.as_str()))),
+        Some(card) => {
+            Err(usage(format!("there is a {} `{name}` already; choose another name", card.role.as_str())))
+        }
         None => Ok(()),
     }
 }
@@ -117,7 +151,8 @@ fn core_dependency(core: Option<&Path>) -> Result<String, Refusal> {
     if !path.join("Cargo.toml").is_file() {
         return Err((exit::INVALID, format!("there is no crate in {}", path.display())));
     }
-    let full = path.canonicalize().map_err(|e| (exit::INVALID, format!("cannot read {}: {e}", path.display())))?;
+    let full =
+        path.canonicalize().map_err(|e| (exit::INVALID, format!("cannot read {}: {e}", path.display())))?;
     Ok(format!("path = {:?}", full.display().to_string()))
 }
 

@@ -32,7 +32,8 @@ pub(crate) fn schema(registry: &Registry) -> Value {
     let any_stage: Vec<Value> = registry.cards().map(|c| reference(registry, c)).collect();
     let mut fields = Map::new();
     fields.insert("name".into(), json!({ "type": "string", "description": "The pipeline's name." }));
-    fields.insert("stages".into(), json!({ "type": "array", "minItems": 1, "items": { "anyOf": any_stage } }));
+    fields
+        .insert("stages".into(), json!({ "type": "array", "minItems": 1, "items": { "anyOf": any_stage } }));
     fields.insert("plugins".into(), plugins());
     for section in registry.sections() {
         fields.insert(section.field.into(), section_schema(registry, section.holds));
@@ -215,9 +216,15 @@ mod tests {
 
     #[test]
     fn words_become_types() {
-        assert_eq!(kind("list of (number, number)"), json!({ "type": "array", "items": {
-            "type": "array", "prefixItems": [{ "type": "number" }, { "type": "number" }], "minItems": 2, "maxItems": 2 } }));
-        assert_eq!(kind("whole number (or None)"), json!({ "anyOf": [{ "type": "integer" }, { "type": "null" }] }));
+        assert_eq!(
+            kind("list of (number, number)"),
+            json!({ "type": "array", "items": {
+            "type": "array", "prefixItems": [{ "type": "number" }, { "type": "number" }], "minItems": 2, "maxItems": 2 } })
+        );
+        assert_eq!(
+            kind("whole number (or None)"),
+            json!({ "anyOf": [{ "type": "integer" }, { "type": "null" }] })
+        );
         assert_eq!(kind("Y | Z"), json!({ "anyOf": [{ "const": "Y" }, { "const": "Z" }] }));
         let mean = json!({ "type": "object", "properties": { "Mean": { "type": "object", "properties": { "offset": {} } } },
             "required": ["Mean"], "additionalProperties": false });

@@ -66,7 +66,10 @@ fn what_fails_is_named_with_its_reason() {
     assert!(line("Fainting").starts_with("fails"), "{text}");
     assert!(line("Fainting").ends_with("on a vest, it panicked: too hot"), "{text}");
     assert!(line("Misquoted").contains("its example `Misquoted(level: 3)` does not load: "), "{text}");
-    assert!(line("Choosy").starts_with("refuses") && line("Choosy").ends_with("a vest: not in this light"), "{text}");
+    assert!(
+        line("Choosy").starts_with("refuses") && line("Choosy").ends_with("a vest: not in this light"),
+        "{text}"
+    );
     assert_eq!(lines.last(), Some(&"3 stages, 2 fail"));
     assert_eq!(code, 70);
 }

@@ -88,9 +88,15 @@ fn what_cannot_be_is_refused_by_name() {
     for name in ["my mesher", "mesher", "", "Ä", "A", "Fine-Mesher", "../Up", "Self", "1st"] {
         assert_eq!(refused(name, "mesher"), format!("error: \"{name}\" {word}\n"));
     }
-    assert_eq!(refused("Otsu", "mesher"), "error: there is a binariser `Otsu` already; choose another name\n");
+    assert_eq!(
+        refused("Otsu", "mesher"),
+        "error: there is a binariser `Otsu` already; choose another name\n"
+    );
     let there = "denoiser, binariser, edge-detector, mesher, smoother, stitcher, collider, texturer";
-    assert_eq!(refused("Fine", "writer"), format!("error: there is no template for a writer; there are {there}\n"));
+    assert_eq!(
+        refused("Fine", "writer"),
+        format!("error: there is no template for a writer; there are {there}\n")
+    );
     assert_eq!(refused("Fine", "meshr"), "error: there is no role \"meshr\"; did you mean mesher?\n");
     assert_eq!(refused("Fine", "xyz"), format!("error: there is no role \"xyz\"; there are {there}\n"));
     std::fs::create_dir(dir.path().join("fine")).unwrap();

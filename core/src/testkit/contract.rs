@@ -4,7 +4,9 @@ use super::suite::{cases, default_value, empty_value, large_value};
 use super::trial::{Outcome, Trial};
 use super::{Case, folder, motion};
 use crate::artifact::*;
-use crate::{Arity, Cancel, Card, Contract, ErrorCode, InPort, Inputs, PortValue, Registry, Stage, StageType};
+use crate::{
+    Arity, Cancel, Card, Contract, ErrorCode, InPort, Inputs, PortValue, Registry, Stage, StageType,
+};
 use std::any::Any;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -47,7 +49,9 @@ pub struct Kept {
 /// True where the kit can check that contract for a card: what its ports take, the suite holds.
 pub fn is_checked(card: &Card, contract: Contract) -> bool {
     let known = card.inputs.iter().filter(|p| !p.optional).all(|p| default_value(p).is_some());
-    let kinds = |k: Kind| card.inputs.iter().any(|p| p.kind == k) && card.outputs.iter().any(|p| p.kind == Panel::KIND);
+    let kinds = |k: Kind| {
+        card.inputs.iter().any(|p| p.kind == k) && card.outputs.iter().any(|p| p.kind == Panel::KIND)
+    };
     let like = |(a, b): (&InPort, &crate::OutPort)| a.kind == b.kind && a.arity != Arity::All;
     known
         && match contract {
@@ -170,13 +174,17 @@ fn thread_invariant(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String> {
     for case in cases {
         let mut first: Option<(usize, Outcome)> = None;
         for threads in THREADS {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| e.to_string())?;
+            let pool =
+                rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| e.to_string())?;
             let outcome = pool.install(|| run(trial, case))?;
             match &first {
                 None => first = Some((threads, outcome)),
                 Some((n, f)) if f.fingerprint() != outcome.fingerprint() => {
                     let (a, b) = (f.fingerprint(), outcome.fingerprint());
-                    return Err(format!("on {} it gives {a} with {n} threads, {b} with {threads}", case.name));
+                    return Err(format!(
+                        "on {} it gives {a} with {n} threads, {b} with {threads}",
+                        case.name
+                    ));
                 }
                 Some(_) => {}
             }
@@ -231,7 +239,8 @@ fn boundary_preserving(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String
     for case in cases {
         let outcome = run(trial, case)?;
         let made = outcome.values().unwrap_or(&[]);
-        for panel in made.iter().flat_map(PortValue::entries).filter_map(|(_, a)| typed::<Panel>(a.as_ref())) {
+        for panel in made.iter().flat_map(PortValue::entries).filter_map(|(_, a)| typed::<Panel>(a.as_ref()))
+        {
             let of = case.inputs.0.iter().flatten().flat_map(PortValue::entries);
             for (_, input) in of {
                 let kept = match (typed::<Outline>(input.as_ref()), typed::<Panel>(input.as_ref())) {
@@ -278,9 +287,12 @@ fn on_outline(outline: &Outline, panel: &Panel) -> Result<(), String> {
         }
     }
     for edge in &outline.edges {
-        let Some(made) = panel.edge(&edge.name) else { return Err(format!("the edge \"{}\" is lost", edge.name)) };
+        let Some(made) = panel.edge(&edge.name) else {
+            return Err(format!("the edge \"{}\" is lost", edge.name));
+        };
         let ends = [(edge.start, made.vertices.first()), (edge.end, made.vertices.last())];
-        let held = ends.iter().all(|(k, v)| v.is_some_and(|v| (at(v) - outline.outer.points[*k]).norm() <= most));
+        let held =
+            ends.iter().all(|(k, v)| v.is_some_and(|v| (at(v) - outline.outer.points[*k]).norm() <= most));
         if !held {
             return Err(format!("the edge \"{}\" does not end where it did", edge.name));
         }
@@ -358,7 +370,8 @@ fn lateness(trial: &Trial<'_>, inputs: &Inputs, after: u64) -> Result<Option<Dur
     let asked = cancel.clone();
     let (done, waiting) = mpsc::channel::<()>();
     let watch = std::thread::spawn(move || {
-        let early = after > 0 && waiting.recv_timeout(Duration::from_millis(after)) != Err(mpsc::RecvTimeoutError::Timeout);
+        let early = after > 0
+            && waiting.recv_timeout(Duration::from_millis(after)) != Err(mpsc::RecvTimeoutError::Timeout);
         (!early).then(|| {
             asked.cancel();
             Instant::now()

@@ -49,18 +49,15 @@ pub fn body() -> Body {
         }
     }
     let girth = |[_, rx, rz]: [f64; 3]| TAU * ((rx * rx + rz * rz) / 2.0).sqrt();
-    let named = [("height", 1.7), ("bust", girth(RINGS[5])), ("waist", girth(RINGS[4])), ("hip", girth(RINGS[3]))];
+    let named =
+        [("height", 1.7), ("bust", girth(RINGS[5])), ("waist", girth(RINGS[4])), ("hip", girth(RINGS[3]))];
     let measurements = named.map(|(name, length)| (name.to_owned(), length)).into();
     Body { positions, triangles, landmarks: landmarks(), measurements }
 }
 
 fn landmarks() -> BTreeMap<String, Landmark> {
-    let middle = [
-        ("neck_base", 1.47, 0.055),
-        ("bust", 1.25, 0.115),
-        ("waist", 1.05, 0.095),
-        ("hip", 0.85, 0.115),
-    ];
+    let middle =
+        [("neck_base", 1.47, 0.055), ("bust", 1.25, 0.115), ("waist", 1.05, 0.095), ("hip", 0.85, 0.115)];
     let sides = [
         ("neck", 0.06, 1.45),
         ("shoulder", 0.16, 1.36),
@@ -214,7 +211,13 @@ impl Capsules {
 
 impl Collide for Capsules {
     fn card(&self) -> ColliderCard {
-        ColliderCard { thickness: 1.5e-3, friction: 0.3, restitution: 0.0, self_collision: false, penalty: None }
+        ColliderCard {
+            thickness: 1.5e-3,
+            friction: 0.3,
+            restitution: 0.0,
+            self_collision: false,
+            penalty: None,
+        }
     }
 
     fn body_contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>) {
@@ -248,7 +251,8 @@ impl Collide for Capsules {
 
 /// What acts in a prepared scene.
 pub fn phases() -> Phases {
-    let phase = |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
+    let phase =
+        |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
     Phases(vec![phase("sew", 0.0), phase("drape", 9.81)])
 }
 
@@ -296,7 +300,9 @@ pub fn model() -> Model {
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
     for name in example.split('"').skip(1).step_by(2) {
-        let Some((_, extension)) = name.rsplit_once('.').filter(|(_, e)| e.chars().all(char::is_alphanumeric)) else {
+        let Some((_, extension)) =
+            name.rsplit_once('.').filter(|(_, e)| e.chars().all(char::is_alphanumeric))
+        else {
             continue;
         };
         if name.contains(['/', '\\']) || name.contains("..") {

@@ -40,10 +40,13 @@ pub fn of(contract: Contract) -> Option<Motion> {
 /// True where every kind that a card takes can be moved so, and every kind that it gives be compared.
 pub fn applies(card: &Card, motion: Motion) -> bool {
     let turns = matches!(motion, Motion::Turn(_));
-    let takes = |k: Kind| k == Outline::KIND || k == Panel::KIND || (!turns && (k == Photo::KIND || k == Mask::KIND));
+    let takes =
+        |k: Kind| k == Outline::KIND || k == Panel::KIND || (!turns && (k == Photo::KIND || k == Mask::KIND));
     let gives = |k: Kind| k == Outline::KIND || k == Panel::KIND || k == SewingPlan::KIND;
     let required = card.inputs.iter().filter(|p| !p.optional);
-    required.clone().count() > 0 && required.clone().all(|p| takes(p.kind)) && card.outputs.iter().all(|p| gives(p.kind))
+    required.clone().count() > 0
+        && required.clone().all(|p| takes(p.kind))
+        && card.outputs.iter().all(|p| gives(p.kind))
 }
 
 /// The inputs moved; `None` where one cannot be.
@@ -70,7 +73,9 @@ fn artifact(a: &Arc<dyn Artifact>, motion: Motion) -> Option<Arc<dyn Artifact>> 
     if let Some(p) = any.downcast_ref::<Photo>() {
         return match motion {
             Motion::Shift(..) => Some(Arc::new(p.with_pixels(shifted(p.pixels.as_ref())))),
-            Motion::Scale(s) => Some(Arc::new(Photo { px_per_metre: p.px_per_metre.map(|x| x / s), ..p.clone() })),
+            Motion::Scale(s) => {
+                Some(Arc::new(Photo { px_per_metre: p.px_per_metre.map(|x| x / s), ..p.clone() }))
+            }
             Motion::Turn(_) => None,
         };
     }
@@ -86,7 +91,9 @@ fn artifact(a: &Arc<dyn Artifact>, motion: Motion) -> Option<Arc<dyn Artifact>> 
 fn shifted<P: Pixel + 'static>(image: &ImageBuffer<P, Vec<P::Subpixel>>) -> ImageBuffer<P, Vec<P::Subpixel>> {
     let [dx, dy] = SHIFT_PX;
     let (w, h) = image.dimensions();
-    ImageBuffer::from_fn(w + dx, h + dy, |x, y| image.get_pixel(x.saturating_sub(dx), y.saturating_sub(dy)).to_owned())
+    ImageBuffer::from_fn(w + dx, h + dy, |x, y| {
+        image.get_pixel(x.saturating_sub(dx), y.saturating_sub(dy)).to_owned()
+    })
 }
 
 /// A point moved.
@@ -99,8 +106,14 @@ pub fn point(q: Point2, motion: Motion) -> Point2 {
 }
 
 fn outline(o: &Outline, motion: Motion) -> Outline {
-    let map = |l: &Loop| Loop { points: l.points.iter().map(|q| point(*q, motion)).collect(), corners: l.corners.clone() };
-    let line = |l: &InnerLine| InnerLine { points: l.points.iter().map(|q| point(*q, motion)).collect(), ..l.clone() };
+    let map = |l: &Loop| Loop {
+        points: l.points.iter().map(|q| point(*q, motion)).collect(),
+        corners: l.corners.clone(),
+    };
+    let line = |l: &InnerLine| InnerLine {
+        points: l.points.iter().map(|q| point(*q, motion)).collect(),
+        ..l.clone()
+    };
     let mut out = Outline {
         outer: map(&o.outer),
         holes: o.holes.iter().map(map).collect(),
@@ -128,14 +141,20 @@ fn panel(p: &Panel, motion: Motion) -> Panel {
 /// Holds what came of moved input against what came of the input.
 ///
 /// Errors: where they part, and by how much.
-pub fn compare(before: &[PortValue], after: &[PortValue], motion: Motion, pictures: bool) -> Result<(), String> {
+pub fn compare(
+    before: &[PortValue],
+    after: &[PortValue],
+    motion: Motion,
+    pictures: bool,
+) -> Result<(), String> {
     for (a, b) in before.iter().zip(after) {
         let (a, b) = (a.entries(), b.entries());
         if a.len() != b.len() {
             return Err(format!("it gave {} artifacts, and {} of the moved input", a.len(), b.len()));
         }
         for ((name, a), (_, b)) in a.iter().zip(&b) {
-            same(a.as_ref(), b.as_ref(), motion, pictures).map_err(|e| format!("{} {name}: {e}", a.kind()))?;
+            same(a.as_ref(), b.as_ref(), motion, pictures)
+                .map_err(|e| format!("{} {name}: {e}", a.kind()))?;
         }
     }
     Ok(())
@@ -237,7 +256,9 @@ fn plans(a: &SewingPlan, b: &SewingPlan, motion: Motion) -> Result<(), String> {
         return Err("its seams differ".into());
     }
     for (name, place) in &a.placements {
-        let Some(other) = b.placements.get(name) else { return Err(format!("\"{name}\" has no place any more")) };
+        let Some(other) = b.placements.get(name) else {
+            return Err(format!("\"{name}\" has no place any more"));
+        };
         let expected = point(place.anchor, motion);
         let off = (expected - other.anchor).norm();
         near(off, TOLERANCE * size(&[expected, Point2::new(1.0, 1.0)]), 1e3, "mm")

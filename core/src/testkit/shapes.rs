@@ -100,7 +100,8 @@ pub fn unnamed(outline: &Outline) -> Outline {
 
 /// The outline moved and scaled about the origin.
 pub fn scaled(outline: &Outline, by: f64) -> Outline {
-    let map = |l: &Loop| Loop { points: l.points.iter().map(|q| q * by).collect(), corners: l.corners.clone() };
+    let map =
+        |l: &Loop| Loop { points: l.points.iter().map(|q| q * by).collect(), corners: l.corners.clone() };
     let mut out = Outline {
         outer: map(&outline.outer),
         holes: outline.holes.iter().map(map).collect(),
@@ -303,7 +304,8 @@ pub fn ring() -> Panel {
     let at = |r: usize, k: usize| (r * around + k % around) as u32;
     let place = |r: usize, k: usize| {
         let (a, radius) = (TAU * k as f64 / around as f64, 0.07 + 0.03 * r as f64);
-        let off = if r > 0 && r + 1 < rings { (f64::from(grain(at(r, k), 3)) / 255.0 - 0.5) * 0.01 } else { 0.0 };
+        let off =
+            if r > 0 && r + 1 < rings { (f64::from(grain(at(r, k), 3)) / 255.0 - 0.5) * 0.01 } else { 0.0 };
         p((radius + off) * a.cos(), (radius + off) * a.sin())
     };
     let cells = (0..rings - 1).flat_map(|r| (0..around).map(move |k| (r, k)));
@@ -311,7 +313,10 @@ pub fn ring() -> Panel {
         [[at(r, k), at(r + 1, k), at(r + 1, k + 1)], [at(r, k), at(r + 1, k + 1), at(r, k + 1)]]
     };
     Panel {
-        positions: (0..rings).flat_map(|r| (0..around).map(move |k| (r, k))).map(|(r, k)| place(r, k)).collect(),
+        positions: (0..rings)
+            .flat_map(|r| (0..around).map(move |k| (r, k)))
+            .map(|(r, k)| place(r, k))
+            .collect(),
         triangles: cells.flat_map(split).collect(),
         boundary: (0..around).map(|k| at(rings - 1, k)).collect(),
         holes: vec![(0..around).rev().map(|k| at(0, k)).collect()],

@@ -94,7 +94,8 @@ fn scenes() -> &'static [Scene] {
     static SCENES: LazyLock<Vec<Scene>> = LazyLock::new(|| {
         let (vest, low, tshirt) = (shapes::vest(0.5), shapes::vest(0.62), shapes::tshirt());
         let noise = shapes::noisy_photo(40, 30).pixels;
-        let thresholded = GrayImage::from_fn(40, 30, |x, y| Luma([if noise.get_pixel(x, y)[0] > 127 { 255 } else { 0 }]));
+        let thresholded =
+            GrayImage::from_fn(40, 30, |x, y| Luma([if noise.get_pixel(x, y)[0] > 127 { 255 } else { 0 }]));
         let point = |q: [[f64; 2]; 3]| q.map(|[x, y]| Point2::new(x, y)).to_vec();
         vec![
             garment("a vest", &vest, &low).with("back", back_panel()).with("front", dress::garment_panel()),
@@ -113,7 +114,10 @@ fn scenes() -> &'static [Scene] {
             outlines("a skirt with a dart and a fold", &shapes::darted()),
             outlines("a vest of 5 mm", &shapes::scaled(&vest, 0.01)),
             outlines("a vest of 50 m", &shapes::scaled(&vest, 100.0)),
-            outlines("a triangle", &shapes::plain(point([[0.0, 0.0], [0.3, 0.0], [0.0, 0.2]]), vec![0, 1, 2])),
+            outlines(
+                "a triangle",
+                &shapes::plain(point([[0.0, 0.0], [0.3, 0.0], [0.0, 0.2]]), vec![0, 1, 2]),
+            ),
             Scene::new("a ring", false).both(shapes::ring()),
             Scene::new("a panel of 1 cm", true).both(shapes::panel(3, 3, 0.01, 0.01)),
             Scene::new("a strip", true).both(shapes::panel(40, 1, 1.0, 0.004)),
@@ -225,7 +229,8 @@ pub fn empty_value(port: &InPort) -> Option<PortValue> {
 /// Every case for a card; none where a required port takes a kind that the suite does not know.
 pub fn cases(card: &Card) -> Vec<Case> {
     let wants = |scene: &&Scene| card.inputs.iter().any(|p| !p.optional && scene.holds.contains_key(&p.kind));
-    let mut all: Vec<Case> = scenes().iter().filter(wants).filter_map(|scene| case(card, Some(scene))).collect();
+    let mut all: Vec<Case> =
+        scenes().iter().filter(wants).filter_map(|scene| case(card, Some(scene))).collect();
     if all.is_empty() {
         all.extend(case(card, scenes().first()));
     }
@@ -250,7 +255,8 @@ fn case(card: &Card, scene: Option<&Scene>) -> Option<Case> {
 /// The first case without anything on its optional ports.
 fn bare(card: &Card) -> Option<Case> {
     // A garment that no body and no end stops falls for as long as its solver has patience.
-    let falls = card.inputs.iter().any(|p| p.kind == Garment::KIND) && card.outputs.iter().any(|p| p.kind == Garment::KIND);
+    let falls = card.inputs.iter().any(|p| p.kind == Garment::KIND)
+        && card.outputs.iter().any(|p| p.kind == Garment::KIND);
     if falls || !card.inputs.iter().any(|p| p.optional) {
         return None;
     }

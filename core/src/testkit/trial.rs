@@ -56,7 +56,8 @@ fn words(payload: &(dyn Any + Send)) -> String {
 }
 
 fn unsound(made: &[PortValue]) -> Option<String> {
-    let faults = made.iter().flat_map(PortValue::entries).find_map(|(_, a)| a.check().err().map(|e| (a.kind(), e)));
+    let faults =
+        made.iter().flat_map(PortValue::entries).find_map(|(_, a)| a.check().err().map(|e| (a.kind(), e)));
     faults.map(|(kind, fault)| format!("it gave a {kind} that cannot be: {fault}"))
 }
 
@@ -81,7 +82,9 @@ impl Outcome {
             Outcome::Broken(fault) => fault.clone(),
             Outcome::Answered(made) => {
                 let each = made.iter().flat_map(PortValue::entries);
-                each.map(|(name, a)| format!("{name} {} {}", a.kind(), digest(a.as_ref()))).collect::<Vec<_>>().join("; ")
+                each.map(|(name, a)| format!("{name} {} {}", a.kind(), digest(a.as_ref())))
+                    .collect::<Vec<_>>()
+                    .join("; ")
             }
         }
     }
@@ -102,12 +105,15 @@ fn digest(artifact: &dyn Artifact) -> String {
 fn answers(collider: &Collider, d: &mut Digester) {
     let garment = super::dress::garment();
     let (mut body, mut own, mut hits) = (Vec::new(), Vec::new(), Vec::new());
-    let inward: Vec<_> = garment.positions.iter().map(|p| p + (crate::artifact::Point3::new(0.0, p.y, 0.0) - p)).collect();
+    let inward: Vec<_> =
+        garment.positions.iter().map(|p| p + (crate::artifact::Point3::new(0.0, p.y, 0.0) - p)).collect();
     collider.scheme.body_contacts(&garment.positions, 0.2, &mut body);
     collider.scheme.body_hits(&garment.positions, &inward, &mut hits);
     collider.scheme.self_contacts(&garment.positions, &garment.triangles, 0.06, &mut own);
     for c in body.iter().chain(&hits) {
-        d.count(c.vertex as usize).floats([c.distance, c.point.x, c.point.y, c.point.z]).floats(c.normal.iter().copied());
+        d.count(c.vertex as usize)
+            .floats([c.distance, c.point.x, c.point.y, c.point.z])
+            .floats(c.normal.iter().copied());
     }
     for c in &own {
         d.indices(c.vertices).floats(c.weights).floats([c.distance]);

@@ -30,7 +30,8 @@ pub(crate) fn smooth(
     let falloff = 2.0 * (COLOUR * noise).powi(2);
     let table: Vec<f32> =
         (0..=FARTHEST / STEP).map(|d| (-((d * STEP) as f64) / falloff).exp() as f32).collect();
-    let place: Vec<f32> = (0..=2 * RADIUS * RADIUS).map(|d| (-(d as f64) / (2.0 * PLACE * PLACE)).exp() as f32).collect();
+    let place: Vec<f32> =
+        (0..=2 * RADIUS * RADIUS).map(|d| (-(d as f64) / (2.0 * PLACE * PLACE)).exp() as f32).collect();
     let at = |x: usize, y: usize| {
         let k = 3 * (y * w + x);
         [raw[k], raw[k + 1], raw[k + 2]]

@@ -26,7 +26,13 @@ pub enum By {
 }
 
 /// Filters a photo: windows of `radius` pixels, standard deviations below `noise` become flat.
-pub fn guided(photo: &RgbImage, by: By, radius: usize, noise: f64, cx: &Context) -> Result<RgbImage, StageError> {
+pub fn guided(
+    photo: &RgbImage,
+    by: By,
+    radius: usize,
+    noise: f64,
+    cx: &Context,
+) -> Result<RgbImage, StageError> {
     let (w, h) = (photo.width() as usize, photo.height() as usize);
     let mut out = photo.clone();
     if w == 0 || h == 0 {
@@ -46,7 +52,8 @@ pub fn guided(photo: &RgbImage, by: By, radius: usize, noise: f64, cx: &Context)
         };
         for c in 0..3 {
             let plane: Vec<f32> = source.iter().skip(c).step_by(3).map(|&v| f32::from(v)).collect();
-            let guide: Option<Vec<f32>> = guide.as_ref().map(|g| g.iter().skip(c).step_by(3).copied().collect());
+            let guide: Option<Vec<f32>> =
+                guide.as_ref().map(|g| g.iter().skip(c).step_by(3).copied().collect());
             let filtered = channel(&plane, guide.as_deref(), (w, height), radius, noise, cx)?;
             let from = (own.start - rows.start) * w;
             for (pixel, v) in pixels.chunks_exact_mut(3).zip(&filtered[from..]) {

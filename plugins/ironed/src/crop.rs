@@ -42,7 +42,8 @@ impl Crop {
         let mut inside = vec![false; (cw * ch) as usize];
         for (k, (pixel, inside)) in pixels.pixels_mut().zip(&mut inside).enumerate() {
             let (x0, y0) = (k as u32 % cw * step, k as u32 / cw * step);
-            let block = (y0..(y0 + step).min(height)).flat_map(|y| (x0..(x0 + step).min(width)).map(move |x| (x, y)));
+            let block =
+                (y0..(y0 + step).min(height)).flat_map(|y| (x0..(x0 + step).min(width)).map(move |x| (x, y)));
             let own = block.filter(|(x, y)| covered[(y * width + x) as usize]);
             let (mut sum, mut count) = ([0.0; 3], 0u32);
             for (x, y) in own {

@@ -27,8 +27,10 @@ fn complete(colours: &mut [Option<[f32; 3]>], (w, h): (usize, usize)) {
     let mean = |k: usize| {
         let (x, y) = (k % hw * 2, k / hw * 2);
         let four = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)];
-        let known = four.into_iter().filter(|(x, y)| *x < w && *y < h).filter_map(|(x, y)| colours[y * w + x]);
-        let (sum, n) = known.fold(([0.0; 3], 0.0), |(s, n), c| ([s[0] + c[0], s[1] + c[1], s[2] + c[2]], n + 1.0));
+        let known =
+            four.into_iter().filter(|(x, y)| *x < w && *y < h).filter_map(|(x, y)| colours[y * w + x]);
+        let (sum, n) =
+            known.fold(([0.0; 3], 0.0), |(s, n), c| ([s[0] + c[0], s[1] + c[1], s[2] + c[2]], n + 1.0));
         (n > 0.0).then(|| sum.map(|s: f32| s / n))
     };
     let mut half: Vec<Option<[f32; 3]>> = (0..hw * hh).map(mean).collect();

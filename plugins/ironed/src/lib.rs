@@ -73,7 +73,8 @@ impl Ironed {
         let mut model = Model::default();
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.progress(i as f64 / garment.panels.len() as f64, format!("ironing {}", panel.name));
-            let photo = photos.as_ref().and_then(|p| p.get(&panel.name)).filter(|_| !panel.photo_px.is_empty());
+            let photo =
+                photos.as_ref().and_then(|p| p.get(&panel.name)).filter(|_| !panel.photo_px.is_empty());
             if photo.is_none() {
                 cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name));
             }

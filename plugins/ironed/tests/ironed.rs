@@ -32,10 +32,16 @@ fn wrinkles_go_and_the_print_stays() {
     let inside = vec![true; 300 * 200];
     let (after, shading) = iron(&before, &inside, &SETTINGS, &Context::quiet()).unwrap();
     for columns in [10..90, 110..150, 180..290] {
-        let ((was, _), (is, mean), (_, truth)) =
-            (spread(&before, columns.clone()), spread(&after, columns.clone()), spread(&flat, columns.clone()));
+        let ((was, _), (is, mean), (_, truth)) = (
+            spread(&before, columns.clone()),
+            spread(&after, columns.clone()),
+            spread(&flat, columns.clone()),
+        );
         assert!(is < 0.25 * was, "columns {columns:?}: {was:.4} became {is:.4}");
-        assert!((mean / truth - 1.0).abs() < 0.02, "columns {columns:?}: the colour moved from {truth} to {mean}");
+        assert!(
+            (mean / truth - 1.0).abs() < 0.02,
+            "columns {columns:?}: the colour moved from {truth} to {mean}"
+        );
     }
     assert!((0.06..0.1).contains(&shading), "{shading}");
 }

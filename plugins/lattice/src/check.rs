@@ -16,7 +16,8 @@ pub(crate) fn outline(outline: &Outline, h: f64) -> Result<(), StageError> {
     outline.check().map_err(|e| StageError::invalid(format!("the outline cannot be meshed: {e}")))?;
     size(outline, h)?;
     crossing(outline)?;
-    match outline.holes.iter().position(|hole| !hole.points.iter().all(|p| inside(&outline.outer.points, *p))) {
+    match outline.holes.iter().position(|hole| !hole.points.iter().all(|p| inside(&outline.outer.points, *p)))
+    {
         Some(k) => Err(StageError::invalid(format!("hole {} lies outside the cloth", k + 1))),
         None => Ok(()),
     }
@@ -41,7 +42,9 @@ fn size(outline: &Outline, h: f64) -> Result<(), StageError> {
     }
     if h > span.x.max(span.y) {
         let text = format!("an edge of {} is larger than the panel", Length::m(h));
-        return Err(StageError::invalid(text).hint("use a smaller edge, or check the photo's scale").at("edge"));
+        return Err(StageError::invalid(text)
+            .hint("use a smaller edge, or check the photo's scale")
+            .at("edge"));
     }
     let named = outline.edges.iter().map(|e| e.gauge.divisions(h) as f64).sum::<f64>();
     let lines = outline.inner.iter().map(|l| polyline_length(&l.points)).sum::<f64>();

@@ -108,7 +108,8 @@ impl Stretch {
             None => n.max(least).max(if self.closed { LEAST_CLOSED } else { 1 }),
             Some(_) if n >= least => n,
             Some(name) => {
-                let text = format!("edge \"{name}\" is divided into {n}, too few for its corners and inner lines");
+                let text =
+                    format!("edge \"{name}\" is divided into {n}, too few for its corners and inner lines");
                 return Err(StageError::invalid(text).hint("use a smaller edge").at("edge"));
             }
         };

@@ -54,7 +54,8 @@ impl Rows {
 
     fn columns_between(&self, row: usize, x0: f64, x1: f64) -> std::ops::Range<usize> {
         let column = |x: f64| ((x - self.x(row, 0)) / self.h).clamp(-1.0, self.columns as f64);
-        (column(x0).ceil().max(0.0) as usize)..((column(x1).floor() + 1.0).max(0.0) as usize).min(self.columns)
+        (column(x0).ceil().max(0.0) as usize)
+            ..((column(x1).floor() + 1.0).max(0.0) as usize).min(self.columns)
     }
 
     /// Which points lie inside the loops, row by row.

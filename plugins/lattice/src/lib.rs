@@ -57,8 +57,12 @@ impl LatticeMesher {
 
 /// Puts the panel together; inner lines must have become mesh edges.
 fn assemble(outline: &Outline, division: Division, meshed: Meshed) -> Result<Panel, StageError> {
-    let mut sides: Vec<[u32; 2]> =
-        meshed.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).map(sorted).collect();
+    let mut sides: Vec<[u32; 2]> = meshed
+        .triangles
+        .iter()
+        .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
+        .map(sorted)
+        .collect();
     sides.sort_unstable();
     let lies = |w: &[u32]| sides.binary_search(&sorted([w[0], w[1]])).is_ok();
     if let Some(line) = division.chains.iter().find(|c| !c.vertices.windows(2).all(lies)) {

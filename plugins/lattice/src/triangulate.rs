@@ -29,7 +29,12 @@ pub(crate) struct Meshed {
 }
 
 /// Meshes a division and its seeds at an edge length `h`.
-pub(crate) fn mesh(division: &Division, seeds: Vec<Seed>, h: f64, cx: &Context) -> Result<Meshed, StageError> {
+pub(crate) fn mesh(
+    division: &Division,
+    seeds: Vec<Seed>,
+    h: f64,
+    cx: &Context,
+) -> Result<Meshed, StageError> {
     let fixed = division.points.len();
     let mut points = division.points.clone();
     points.extend(seeds.iter().map(|s| s.at));
@@ -88,7 +93,11 @@ const CHECK_EVERY: usize = 2000;
 
 /// All triangles of the hull, counter-clockwise. Points come row by row, so entering them one by one costs little
 /// more than all at once, and can be stopped.
-fn hull_triangles(points: &[Point2], segments: &[[u32; 2]], cx: &Context) -> Result<Vec<[u32; 3]>, StageError> {
+fn hull_triangles(
+    points: &[Point2],
+    segments: &[[u32; 2]],
+    cx: &Context,
+) -> Result<Vec<[u32; 3]>, StageError> {
     let fault = |what: &str| StageError::internal(format!("the triangulation failed: {what}"));
     // spade's exact predicates underflow at numbers below.
     let tiny = |x: f64| if x.abs() < 1e-40 { 0.0 } else { x };
@@ -98,7 +107,8 @@ fn hull_triangles(points: &[Point2], segments: &[[u32; 2]], cx: &Context) -> Res
         if k % CHECK_EVERY == 0 {
             cx.check()?;
         }
-        let handle = cdt.insert(spade::Point2::new(tiny(p.x), tiny(p.y))).map_err(|e| fault(&e.to_string()))?;
+        let handle =
+            cdt.insert(spade::Point2::new(tiny(p.x), tiny(p.y))).map_err(|e| fault(&e.to_string()))?;
         if handle.index() != k {
             return Err(fault("points coincide"));
         }
@@ -175,7 +185,16 @@ fn shift(points: &mut [Point2], triangles: &[[u32; 3]], star: &[u32], v: usize) 
     take(Point2::from(centre), &mut best);
     while step > least {
         let at = best;
-        let ways = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
+        let ways = [
+            [1.0, 0.0],
+            [0.0, 1.0],
+            [-1.0, 0.0],
+            [0.0, -1.0],
+            [0.7, 0.7],
+            [-0.7, 0.7],
+            [-0.7, -0.7],
+            [0.7, -0.7],
+        ];
         // All eight are tried, so that none is preferred for its place in the list.
         let gained = ways.iter().filter(|w| take(at + Vector2::new(w[0], w[1]) * step, &mut best)).count();
         step = if gained > 0 { step } else { step / 2.0 };
@@ -237,7 +256,8 @@ fn candidates([a, b, c]: [Point2; 3]) -> Vec<Point2> {
     let (twice, uu, vv) = (2.0 * u.perp(&v), u.norm_squared(), v.norm_squared());
     let centre = a + Vector2::new(v.y * uu - u.y * vv, u.x * vv - v.x * uu) / twice;
     let sides = [(a, b), (b, c), (c, a)];
-    let shortest = sides.iter().fold(sides[0], |s, t| if (t.1 - t.0).norm() < (s.1 - s.0).norm() { *t } else { s });
+    let shortest =
+        sides.iter().fold(sides[0], |s, t| if (t.1 - t.0).norm() < (s.1 - s.0).norm() { *t } else { s });
     let along = shortest.1 - shortest.0;
     let tip = nalgebra::center(&shortest.0, &shortest.1) + Vector2::new(-along.y, along.x) * 0.75f64.sqrt();
     [centre, tip].into_iter().filter(|p| p.coords.iter().all(|x| x.is_finite())).collect()
@@ -248,7 +268,11 @@ fn contains([a, b, c]: [Point2; 3], p: Point2) -> bool {
 }
 
 /// The first `fixed` vertices keep their numbers, others that no triangle uses are dropped.
-fn without_unused(points: Vec<Point2>, triangles: Vec<[u32; 3]>, fixed: usize) -> (Vec<Point2>, Vec<[u32; 3]>) {
+fn without_unused(
+    points: Vec<Point2>,
+    triangles: Vec<[u32; 3]>,
+    fixed: usize,
+) -> (Vec<Point2>, Vec<[u32; 3]>) {
     let mut used = vec![false; points.len()];
     triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
     used[..fixed].fill(true);

@@ -79,7 +79,8 @@ impl<'a> Cloth<'a> {
     pub(crate) fn new(positions: &'a [Point3], triangles: &'a [[u32; 3]], reach: f64) -> Self {
         // A vertex that is no finite number takes its triangles with it.
         let usable = |t: &[u32; 3]| {
-            let known = t.iter().all(|&i| positions.get(i as usize).is_some_and(|p| p.iter().all(|x| x.is_finite())));
+            let known =
+                t.iter().all(|&i| positions.get(i as usize).is_some_and(|p| p.iter().all(|x| x.is_finite())));
             (known && t[0] != t[1] && t[1] != t[2] && t[2] != t[0])
                 .then(|| Box3::of(&t.map(|i| positions[i as usize])).widened(reach.max(0.0) / 2.0))
         };
@@ -113,7 +114,8 @@ impl<'a> Cloth<'a> {
             }
         }
         entries.par_sort_unstable();
-        let cells: Vec<&[(Cell, u32)]> = entries.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1).collect();
+        let cells: Vec<&[(Cell, u32)]> =
+            entries.chunk_by(|a, b| a.0 == b.0).filter(|c| c.len() > 1).collect();
         let parts: Vec<Vec<T>> = cells
             .par_chunks(CHUNK)
             .map(|cells| {
@@ -125,7 +127,12 @@ impl<'a> Cloth<'a> {
         parts.into_iter().flatten().collect()
     }
 
-    fn pairs_of_cell<T>(&self, cell: &[(Cell, u32)], visit: &impl Fn(u32, u32, &mut Vec<T>), out: &mut Vec<T>) {
+    fn pairs_of_cell<T>(
+        &self,
+        cell: &[(Cell, u32)],
+        visit: &impl Fn(u32, u32, &mut Vec<T>),
+        out: &mut Vec<T>,
+    ) {
         for (k, &(at, a)) in cell.iter().enumerate() {
             let Some(box_a) = &self.boxes[a as usize] else { continue };
             for &(_, b) in &cell[k + 1..] {

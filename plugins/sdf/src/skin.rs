@@ -151,8 +151,11 @@ fn face_normals(corners: &[[Point3; 3]]) -> Result<Vec<Vector3>, StageError> {
     };
     match corners.iter().filter(|t| flat(t)).count() {
         0 => Ok(corners.iter().map(|[a, b, c]| unit((b - a).cross(&(c - a)))).collect()),
-        n => Err(StageError::new(ErrorCode::DegenerateTriangles, format!("the body has {n} triangles without area"))
-            .hint("merge vertices that lie on each other and remove what collapses")),
+        n => Err(StageError::new(
+            ErrorCode::DegenerateTriangles,
+            format!("the body has {n} triangles without area"),
+        )
+        .hint("merge vertices that lie on each other and remove what collapses")),
     }
 }
 
@@ -177,8 +180,10 @@ fn closed(uses: &[Use]) -> Result<(), StageError> {
     let sides = || uses.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1));
     match sides().count() - sides().filter(sound).count() {
         0 => Ok(()),
-        n => Err(StageError::invalid(format!("the body is not closed: {n} edges lack a second triangle that fits"))
-            .hint("merge vertices that lie on each other, fill the holes and turn all triangles outwards")),
+        n => Err(StageError::invalid(format!(
+            "the body is not closed: {n} edges lack a second triangle that fits"
+        ))
+        .hint("merge vertices that lie on each other, fill the holes and turn all triangles outwards")),
     }
 }
 

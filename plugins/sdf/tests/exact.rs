@@ -7,8 +7,8 @@ use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 use proptest::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
-use toile_core::testkit::dress;
 use toile_core::artifact::{Body, Collide, Collider, Point3, SelfContact, Vector3};
+use toile_core::testkit::dress;
 use toile_core::{Context, Inputs, PortValue, Stage};
 use toile_sdf::{Field, SdfCollider};
 
@@ -84,10 +84,21 @@ fn near_the_skin_the_field_is_exact() {
     let body = mannequin();
     let start = Instant::now();
     let field = Field::of(&body, 0.008, &Context::quiet()).unwrap();
-    println!("{} triangles, {} nodes, made in {:.2} s", body.triangles.len(), field.nodes(), start.elapsed().as_secs_f64());
+    println!(
+        "{} triangles, {} nodes, made in {:.2} s",
+        body.triangles.len(),
+        field.nodes(),
+        start.elapsed().as_secs_f64()
+    );
     let found = errors(&body, 0.008, &[0.003, 0.01, 0.05]);
     for (band, median, high, worst) in &found {
-        println!("within {:.0} mm: median {:.2e}, 99 % {:.2e}, greatest {:.2e} m", band * 1e3, median, high, worst);
+        println!(
+            "within {:.0} mm: median {:.2e}, 99 % {:.2e}, greatest {:.2e} m",
+            band * 1e3,
+            median,
+            high,
+            worst
+        );
     }
     assert!(found[0].2 < 1e-6 && found[0].3 < 1e-3, "{found:?}");
     assert!(found[1].2 < 1e-6 && found[1].3 < 2e-3, "{found:?}");
@@ -99,7 +110,8 @@ fn contacts_lead_back_to_the_skin() {
     let body = dress::body();
     let (collider, truth) = (sdf(Some(&body)), exact(&body));
     let mut next = numbers(8);
-    let at: Vec<Point3> = (0..2000).map(|_| Point3::new(0.5 * next() - 0.25, 1.8 * next(), 0.4 * next() - 0.2)).collect();
+    let at: Vec<Point3> =
+        (0..2000).map(|_| Point3::new(0.5 * next() - 0.25, 1.8 * next(), 0.4 * next() - 0.2)).collect();
     let mut contacts = Vec::new();
     collider.scheme.body_contacts(&at, 0.005, &mut contacts);
     assert!(contacts.len() > 200 && contacts.is_sorted_by_key(|c| c.vertex));
@@ -153,7 +165,10 @@ fn a_grid_too_fine_is_refused() {
     let stage = SdfCollider { cell: toile_core::Length::mm(0.5), ..SdfCollider::default() };
     let body: PortValue = PortValue::One(Arc::new(dress::body()));
     let error = stage.run_ports(&Inputs(vec![Some(body)]), &Context::quiet()).unwrap_err();
-    assert_eq!(error.message, "cells of 0.5 mm would make a grid of 3297 million nodes, the limit is 40 million");
+    assert_eq!(
+        error.message,
+        "cells of 0.5 mm would make a grid of 3297 million nodes, the limit is 40 million"
+    );
     assert_eq!((error.hint.as_deref(), error.param), (Some("use cells of at least 2.2 mm"), Some("cell")));
 }
 
