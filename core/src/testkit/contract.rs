@@ -338,7 +338,7 @@ fn refuses_empty(trial: &Trial<'_>, bare: Option<&dyn Stage>, card: &Card) -> Re
 
 /// Asks a run on large input to stop at several times, and looks how long it takes.
 fn cancellable(trial: &Trial<'_>, card: &Card) -> Result<Kept, String> {
-    let inputs = Inputs(card.inputs.iter().map(large_value).collect());
+    let inputs = Inputs(card.inputs.iter().map(|p| large_value(card, p)).collect());
     for after in STOPS {
         let late = least_lateness(trial, &inputs, after)?;
         if late > PATIENCE * NOISE {

@@ -167,6 +167,27 @@ pub fn garment() -> Garment {
     }
 }
 
+/// The garment round the body like a tube, its sides sewn, its upper rim held.
+pub fn sewn_garment() -> Garment {
+    let mut garment = garment();
+    let half = garment.positions.len() / 2;
+    let radius = PANEL[0] / std::f64::consts::PI;
+    for (i, (at, rest)) in garment.positions.iter_mut().zip(&garment.rest).enumerate() {
+        let angle = rest.x / radius + if i < half { 0.0 } else { std::f64::consts::PI };
+        *at = Point3::new(radius * angle.sin(), 0.98 + rest.y, radius * angle.cos());
+    }
+    garment.seams.retain(|s| s.name.contains("side"));
+    for [a, b] in garment.seams.iter().flat_map(|s| s.pairs.clone()) {
+        let least = a.min(b);
+        (garment.weld[a as usize], garment.weld[b as usize]) = (least, least);
+        garment.positions[a.max(b) as usize] = garment.positions[least as usize];
+    }
+    garment.seams.iter_mut().for_each(|s| s.state = SeamState::Closed);
+    let top = garment.rest.iter().enumerate().filter(|(_, q)| q.y > PANEL[1] - 1e-9);
+    garment.pinned = top.map(|(i, _)| i as u32).collect();
+    garment
+}
+
 /// A garment without anything.
 pub fn no_garment() -> Garment {
     Garment {
@@ -295,63 +316,71 @@ pub fn model() -> Model {
 }
 
 /// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
-/// writer of the registry makes of the suite's garment under that extension.
+/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
-    for name in example.split('"').skip(1).step_by(2) {
-        let Some((_, extension)) =
-            name.rsplit_once('.').filter(|(_, e)| e.chars().all(char::is_alphanumeric))
-        else {
-            continue;
-        };
-        if name.contains(['/', '\\']) || name.contains("..") {
-            continue;
-        }
-        let bytes = match extension {
-            "obj" => Some(body_file(example.contains("up: Z"))),
-            _ => file(registry, extension),
-        };
-        if let Some(bytes) = bytes {
-            std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))?;
+    let lay = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))
+    };
+    for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
+        match name.rsplit_once('.').map(|(_, extension)| extension) {
+            Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
+            Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
+            Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
+            Some(extension) if extension.chars().all(char::is_alphabetic) => {
+                let ending = format!(".{extension}");
+                let files = registry.cards().find_map(|card| written(registry, card, &ending));
+                for file in files.into_iter().flatten() {
+                    let own = if file.path.ends_with(&ending) { name } else { &file.path };
+                    lay(own, &file.bytes)?;
+                }
+            }
+            _ => {}
         }
     }
     Ok(())
 }
 
-/// The body as an OBJ file, lying on its back where z is to be up.
-fn body_file(z_up: bool) -> Vec<u8> {
-    let mut body = body();
+fn picture(format: image::ImageFormat) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    // Writing into memory cannot fail; a stage that is given nothing says so.
+    let _ = shapes::photo().pixels.write_to(&mut bytes, format);
+    bytes.into_inner()
+}
+
+/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without
+/// arguments, since readers of bodies look for shoulders and legs, else the suite's own.
+fn body_file(registry: &Registry, z_up: bool) -> Vec<u8> {
+    let made = registry.of_role(crate::Role::Body).find_map(|card| {
+        let outcome =
+            registry.make(card, "()").ok()?.run_ports(&Inputs::default(), &Context::quiet()).ok()?;
+        first::<Body>(&outcome)
+    });
+    let mut body = made.unwrap_or_else(body);
     if z_up {
         body.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
     }
     body.export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
 }
 
-fn file(registry: &Registry, extension: &str) -> Option<Vec<u8>> {
-    let format = match extension {
-        "jpg" | "jpeg" => image::ImageFormat::Jpeg,
-        "png" => image::ImageFormat::Png,
-        _ => return registry.cards().find_map(|card| written(registry, card, extension)),
-    };
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    shapes::photo().pixels.write_to(&mut bytes, format).ok()?;
-    Some(bytes.into_inner())
+fn first<T: Clone + 'static>(made: &[PortValue]) -> Option<T> {
+    made.iter().flat_map(PortValue::entries).find_map(|(_, a)| {
+        let any: &dyn std::any::Any = a.as_ref();
+        any.downcast_ref::<T>().cloned()
+    })
 }
 
-/// What a writer of garments makes under an extension.
-fn written(registry: &Registry, card: &Card, extension: &str) -> Option<Vec<u8>> {
+/// What a writer of garments makes, where one of its files has that ending.
+fn written(registry: &Registry, card: &Card, ending: &str) -> Option<Vec<OutputFile>> {
     let takes_garment = card.inputs.first().is_some_and(|port| port.kind == Garment::KIND);
     if card.role != crate::Role::Writer || !takes_garment {
         return None;
     }
     let cx = Context::new("suite", Path::new("."), Cancel::new(), Arc::new(()));
     let made = registry.make(card, "()").ok()?.run_ports(&inputs_of(card), &cx).ok()?;
-    let files = made.iter().flat_map(PortValue::entries).find_map(|(_, a)| {
-        let any: &dyn std::any::Any = a.as_ref();
-        any.downcast_ref::<OutputFiles>().cloned()
-    })?;
-    files.0.into_iter().find(|f| f.path.ends_with(&format!(".{extension}"))).map(|f| f.bytes)
+    let files = first::<OutputFiles>(&made)?;
+    files.0.iter().any(|f| f.path.ends_with(ending)).then_some(files.0)
 }
 
 fn inputs_of(card: &Card) -> Inputs {

@@ -5,7 +5,7 @@
 
 use super::{dress, shapes};
 use crate::artifact::*;
-use crate::{Arity, Card, InPort, Inputs, PortValue};
+use crate::{Arity, Card, InPort, Inputs, PortValue, Role};
 use image::{GrayImage, Luma, RgbImage};
 use std::collections::BTreeMap;
 use std::sync::{Arc, LazyLock};
@@ -169,14 +169,23 @@ pub fn default_value(port: &InPort) -> Option<PortValue> {
     Some(value(port, &artifact))
 }
 
+/// What stands on a port of that card: a draper gets a garment that is sewn.
+pub fn own_value(card: &Card, port: &InPort) -> Option<PortValue> {
+    if card.role == Role::Draper && port.kind == Garment::KIND {
+        let sewn: Arc<dyn Artifact> = Arc::new(dress::sewn_garment());
+        return Some(value(port, &sewn));
+    }
+    default_value(port)
+}
+
 /// What a stage that is being stopped works on: large enough that most take longer than the time they have.
-pub fn large_value(port: &InPort) -> Option<PortValue> {
+pub fn large_value(card: &Card, port: &InPort) -> Option<PortValue> {
     let artifact: Arc<dyn Artifact> = match port.kind {
         k if k == Photo::KIND => Arc::new(enlarged(&shapes::photo())),
         k if k == Mask::KIND => Arc::new(enlarged_mask(&shapes::mask())),
         k if k == Outline::KIND => Arc::new(shapes::scaled(&shapes::outline(), 3.0)),
         k if k == Panel::KIND && port.arity != Arity::All => Arc::new(shapes::panel(300, 300, 3.0, 3.0)),
-        _ => return default_value(port),
+        _ => return own_value(card, port),
     };
     Some(value(port, &artifact))
 }
@@ -241,7 +250,7 @@ pub fn cases(card: &Card) -> Vec<Case> {
 
 fn case(card: &Card, scene: Option<&Scene>) -> Option<Case> {
     let pictured = |p: &&InPort| [Photo::KIND, Mask::KIND, Outline::KIND, Panel::KIND].contains(&p.kind);
-    let fill = |port: &InPort| scene.and_then(|s| scene_value(s, port)).or_else(|| default_value(port));
+    let fill = |port: &InPort| scene.and_then(|s| scene_value(s, port)).or_else(|| own_value(card, port));
     let inputs: Vec<Option<PortValue>> = card.inputs.iter().map(fill).collect();
     let missing = inputs.iter().zip(&card.inputs).any(|(v, p)| v.is_none() && !p.optional);
     // Photo and mask of one scene belong together; another's mask does not fit.

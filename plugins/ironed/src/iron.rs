@@ -2,8 +2,8 @@
 //!
 //! Method: of the logarithm of the light two means are taken at each pixel over cloth of about the same level: a
 //! near one, as wide as the finest wrinkle, and a far one, wider than the widest. Cloth of one colour has the same
-//! far mean everywhere, so near minus far is the shading, and is divided out of the linear colours. Both means are
-//! bilateral filters (Tomasi & Manduchi 1998), made on a coarse grid of place and level (Chen, Paris & Durand 2007).
+//! far mean everywhere, once it is asked at its own answer a few times (mean shift, Comaniciu & Meer 2002), so near
+//! minus far is the shading, and is divided out of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a coarse grid of place and level (Chen, Paris & Durand 2007).
 //! Cost: a few operations a pixel, and the grid, some hundred thousand cells.
 //! Limits: one level is one colour: a soft gradient of the dye is taken for shading.
 
@@ -11,8 +11,12 @@ use image::RgbImage;
 use rayon::prelude::*;
 use toile_core::{Context, StageError};
 
-/// Cells of the grid that `contrast` spans: the filter's fall-off is as wide as two.
-const LEVELS: f64 = 3.0;
+/// Cells of the grid that `contrast` spans.
+const LEVELS: f64 = 4.0;
+/// Half the width of the far mean's box in level, cells: three passes fall off with six tenths of `contrast`.
+const FAR_LEVELS: usize = 2;
+/// How often the far mean is asked again at its own answer (mean shift): each leaves a quarter of the shading.
+const SHIFTS: usize = 3;
 /// The darkest light that is told from black.
 const BLACK: f64 = 1.0 / 2048.0;
 /// The largest grid, cells: finer details are then taken for shading.
@@ -55,13 +59,14 @@ pub fn iron(
     let levels: Vec<f64> = pixels.pixels().map(|p| level(p.0)).collect();
     let fine = Grid::of(&levels, inside, (w as usize, h as usize), settings);
     cx.check()?;
-    let near = fine.blurred(1, 1, cx)?;
-    let far = near.blurred(((settings.reach / near.cell).round() as usize).max(1), 3, cx)?;
+    let near = fine.blurred(1, 1, 1, cx)?;
+    let far = near.blurred(((settings.reach / near.cell).round() as usize).max(1), FAR_LEVELS, 3, cx)?;
     cx.check()?;
     let shade = |k: usize| {
         let (x, y) = ((k % w as usize) as f64, (k / w as usize) as f64);
-        let [a, b] = [&near, &far].map(|g| g.at(x, y, levels[k]));
-        if inside[k] { a.zip(b).map_or(0.0, |(a, b)| a - b) } else { 0.0 }
+        let own = near.at(x, y, levels[k]).filter(|_| inside[k]);
+        let Some(own) = own else { return 0.0 };
+        own - (0..SHIFTS).fold(levels[k], |at, _| far.at(x, y, at).unwrap_or(at))
     };
     let shades: Vec<f64> = (0..levels.len()).into_par_iter().map(shade).collect();
     cx.check()?;
@@ -134,8 +139,8 @@ impl Grid {
         (weight > 0.0).then(|| sum / weight)
     }
 
-    /// Box means of `radius` cells in place, `passes` times (three are nearly a Gaussian), and one cell in level.
-    fn blurred(&self, radius: usize, passes: usize, cx: &Context) -> Result<Grid, StageError> {
+    /// Boxes of `radius` cells in place and `levels` in level, `passes` times (three are nearly a Gaussian).
+    fn blurred(&self, radius: usize, levels: usize, passes: usize, cx: &Context) -> Result<Grid, StageError> {
         let [nx, ny, nl] = self.size;
         let mut cells = self.cells.clone();
         for _ in 0..passes {
@@ -149,17 +154,15 @@ impl Grid {
                     column.iter().enumerate().for_each(|(y, c)| layer[y * nx + x] = *c);
                 }
             });
+            let layer = nx * ny;
+            let before = std::mem::replace(&mut cells, vec![[0.0; 2]; layer * nl]);
+            cells.par_chunks_exact_mut(layer).enumerate().for_each(|(l, out)| {
+                for m in l.saturating_sub(levels)..(l + levels + 1).min(nl) {
+                    let from = &before[m * layer..(m + 1) * layer];
+                    out.iter_mut().zip(from).for_each(|(o, c)| *o = [o[0] + c[0], o[1] + c[1]]);
+                }
+            });
         }
-        cx.check()?;
-        let before = cells.clone();
-        let layer = nx * ny;
-        cells.par_chunks_exact_mut(layer).enumerate().for_each(|(l, out)| {
-            for (k, cell) in out.iter_mut().enumerate() {
-                let at = |l: usize| before[l * layer + k];
-                let (below, above) = (at(l.saturating_sub(1)), at((l + 1).min(nl - 1)));
-                *cell = [0, 1].map(|c| 0.25 * below[c] + 0.5 * at(l)[c] + 0.25 * above[c]);
-            }
-        });
         Ok(Grid { cells, size: self.size, cell: self.cell, range: self.range })
     }
 }

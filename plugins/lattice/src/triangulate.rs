@@ -21,6 +21,10 @@ const POOR: f64 = 28.0;
 const SPACING: f64 = 0.7;
 /// A move must gain this much (radians).
 const GAIN: f64 = 2e-3;
+/// Around a vertex whose angles are all above this (degrees) the mean counts, and it moves to its neighbours' middle.
+const FINE: f64 = 38.0;
+/// A move to the middle that is shorter than this share of the spokes is none.
+const STILL: f64 = 0.01;
 
 /// Vertices, the division's first, and triangles.
 pub(crate) struct Meshed {
@@ -182,7 +186,15 @@ fn shift(points: &mut [Point2], triangles: &[[u32; 3]], star: &[u32], v: usize) 
         }
         better
     };
-    take(Point2::from(centre), &mut best);
+    let middle = Point2::from(centre);
+    if before > FINE.to_radians() && quality(middle) > FINE.to_radians() {
+        let moved = (middle - from).norm() > STILL * 2.0 * step;
+        if moved {
+            points[v] = middle;
+        }
+        return moved;
+    }
+    take(middle, &mut best);
     while step > least {
         let at = best;
         let ways = [
