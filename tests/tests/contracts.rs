@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use std::path::Path;
-use std::sync::Arc;
 use std::time::Instant;
 use toile_core::testkit::contract::{check_registered, checked, is_checked};
 use toile_core::testkit::{Trial, cases, folder, from_example};
@@ -112,7 +111,6 @@ fn example(registry: &Registry, card: &Card, path: &Path) -> Result<(), String> 
 mod broken {
     //! The kit finds what is broken: one stage that breaks every promise it makes.
 
-    use super::Arc;
     use std::sync::atomic::{AtomicU8, Ordering};
     use toile_core::prelude::*;
     use toile_core::testkit::Trial;
@@ -139,17 +137,52 @@ mod broken {
         }
     }
 
-    fn fault(contract: Contract) -> String {
-        let liar: Arc<dyn toile_core::Stage> = Arc::new(Liar {});
-        check(Trial { stage: liar.as_ref(), folder: super::Path::new(".") }, None, contract).unwrap_err()
+    /// Counts threads, and hears nothing.
+    #[stage(
+        role = Smoother,
+        source = "none",
+        example = "Deaf()",
+        contracts(ThreadInvariant, Cancellable, RotationEquivariant)
+    )]
+    pub struct Deaf;
+
+    #[stage]
+    impl Deaf {
+        fn run(&self, panel: &Panel, _cx: &Context) -> Result<Panel, StageError> {
+            let mut out = panel.clone();
+            out.positions.iter_mut().for_each(|p| p.x *= 1.0 + 0.1 * rayon::current_num_threads() as f64);
+            if panel.positions.len() > 10_000 {
+                std::thread::sleep(std::time::Duration::from_millis(900));
+            }
+            Ok(out)
+        }
+    }
+
+    fn fault(stage: &dyn toile_core::Stage, contract: Contract) -> String {
+        check(Trial { stage, folder: super::Path::new(".") }, None, contract).unwrap_err()
     }
 
     #[test]
     fn a_stage_that_breaks_its_promises_is_told_so() {
-        assert!(fault(Contract::Deterministic).starts_with("on a vest it gives  panel "));
-        assert!(fault(Contract::TranslationEquivariant).starts_with("on a vest, panel : it is "));
-        assert_eq!(fault(Contract::Idempotent), "on a vest a second run changes what the first gave");
-        assert_eq!(fault(Contract::BoundaryPreserving), "on a vest, vertex 0 of the border moved");
-        assert_eq!(fault(Contract::RefusesEmpty), "it gives something of an empty panel");
+        assert!(fault(&Liar {}, Contract::Deterministic).starts_with("on a vest it gives  panel "));
+        assert!(fault(&Liar {}, Contract::TranslationEquivariant).starts_with("on a vest, panel : it is "));
+        assert_eq!(
+            fault(&Liar {}, Contract::Idempotent),
+            "on a vest a second run changes what the first gave"
+        );
+        assert_eq!(fault(&Liar {}, Contract::BoundaryPreserving), "on a vest, vertex 0 of the border moved");
+        assert_eq!(fault(&Liar {}, Contract::RefusesEmpty), "it gives something of an empty panel");
+    }
+
+    #[test]
+    fn a_stage_that_hears_nothing_is_told_so() {
+        let threads = fault(&Deaf {}, Contract::ThreadInvariant);
+        assert!(
+            threads.starts_with("on a vest it gives  panel ") && threads.contains(" with 1 threads, "),
+            "{threads}"
+        );
+        assert!(fault(&Deaf {}, Contract::RotationEquivariant).starts_with("on a vest, panel : it is "));
+        let late = fault(&Deaf {}, Contract::Cancellable);
+        assert!(late.ends_with(" ms after it was asked to, 0 ms into its run; 50 ms are allowed"), "{late}");
     }
 }

@@ -21,7 +21,7 @@ const MAX_NODES: f64 = 4e7;
 /// Cells around the skin with exact distances.
 const BAND: f64 = 2.0;
 /// Cells around the body's box, and at least so many metres: no solver looks farther for contacts.
-const ROOM: (f64, f64) = (3.0, 0.1);
+const ROOM: (f64, f64) = (3.0, 0.05);
 /// Slices whose bands are made before the stop flag is looked at.
 const SLICES: usize = 4;
 /// Cells from the skin within which the closest point is asked for.

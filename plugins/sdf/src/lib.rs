@@ -26,9 +26,9 @@ use toile_core::prelude::*;
 /// Keeps cloth out of the body by a signed-distance grid, and out of itself.
 ///
 /// Far from the skin a question costs eight numbers of the grid; near it the closest point of the skin is found from
-/// the triangles that these nodes are closest to. On the mannequin, with cells of 8 mm, contacts within 1 cm agree with
+/// the triangles that these nodes are closest to. On the mannequin, with cells of 8 mm, contacts within 1 cm mostly agree with
 /// the exact closest points to 1 micrometre; farther off, distances are interpolated and off by up to a millimetre, and
-/// beyond 10 cm a little too long.
+/// beyond 5 cm a little too long.
 ///
 /// The body must be a closed mesh that faces outwards. Without a body only cloth against itself is looked for.
 #[stage(
