@@ -1,6 +1,7 @@
 //! What a running stage may ask of the outside world.
 
 use crate::artifact::Measure;
+use crate::cache::Hash;
 use crate::{ErrorCode, StageError};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,6 +65,7 @@ pub struct Context {
     listener: Arc<dyn Listener>,
     figures: Mutex<Vec<Measure>>,
     warnings: Mutex<Vec<String>>,
+    reads: Mutex<Vec<(String, Option<Hash>)>>,
 }
 
 impl Context {
@@ -77,6 +79,7 @@ impl Context {
             listener,
             figures: Mutex::default(),
             warnings: Mutex::default(),
+            reads: Mutex::default(),
         }
     }
 
@@ -136,7 +139,16 @@ impl Context {
     }
 
     /// Reads a file named by the pipeline.
+    ///
+    /// The run's cache keeps note of it: a stage whose file has changed runs again.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, StageError> {
+        let content = self.read_file(path);
+        let hash = content.as_ref().ok().map(|bytes| Hash::of(bytes));
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
+        content
+    }
+
+    fn read_file(&self, path: &str) -> Result<Vec<u8>, StageError> {
         let full = self.resolve(path);
         let fail = |why: String| {
             StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
@@ -150,6 +162,12 @@ impl Context {
             return Err(fail(format!("it has {} bytes, the limit is {MAX_FILE_BYTES}", meta.len())));
         }
         std::fs::read(&full).map_err(|e| fail(io_words(&e)))
+    }
+
+    /// The files that the stage has read so far, with the digests of their contents; `None` for one that could
+    /// not be read.
+    pub(crate) fn take_reads(&self) -> Vec<(String, Option<Hash>)> {
+        std::mem::take(&mut *self.reads.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Takes over what one entry of a set noted, under the entry's name.
