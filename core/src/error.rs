@@ -32,6 +32,27 @@ pub enum ErrorCode {
 }
 
 impl ErrorCode {
+    /// Every code.
+    pub const ALL: [ErrorCode; 12] = [
+        ErrorCode::PatternLoading,
+        ErrorCode::InvalidInput,
+        ErrorCode::InvalidParameter,
+        ErrorCode::DegenerateTriangles,
+        ErrorCode::StitchingError,
+        ErrorCode::StaticEquilibrium,
+        ErrorCode::FastFinish,
+        ErrorCode::BodyIntersection,
+        ErrorCode::SelfIntersection,
+        ErrorCode::Timeout,
+        ErrorCode::Cancelled,
+        ErrorCode::Internal,
+    ];
+
+    /// The code of that word.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.as_str() == word)
+    }
+
     /// The word: `stitching_error`.
     pub fn as_str(self) -> &'static str {
         match self {

@@ -46,6 +46,7 @@ pub mod pipeline;
 mod registry;
 mod run;
 mod stage;
+mod text;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};

@@ -111,6 +111,10 @@ impl Artifact for Body {
         self.measurements.iter().try_for_each(|(name, length)| finite_figure(name, *length))
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("obj", obj_text(&self.positions, &self.triangles))]
     }

@@ -127,6 +127,10 @@ impl Artifact for Fabric {
         ensure(held, || "bending, thickness, friction and damping must be finite and at least 0".to_owned())
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         match serde_json::to_vec_pretty(self) {
             Ok(bytes) => vec![("json", bytes)],

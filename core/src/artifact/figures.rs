@@ -124,6 +124,10 @@ impl Artifact for Figures {
         finite_figure("seam gap", self.garment.seam_gap_max_m)
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         match serde_json::to_vec_pretty(&self.garment) {
             Ok(bytes) => vec![("json", bytes)],

@@ -59,6 +59,10 @@ impl Artifact for OutputFiles {
         }
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         Vec::new()
     }

@@ -258,6 +258,10 @@ impl Artifact for Garment {
         self.check_panels()
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("obj", obj_text(&self.positions, &self.triangles))]
     }

@@ -87,6 +87,17 @@ impl Gauge {
         }
     }
 
+    /// The length, then the sag of every rung.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> + use<> {
+        std::iter::once(self.length).chain(self.sag)
+    }
+
+    /// The gauge of such numbers.
+    pub(super) fn from_numbers(numbers: &[f64]) -> Option<Self> {
+        let (length, sag) = numbers.split_first()?;
+        Some(Gauge { length: *length, sag: sag.try_into().ok()? })
+    }
+
     /// What is wrong with it: a length or a sag that is none.
     pub(super) fn is_sound(&self) -> bool {
         let sound = |x: &f64| x.is_finite() && *x >= 0.0;

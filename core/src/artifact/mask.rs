@@ -66,6 +66,10 @@ impl Artifact for Mask {
         ensure(grey.is_none(), || "it has pixels between 0 and 255".to_owned())
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("png", super::files::png_grey(&self.pixels))]
     }

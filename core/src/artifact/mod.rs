@@ -25,6 +25,7 @@ mod photo;
 mod runlog;
 mod sewing;
 mod sound;
+pub mod stored;
 
 pub use body::{Body, Landmark};
 pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact};
@@ -71,6 +72,11 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
+    /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's border;
+    /// `None` for a service.
+    fn record(&self) -> Option<stored::Record<'_>> {
+        None
+    }
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.
     ///
     /// An empty list where the kind has no file form.

@@ -125,6 +125,10 @@ impl Artifact for Model {
             .try_for_each(|m| self.check_mesh(m).map_err(|e| format!("mesh \"{}\": {e}", m.name)))
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         let (mut positions, mut triangles) = (Vec::new(), Vec::new());
         for mesh in &self.meshes {

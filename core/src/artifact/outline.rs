@@ -201,6 +201,10 @@ impl Artifact for Outline {
         })
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("svg", svg(self).into_bytes())]
     }

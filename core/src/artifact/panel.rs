@@ -162,6 +162,10 @@ impl Artifact for Panel {
         finite_figure("outline's length", self.outline_length)
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         use std::fmt::Write;
         let mut s = String::from("# a flat panel, metres\n");

@@ -58,6 +58,10 @@ impl Artifact for Phases {
         Ok(())
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         Vec::new()
     }

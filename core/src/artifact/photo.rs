@@ -72,6 +72,10 @@ impl Artifact for Photo {
         self.garment_width.map_or(Ok(()), |w| positive("garment's width", w))
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("png", super::files::png_rgb(&self.pixels))]
     }

@@ -137,6 +137,10 @@ impl Artifact for SewingPlan {
         finite("anchor", self.placements.values().map(|p| &p.anchor.coords))
     }
 
+    fn record(&self) -> Option<super::stored::Record<'_>> {
+        Some(self.fields())
+    }
+
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         let lines: String = self.seams.iter().map(|s| s.name() + "\n").collect();
         vec![("txt", lines.into_bytes())]

@@ -1,0 +1,242 @@
+//! Records of plans and judgements: fabrics, seams, phases, figures, finished files.
+
+use super::super::{
+    Curve, EdgeRef, Fabric, Figures, GarmentFigures, Limb, OutputFile, OutputFiles, PanelFigures,
+    PanelPlacement, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall, StrainFigures,
+};
+use super::flat::{value, word};
+use super::{Reader, Record, Stored};
+use crate::error::ErrorCode;
+use crate::text::intern;
+use std::collections::BTreeMap;
+
+impl Fabric {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .text("name", &self.name)
+            .number("area_density", self.area_density)
+            .owned("warp", self.warp.0.iter().map(|p| [p.0, p.1]))
+            .owned("weft", self.weft.0.iter().map(|p| [p.0, p.1]))
+            .owned("shear", self.shear.0.iter().map(|p| [p.0, p.1]))
+            .number("bending_warp", self.bending_warp)
+            .number("bending_weft", self.bending_weft)
+            .number("thickness", self.thickness)
+            .number("friction", self.friction)
+            .number("damping", self.damping)
+            .text("source", &self.source)
+    }
+}
+
+impl Stored for Fabric {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let curve =
+            |name| Ok::<_, String>(Curve(r.list(name)?.into_iter().map(|[x, y]: [f64; 2]| (x, y)).collect()));
+        Ok(Fabric {
+            name: r.text("name")?,
+            area_density: r.one("area_density")?,
+            warp: curve("warp")?,
+            weft: curve("weft")?,
+            shear: curve("shear")?,
+            bending_warp: r.one("bending_warp")?,
+            bending_weft: r.one("bending_weft")?,
+            thickness: r.one("thickness")?,
+            friction: r.one("friction")?,
+            damping: r.one("damping")?,
+            source: r.text("source")?,
+        })
+    }
+}
+
+pub(super) const SEAM_KINDS: [(&str, SeamKind); 2] =
+    [("matched", SeamKind::Matched), ("gathered", SeamKind::Gathered)];
+
+const LIMBS: [(&str, Limb); 4] = [
+    ("torso", Limb::Torso),
+    ("legs", Limb::Legs),
+    ("left arm", Limb::LeftArm),
+    ("right arm", Limb::RightArm),
+];
+
+impl SewingPlan {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .records("seams", self.seams.iter().map(seam_fields))
+            .records("placements", self.placements.iter().map(|(name, p)| placement_fields(name, p)))
+    }
+}
+
+impl Stored for SewingPlan {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        Ok(SewingPlan {
+            seams: r.records("seams")?.map(|s| seam_of(&s)).collect::<Result<_, _>>()?,
+            placements: r.records("placements")?.map(|p| placement_of(&p)).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+fn seam_fields(s: &Seam) -> Record<'_> {
+    Record::new()
+        .records("a", [edge_fields(&s.a)])
+        .records("b", [edge_fields(&s.b)])
+        .text("kind", word(&SEAM_KINDS, &s.kind))
+        .flag("reversed", s.reversed)
+}
+
+fn seam_of(r: &Reader<'_>) -> Result<Seam, String> {
+    let side = |name| edge_of(&r.maybe(name)?.ok_or_else(|| format!("the field `{name}` is missing"))?);
+    Ok(Seam {
+        a: side("a")?,
+        b: side("b")?,
+        kind: value(&SEAM_KINDS, r, "kind")?,
+        reversed: r.flag("reversed")?,
+    })
+}
+
+fn edge_fields(e: &EdgeRef) -> Record<'_> {
+    Record::new().text("panel", &e.panel).text("edge", &e.edge)
+}
+
+fn edge_of(r: &Reader<'_>) -> Result<EdgeRef, String> {
+    Ok(EdgeRef { panel: r.text("panel")?, edge: r.text("edge")? })
+}
+
+fn placement_fields<'a>(name: &'a str, p: &'a PanelPlacement) -> Record<'a> {
+    Record::new()
+        .text("panel", name)
+        .text("limb", word(&LIMBS, &p.limb))
+        .flag("behind", p.behind)
+        .owned("anchor", [p.anchor])
+        .text("landmark", p.landmark)
+}
+
+fn placement_of(r: &Reader<'_>) -> Result<(String, PanelPlacement), String> {
+    let placement = PanelPlacement {
+        limb: value(&LIMBS, r, "limb")?,
+        behind: r.flag("behind")?,
+        anchor: r.one("anchor")?,
+        landmark: intern(&r.text("landmark")?),
+    };
+    Ok((r.text("panel")?, placement))
+}
+
+impl Phases {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new().records("phases", self.0.iter().map(phase_fields))
+    }
+}
+
+fn phase_fields(p: &Phase) -> Record<'_> {
+    Record::new().text("name", &p.name).number("seconds", p.seconds).owned("gravity", [p.gravity])
+}
+
+impl Stored for Phases {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let phase = |p: Reader<'_>| {
+            let (name, seconds, gravity) = (p.text("name")?, p.one("seconds")?, p.one("gravity")?);
+            Ok::<_, String>(Phase { name, seconds, gravity })
+        };
+        r.records("phases")?.map(phase).collect::<Result<_, _>>().map(Phases)
+    }
+}
+
+impl Figures {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .records("panels", self.panels.iter().map(|(name, p)| panel_fields(name, p)))
+            .records("garment", [garment_fields(&self.garment)])
+            .records("shortfalls", self.shortfalls.iter().map(shortfall_fields))
+    }
+}
+
+impl Stored for Figures {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let garment = r.maybe("garment")?.ok_or("the field `garment` is missing")?;
+        Ok(Figures {
+            panels: r.records("panels")?.map(|p| panel_of(&p)).collect::<Result<BTreeMap<_, _>, _>>()?,
+            garment: garment_of(&garment)?,
+            shortfalls: r.records("shortfalls")?.map(|s| shortfall_of(&s)).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+fn panel_fields<'a>(name: &'a str, p: &PanelFigures) -> Record<'a> {
+    Record::new()
+        .text("panel", name)
+        .number("area_error", p.area_error)
+        .number("outline_error", p.outline_error)
+}
+
+fn panel_of(r: &Reader<'_>) -> Result<(String, PanelFigures), String> {
+    let figures = PanelFigures { area_error: r.one("area_error")?, outline_error: r.one("outline_error")? };
+    Ok((r.text("panel")?, figures))
+}
+
+fn garment_fields(g: &GarmentFigures) -> Record<'_> {
+    let inside = g.body_penetration.as_ref();
+    let record = Record::new()
+        .count("vertices", g.vertices)
+        .count("triangles", g.triangles)
+        .number("seam_gap_max_m", g.seam_gap_max_m)
+        .owned("edge_strain", [g.edge_strain.p50, g.edge_strain.p99, g.edge_strain.max])
+        .maybe(
+            "body_penetration",
+            inside.map(|p| Record::new().count("vertices", p.vertices).number("max_m", p.max_m)),
+        )
+        .number("energy_j", g.energy_j)
+        .number("max_speed_m_s", g.max_speed_m_s)
+        .count("steps", g.steps)
+        .flag("converged", g.converged);
+    match g.self_crossings {
+        Some(crossings) => record.count("self_crossings", crossings),
+        None => record,
+    }
+}
+
+fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
+    let strain = r.list::<f64>("edge_strain")?;
+    let [p50, p99, max] = strain[..] else { return Err("`edge_strain` has other than 3 figures".into()) };
+    let inside = |p: Reader<'_>| {
+        Ok::<_, String>(PenetrationFigures { vertices: p.count("vertices")?, max_m: p.one("max_m")? })
+    };
+    Ok(GarmentFigures {
+        vertices: r.count("vertices")?,
+        triangles: r.count("triangles")?,
+        seam_gap_max_m: r.one("seam_gap_max_m")?,
+        edge_strain: StrainFigures { p50, p99, max },
+        body_penetration: r.maybe("body_penetration")?.map(inside).transpose()?,
+        self_crossings: r.find("self_crossings").map(|_| r.count("self_crossings")).transpose()?,
+        energy_j: r.one("energy_j")?,
+        max_speed_m_s: r.one("max_speed_m_s")?,
+        steps: r.count("steps")?,
+        converged: r.flag("converged")?,
+    })
+}
+
+fn shortfall_fields(s: &Shortfall) -> Record<'_> {
+    Record::new().text("code", s.code.as_str()).text("message", &s.message)
+}
+
+fn shortfall_of(r: &Reader<'_>) -> Result<Shortfall, String> {
+    let code = r.text("code")?;
+    let code =
+        ErrorCode::named(&code).ok_or_else(|| format!("`code` is \"{code}\", which is none of its words"))?;
+    Ok(Shortfall { code, message: r.text("message")? })
+}
+
+impl OutputFiles {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new().records("files", self.0.iter().map(file_fields))
+    }
+}
+
+fn file_fields(f: &OutputFile) -> Record<'_> {
+    Record::new().text("path", &f.path).list("bytes", &f.bytes)
+}
+
+impl Stored for OutputFiles {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let file =
+            |f: Reader<'_>| Ok::<_, String>(OutputFile { path: f.text("path")?, bytes: f.list("bytes")? });
+        r.records("files")?.map(file).collect::<Result<_, _>>().map(OutputFiles)
+    }
+}

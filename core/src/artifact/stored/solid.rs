@@ -1,0 +1,210 @@
+//! Records of what stands in space: bodies, garments, models.
+
+use super::super::{
+    Body, Garment, GarmentPanel, GarmentSeam, Material, Mesh, Model, Point3, SeamState, SolveStatus, Texture,
+};
+use super::flat::{rgb, value, word};
+use super::plan::SEAM_KINDS;
+use super::{Reader, Record, Stored};
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+impl Body {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .list("positions", &self.positions)
+            .list("triangles", &self.triangles)
+            .records(
+                "landmarks",
+                self.landmarks.iter().map(|(name, p)| Record::new().text("name", name).owned("at", [*p])),
+            )
+            .records(
+                "measurements",
+                self.measurements
+                    .iter()
+                    .map(|(name, x)| Record::new().text("name", name).number("length", *x)),
+            )
+    }
+}
+
+impl Stored for Body {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let landmark = |l: Reader<'_>| Ok::<_, String>((l.text("name")?, l.one::<Point3>("at")?));
+        let measurement = |m: Reader<'_>| Ok::<_, String>((m.text("name")?, m.one::<f64>("length")?));
+        Ok(Body {
+            positions: r.list("positions")?,
+            triangles: r.list("triangles")?,
+            landmarks: r.records("landmarks")?.map(landmark).collect::<Result<BTreeMap<_, _>, _>>()?,
+            measurements: r.records("measurements")?.map(measurement).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl Garment {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .list("positions", &self.positions)
+            .list("velocities", &self.velocities)
+            .list("rest", &self.rest)
+            .list("triangles", &self.triangles)
+            .records("panels", self.panels.iter().map(panel_fields))
+            .records("seams", self.seams.iter().map(seam_fields))
+            .list("weld", &self.weld)
+            .list("pinned", &self.pinned)
+            .records("status", [status_fields(&self.status)])
+    }
+}
+
+impl Stored for Garment {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        Ok(Garment {
+            positions: r.list("positions")?,
+            velocities: r.list("velocities")?,
+            rest: r.list("rest")?,
+            triangles: r.list("triangles")?,
+            panels: r.records("panels")?.map(|p| panel_of(&p)).collect::<Result<_, _>>()?,
+            seams: r.records("seams")?.map(|s| seam_of(&s)).collect::<Result<_, _>>()?,
+            weld: r.list("weld")?,
+            pinned: r.list("pinned")?,
+            status: r.maybe("status")?.map(|s| status_of(&s)).transpose()?.unwrap_or_default(),
+        })
+    }
+}
+
+fn panel_fields(p: &GarmentPanel) -> Record<'_> {
+    Record::new()
+        .text("name", &p.name)
+        .owned("vertices", [span(&p.vertices)])
+        .owned("triangles", [span(&p.triangles)])
+        .list("boundary", &p.boundary)
+        .list("photo_px", &p.photo_px)
+        .records("fabric", [p.fabric.fields()])
+}
+
+fn panel_of(r: &Reader<'_>) -> Result<GarmentPanel, String> {
+    let fabric = r.maybe("fabric")?.ok_or("the field `fabric` is missing")?;
+    Ok(GarmentPanel {
+        name: r.text("name")?,
+        vertices: range(r.one("vertices")?),
+        triangles: range(r.one("triangles")?),
+        boundary: r.list("boundary")?,
+        photo_px: r.list("photo_px")?,
+        fabric: Arc::new(Stored::from_record(&fabric)?),
+    })
+}
+
+fn span(range: &Range<usize>) -> [u64; 2] {
+    [range.start as u64, range.end as u64]
+}
+
+fn range([start, end]: [u64; 2]) -> Range<usize> {
+    start as usize..end as usize
+}
+
+const SEAM_STATES: [(&str, SeamState); 2] = [("open", SeamState::Open), ("closed", SeamState::Closed)];
+
+fn seam_fields(s: &GarmentSeam) -> Record<'_> {
+    Record::new()
+        .text("name", &s.name)
+        .text("kind", word(&SEAM_KINDS, &s.kind))
+        .list("pairs", &s.pairs)
+        .text("state", word(&SEAM_STATES, &s.state))
+}
+
+fn seam_of(r: &Reader<'_>) -> Result<GarmentSeam, String> {
+    Ok(GarmentSeam {
+        name: r.text("name")?,
+        kind: value(&SEAM_KINDS, r, "kind")?,
+        pairs: r.list("pairs")?,
+        state: value(&SEAM_STATES, r, "state")?,
+    })
+}
+
+fn status_fields(s: &SolveStatus) -> Record<'_> {
+    Record::new()
+        .count("steps", s.steps)
+        .flag("converged", s.converged)
+        .number("energy", s.energy)
+        .number("max_speed", s.max_speed)
+}
+
+fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
+    Ok(SolveStatus {
+        steps: r.count("steps")?,
+        converged: r.flag("converged")?,
+        energy: r.one("energy")?,
+        max_speed: r.one("max_speed")?,
+    })
+}
+
+impl Model {
+    pub(in super::super) fn fields(&self) -> Record<'_> {
+        Record::new()
+            .records("meshes", self.meshes.iter().map(mesh_fields))
+            .records("materials", self.materials.iter().map(material_fields))
+            .records("textures", self.textures.iter().map(texture_fields))
+    }
+}
+
+impl Stored for Model {
+    fn from_record(r: &Reader<'_>) -> Result<Self, String> {
+        let texture = |t: Reader<'_>| {
+            Ok::<_, String>(Texture { name: t.text("name")?, pixels: Arc::new(t.rgb("pixels")?) })
+        };
+        Ok(Model {
+            meshes: r.records("meshes")?.map(|m| mesh_of(&m)).collect::<Result<_, _>>()?,
+            materials: r.records("materials")?.map(|m| material_of(&m)).collect::<Result<_, _>>()?,
+            textures: r.records("textures")?.map(texture).collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+fn texture_fields(t: &Texture) -> Record<'_> {
+    rgb(Record::new(), &t.pixels).text("name", &t.name)
+}
+
+fn mesh_fields(m: &Mesh) -> Record<'_> {
+    Record::new()
+        .text("name", &m.name)
+        .list("positions", &m.positions)
+        .list("normals", &m.normals)
+        .list("uv", &m.uv)
+        .list("triangles", &m.triangles)
+        .count("material", m.material)
+}
+
+fn mesh_of(r: &Reader<'_>) -> Result<Mesh, String> {
+    Ok(Mesh {
+        name: r.text("name")?,
+        positions: r.list("positions")?,
+        normals: r.list("normals")?,
+        uv: r.list("uv")?,
+        triangles: r.list("triangles")?,
+        material: r.count("material")?,
+    })
+}
+
+fn material_fields(m: &Material) -> Record<'_> {
+    let record = Record::new()
+        .text("name", &m.name)
+        .owned("colour", [m.colour])
+        .flag("unlit", m.unlit)
+        .owned("roughness", [m.roughness])
+        .flag("double_sided", m.double_sided);
+    match m.texture {
+        Some(texture) => record.count("texture", texture),
+        None => record,
+    }
+}
+
+fn material_of(r: &Reader<'_>) -> Result<Material, String> {
+    Ok(Material {
+        name: r.text("name")?,
+        colour: r.one("colour")?,
+        texture: r.find("texture").map(|_| r.count("texture")).transpose()?,
+        unlit: r.flag("unlit")?,
+        roughness: r.one("roughness")?,
+        double_sided: r.flag("double_sided")?,
+    })
+}
