@@ -36,6 +36,7 @@
 extern crate self as toile_core;
 
 pub mod artifact;
+pub mod cache;
 mod context;
 mod error;
 pub mod golden;
@@ -55,7 +56,7 @@ pub use metrics::{Metrics, StageMetrics};
 pub use output::write_files;
 pub use param::{Length, ParamDoc, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{RunError, RunOptions, RunResult, add_implicit, plan, run};
+pub use run::{Outlook, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PortValue, Role, Set, Stage, StageMeta,
     StageType,

@@ -5,7 +5,7 @@
 //! people alone: no result depends on them.
 
 use super::manifest::{sealed, unsealed};
-use super::{Cache, Fed, Hash, Ingredients, Manifest};
+use super::{Cache, Fed, Hash, Ingredients, Kept, Manifest};
 use crate::pipeline::{Pipeline, fields_of};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,7 +16,12 @@ use std::path::{Path, PathBuf};
 pub(crate) struct Last {
     ingredients: Ingredients,
     reads: Vec<(String, Option<Hash>)>,
+    /// Names of the set on each output port; none for a single artifact.
+    pub(crate) sets: Vec<Option<Vec<String>>>,
 }
+
+/// The maker's name of a port that takes the run's own record.
+pub(crate) const RUN_SO_FAR: &str = "the run so far";
 
 /// One thing that differs, or that does not.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -88,6 +93,7 @@ impl std::fmt::Display for Cause {
             Cause::Input { from, entries, .. } => {
                 write!(f, "upstream \"{from}\" changed ({})", entries.join(", "))
             }
+            Cause::Upstream(from) if from == RUN_SO_FAR => f.write_str("a stage before it would run again"),
             Cause::Upstream(from) => write!(f, "upstream \"{from}\" would run again"),
             Cause::File(path) => write!(f, "file {path} changed"),
             Cause::Pruned => f.write_str("its result was pruned"),
@@ -101,7 +107,12 @@ impl Cache {
     /// Notes what a stage was made from, for the next [`Cache::last`].
     pub(crate) fn note(&self, pipeline: &Pipeline, id: &str, ingredients: &Ingredients, manifest: &Manifest) {
         let path = self.last_path(pipeline, id, &ingredients.entry);
-        let last = Last { ingredients: ingredients.clone(), reads: manifest.reads.clone() };
+        let names = |kept: &Kept| match kept {
+            Kept::One(_) => None,
+            Kept::Set(set) => Some(set.keys().cloned().collect()),
+        };
+        let sets = manifest.outputs.iter().map(names).collect();
+        let last = Last { ingredients: ingredients.clone(), reads: manifest.reads.clone(), sets };
         let bytes = sealed(&last);
         if self.store.read(&path).ok().flatten().as_ref() != Some(&bytes) {
             self.write(&path, &bytes);
@@ -154,6 +165,9 @@ impl Last {
         let was = self.ingredients.inputs.iter().find(|u| u.port == now.port).map(|u| &u.value);
         if now.value == Fed::Nothing && was.is_none_or(|w| *w == Fed::Nothing) {
             return None;
+        }
+        if now.value == Fed::Unknown {
+            return Some(Cause::Upstream(now.from.clone()));
         }
         let entries = match (was, &now.value) {
             (Some(Fed::Set(was)), Fed::Set(now)) => {

@@ -46,6 +46,8 @@ pub(crate) struct Used {
 pub(crate) enum Fed {
     /// Nothing feeds the port.
     Nothing,
+    /// It is not known: its maker has yet to run, or promises no equal result.
+    Unknown,
     /// One artifact.
     One(Hash),
     /// A named set.
@@ -69,15 +71,18 @@ impl Ingredients {
         }
     }
 
-    /// The key without the files that the stage reads.
-    pub(crate) fn key(&self) -> Hash {
+    /// The key without the files that the stage reads; none while an input is not known.
+    pub(crate) fn key(&self) -> Option<Hash> {
+        if self.inputs.iter().any(|used| used.value == Fed::Unknown) {
+            return None;
+        }
         let mut d = Digester::new();
         d.text("toile stage").count(SCHEME as usize).text(&self.name).text(&self.role);
         d.count(self.version as usize).text(self.plugin.as_deref().unwrap_or("")).text(&self.params);
         d.text(&self.entry).count(self.inputs.len());
         for used in &self.inputs {
             match &used.value {
-                Fed::Nothing => d.text("nothing"),
+                Fed::Nothing | Fed::Unknown => d.text("nothing"),
                 Fed::One(hash) => d.text("one").bytes(&hash.0.0),
                 Fed::Set(set) => {
                     d.text("set").count(set.len());
@@ -85,7 +90,7 @@ impl Ingredients {
                 }
             };
         }
-        Hash(d.finish())
+        Some(Hash(d.finish()))
     }
 }
 

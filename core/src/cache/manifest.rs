@@ -6,9 +6,9 @@
 
 use super::Hash;
 use crate::artifact::Measure;
+use crate::text::intern;
 use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, BTreeSet};
-use std::sync::{Mutex, PoisonError};
+use std::collections::BTreeMap;
 
 /// One run of a stage, on one entry of its named sets where it is mapped.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -73,7 +73,7 @@ impl Manifest {
         let measure = |f: &Figure| Measure {
             name: f.0.clone(),
             value: f64::from_bits(f.1),
-            unit: unit(&f.2),
+            unit: intern(&f.2),
             tolerance: f64::from_bits(f.3),
         };
         self.figures.iter().map(measure).collect()
@@ -111,24 +111,6 @@ pub(super) fn unsealed<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, 
         return Err("its content does not have its digest".into());
     }
     serde_json::from_slice(body).map_err(|e| format!("it cannot be read: {e}"))
-}
-
-/// Units are names that live as long as the program; a manifest's are kept once each.
-fn unit(text: &str) -> &'static str {
-    /// Longer or more of them are no units.
-    const LONGEST: usize = 64;
-    const MOST: usize = 1000;
-    static KNOWN: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    match known.get(text) {
-        Some(unit) => unit,
-        None if text.len() > LONGEST || known.len() >= MOST => "",
-        None => {
-            let unit: &'static str = Box::leak(text.to_owned().into_boxed_str());
-            known.insert(unit);
-            unit
-        }
-    }
 }
 
 #[cfg(test)]

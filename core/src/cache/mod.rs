@@ -18,19 +18,18 @@ mod hash;
 mod key;
 mod manifest;
 mod space;
-mod stored;
 mod store;
 #[cfg(test)]
 mod tests;
 
 pub use causes::Cause;
-pub(crate) use causes::Last;
+pub(crate) use causes::{Last, RUN_SO_FAR};
 pub use hash::Hash;
 pub(crate) use key::{Fed, Ingredients};
 pub(crate) use manifest::{Blob, Kept, Manifest};
 pub use space::Usage;
 
-use crate::artifact::{Artifact, Kind};
+use crate::artifact::{Artifact, Kind, stored};
 use crate::PortValue;
 use crate::run::Made;
 use std::path::{Path, PathBuf};

@@ -159,6 +159,14 @@ fn check(
     Some((read, drafts, feeds))
 }
 
+/// The fields of a stage's parameters, `(lambda: 0.5)`: name and value as text; none where it is no such text.
+pub(crate) fn fields_of(params: &str) -> BTreeMap<String, String> {
+    let Ok(tree) = parse(params) else { return BTreeMap::new() };
+    let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();
+    let field = |e: &tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));
+    tree.entries().iter().filter_map(field).collect()
+}
+
 fn parse(text: &str) -> Result<tree::Tree, Fault> {
     parser::parse(text).map_err(|e| {
         let fault = Fault::new("syntax", e.message).at(&e.span, "");
