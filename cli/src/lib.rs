@@ -6,6 +6,7 @@
 mod args;
 mod at_hand;
 mod bench;
+mod cache;
 mod cards;
 mod explain;
 mod golden;
@@ -13,6 +14,7 @@ mod interrupt;
 mod progress;
 mod run;
 mod validate;
+mod why;
 
 use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
@@ -103,6 +105,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Stages { json } => cards::list(json, registry, streams),
         Command::Stage { name, json } => cards::show(&name, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
+        Command::Why(args) => why::why(&args, registry, streams),
+        Command::Cache(args) => cache::cache(&args, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),

@@ -3,7 +3,7 @@
 use crate::args::RunArgs;
 use crate::progress::Bar;
 use crate::validate::open;
-use crate::{Streams, exit, interrupt};
+use crate::{Streams, cache, exit, interrupt};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -21,12 +21,16 @@ pub(crate) fn run(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>
         Err(faults) => return fail_load(&faults, args.json, streams),
     };
     let bar = Arc::new(Bar::new(&pipeline));
+    let cache = cache::chosen(&args.cache, streams);
     let outcome = on_threads(args.threads, || {
-        let options = RunOptions { until: args.until.clone(), keep: args.keep };
+        let options = RunOptions { until: args.until.clone(), keep: args.keep, cache: cache.clone() };
         let listener: Arc<dyn Listener> = bar.clone();
         run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener)
     });
     for warning in bar.finish() {
+        streams.tell(format!("warning: {warning}"));
+    }
+    for warning in cache.iter().flat_map(|c| c.take_warnings()) {
         streams.tell(format!("warning: {warning}"));
     }
     match outcome {
@@ -78,7 +82,8 @@ fn stem(args: &RunArgs) -> String {
 
 fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {
     for stage in metrics.stages.iter().filter(|s| s.skipped.is_none()) {
-        streams.say(format!("  {:<20} {:>8.3} s", stage.id, stage.wall_s));
+        let cached = if stage.cached { "  cached" } else { "" };
+        streams.say(format!("  {:<20} {:>8.3} s{cached}", stage.id, stage.wall_s));
     }
     if let Some(g) = &metrics.garment {
         let f = &g.figures;

@@ -17,6 +17,7 @@ mod causes;
 mod hash;
 mod key;
 mod manifest;
+mod size;
 mod space;
 mod store;
 #[cfg(test)]
@@ -27,6 +28,7 @@ pub(crate) use causes::{Last, RUN_SO_FAR};
 pub use hash::Hash;
 pub(crate) use key::{Fed, Ingredients};
 pub(crate) use manifest::{Blob, Kept, Manifest};
+pub use size::Bytes;
 pub use space::Usage;
 
 use crate::artifact::{Artifact, Kind, stored};

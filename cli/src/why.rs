@@ -1,0 +1,92 @@
+//! `toile why`: what a run would do again and why, and where a triangle of a result comes from.
+
+use crate::args::WhyArgs;
+use crate::validate::open;
+use crate::{Streams, cache, exit};
+use serde_json::{Value, json};
+use toile_core::cache::{Cache, Cause};
+use toile_core::pipeline::Pipeline;
+use toile_core::{Outlook, Registry, RunOptions, forecast};
+
+/// Explains a run that has yet to be.
+pub(crate) fn why(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let pipeline = match open(&args.target, &args.overrides.set, registry) {
+        Ok(pipeline) => pipeline,
+        Err(faults) => {
+            streams.fault(&faults);
+            return exit::INVALID;
+        }
+    };
+    let Some(cache) = cache::at(args.cache_dir.clone()) else {
+        streams.tell("error: there is no place for a cache; set TOILE_CACHE to a folder");
+        return exit::INVALID;
+    };
+    match explained(args, &pipeline, &cache) {
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            exit::INVALID
+        }
+        Ok(outlooks) if args.json => {
+            streams.say(json!({ "stages": outlooks.iter().map(record).collect::<Vec<_>>() }));
+            exit::DONE
+        }
+        Ok(outlooks) => {
+            outlooks.iter().flat_map(lines).for_each(|line| streams.say(line));
+            let (run, kept) = outlooks.iter().filter(|o| o.skipped.is_none()).partition::<Vec<_>, _>(|o| o.runs());
+            if args.stage.is_none() {
+                streams.say(format!("{} stages would run, {} come from the cache", run.len(), kept.len()));
+            }
+            exit::DONE
+        }
+    }
+}
+
+/// The outlook of the stage that was named, or of all.
+fn explained(args: &WhyArgs, pipeline: &Pipeline, cache: &Cache) -> Result<Vec<Outlook>, toile_core::RunError> {
+    let Some(stage) = &args.stage else { return forecast(pipeline, &RunOptions::default(), cache) };
+    // A run that stops after the stage: an unknown one is refused with those that there are.
+    let until = RunOptions { until: Some(stage.clone()), ..RunOptions::default() };
+    let of_stage = forecast(pipeline, &until, cache)?.into_iter().filter(|o| o.stage == *stage);
+    let all = forecast(pipeline, &RunOptions::default(), cache)?;
+    // A stage that takes the run's own record sees all stages, so that the whole run counts.
+    Ok(all.into_iter().find(|o| o.stage == *stage && o.skipped.is_none()).map_or_else(|| of_stage.collect(), |o| vec![o]))
+}
+
+/// A stage in lines: one for each set of causes, with the entries that share it.
+fn lines(outlook: &Outlook) -> Vec<String> {
+    let id = &outlook.stage;
+    if let Some(reason) = &outlook.skipped {
+        return vec![format!("{id}: skipped, {reason}")];
+    }
+    let mut groups: Vec<(Vec<&str>, &Option<Vec<Cause>>)> = Vec::new();
+    for (entry, causes) in &outlook.entries {
+        match groups.iter_mut().find(|(_, c)| *c == causes) {
+            Some((entries, _)) => entries.push(entry),
+            None => groups.push((vec![entry], causes)),
+        }
+    }
+    let several = groups.len() > 1;
+    let line = |(entries, causes): (Vec<&str>, &Option<Vec<Cause>>)| {
+        let who = if several { format!("{id} ({})", entries.join(", ")) } else { id.clone() };
+        match causes {
+            None => format!("{who}: from the cache"),
+            Some(causes) => format!("{who}: would run: {}", words(causes)),
+        }
+    };
+    groups.into_iter().map(line).collect()
+}
+
+fn words(causes: &[Cause]) -> String {
+    causes.iter().map(Cause::to_string).collect::<Vec<_>>().join("; ")
+}
+
+fn record(outlook: &Outlook) -> Value {
+    let entry = |(name, causes): &(String, Option<Vec<Cause>>)| {
+        let causes = causes.as_ref().map(|c| c.iter().map(Cause::to_string).collect::<Vec<_>>());
+        json!({ "entry": name, "runs": causes.is_some(), "causes": causes.unwrap_or_default() })
+    };
+    json!({
+        "stage": outlook.stage, "skipped": outlook.skipped,
+        "entries": outlook.entries.iter().map(entry).collect::<Vec<_>>(),
+    })
+}
