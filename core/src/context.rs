@@ -3,13 +3,24 @@
 use crate::artifact::Measure;
 use crate::cache::Hash;
 use crate::{ErrorCode, StageError};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// A flag that asks everything to stop.
-#[derive(Debug, Clone, Default)]
-pub struct Cancel(Arc<AtomicBool>);
+#[derive(Clone, Default)]
+pub struct Cancel {
+    flag: Arc<AtomicBool>,
+    /// Asked as well, where the flag lies on the other side of a plugin's border.
+    also: Option<Arc<dyn Fn() -> bool + Send + Sync>>,
+}
+
+impl std::fmt::Debug for Cancel {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Cancel({})", self.is_cancelled())
+    }
+}
 
 impl Cancel {
     /// Not cancelled.
@@ -19,12 +30,17 @@ impl Cancel {
 
     /// Asks to stop.
     pub fn cancel(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.flag.store(true, Ordering::Relaxed);
     }
 
     /// True once asked to stop.
     pub fn is_cancelled(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.flag.load(Ordering::Relaxed) || self.also.as_ref().is_some_and(|ask| ask())
+    }
+
+    /// A flag that is also up where `ask` says so.
+    pub(crate) fn asking(ask: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Cancel { flag: Arc::default(), also: Some(Arc::new(ask)) }
     }
 }
 
@@ -53,6 +69,12 @@ impl Listener for () {
     fn event(&self, _: &str, _: &str, _: &Event) {}
 }
 
+/// Runs the parts of a loop elsewhere than in the present thread pool.
+pub(crate) trait Parallel: Send + Sync {
+    /// Calls `body(i)` for every `i` below `count`, in any order; returns when all are done.
+    fn run(&self, count: usize, body: &(dyn Fn(usize) + Sync));
+}
+
 /// The largest file that a stage may read, bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
@@ -66,6 +88,7 @@ pub struct Context {
     figures: Mutex<Vec<Measure>>,
     warnings: Mutex<Vec<String>>,
     reads: Mutex<Vec<(String, Option<Hash>)>>,
+    parallel: Option<Arc<dyn Parallel>>,
 }
 
 impl Context {
@@ -80,7 +103,41 @@ impl Context {
             figures: Mutex::default(),
             warnings: Mutex::default(),
             reads: Mutex::default(),
+            parallel: None,
         }
+    }
+
+    /// The same context with loops that run elsewhere.
+    pub(crate) fn with_parallel(self, parallel: Arc<dyn Parallel>) -> Self {
+        Context { parallel: Some(parallel), ..self }
+    }
+
+    /// Calls `body(i)` for every `i` below `count` on the threads that the user allows, in any order, and
+    /// returns when all are done. Inside a plugin these are the program's threads.
+    pub fn parallel_for(&self, count: usize, body: impl Fn(usize) + Sync) {
+        match &self.parallel {
+            Some(parallel) => parallel.run(count, &body),
+            None => (0..count).into_par_iter().for_each(&body),
+        }
+    }
+
+    /// `work(i)` of every `i` below `count`, made in parallel, in their order.
+    pub fn parallel_map<T: Send>(&self, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
+        let slots: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
+        self.parallel_for(count, |i| {
+            *slots[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(work(i));
+        });
+        slots.into_iter().filter_map(|s| s.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+    }
+
+    /// The stage's id in the pipeline.
+    pub fn stage(&self) -> &str {
+        &self.stage
+    }
+
+    /// The folder that paths in the pipeline are relative to.
+    pub fn base(&self) -> &Path {
+        &self.base
     }
 
     /// A context for tests: no listener, files relative to the current folder.
@@ -92,6 +149,7 @@ impl Context {
     pub fn for_entry(&self, entry: &str) -> Self {
         Context {
             entry: entry.to_owned(),
+            parallel: self.parallel.clone(),
             ..Context::new(&self.stage, &self.base, self.cancel.clone(), self.listener.clone())
         }
     }

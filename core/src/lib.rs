@@ -44,6 +44,8 @@ mod metrics;
 mod output;
 pub mod param;
 pub mod pipeline;
+#[allow(unsafe_code)]
+pub mod plugin;
 mod registry;
 mod run;
 mod stage;
@@ -54,14 +56,14 @@ pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
 pub use metrics::{Metrics, StageMetrics};
 pub use output::write_files;
-pub use param::{Length, ParamDoc, ParamType};
+pub use param::{Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
 pub use run::{Outlook, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
 pub use stage::{
-    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PortValue, Role, Set, Stage, StageMeta,
-    StageType,
+    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PluginId, PortValue, Role, Set, Stage,
+    StageMeta, StageType,
 };
-pub use toile_core_derive::{choice, stage};
+pub use toile_core_derive::{choice, plugin, stage};
 // The `stage` macro's expansion names these.
 #[doc(hidden)]
 pub use {ron, serde, typetag};

@@ -4,6 +4,7 @@ use crate::pipeline::near;
 use serde::de::{DeserializeOwned, Unexpected};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A length in metres, written with its unit: `"12 mm"`, `"2.5 cm"`, `"1.72 m"`, `"3 in"`.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
@@ -219,7 +220,34 @@ pub struct ParamDoc {
     /// True where it trades accuracy for time.
     pub trades: bool,
     /// Parses a RON text as this parameter's type and checks its numbers' range.
-    pub check: fn(&str, &ParamDoc) -> Result<(), ParamFault>,
+    pub check: Check,
+}
+
+/// How a parameter's text is checked: by its own type, or by the plugin that knows the type.
+#[derive(Clone)]
+pub struct Check(Arc<dyn Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync>);
+
+impl Check {
+    /// Checks by the type `T`.
+    pub fn of<T: ParamType + 'static>() -> Self {
+        Check(Arc::new(check_param::<T>))
+    }
+
+    /// Checks by a function.
+    pub fn by(check: impl Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync + 'static) -> Self {
+        Check(Arc::new(check))
+    }
+
+    /// Checks a text as the value of that parameter.
+    pub fn run(&self, text: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
+        (self.0)(text, doc)
+    }
+}
+
+impl std::fmt::Debug for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Check")
+    }
 }
 
 impl ParamDoc {

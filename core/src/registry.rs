@@ -3,8 +3,10 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
+use crate::plugin::{self, ForeignType, Plugin, Refused};
 use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The cards of all known stages, by name, and the sections of pipeline files.
 ///
@@ -15,13 +17,24 @@ pub struct Registry {
     cards: BTreeMap<(&'static str, Role), Entry>,
     sections: Vec<Section>,
     implicit: Vec<fn() -> Box<dyn Stage>>,
+    plugins: Vec<Plugin>,
+    refused: Vec<Refused>,
 }
 
 /// A stage type.
 #[derive(Debug, Clone)]
 struct Entry {
     card: Card,
-    make: fn(&str) -> Result<Box<dyn Stage>, String>,
+    maker: Maker,
+}
+
+/// Who makes a stage from its arguments.
+#[derive(Debug, Clone)]
+enum Maker {
+    /// A type that is linked in.
+    Typed(fn(&str) -> Result<Box<dyn Stage>, String>),
+    /// A plugin.
+    Foreign(ForeignType),
 }
 
 /// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
@@ -70,8 +83,48 @@ impl Registry {
     /// Adds a stage type. A second stage of the same name and role replaces the first.
     pub fn add<S: StageType + 'static>(&mut self) -> &mut Self {
         let card = S::type_card();
-        self.cards.insert((card.name, card.role), Entry { card, make: make::<S> });
+        self.cards.insert((card.name, card.role), Entry { card, maker: Maker::Typed(make::<S>) });
         self
+    }
+
+    /// Loads a plugin and adds its stages, all or none; `pinned` is the BLAKE3 digest that its file must
+    /// have. A plugin that is there already is not loaded again.
+    ///
+    /// Errors: why it is refused; a refused plugin stays listed with its reason.
+    pub fn load_plugin(&mut self, path: &Path, pinned: Option<&str>) -> Result<(), Refused> {
+        let loaded = plugin::load(path, pinned).and_then(|plugin| self.add_plugin(path, plugin));
+        loaded.inspect_err(|refused| self.refused.push(refused.clone()))
+    }
+
+    fn add_plugin(&mut self, path: &Path, plugin: Plugin) -> Result<(), Refused> {
+        if self.plugins.iter().any(|p| p.id == plugin.id) {
+            return Ok(());
+        }
+        let refused =
+            |reason: String, hint: Option<String>| Refused { file: path.display().to_string(), reason, hint };
+        if let Some(taken) = plugin.cards.iter().find_map(|c| self.card(c.name)) {
+            let by = taken
+                .plugin
+                .map_or("a stage of this program".to_owned(), |p| format!("plugin \"{}\"", p.name));
+            let hint = "its author must choose another name".to_owned();
+            return Err(refused(format!("the stage name `{}` is taken by {by}", taken.name), Some(hint)));
+        }
+        for (card, of) in plugin.cards.iter().zip(&plugin.types) {
+            let entry = Entry { card: card.clone(), maker: Maker::Foreign(of.clone()) };
+            self.cards.insert((card.name, card.role), entry);
+        }
+        self.plugins.push(plugin);
+        Ok(())
+    }
+
+    /// The plugins whose stages it holds.
+    pub fn plugins(&self) -> &[Plugin] {
+        &self.plugins
+    }
+
+    /// The plugins that were refused, with the reasons.
+    pub fn refused(&self) -> &[Refused] {
+        &self.refused
     }
 
     /// Adds a section. A second one of the same field replaces the first.
@@ -116,9 +169,10 @@ impl Registry {
     ///
     /// Errors: a sentence on the argument at fault.
     pub fn make(&self, card: &Card, arguments: &str) -> Result<Box<dyn Stage>, String> {
-        match self.cards.get(&(card.name, card.role)) {
+        match self.cards.get(&(card.name, card.role)).map(|e| &e.maker) {
+            Some(Maker::Foreign(of)) => of.make(card, arguments),
             // typetag knows a stage by its name alone.
-            Some(entry) if self.named(card.name).count() > 1 => (entry.make)(arguments),
+            Some(Maker::Typed(make)) if self.named(card.name).count() > 1 => make(arguments),
             _ => crate::pipeline::typed::stage(&format!("{}{arguments}", card.name)),
         }
     }

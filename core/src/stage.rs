@@ -1,6 +1,6 @@
 //! The one trait that every step of a pipeline stands behind.
 
-use crate::artifact::{Artifact, ArtifactType, Kind};
+use crate::artifact::{Artifact, ArtifactType, Digest, Kind};
 use crate::{Context, ParamDoc, StageError};
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -72,6 +72,30 @@ pub enum Role {
 }
 
 impl Role {
+    /// Every role, in the order of a pipeline.
+    pub const ALL: [Role; 15] = [
+        Role::Reader,
+        Role::Denoiser,
+        Role::Binariser,
+        Role::EdgeDetector,
+        Role::Style,
+        Role::Mesher,
+        Role::Smoother,
+        Role::Body,
+        Role::Fabric,
+        Role::Placement,
+        Role::Collider,
+        Role::Stitcher,
+        Role::Draper,
+        Role::Texturer,
+        Role::Writer,
+    ];
+
+    /// The role of that word.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|r| r.as_str() == word)
+    }
+
     /// The role in words: `edge detector`.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -115,6 +139,41 @@ pub enum Contract {
     RefusesEmpty,
     /// Stops within 50 ms of being asked.
     Cancellable,
+}
+
+impl Contract {
+    /// Every contract.
+    pub const ALL: [Contract; 9] = [
+        Contract::Deterministic,
+        Contract::ThreadInvariant,
+        Contract::TranslationEquivariant,
+        Contract::RotationEquivariant,
+        Contract::ScaleEquivariant,
+        Contract::Idempotent,
+        Contract::BoundaryPreserving,
+        Contract::RefusesEmpty,
+        Contract::Cancellable,
+    ];
+
+    /// The contract as one word: `thread_invariant`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Contract::Deterministic => "deterministic",
+            Contract::ThreadInvariant => "thread_invariant",
+            Contract::TranslationEquivariant => "translation_equivariant",
+            Contract::RotationEquivariant => "rotation_equivariant",
+            Contract::ScaleEquivariant => "scale_equivariant",
+            Contract::Idempotent => "idempotent",
+            Contract::BoundaryPreserving => "boundary_preserving",
+            Contract::RefusesEmpty => "refuses_empty",
+            Contract::Cancellable => "cancellable",
+        }
+    }
+
+    /// The contract of that word.
+    pub fn named(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|c| c.as_str() == word)
+    }
 }
 
 /// Whether a port takes one value, each of a named set, or the whole set.
@@ -175,6 +234,19 @@ pub struct Card {
     pub inputs: Vec<InPort>,
     /// Its output ports.
     pub outputs: Vec<OutPort>,
+    /// The plugin that it comes from; `None` for a stage that is linked in.
+    pub plugin: Option<PluginId>,
+}
+
+/// Which plugin a stage comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PluginId {
+    /// The plugin's name.
+    pub name: &'static str,
+    /// Its version.
+    pub version: &'static str,
+    /// The digest of its file.
+    pub digest: Digest,
 }
 
 impl Card {

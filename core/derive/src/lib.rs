@@ -6,6 +6,7 @@
 
 mod choice;
 mod params;
+mod plugin;
 mod run;
 
 use proc_macro::TokenStream;
@@ -31,6 +32,13 @@ pub fn choice(_attr: TokenStream, item: TokenStream) -> TokenStream {
         .and_then(choice::expand)
         .unwrap_or_else(syn::Error::into_compile_error)
         .into()
+}
+
+/// `plugin!(A, B);` at the end of a crate makes its stages a plugin: built as `cdylib` it can be loaded
+/// by name, linked in it is added by one line, `my_crate::register(&mut registry)`.
+#[proc_macro]
+pub fn plugin(stages: TokenStream) -> TokenStream {
+    plugin::expand(stages.into()).unwrap_or_else(syn::Error::into_compile_error).into()
 }
 
 /// The text of an item's doc comment.

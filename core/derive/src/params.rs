@@ -69,6 +69,7 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
                     params: ::std::vec![#(#docs),*],
                     inputs: ::std::vec![],
                     outputs: ::std::vec![],
+                    plugin: ::std::option::Option::None,
                 }
             }
         }
@@ -137,7 +138,7 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
                 max: #max,
                 default: ::toile_core::param::ron_text(&default.#name),
                 trades: #trades,
-                check: ::toile_core::param::check_param::<#ty>,
+                check: ::toile_core::param::Check::of::<#ty>(),
             }
         });
     }

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 /// A vertex near or inside the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct BodyContact {
     /// The cloth vertex (an index into the slice that was asked about).
     pub vertex: u32,
@@ -23,6 +24,7 @@ pub struct BodyContact {
 /// side's are positive, the other's negative, so `sum weights[i] * x[vertices[i]]` is the
 /// separation vector.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(C)]
 pub struct SelfContact {
     /// The vertices.
     pub vertices: [u32; 4],

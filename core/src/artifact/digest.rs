@@ -5,6 +5,11 @@
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
+    /// All of it in hexadecimal.
+    pub fn hex(&self) -> String {
+        self.0.iter().map(|b| format!("{b:02x}")).collect()
+    }
+
     /// The first eight bytes in hexadecimal, enough to tell artifacts apart in a text sheet.
     pub fn short(&self) -> String {
         self.0[..8].iter().map(|b| format!("{b:02x}")).collect()

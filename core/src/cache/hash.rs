@@ -15,7 +15,7 @@ impl Hash {
 
     /// As 64 hexadecimal digits.
     pub fn hex(&self) -> String {
-        self.0.0.iter().map(|b| format!("{b:02x}")).collect()
+        self.0.hex()
     }
 
     /// From 64 hexadecimal digits.

@@ -62,7 +62,7 @@ impl Ingredients {
             name: node.card.name.to_owned(),
             role: node.card.role.as_str().to_owned(),
             version: node.card.version,
-            plugin: None,
+            plugin: node.card.plugin.map(|p| p.digest.hex()),
             params: node.stage.params(),
             entry: entry.to_owned(),
             inputs: ports

@@ -24,6 +24,7 @@ mod order;
 mod overrides;
 mod parser;
 mod pick;
+mod plugins;
 mod read;
 mod tree;
 pub(crate) mod typed;
@@ -35,6 +36,7 @@ pub(crate) mod tests;
 pub use fault::{Fault, FaultRecord, Faults, Label};
 pub use near::nearest;
 pub use overrides::Override;
+pub use plugins::PluginUse;
 
 use crate::{Card, Registry, Stage, StageError};
 use std::collections::BTreeMap;
@@ -64,7 +66,7 @@ pub struct Pipeline {
     /// Its stages; each stands after all that feed it.
     pub nodes: Vec<Node>,
     /// Plugins that the file asks for.
-    pub plugins: Vec<String>,
+    pub plugins: Vec<PluginUse>,
 }
 
 /// A stage in its place.
@@ -117,9 +119,16 @@ pub fn load(
         let message = format!("the file has {} bytes, the limit is {MAX_BYTES}", text.len());
         return Err(Faults::new(file, text, vec![Fault::new("too_large", message).at(&(0..0), "")]));
     }
-    let mut applied = overrides::apply(text, registry, overrides);
+    // Overrides may name a plugin, and may name stages of plugins.
+    let mut registry = registry.clone();
+    let mut refused = plugins::load(text, base, &mut registry);
+    let mut applied = overrides::apply(text, &registry, overrides);
+    if plugins::asked(&applied.text) != plugins::asked(text) || !refused.is_empty() {
+        refused = plugins::load(&applied.text, base, &mut registry);
+    }
     let mut faults = std::mem::take(&mut applied.faults);
-    let checked = check(&applied.text, registry, &mut faults);
+    faults.append(&mut refused);
+    let checked = check(&applied.text, &registry, &mut faults);
     match checked {
         Some((read, drafts, feeds)) if faults.is_empty() => {
             let nodes = drafts.into_iter().zip(feeds).filter_map(|(d, inputs)| d.finish(inputs)).collect();

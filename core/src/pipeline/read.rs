@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::pick::{Before, pick};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
-use super::{MAX_FAULTS, MAX_STAGES, near};
+use super::{MAX_FAULTS, MAX_STAGES, PluginUse, near, plugins};
 use crate::param::ron_options;
 use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue};
 use std::collections::{BTreeMap, BTreeSet};
@@ -24,7 +24,7 @@ const MAX_ID: usize = 64;
 #[derive(Debug, Default)]
 pub(super) struct Read {
     pub(super) name: Option<String>,
-    pub(super) plugins: Vec<String>,
+    pub(super) plugins: Vec<PluginUse>,
     /// In the order of the registry.
     pub(super) sections: Vec<Draft>,
     /// In the order of the file.
@@ -42,7 +42,7 @@ pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Ve
     r.known_fields(&mut fields);
     let mut read = Read {
         name: fields.get("name").and_then(|(_, v)| r.text_value("name", v)),
-        plugins: fields.get("plugins").map(|(_, v)| r.texts("plugins", v)).unwrap_or_default(),
+        plugins: fields.get("plugins").map(|(_, v)| plugins::read(text, v, r.faults)).unwrap_or_default(),
         ..Read::default()
     };
     let registered = registry.sections().iter().filter_map(|s| Some((s, fields.get(s.field)?)));
@@ -126,19 +126,6 @@ impl Reader<'_> {
             self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
         }
         parsed
-    }
-
-    /// A list of texts.
-    fn texts(&mut self, field: &str, value: &Tree) -> Vec<String> {
-        match &value.shape {
-            Shape::Group { bracket: Bracket::Square, entries, .. } => {
-                entries.iter().filter_map(|e| self.text_value(field, &e.value)).collect()
-            }
-            _ => {
-                self.fault("bad_value", format!("`{field}` wants a list of texts"), &value.span);
-                Vec::new()
-            }
-        }
     }
 
     fn stages(&mut self, list: &Tree) -> Vec<Draft> {
@@ -325,7 +312,7 @@ impl Reader<'_> {
 
     /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
-        let Err(e) = (doc.check)(self.at(&value.span), doc) else { return true };
+        let Err(e) = doc.check.run(self.at(&value.span), doc) else { return true };
         let (span, key) = e.offset.map_or((value.span.clone(), None), |o| value.locate(value.span.start + o));
         let message = match key {
             Some(key) => format!("`{}` in `{}`: {}", self.at(&key).trim_matches('"'), doc.name, e.reason),

@@ -48,6 +48,9 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
 fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError> {
     match catch_unwind(AssertUnwindSafe(|| node.stage.run_ports(inputs, cx))) {
         Ok(outcome) => outcome.and_then(checked),
+        Err(payload) if payload.is::<StageError>() => {
+            Err(payload.downcast::<StageError>().map_or_else(|_| StageError::internal(""), |e| *e))
+        }
         Err(payload) => {
             let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
             let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();

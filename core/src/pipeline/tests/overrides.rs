@@ -42,8 +42,9 @@ fn a_field_that_is_not_there_is_put_in() {
         "photos.side=(file: \"s\", width: \"1 m\")",
         &["photos: {\"side\": (file: \"s\", width: \"1 m\"),"],
     );
-    changed("plugins=[\"p\"]", &["(plugins: [\"p\"],"]);
-    assert_eq!(set(kit::VEST, &["plugins=[\"p\"]"]).unwrap().plugins, ["p"]);
+    let refused = set(kit::VEST, &["plugins=[\"p\"]"]).unwrap_err().to_string();
+    assert_eq!(refused.lines().count(), 1);
+    assert!(refused.contains("the plugin \"p\" is refused: there is no such file"), "{refused}");
 }
 
 #[test]

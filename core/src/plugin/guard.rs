@@ -1,0 +1,46 @@
+//! A panic must not cross the border: it ends here, as a status and a message.
+
+use super::abi;
+use std::any::Any;
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+thread_local! {
+    /// The message of the last failure on this thread, for errors in calls that have no other way.
+    static LAST: RefCell<String> = const { RefCell::new(String::new()) };
+}
+
+/// Runs the inside of an entry point; its failure or panic becomes a status.
+pub(super) fn guarded(work: impl FnOnce() -> Result<(), String>) -> i32 {
+    let (status, message) = match catch_unwind(AssertUnwindSafe(work)) {
+        Ok(Ok(())) => return abi::OK,
+        Ok(Err(message)) => (abi::FAILED, message),
+        Err(payload) => (abi::PANICKED, panic_text(payload)),
+    };
+    LAST.with(|last| *last.borrow_mut() = message);
+    status
+}
+
+/// What a panic says.
+pub(super) fn panic_text(payload: Box<dyn Any + Send>) -> String {
+    let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
+    let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
+    let text = text.or_else(|| payload.downcast_ref::<crate::StageError>().map(ToString::to_string));
+    // Dropping a payload may panic again, and then nothing could be told at all.
+    std::mem::forget(payload);
+    text.unwrap_or_default()
+}
+
+/// The message of the last failure on this thread, good until the next one.
+pub(super) fn last_failure() -> abi::Text {
+    LAST.with(|last| abi::Text::of(&last.borrow()))
+}
+
+/// A status in words: `panicked`.
+pub(super) fn meaning(status: i32) -> String {
+    match status {
+        abi::FAILED => "failed".into(),
+        abi::PANICKED => "panicked".into(),
+        other => format!("gave back {other}, which means nothing,"),
+    }
+}

@@ -1,0 +1,305 @@
+//! Loading a plugin: the file, the handshake, the stage tables.
+
+use super::abi;
+use super::card::{Strides, read};
+use super::foreign::ForeignType;
+use super::view::text;
+use crate::artifact::Digest;
+use crate::param::Check;
+use crate::text::intern;
+use crate::{Card, PluginId};
+use libloading::Library;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What every entry symbol begins with.
+const SYMBOL: &[u8] = b"toile_plugin";
+/// The longest file that may be a plugin, bytes.
+const MAX_BYTES: u64 = 1 << 30;
+/// The most stages of one plugin.
+const MAX_STAGES: usize = 1000;
+
+/// A library that stays loaded for as long as anything of it is used.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    id: PluginId,
+    _library: Library,
+}
+
+impl Loaded {
+    /// The plugin in words: `plugin "sdf" 0.1.0`.
+    pub(super) fn words(&self) -> String {
+        format!("plugin \"{}\" {}", self.id.name, self.id.version)
+    }
+}
+
+/// A plugin that has passed every check.
+#[derive(Debug, Clone)]
+pub struct Plugin {
+    /// Name, version and digest.
+    pub id: PluginId,
+    /// The file.
+    pub file: PathBuf,
+    /// The ABI that it was built for.
+    pub abi: (u32, u32),
+    /// Its stages' cards, in its order.
+    pub cards: Vec<Card>,
+    pub(crate) types: Vec<ForeignType>,
+}
+
+/// A plugin that is not used, and why.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("the plugin \"{file}\" is refused: {reason}")]
+pub struct Refused {
+    /// The file as it was named.
+    pub file: String,
+    /// One sentence in lower case.
+    pub reason: String,
+    /// What the user may do about it.
+    pub hint: Option<String>,
+}
+
+/// The file of a plugin that is named with or without the system's way of naming libraries.
+fn found(path: &Path) -> PathBuf {
+    let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let stem = path.file_name().map(|n| n.to_string_lossy().replace('-', "_")).unwrap_or_default();
+    let dressed = path.with_file_name(format!("{prefix}{stem}{suffix}"));
+    if !path.is_file() && dressed.is_file() { dressed } else { path.to_owned() }
+}
+
+/// Loads a plugin; `pinned` is the BLAKE3 digest in hexadecimal that its file must have.
+///
+/// Loading runs the library's own initialisation: a plugin is code that the user trusts.
+///
+/// Errors: why it is refused. A file that is no library, or not the pinned one, is never loaded.
+pub fn load(path: &Path, pinned: Option<&str>) -> Result<Plugin, Refused> {
+    let file = found(path);
+    let refused =
+        |(reason, hint): (String, Option<String>)| Refused { file: path.display().to_string(), reason, hint };
+    let bytes = bytes(&file).map_err(refused)?;
+    let digest = Digest(*blake3::hash(&bytes).as_bytes());
+    check_pin(&digest, pinned).map_err(refused)?;
+    let symbols = symbols(&bytes);
+    if symbols.is_empty() {
+        let hint = "a plugin exports `toile_plugin`; see docs/plugin-abi.md".to_owned();
+        return Err(refused(("it declares no plugin".into(), Some(hint))));
+    }
+    drop(bytes);
+    unsafe { open(&file, &symbols, digest) }.map_err(refused)
+}
+
+type Why = (String, Option<String>);
+
+fn plain(reason: impl Into<String>) -> Why {
+    (reason.into(), None)
+}
+
+fn bytes(file: &Path) -> Result<Vec<u8>, Why> {
+    let hint =
+        || Some("build it first, and name the library, like target/release/libtoile_sdf.so".to_owned());
+    let meta = std::fs::metadata(file).map_err(|e| (words(&e), hint()))?;
+    if !meta.is_file() {
+        return Err(("it is not a file".into(), hint()));
+    }
+    if meta.len() > MAX_BYTES {
+        return Err(plain(format!("it has {} bytes, the limit is {MAX_BYTES}", meta.len())));
+    }
+    std::fs::read(file).map_err(|e| plain(words(&e)))
+}
+
+fn words(e: &std::io::Error) -> String {
+    match e.kind() {
+        std::io::ErrorKind::NotFound => "there is no such file".into(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".into(),
+        _ => e.to_string(),
+    }
+}
+
+fn check_pin(digest: &Digest, pinned: Option<&str>) -> Result<(), Why> {
+    match pinned {
+        Some(pin) if !pin.eq_ignore_ascii_case(&digest.hex()) => {
+            let hint = "it was built anew, or is not the file that was tested: look, then pin the new digest";
+            Err((format!("its digest is {}, pinned is {pin}", digest.hex()), Some(hint.into())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The names in a file that may be a plugin's declaration: each library has its own, so that several may
+/// be linked into one program, and a renamed file is still known.
+fn symbols(bytes: &[u8]) -> Vec<Vec<u8>> {
+    let mut found = Vec::new();
+    let mut at = 0;
+    while let Some(i) = find(&bytes[at..], SYMBOL) {
+        let from = at + i;
+        let name = |c: &u8| c.is_ascii_alphanumeric() || *c == b'_';
+        let end = from + bytes[from..].iter().take_while(|c| name(c)).count();
+        let whole = bytes.get(end) == Some(&0) && (from == 0 || matches!(bytes[from - 1], 0 | b'_'));
+        let symbol = [&bytes[from..end], b"\0"].concat();
+        if whole && end - from <= 200 && !found.contains(&symbol) && found.len() < 64 {
+            found.push(symbol);
+        }
+        at = from + SYMBOL.len();
+    }
+    found
+}
+
+fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
+    let mut at = 0;
+    loop {
+        let i = at + bytes.get(at..)?.iter().position(|b| *b == what[0])?;
+        if bytes[i..].starts_with(what) {
+            return Some(i);
+        }
+        at = i + 1;
+    }
+}
+
+/// # Safety
+/// The library is trusted to obey the rules of the border.
+unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
+    // A bare name would be looked for in the system's folders.
+    let full = std::fs::canonicalize(file).map_err(|e| plain(words(&e)))?;
+    let library = unsafe { Library::new(&full) }.map_err(|e| {
+        let reason = format!("the system cannot load it: {}", without_path(&e.to_string()));
+        (reason, Some("is it a library for this machine?".to_owned()))
+    })?;
+    let declared = symbols
+        .iter()
+        .find_map(|s| unsafe { library.get::<*const abi::Declaration>(s.as_slice()) }.ok().map(|d| *d));
+    let declared = declared.ok_or_else(|| plain("it declares no plugin"))?;
+    let declaration = unsafe { handshake(declared)? };
+    let name = unsafe { text(declaration.name) }.map_err(plain)?;
+    let version = unsafe { text(declaration.version) }.map_err(plain)?;
+    let fit = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '+');
+    if name.is_empty() || name.len() > 64 || !name.chars().chain(version.chars()).all(fit) {
+        return Err(plain(format!(
+            "\"{}\" {} is no name and version",
+            name.escape_debug(),
+            version.escape_debug()
+        )));
+    }
+    let id = PluginId { name: intern(name), version: intern(version), digest };
+    let loaded = Arc::new(Loaded { id, _library: library });
+    let (cards, types) = unsafe { stages(&declaration, &loaded)? };
+    Ok(Plugin { id, file: full, abi: (declaration.major, declaration.minor), cards, types })
+}
+
+/// The system's message, without the path that it begins with.
+fn without_path(message: &str) -> &str {
+    message.split_once(": ").map_or(message, |(_, rest)| rest)
+}
+
+/// Checks a declaration before anything in it is called.
+unsafe fn handshake(declared: *const abi::Declaration) -> Result<abi::Declaration, Why> {
+    if declared.is_null() || !declared.is_aligned() {
+        return Err(plain("its declaration lies at no proper address"));
+    }
+    // The first fields are those of every version.
+    let magic = unsafe { (&raw const (*declared).magic).read() };
+    if magic != abi::MAGIC {
+        return Err(plain("its declaration does not begin with TOILEPLG"));
+    }
+    let (major, minor) = unsafe { ((*declared).major, (*declared).minor) };
+    if major != abi::MAJOR || minor > abi::MINOR {
+        let spoken = format!(
+            "it speaks ABI {major}.{minor}, this program speaks {0}.0 to {0}.{1}",
+            abi::MAJOR,
+            abi::MINOR
+        );
+        let hint = if (major, minor) > (abi::MAJOR, abi::MINOR) {
+            "use a newer toile"
+        } else {
+            "build it anew with the present SDK"
+        };
+        return Err((spoken, Some(hint.into())));
+    }
+    let size = unsafe { (*declared).size };
+    if (size as usize) < size_of::<abi::Declaration>() {
+        return Err(short("its declaration has", size, size_of::<abi::Declaration>()));
+    }
+    let d = unsafe { declared.read() };
+    let least = if minor == 0 { abi::STAGE_SIZE_1_0 as usize } else { size_of::<abi::StageTable>() };
+    fits("its stage tables have", d.stage_size, least)?;
+    fits("its parameters have", d.param_size, size_of::<abi::Param>())?;
+    fits("its ports have", d.port_size, size_of::<abi::Port>())?;
+    Ok(d)
+}
+
+fn fits(what: &str, size: u32, least: usize) -> Result<(), Why> {
+    match size as usize >= least && size % 8 == 0 && size <= 1 << 16 {
+        true => Ok(()),
+        false => Err(short(what, size, least)),
+    }
+}
+
+fn short(what: &str, size: u32, least: usize) -> Why {
+    let hint = "it was built against a damaged or foreign header".to_owned();
+    (format!("{what} {size} bytes, at least {least} are needed"), Some(hint))
+}
+
+/// # Safety
+/// The declaration has passed the handshake.
+unsafe fn stages(d: &abi::Declaration, library: &Arc<Loaded>) -> Result<(Vec<Card>, Vec<ForeignType>), Why> {
+    let list = d.stages.ok_or_else(|| plain("it lacks the function `stages`"))?;
+    let mut count = 0;
+    let first = unsafe { list(&mut count) };
+    if count == 0 || count > MAX_STAGES {
+        return Err(plain(format!("it lists {count} stages, 1 to {MAX_STAGES} are possible")));
+    }
+    if first.is_null() || !first.cast::<abi::StageTable>().is_aligned() {
+        return Err(plain("its stage tables lie at no proper address"));
+    }
+    let strides = Strides { param: d.param_size as usize, port: d.port_size as usize };
+    let (mut cards, mut types) = (Vec::new(), Vec::new());
+    for i in 0..count {
+        let at = unsafe { first.byte_add(i * d.stage_size as usize) };
+        let of = ForeignType { library: library.clone(), table: unsafe { whole(at, d.stage_size) } };
+        let card = unsafe { card_of(&of, strides, library.id) }.map_err(plain)?;
+        if cards.iter().any(|c: &Card| c.name == card.name) {
+            return Err(plain(format!("it has two stages named `{}`", card.name)));
+        }
+        cards.push(card);
+        types.push(of);
+    }
+    Ok((cards, types))
+}
+
+/// A table of which only the first bytes may be there; the rest reads as null.
+unsafe fn whole(at: *const std::ffi::c_void, size: u32) -> abi::StageTable {
+    let mut table = std::mem::MaybeUninit::<abi::StageTable>::zeroed();
+    let known = (size as usize).min(size_of::<abi::StageTable>());
+    // Every field of a table may be zero: numbers, null pointers, absent functions.
+    unsafe {
+        std::ptr::copy_nonoverlapping(at.cast::<u8>(), table.as_mut_ptr().cast::<u8>(), known);
+        table.assume_init()
+    }
+}
+
+unsafe fn card_of(of: &ForeignType, strides: Strides, id: PluginId) -> Result<Card, String> {
+    let check = |param: usize| {
+        let of = of.clone();
+        of.table.check.is_some().then(|| Check::by(move |value, doc| of.check(param, value, doc)))
+    };
+    let card = unsafe { read(&of.table, strides, id, check)? };
+    let lacks = |what: &str| Err(format!("its stage `{}` lacks the function `{what}`", card.name));
+    match (of.table.create, of.table.run, of.table.destroy) {
+        (None, ..) => lacks("create"),
+        (_, None, _) => lacks("run"),
+        (.., None) => lacks("destroy"),
+        _ => Ok(card),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn declarations_are_found_by_name_in_the_file() {
+        let file = b"\x7fELF\0toile_plugin\0x\0toile_plugin_sdf\0mytoile_plugin\0toile_plugin-no\0_toile_plugin_mac\0";
+        let found = symbols(file);
+        let words: Vec<_> = found.iter().map(|s| String::from_utf8_lossy(s).into_owned()).collect();
+        assert_eq!(words, ["toile_plugin\0", "toile_plugin_sdf\0", "toile_plugin_mac\0"]);
+    }
+}
