@@ -228,6 +228,11 @@ impl Context {
         std::mem::take(&mut *self.reads.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// Takes over the files that one entry of a set read.
+    pub(crate) fn absorb_reads(&self, reads: &[(String, Option<Hash>)]) {
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(reads);
+    }
+
     /// Takes over what one entry of a set noted, under the entry's name.
     pub(crate) fn absorb(&self, entry: &str, figures: Vec<Measure>, warnings: Vec<String>) {
         let named = figures.into_iter().map(|m| Measure { name: format!("{entry}.{}", m.name), ..m });

@@ -40,6 +40,7 @@ pub mod cache;
 mod context;
 mod error;
 pub mod golden;
+pub mod lock;
 mod metrics;
 mod output;
 pub mod param;
@@ -58,7 +59,7 @@ pub use metrics::{Metrics, StageMetrics};
 pub use output::write_files;
 pub use param::{Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{Outlook, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
+pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PluginId, PortValue, Role, Set, Stage,
     StageMeta, StageType,

@@ -106,6 +106,9 @@ impl std::fmt::Display for Cause {
 impl Cache {
     /// Notes what a stage was made from, for the next [`Cache::last`].
     pub(crate) fn note(&self, pipeline: &Pipeline, id: &str, ingredients: &Ingredients, manifest: &Manifest) {
+        if !self.keeps {
+            return;
+        }
         let path = self.last_path(pipeline, id, &ingredients.entry);
         let names = |kept: &Kept| match kept {
             Kept::One(_) => None,

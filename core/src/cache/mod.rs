@@ -49,6 +49,8 @@ pub struct Cache {
     store: Store,
     limit: u64,
     warnings: Mutex<Vec<String>>,
+    /// False of a cache that only takes digests.
+    keeps: bool,
     /// False after the first file that could not be written: a full disk stays full.
     writable: AtomicBool,
     wrote: AtomicBool,
@@ -92,10 +94,16 @@ impl Cache {
         Cache {
             store: Store { root },
             limit: DEFAULT_LIMIT,
+            keeps: true,
             warnings: Mutex::default(),
             writable: AtomicBool::new(true),
             wrote: AtomicBool::new(false),
         }
+    }
+
+    /// A cache that keeps and finds nothing, for runs that only want the digests of their results.
+    pub fn nowhere() -> Self {
+        Cache { keeps: false, ..Cache::new(Path::new("")) }
     }
 
     /// The same cache with another limit, bytes.
@@ -115,6 +123,9 @@ impl Cache {
 
     /// Looks for a run; `base` is the folder that files are relative to.
     pub(crate) fn find(&self, key: &Hash, base: &Path) -> Found {
+        if !self.keeps {
+            return Found::Miss(Miss::Unknown);
+        }
         let first = match self.manifest(key) {
             Ok(Some(manifest)) => manifest,
             Ok(None) => return Found::Miss(Miss::Unknown),
@@ -219,6 +230,9 @@ impl Cache {
             return Blob { digest: key::of_unstored(key, port, name), stored: false };
         };
         let digest = Hash::of(&bytes);
+        if !self.keeps {
+            return Blob { digest, stored: false };
+        }
         let path = self.store.path(Shelf::Blobs, &digest);
         // Equal content has the same name: it is written once.
         match std::fs::metadata(&path) {
@@ -229,7 +243,7 @@ impl Cache {
     }
 
     fn write(&self, path: &Path, bytes: &[u8]) {
-        if !self.writable.load(Ordering::Relaxed) {
+        if !self.keeps || !self.writable.load(Ordering::Relaxed) {
             return;
         }
         match self.store.write(path, bytes) {

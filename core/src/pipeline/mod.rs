@@ -19,6 +19,7 @@
 mod draft;
 mod fault;
 mod graph;
+mod migrate;
 pub(crate) mod near;
 mod order;
 mod overrides;
@@ -34,6 +35,7 @@ mod words;
 pub(crate) mod tests;
 
 pub use fault::{Fault, FaultRecord, Faults, Label};
+pub use migrate::{Change, Migrated, Migration, migrate};
 pub use near::nearest;
 pub use overrides::Override;
 pub use plugins::PluginUse;

@@ -35,7 +35,7 @@ pub fn forecast(pipeline: &Pipeline, options: &RunOptions, cache: &Cache) -> Res
     let (cancel, listener): (Cancel, Arc<dyn Listener>) = (Cancel::new(), Arc::new(()));
     let plan = plan(pipeline, options)?;
     let mut run =
-        Run { pipeline, cache: Some(cache), cancel: &cancel, listener: &listener, steps: Vec::new() };
+        Run { pipeline, cache: Some(cache), cancel: &cancel, listener: &listener, reads: None, steps: Vec::new() };
     let mut outlooks = Vec::new();
     for (node, skipped) in pipeline.nodes.iter().zip(plan) {
         let mut outlook = Outlook { stage: node.id.clone(), skipped, entries: Vec::new() };

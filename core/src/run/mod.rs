@@ -11,12 +11,14 @@ pub use implicit::add_implicit;
 pub(crate) use node::Made;
 
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
-use crate::cache::Cache;
+use crate::cache::{Cache, Hash};
 use crate::pipeline::Pipeline;
 use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
 use std::any::Any;
+use std::collections::BTreeSet;
 use std::ops::Range;
-use std::sync::Arc;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use steps::{Run, Step};
 
@@ -29,7 +31,12 @@ pub struct RunOptions {
     pub keep: bool,
     /// Where results of stages are kept and found; none runs everything.
     pub cache: Option<Arc<Cache>>,
+    /// Takes the paths of all files that stages read, or tried to, whether the run comes to its end or not.
+    pub reads: Option<Reads>,
 }
+
+/// Paths that a run fills in while it goes on.
+pub type Reads = Arc<Mutex<BTreeSet<PathBuf>>>;
 
 /// What a run gives. Nothing is written yet.
 #[derive(Debug)]
@@ -41,6 +48,8 @@ pub struct RunResult {
     pub log: RunLog,
     /// The content of `metrics.json`.
     pub metrics: Metrics,
+    /// The digest of what every stage made, by id; none without a cache, and for what has no digest.
+    pub results: Vec<(String, Option<Hash>)>,
 }
 
 /// A stage's failure with its place.
@@ -82,7 +91,8 @@ pub fn run(
     let plan = plan(pipeline, options)?;
     let started = Instant::now();
     let cache = options.cache.as_deref();
-    let mut run = Run { pipeline, cache, cancel, listener, steps: Vec::new() };
+    let reads = options.reads.as_ref();
+    let mut run = Run { pipeline, cache, cancel, listener, reads, steps: Vec::new() };
     for skipped in plan {
         match skipped {
             None => run.step()?,
@@ -95,7 +105,8 @@ pub fn run(
         cache.tidy();
     }
     let metrics = metrics(&run, &judged, started.elapsed().as_secs_f64());
-    Ok(RunResult { files, log: run.log(run.steps.len()), metrics })
+    let results = run.results();
+    Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results })
 }
 
 /// The writers' files and those of stages whose artifacts were asked for.

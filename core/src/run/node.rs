@@ -35,11 +35,14 @@ pub(super) fn run_entries(
 
 fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<Made, Failure> {
     let own = cx.for_entry(&entry);
-    match guarded(node, inputs, &own) {
+    let outcome = guarded(node, inputs, &own);
+    let reads = own.take_reads();
+    cx.absorb_reads(&reads);
+    match outcome {
         Err(e) => Err((entry, e)),
         Ok(outputs) => {
             let (figures, warnings) = own.take_notes();
-            Ok(Made { entry, outputs, figures, warnings, reads: own.take_reads() })
+            Ok(Made { entry, outputs, figures, warnings, reads })
         }
     }
 }

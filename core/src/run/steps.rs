@@ -3,7 +3,7 @@
 
 use super::node::{Failure, Made, run_entries};
 use super::value::{Held, gather};
-use super::{RunError, typed};
+use super::{Reads, RunError, typed};
 use crate::artifact::{Digester, Measure, RunLog, StageRecord};
 use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR};
 use crate::pipeline::{Feed, Node, Pipeline};
@@ -11,7 +11,7 @@ use crate::{
     Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError,
 };
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
 /// What became of a stage.
@@ -38,6 +38,7 @@ pub(super) struct Run<'a> {
     pub(super) cache: Option<&'a Cache>,
     pub(super) cancel: &'a Cancel,
     pub(super) listener: &'a Arc<dyn Listener>,
+    pub(super) reads: Option<&'a Reads>,
     pub(super) steps: Vec<Step>,
 }
 
@@ -96,6 +97,7 @@ impl Run<'_> {
         for search in searches {
             match &search.found {
                 Found::Hit(manifest) => {
+                    self.note_reads(manifest.reads.iter().map(|(path, _)| path.clone()));
                     for warning in &manifest.warnings {
                         self.listener.event(&node.id, &search.entry, &Event::Warning(warning.clone()));
                     }
@@ -178,7 +180,35 @@ impl Run<'_> {
             }
         }
         let jobs = entries.iter().map(|e| (e.clone(), self.inputs(index, e))).collect();
-        run_entries(node, jobs, cx).map_err(|e| located(node, e))
+        let made = run_entries(node, jobs, cx);
+        self.note_reads(cx.take_reads().into_iter().map(|(path, _)| path));
+        made.map_err(|e| located(node, e))
+    }
+
+    /// Tells whoever asked which files were read.
+    fn note_reads(&self, paths: impl Iterator<Item = String>) {
+        if let Some(reads) = self.reads {
+            let full = paths.map(|path| self.pipeline.base.join(path));
+            reads.lock().unwrap_or_else(PoisonError::into_inner).extend(full);
+        }
+    }
+
+    /// The digest of what every stage made.
+    pub(super) fn results(&self) -> Vec<(String, Option<Hash>)> {
+        let result = |ran: &Ran| {
+            let mut d = Digester::new();
+            d.text("toile result").count(ran.outputs.len());
+            for held in &ran.outputs {
+                feed(&mut d, held)?;
+            }
+            Some(Hash(d.finish()))
+        };
+        let steps = self.pipeline.nodes.iter().zip(&self.steps);
+        let ran = steps.filter_map(|(node, step)| match step {
+            Step::Ran(ran) => Some((node.id.clone(), result(ran))),
+            Step::Skipped(_) => None,
+        });
+        ran.collect()
     }
 
     /// Brings every artifact of the stages before `index` into memory.
@@ -297,11 +327,7 @@ impl Run<'_> {
             };
             d.text(node.card.name).text(&node.stage.params()).count(ran.outputs.len());
             for held in &ran.outputs {
-                match held.fed(None) {
-                    Fed::One(hash) => d.bytes(&hash.0.0),
-                    Fed::Set(set) => set.iter().fold(&mut d, |d, (name, hash)| d.text(name).bytes(&hash.0.0)),
-                    Fed::Nothing | Fed::Unknown => return None,
-                };
+                feed(&mut d, held)?;
             }
         }
         Some(Hash(d.finish()))
@@ -359,6 +385,16 @@ impl Run<'_> {
         }
         Ok(all)
     }
+}
+
+/// Feeds a value's digests; none where it has none.
+fn feed(d: &mut Digester, held: &Held) -> Option<()> {
+    match held.fed(None) {
+        Fed::One(hash) => d.bytes(&hash.0.0),
+        Fed::Set(set) => set.iter().fold(d.count(set.len()), |d, (name, hash)| d.text(name).bytes(&hash.0.0)),
+        Fed::Nothing | Fed::Unknown => return None,
+    };
+    Some(())
 }
 
 fn record(node: &Node, ran: &Ran) -> StageRecord {
