@@ -39,6 +39,10 @@ pub(crate) enum Command {
     Why(WhyArgs),
     /// Show the cache of results, make room in it or empty it
     Cache(CacheArgs),
+    /// Keep what a pipeline is made of beside it, to run against with `run --locked`
+    Lock(LockArgs),
+    /// Rewrite old pipeline files to the names that stages and parameters have now
+    Migrate(MigrateArgs),
     /// Keep goldens: text sheets of measures for every edge of a pipeline
     Golden {
         #[command(subcommand)]
@@ -141,8 +145,33 @@ pub(crate) struct RunArgs {
     /// Print the metrics as one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Run again on every edit of the pipeline, its files or its plugins, until Ctrl-C
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) watch: bool,
+    /// Compare with PIPELINE.lock and say what differs
+    #[arg(long)]
+    pub(crate) locked: bool,
     #[command(flatten)]
     pub(crate) cache: CacheChoice,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LockArgs {
+    /// Pipeline files; the lock of `vest.ron` is `vest.ron.lock`
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cache: CacheChoice,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MigrateArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    /// Write nothing; exit code 4 where a file is not up to date
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 /// Which cache a command uses.

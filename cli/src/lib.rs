@@ -11,9 +11,12 @@ mod cards;
 mod explain;
 mod golden;
 mod interrupt;
+mod lock;
+mod migrate;
 mod progress;
 mod run;
 mod validate;
+mod watch;
 mod why;
 
 use args::{Arguments, Bench, Command, Verb};
@@ -107,6 +110,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
         Command::Cache(args) => cache::cache(&args, streams),
+        Command::Lock(args) => lock::lock(&args, registry, streams),
+        Command::Migrate(args) => migrate::run(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),

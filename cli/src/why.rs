@@ -4,12 +4,68 @@ use crate::args::WhyArgs;
 use crate::validate::open;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
+use std::path::Path;
 use toile_core::cache::{Cache, Cause};
 use toile_core::pipeline::Pipeline;
 use toile_core::{Outlook, Registry, RunOptions, forecast};
+use toile_stages::write::origin::{FILE, Trace, trace};
 
-/// Explains a run that has yet to be.
+/// Explains a run that has yet to be, or a triangle of one that was.
 pub(crate) fn why(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    match args.face {
+        Some(face) => why_face(args, face, streams),
+        None => why_run(args, registry, streams),
+    }
+}
+
+/// Follows a triangle back.
+fn why_face(args: &WhyArgs, face: usize, streams: &mut Streams<'_>) -> u8 {
+    let traced = traced(&args.target, face);
+    match traced {
+        Err(e) => {
+            streams.tell(format!("error: {}: {e}", args.target.display()));
+            return exit::INVALID;
+        }
+        Ok(t) if args.json => streams.say(json!({
+            "face": face, "panel": t.panel, "triangle": t.triangle, "place_m": t.place,
+            "edge": t.edge.as_ref().map(|(name, _)| name), "edge_distance_m": t.edge.as_ref().map(|(_, d)| d),
+            "photo": t.photo.as_ref().map(|(file, _)| file), "pixel": t.photo.as_ref().map(|(_, px)| px),
+            "mirrored": t.mirrored,
+        })),
+        Ok(t) => face_lines(face, &t).into_iter().for_each(|line| streams.say(line)),
+    }
+    exit::DONE
+}
+
+fn traced(result: &Path, face: usize) -> Result<Trace, String> {
+    let bytes = std::fs::read(result).map_err(|e| format!("cannot read it: {e}"))?;
+    let extension = result.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
+    let folder = result.parent().unwrap_or(Path::new("."));
+    let origin = std::fs::read(folder.join(FILE)).map_err(|e| {
+        format!("there is no \"{FILE}\" beside it ({e}); `toile run` writes one with every garment")
+    })?;
+    trace(&origin, &bytes, &extension, face)
+}
+
+fn face_lines(face: usize, t: &Trace) -> Vec<String> {
+    let [x, y] = t.place;
+    let mut lines = vec![
+        format!("face {face}: triangle {} of panel \"{}\"", t.triangle, t.panel),
+        format!("in the panel: x {x:.4} m, y {y:.4} m"),
+    ];
+    lines.push(match &t.edge {
+        Some((name, far)) => format!("nearest edge: {name}, {:.1} mm away", far * 1e3),
+        None => "nearest edge: the panel names none".to_owned(),
+    });
+    let mirrored = if t.mirrored { ", as its mirror image" } else { "" };
+    lines.push(match &t.photo {
+        Some((file, [px, py])) => format!("photo: {file}, pixel {px:.1}, {py:.1}{mirrored}"),
+        None => "photo: none".to_owned(),
+    });
+    lines
+}
+
+fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let pipeline = match open(&args.target, &args.overrides.set, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => {
@@ -32,7 +88,8 @@ pub(crate) fn why(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>
         }
         Ok(outlooks) => {
             outlooks.iter().flat_map(lines).for_each(|line| streams.say(line));
-            let (run, kept) = outlooks.iter().filter(|o| o.skipped.is_none()).partition::<Vec<_>, _>(|o| o.runs());
+            let (run, kept) =
+                outlooks.iter().filter(|o| o.skipped.is_none()).partition::<Vec<_>, _>(|o| o.runs());
             if args.stage.is_none() {
                 streams.say(format!("{} stages would run, {} come from the cache", run.len(), kept.len()));
             }
@@ -42,14 +99,21 @@ pub(crate) fn why(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>
 }
 
 /// The outlook of the stage that was named, or of all.
-fn explained(args: &WhyArgs, pipeline: &Pipeline, cache: &Cache) -> Result<Vec<Outlook>, toile_core::RunError> {
+fn explained(
+    args: &WhyArgs,
+    pipeline: &Pipeline,
+    cache: &Cache,
+) -> Result<Vec<Outlook>, toile_core::RunError> {
     let Some(stage) = &args.stage else { return forecast(pipeline, &RunOptions::default(), cache) };
     // A run that stops after the stage: an unknown one is refused with those that there are.
     let until = RunOptions { until: Some(stage.clone()), ..RunOptions::default() };
     let of_stage = forecast(pipeline, &until, cache)?.into_iter().filter(|o| o.stage == *stage);
     let all = forecast(pipeline, &RunOptions::default(), cache)?;
     // A stage that takes the run's own record sees all stages, so that the whole run counts.
-    Ok(all.into_iter().find(|o| o.stage == *stage && o.skipped.is_none()).map_or_else(|| of_stage.collect(), |o| vec![o]))
+    Ok(all
+        .into_iter()
+        .find(|o| o.stage == *stage && o.skipped.is_none())
+        .map_or_else(|| of_stage.collect(), |o| vec![o]))
 }
 
 /// A stage in lines: one for each set of causes, with the entries that share it.

@@ -133,7 +133,8 @@ impl Cache {
         let full = file.canonicalize().unwrap_or_else(|_| file.to_owned());
         let hex = Hash::of(full.display().to_string().as_bytes()).hex();
         // An entry's name may hold what no file's name may.
-        let entry = if entry.is_empty() { String::new() } else { Hash::of(entry.as_bytes()).hex()[..16].into() };
+        let entry =
+            if entry.is_empty() { String::new() } else { Hash::of(entry.as_bytes()).hex()[..16].into() };
         self.store.root.join("last").join(&hex[..16]).join(format!("{id}.{entry}"))
     }
 }

@@ -122,7 +122,8 @@ mod tests {
     fn manifest() -> Manifest {
         let blob = Blob { digest: Hash::of(b"made"), stored: true };
         let set = BTreeMap::from([("back".to_owned(), blob), ("front".to_owned(), blob)]);
-        let figure = Measure { name: "threshold".into(), value: 0.1 + 0.2, unit: "grey levels", tolerance: 0.0 };
+        let figure =
+            Measure { name: "threshold".into(), value: 0.1 + 0.2, unit: "grey levels", tolerance: 0.0 };
         Manifest::new(
             vec![("a.jpg".into(), Some(Hash::of(b"a"))), ("gone.mtl".into(), None)],
             vec![Kept::One(blob), Kept::Set(set)],

@@ -31,8 +31,8 @@ pub(crate) use manifest::{Blob, Kept, Manifest};
 pub use size::Bytes;
 pub use space::Usage;
 
-use crate::artifact::{Artifact, Kind, stored};
 use crate::PortValue;
+use crate::artifact::{Artifact, Kind, stored};
 use crate::run::Made;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -251,7 +251,9 @@ impl Cache {
             Err(e) => {
                 self.writable.store(false, Ordering::Relaxed);
                 let folder = self.store.root.display();
-                self.warn(format!("cannot write to the cache \"{folder}\": {e}; the run goes on without keeping results"));
+                self.warn(format!(
+                    "cannot write to the cache \"{folder}\": {e}; the run goes on without keeping results"
+                ));
             }
         }
     }
@@ -265,7 +267,11 @@ pub(crate) fn file_hash(path: &Path) -> Option<Hash> {
 /// The folder of the cache where nothing else is said: `XDG_CACHE_HOME`, else `.cache` in the home folder.
 ///
 /// The caller reads the environment; this crate does not.
-pub fn default_folder(toile: Option<PathBuf>, xdg: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
+pub fn default_folder(
+    toile: Option<PathBuf>,
+    xdg: Option<PathBuf>,
+    home: Option<PathBuf>,
+) -> Option<PathBuf> {
     let xdg = xdg.filter(|p| p.is_absolute()).map(|p| p.join("toile"));
     toile.or(xdg).or_else(|| home.map(|p| p.join(".cache/toile")))
 }

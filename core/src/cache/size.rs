@@ -23,7 +23,11 @@ impl FromStr for Bytes {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let fault = || format!("\"{text}\" is not a size; write a number and a unit, like \"500 MB\" (B, kB, MB, GB, TB, KiB, MiB, GiB)");
+        let fault = || {
+            format!(
+                "\"{text}\" is not a size; write a number and a unit, like \"500 MB\" (B, kB, MB, GB, TB, KiB, MiB, GiB)"
+            )
+        };
         let bare = text.trim();
         let split = bare.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(bare.len());
         let (number, unit) = bare.split_at(split);
@@ -36,7 +40,11 @@ impl FromStr for Bytes {
             _ => return Err(fault()),
         };
         let bytes = value * scale as f64;
-        if bytes.is_finite() && (0.0..1e18).contains(&bytes) { Ok(Bytes(bytes.round() as u64)) } else { Err(fault()) }
+        if bytes.is_finite() && (0.0..1e18).contains(&bytes) {
+            Ok(Bytes(bytes.round() as u64))
+        } else {
+            Err(fault())
+        }
     }
 }
 
@@ -66,7 +74,9 @@ mod tests {
     #[test]
     fn what_is_no_size_is_refused_in_words() {
         for text in ["", "500", "MB", "-1 MB", "1 XB", "nan MB", "1e30 TB"] {
-            let words = format!("\"{text}\" is not a size; write a number and a unit, like \"500 MB\" (B, kB, MB, GB, TB, KiB, MiB, GiB)");
+            let words = format!(
+                "\"{text}\" is not a size; write a number and a unit, like \"500 MB\" (B, kB, MB, GB, TB, KiB, MiB, GiB)"
+            );
             assert_eq!(text.parse::<Bytes>().unwrap_err(), words);
         }
     }

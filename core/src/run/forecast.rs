@@ -34,8 +34,14 @@ impl Outlook {
 pub fn forecast(pipeline: &Pipeline, options: &RunOptions, cache: &Cache) -> Result<Vec<Outlook>, RunError> {
     let (cancel, listener): (Cancel, Arc<dyn Listener>) = (Cancel::new(), Arc::new(()));
     let plan = plan(pipeline, options)?;
-    let mut run =
-        Run { pipeline, cache: Some(cache), cancel: &cancel, listener: &listener, reads: None, steps: Vec::new() };
+    let mut run = Run {
+        pipeline,
+        cache: Some(cache),
+        cancel: &cancel,
+        listener: &listener,
+        reads: None,
+        steps: Vec::new(),
+    };
     let mut outlooks = Vec::new();
     for (node, skipped) in pipeline.nodes.iter().zip(plan) {
         let mut outlook = Outlook { stage: node.id.clone(), skipped, entries: Vec::new() };

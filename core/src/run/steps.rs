@@ -7,9 +7,7 @@ use super::{Reads, RunError, typed};
 use crate::artifact::{Digester, Measure, RunLog, StageRecord};
 use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR};
 use crate::pipeline::{Feed, Node, Pipeline};
-use crate::{
-    Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError,
-};
+use crate::{Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError};
 use rayon::prelude::*;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
@@ -423,9 +421,8 @@ pub(super) fn held(node: &Node, made: Option<&Made>, manifest: Option<&Manifest>
 /// A manifest that does not have the stage's ports is damaged.
 fn shaped(node: &Node, found: Found) -> Found {
     let Found::Hit(manifest) = found else { return found };
-    let fits = |(port, kept): (&crate::OutPort, &Kept)| {
-        (port.arity == Arity::All) == matches!(kept, Kept::Set(_))
-    };
+    let fits =
+        |(port, kept): (&crate::OutPort, &Kept)| (port.arity == Arity::All) == matches!(kept, Kept::Set(_));
     let ports = &node.card.outputs;
     match manifest.outputs.len() == ports.len() && ports.iter().zip(&manifest.outputs).all(fits) {
         true => Found::Hit(manifest),
