@@ -6,8 +6,8 @@ use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_core::cache::{Cache, Cause};
-use toile_core::pipeline::Pipeline;
-use toile_core::{Outlook, Registry, RunOptions, forecast};
+use toile_core::pipeline::{Feed, Node, Pipeline};
+use toile_core::{Outlook, Registry, RunError, RunOptions, forecast};
 use toile_stages::write::origin::{FILE, Trace, trace};
 
 /// Explains a run that has yet to be, or a triangle of one that was.
@@ -82,15 +82,17 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
             streams.tell(format!("error: {e}"));
             exit::INVALID
         }
-        Ok(outlooks) if args.json => {
-            streams.say(json!({ "stages": outlooks.iter().map(record).collect::<Vec<_>>() }));
+        Ok((outlooks, roots)) if args.json => {
+            let records = |all: &[Outlook]| all.iter().map(record).collect::<Vec<_>>();
+            streams.say(json!({ "stages": records(&outlooks), "since": records(&roots) }));
             exit::DONE
         }
-        Ok(outlooks) => {
+        Ok((outlooks, roots)) => {
             outlooks.iter().flat_map(lines).for_each(|line| streams.say(line));
-            let (run, kept) =
-                outlooks.iter().filter(|o| o.skipped.is_none()).partition::<Vec<_>, _>(|o| o.runs());
+            roots.iter().flat_map(lines).for_each(|line| streams.say(format!("  since {line}")));
             if args.stage.is_none() {
+                let needed = outlooks.iter().filter(|o| o.skipped.is_none());
+                let (run, kept): (Vec<_>, Vec<_>) = needed.partition(|o| o.runs());
                 streams.say(format!("{} stages would run, {} come from the cache", run.len(), kept.len()));
             }
             exit::DONE
@@ -98,22 +100,37 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
     }
 }
 
-/// The outlook of the stage that was named, or of all.
+/// The outlook of the stage that was named with those of the stages that are the cause where it is not itself, or of
+/// all stages.
 fn explained(
     args: &WhyArgs,
     pipeline: &Pipeline,
     cache: &Cache,
-) -> Result<Vec<Outlook>, toile_core::RunError> {
-    let Some(stage) = &args.stage else { return forecast(pipeline, &RunOptions::default(), cache) };
+) -> Result<(Vec<Outlook>, Vec<Outlook>), RunError> {
+    let whole = || forecast(pipeline, &RunOptions::default(), cache);
+    let Some(stage) = &args.stage else { return Ok((whole()?, Vec::new())) };
     // A run that stops after the stage: an unknown one is refused with those that there are.
     let until = RunOptions { until: Some(stage.clone()), ..RunOptions::default() };
-    let of_stage = forecast(pipeline, &until, cache)?.into_iter().filter(|o| o.stage == *stage);
-    let all = forecast(pipeline, &RunOptions::default(), cache)?;
-    // A stage that takes the run's own record sees all stages, so that the whole run counts.
-    Ok(all
-        .into_iter()
-        .find(|o| o.stage == *stage && o.skipped.is_none())
-        .map_or_else(|| of_stage.collect(), |o| vec![o]))
+    let mut before = forecast(pipeline, &until, cache)?;
+    let reports = |n: &Node| n.inputs.contains(&Feed::RunLog);
+    if pipeline.find(stage).is_some_and(|i| reports(&pipeline.nodes[i])) {
+        // It sees the whole run before it.
+        before = whole()?;
+    }
+    let at = before.iter().position(|o| o.stage == *stage).unwrap_or(before.len());
+    let named: Vec<Outlook> = before.drain(at..).take(1).collect();
+    let follows = named.iter().any(|o| causes(o).any(|c| matches!(c, Cause::Upstream(_))));
+    let roots = before.into_iter().filter(|o| follows && causes(o).any(is_own)).collect();
+    Ok((named, roots))
+}
+
+fn causes(outlook: &Outlook) -> impl Iterator<Item = &Cause> {
+    outlook.entries.iter().filter_map(|(_, causes)| causes.as_ref()).flatten()
+}
+
+/// True of what does not come from a stage before.
+fn is_own(cause: &Cause) -> bool {
+    !matches!(cause, Cause::Upstream(_) | Cause::Input { .. })
 }
 
 /// A stage in lines: one for each set of causes, with the entries that share it.

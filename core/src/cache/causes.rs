@@ -117,8 +117,9 @@ impl Cache {
         let sets = manifest.outputs.iter().map(names).collect();
         let last = Last { ingredients: ingredients.clone(), reads: manifest.reads.clone(), sets };
         let bytes = sealed(&last);
-        if self.store.read(&path).ok().flatten().as_ref() != Some(&bytes) {
-            self.write(&path, &bytes);
+        match self.store.read(&path).ok().flatten().as_ref() == Some(&bytes) {
+            true => self.store.touch(&path),
+            false => self.write(&path, &bytes),
         }
     }
 
