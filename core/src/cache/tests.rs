@@ -35,7 +35,8 @@ impl Bytes2 {
             let level = bytes.first().copied().ok_or_else(|| StageError::invalid("it is empty"))?;
             let pixels = Arc::new(RgbImage::from_pixel(2, 1, Rgb([level; 3])));
             let (file, mirrored) = (name.to_owned(), false);
-            let photo = Photo { pixels, alpha: None, px_per_metre: None, garment_width: None, mirrored, file };
+            let photo =
+                Photo { pixels, alpha: None, px_per_metre: None, garment_width: None, mirrored, file };
             Ok((name.to_owned(), photo))
         };
         ["back", "front"].into_iter().map(read).collect()
@@ -289,7 +290,10 @@ fn errors_are_not_kept() {
     fs::write(bench.dir.path().join("front.txt"), []).unwrap();
     for _ in 0..2 {
         let (result, ran, _) = bench.run(&[]);
-        assert_eq!((result.unwrap_err().error.message.as_str(), ran), ("it is empty", vec!["Bytes2".to_owned()]));
+        assert_eq!(
+            (result.unwrap_err().error.message.as_str(), ran),
+            ("it is empty", vec!["Bytes2".to_owned()])
+        );
     }
     fs::remove_file(bench.dir.path().join("front.txt")).unwrap();
     assert_eq!(bench.run(&[]).0.unwrap_err().error.message, "cannot read \"front.txt\": no such file");
@@ -314,9 +318,12 @@ fn a_damaged_artifact_is_told_and_made_anew() {
         warnings[0],
         "damaged cache entry of Levels: its content does not have its digest; it is made anew"
     );
-    assert!(warnings.contains(
-        &"damaged cache entry of Modulo (front): its content does not have its digest; it is made anew".into()
-    ));
+    assert!(
+        warnings.contains(
+            &"damaged cache entry of Modulo (front): its content does not have its digest; it is made anew"
+                .into()
+        )
+    );
     let (_, ran, warnings) = bench.run(&[]);
     assert_eq!((ran.len(), warnings.len()), (0, 0), "the damage is mended");
 }
@@ -329,10 +336,7 @@ fn a_cut_manifest_is_told_and_made_anew() {
         let bytes = fs::read(&path).unwrap();
         fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     }
-    assert_eq!(
-        bench.why(&[])[0],
-        "Bytes2 : damaged entry: its content does not have its digest"
-    );
+    assert_eq!(bench.why(&[])[0], "Bytes2 : damaged entry: its content does not have its digest");
     let (result, ran, warnings) = bench.run(&[]);
     assert_eq!((file(&result.unwrap(), "levels.bin"), ran.len(), warnings.len()), (&[9, 7][..], 5, 5));
     assert!(bench.run(&[]).2.is_empty());
@@ -391,10 +395,8 @@ fn a_folder_that_cannot_be_made_is_one_warning() {
     let (result, ran, warnings) = bench.run(&[]);
     assert_eq!((result.unwrap().files.len(), ran.len(), warnings.len()), (2, 5, 1));
     let folder = bench.cache().folder().display().to_string();
-    let (head, tail) = (
-        format!("cannot write to the cache \"{folder}\": "),
-        "; the run goes on without keeping results",
-    );
+    let (head, tail) =
+        (format!("cannot write to the cache \"{folder}\": "), "; the run goes on without keeping results");
     assert!(warnings[0].starts_with(&head) && warnings[0].ends_with(tail), "{}", warnings[0]);
 }
 
