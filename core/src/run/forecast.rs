@@ -70,6 +70,11 @@ fn look(run: &Run<'_>, node: &Node, cache: &Cache) -> Result<(Entries, Vec<Held>
         span: node.span.clone(),
         error,
     })?;
+    if searches.is_empty() {
+        // Which entries there are is not known before the stages ahead have run for the first time.
+        let unknown = node.card.outputs.iter().map(|_| Held::Unknown).collect();
+        return Ok((vec![(String::new(), Some(vec![Cause::NeverRun]))], unknown));
+    }
     let (mut entries, mut outputs) = (Vec::new(), Vec::new());
     for search in searches {
         let last = cache.last(run.pipeline, &node.id, &search.entry);
