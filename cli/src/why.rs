@@ -5,6 +5,7 @@ use crate::validate::open;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::path::Path;
+use std::sync::Arc;
 use toile_core::cache::{Cache, Cause};
 use toile_core::pipeline::{Feed, Node, Pipeline};
 use toile_core::{Outlook, Registry, RunError, RunOptions, forecast};
@@ -73,7 +74,7 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
             return exit::INVALID;
         }
     };
-    let Some(cache) = cache::at(args.cache_dir.clone()) else {
+    let Some(cache) = cache::at(args.cache_dir.clone()).map(Arc::new) else {
         streams.tell("error: there is no place for a cache; set TOILE_CACHE to a folder");
         return exit::INVALID;
     };
@@ -105,7 +106,7 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
 fn explained(
     args: &WhyArgs,
     pipeline: &Pipeline,
-    cache: &Cache,
+    cache: &Arc<Cache>,
 ) -> Result<(Vec<Outlook>, Vec<Outlook>), RunError> {
     let whole = || forecast(pipeline, &RunOptions::default(), cache);
     let Some(stage) = &args.stage else { return Ok((whole()?, Vec::new())) };

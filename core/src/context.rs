@@ -1,7 +1,7 @@
 //! What a running stage may ask of the outside world.
 
-use crate::artifact::Measure;
-use crate::cache::Hash;
+use crate::artifact::{Digester, Measure};
+use crate::cache::{Cache, Hash};
 use crate::{ErrorCode, StageError};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -89,6 +89,8 @@ pub struct Context {
     warnings: Mutex<Vec<String>>,
     reads: Mutex<Vec<(String, Option<Hash>)>>,
     parallel: Option<Arc<dyn Parallel>>,
+    /// Where parts of the stage's work are kept, under keys that begin with the stage's own.
+    memo: Option<(Arc<Cache>, Hash)>,
 }
 
 impl Context {
@@ -104,12 +106,28 @@ impl Context {
             warnings: Mutex::default(),
             reads: Mutex::default(),
             parallel: None,
+            memo: None,
         }
     }
 
     /// The same context with loops that run elsewhere.
     pub(crate) fn with_parallel(self, parallel: Arc<dyn Parallel>) -> Self {
         Context { parallel: Some(parallel), ..self }
+    }
+
+    /// The same context with a cache for [`Context::memo`]; `stage` stands for the stage and its version.
+    pub(crate) fn with_memo(self, cache: Option<Arc<Cache>>, stage: Hash) -> Self {
+        Context { memo: cache.map(|cache| (cache, stage)), ..self }
+    }
+
+    /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
+    /// earlier run made it, else made by `make` and kept. For parts that outlive a change of the others, such as
+    /// the light on a garment whose texture is edited.
+    pub fn memo(&self, key: &Digester, make: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
+        match &self.memo {
+            Some((cache, stage)) => cache.memo(&self.stage, stage, key, make),
+            None => make(),
+        }
     }
 
     /// Calls `body(i)` for every `i` below `count` on the threads that the user allows, in any order, and
@@ -150,6 +168,7 @@ impl Context {
         Context {
             entry: entry.to_owned(),
             parallel: self.parallel.clone(),
+            memo: self.memo.clone(),
             ..Context::new(&self.stage, &self.base, self.cancel.clone(), self.listener.clone())
         }
     }

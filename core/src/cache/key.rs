@@ -9,6 +9,7 @@
 //! make no stage run again.
 
 use super::Hash;
+use crate::Card;
 use crate::artifact::Digester;
 use crate::pipeline::Node;
 use serde::{Deserialize, Serialize};
@@ -92,6 +93,15 @@ impl Ingredients {
         }
         Some(Hash(d.finish()))
     }
+}
+
+/// What stands for a stage, whatever its parameters and inputs.
+pub(crate) fn of_stage(card: &Card) -> Hash {
+    let mut d = Digester::new();
+    d.text("toile stage alone").count(SCHEME as usize).text(card.name).text(card.role.as_str());
+    d.count(card.version as usize).text(card.package);
+    d.text(&card.plugin.map(|p| p.digest.hex()).unwrap_or_default());
+    Hash(d.finish())
 }
 
 /// The key with the files that the stage read.

@@ -95,21 +95,31 @@ impl Manifest {
 /// A value as JSON behind a line with its digest.
 pub(super) fn sealed<T: Serialize>(value: &T) -> Vec<u8> {
     // Names and numbers alone: writing them to memory cannot fail.
-    let body = serde_json::to_vec(value).unwrap_or_default();
-    let mut bytes = Hash::of(&body).hex().into_bytes();
+    seal(&serde_json::to_vec(value).unwrap_or_default())
+}
+
+/// Bytes behind a line with their digest.
+pub(super) fn seal(body: &[u8]) -> Vec<u8> {
+    let mut bytes = Hash::of(body).hex().into_bytes();
     bytes.push(b'\n');
-    bytes.extend(body);
+    bytes.extend_from_slice(body);
     bytes
+}
+
+/// The bytes behind [`seal`].
+pub(super) fn open(bytes: &[u8]) -> Result<&[u8], String> {
+    let split = bytes.iter().position(|b| *b == b'\n').ok_or("it has no digest")?;
+    let (head, body) = (&bytes[..split], &bytes[split + 1..]);
+    let digest = std::str::from_utf8(head).ok().and_then(Hash::from_hex).ok_or("it has no digest")?;
+    match Hash::of(body) == digest {
+        true => Ok(body),
+        false => Err("its content does not have its digest".into()),
+    }
 }
 
 /// The value behind [`sealed`].
 pub(super) fn unsealed<T: for<'de> Deserialize<'de>>(bytes: &[u8]) -> Result<T, String> {
-    let split = bytes.iter().position(|b| *b == b'\n').ok_or("it has no digest")?;
-    let (head, body) = (&bytes[..split], &bytes[split + 1..]);
-    let digest = std::str::from_utf8(head).ok().and_then(Hash::from_hex).ok_or("it has no digest")?;
-    if Hash::of(body) != digest {
-        return Err("its content does not have its digest".into());
-    }
+    let body = open(bytes)?;
     serde_json::from_slice(body).map_err(|e| format!("it cannot be read: {e}"))
 }
 

@@ -26,13 +26,13 @@ mod tests;
 pub use causes::Cause;
 pub(crate) use causes::{Last, RUN_SO_FAR};
 pub use hash::Hash;
-pub(crate) use key::{Fed, Ingredients};
+pub(crate) use key::{Fed, Ingredients, of_stage};
 pub(crate) use manifest::{Blob, Kept, Manifest};
 pub use size::Bytes;
 pub use space::Usage;
 
 use crate::PortValue;
-use crate::artifact::{Artifact, Kind, stored};
+use crate::artifact::{Artifact, Digester, Kind, stored};
 use crate::run::Made;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -192,6 +192,36 @@ impl Cache {
             return Err(damaged("its content does not have its digest".into()));
         }
         stored::decode(kind, &bytes).map_err(|e| damaged(format!("it cannot be read: {e}")))
+    }
+
+    /// A part of a stage's work, see [`crate::Context::memo`].
+    pub(crate) fn memo(
+        &self,
+        id: &str,
+        stage: &Hash,
+        key: &Digester,
+        make: impl FnOnce() -> Vec<u8>,
+    ) -> Vec<u8> {
+        if !self.keeps {
+            return make();
+        }
+        let mut d = Digester::new();
+        d.text("toile part").bytes(&stage.0.0).bytes(&key.finish().0);
+        let path = self.store.path(Shelf::Parts, &Hash(d.finish()));
+        match self.store.read(&path) {
+            Ok(Some(bytes)) => match manifest::open(&bytes) {
+                Ok(part) => {
+                    self.store.touch(&path);
+                    return part.to_vec();
+                }
+                Err(why) => self.warn(format!("damaged cache entry of {id}: {why}; it is made anew")),
+            },
+            Ok(None) => {}
+            Err(e) => self.warn(format!("damaged cache entry of {id}: {e}; it is made anew")),
+        }
+        let part = make();
+        self.write(&path, &manifest::seal(&part));
+        part
     }
 
     /// Tells the user something about the cache itself.

@@ -1,6 +1,6 @@
 //! The cache's files: written whole or not at all, believed only where their content has their name.
 //!
-//! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>` manifests,
+//! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>` manifests, `parts/ab/<key>` parts of stages' work,
 //! `last/<pipeline>/<stage>` what a pipeline's stages were last made from. A file is written beside
 //! its place and renamed, so that two runs at once can share the folder. The time of a file's last
 //! use is its modification time.
@@ -19,6 +19,8 @@ pub(super) enum Shelf {
     Blobs,
     /// Manifests, named by the key of what they were made from.
     Runs,
+    /// Parts of stages' work, named by what they depend on.
+    Parts,
 }
 
 impl Shelf {
@@ -26,6 +28,7 @@ impl Shelf {
         match self {
             Shelf::Blobs => "blobs",
             Shelf::Runs => "runs",
+            Shelf::Parts => "parts",
         }
     }
 }

@@ -31,7 +31,11 @@ impl Outlook {
 /// Says of every stage what a run with this cache would do.
 ///
 /// Errors: `until` names no stage; sets whose names differ.
-pub fn forecast(pipeline: &Pipeline, options: &RunOptions, cache: &Cache) -> Result<Vec<Outlook>, RunError> {
+pub fn forecast(
+    pipeline: &Pipeline,
+    options: &RunOptions,
+    cache: &Arc<Cache>,
+) -> Result<Vec<Outlook>, RunError> {
     let (cancel, listener): (Cancel, Arc<dyn Listener>) = (Cancel::new(), Arc::new(()));
     let plan = plan(pipeline, options)?;
     let mut run = Run {

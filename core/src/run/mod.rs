@@ -90,7 +90,7 @@ pub fn run(
 ) -> Result<RunResult, RunError> {
     let plan = plan(pipeline, options)?;
     let started = Instant::now();
-    let cache = options.cache.as_deref();
+    let cache = options.cache.as_ref();
     let reads = options.reads.as_ref();
     let mut run = Run { pipeline, cache, cancel, listener, reads, steps: Vec::new() };
     for skipped in plan {

@@ -4,8 +4,8 @@
 use super::node::{Failure, Made, run_entries};
 use super::value::{Held, gather};
 use super::{Reads, RunError, typed};
-use crate::artifact::{Digester, Measure, RunLog, StageRecord};
-use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR};
+use crate::artifact::{Digester, Measure, RunLog, StageRecord, stored};
+use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR, of_stage};
 use crate::pipeline::{Feed, Node, Pipeline};
 use crate::{Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub(super) struct Ran {
 /// A run up to some stage.
 pub(super) struct Run<'a> {
     pub(super) pipeline: &'a Pipeline,
-    pub(super) cache: Option<&'a Cache>,
+    pub(super) cache: Option<&'a Arc<Cache>>,
     pub(super) cancel: &'a Cancel,
     pub(super) listener: &'a Arc<dyn Listener>,
     pub(super) reads: Option<&'a Reads>,
@@ -52,7 +52,7 @@ impl Run<'_> {
     pub(super) fn step(&mut self) -> Result<(), RunError> {
         let index = self.steps.len();
         let node = &self.pipeline.nodes[index];
-        let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), self.listener.clone());
+        let cx = self.context(node, self.listener.clone());
         cx.progress(0.0, "");
         let started = Instant::now();
         cx.check().map_err(|e| located(node, (String::new(), e)))?;
@@ -66,6 +66,11 @@ impl Run<'_> {
         ran.wall_s = started.elapsed().as_secs_f64();
         self.steps.push(Step::Ran(ran));
         Ok(())
+    }
+
+    fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
+        let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), listener);
+        cx.with_memo(self.cache.cloned(), of_stage(&node.card))
     }
 
     /// Looks for every run of a stage in the cache.
@@ -209,9 +214,16 @@ impl Run<'_> {
         ran.collect()
     }
 
-    /// Brings every artifact of the stages before `index` into memory.
-    pub(super) fn ensure_before(&mut self, index: usize) -> Result<(), RunError> {
-        (0..index).try_for_each(|i| self.ensure_all(i))
+    /// Brings what a report on the stages before `index` is given into memory: all but services.
+    fn ensure_before(&mut self, index: usize) -> Result<(), RunError> {
+        for i in 0..index {
+            for (port, out) in self.pipeline.nodes[i].card.outputs.iter().enumerate() {
+                if stored::is_stored(out.kind) {
+                    self.ensure(i, port, None)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Brings all that a stage made into memory.
@@ -231,7 +243,7 @@ impl Run<'_> {
         port: usize,
         entries: Option<&[String]>,
     ) -> Result<(), RunError> {
-        let (node, cache) = (&self.pipeline.nodes[index], self.cache);
+        let (node, cache) = (&self.pipeline.nodes[index], self.cache.map(Arc::as_ref));
         let Step::Ran(ran) = &mut self.steps[index] else { return Ok(()) };
         let Some(held) = ran.outputs.get_mut(port) else { return Ok(()) };
         let lost = held.ensure(entries, cache);
@@ -251,7 +263,7 @@ impl Run<'_> {
     fn remake(&mut self, index: usize, entries: &[String]) -> Result<(), RunError> {
         let node = &self.pipeline.nodes[index];
         // What it said came from the cache already.
-        let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), Arc::new(()));
+        let cx = self.context(node, Arc::new(()));
         let started = Instant::now();
         let made = self.make(index, entries, &cx)?;
         for made in &made {
@@ -275,7 +287,7 @@ impl Run<'_> {
         let node = &self.pipeline.nodes[index];
         let value = |(port, feed): (&crate::InPort, &Feed)| match feed {
             Feed::Nothing => None,
-            Feed::RunLog => Some(PortValue::One(Arc::new(self.log(index)))),
+            Feed::RunLog => Some(PortValue::One(Arc::new(self.report(index)))),
             Feed::Node { node, port: output } => {
                 let one = (port.arity == Arity::Each).then_some(entry);
                 self.held(*node, *output)?.value(one)
@@ -331,13 +343,29 @@ impl Run<'_> {
         Some(Hash(d.finish()))
     }
 
+    /// The record that a report is given: without services, which would have to be set up to be shown.
+    fn report(&self, index: usize) -> RunLog {
+        let mut log = RunLog { pipeline: self.pipeline.name.clone(), ..RunLog::default() };
+        for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
+            match step {
+                Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
+                Step::Ran(ran) => {
+                    let shown =
+                        node.card.outputs.iter().zip(&ran.outputs).filter(|(o, _)| stored::is_stored(o.kind));
+                    log.stages.push(record(node, ran, shown.map(|(_, held)| held)));
+                }
+            }
+        }
+        log
+    }
+
     /// The record of the stages before `index`. A stage of whose artifacts one is not in memory has none.
     pub(super) fn log(&self, index: usize) -> RunLog {
         let mut log = RunLog { pipeline: self.pipeline.name.clone(), ..RunLog::default() };
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
                 Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
-                Step::Ran(ran) => log.stages.push(record(node, ran)),
+                Step::Ran(ran) => log.stages.push(record(node, ran, ran.outputs.iter())),
             }
         }
         log
@@ -395,8 +423,8 @@ fn feed(d: &mut Digester, held: &Held) -> Option<()> {
     Some(())
 }
 
-fn record(node: &Node, ran: &Ran) -> StageRecord {
-    let outputs: Option<Vec<PortValue>> = ran.outputs.iter().map(|held| held.value(None)).collect();
+fn record<'h>(node: &Node, ran: &Ran, held: impl Iterator<Item = &'h Held>) -> StageRecord {
+    let outputs: Option<Vec<PortValue>> = held.map(|held| held.value(None)).collect();
     StageRecord {
         id: node.id.clone(),
         name: node.card.name.to_owned(),
