@@ -11,6 +11,9 @@ use toile_core::pipeline::Override;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Load a plugin's stages: a library, like target/release/libtoile_sdf.so; may be given again
+    #[arg(long = "plugin", value_name = "PATH", global = true)]
+    pub(crate) plugins: Vec<PathBuf>,
 }
 
 #[derive(Debug, Subcommand)]

@@ -2,6 +2,7 @@
 
 use crate::{Streams, exit};
 use serde_json::{Value, json};
+use toile_core::plugin::{Plugin, Refused};
 use toile_core::{Arity, Card, InPort, ParamDoc, Registry, Role};
 
 /// The roles in the order of a pipeline.
@@ -27,7 +28,12 @@ const ROLES: [Role; 15] = [
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if json {
         let cards: Vec<Value> = registry.cards().map(card_json).collect();
-        streams.say(json!({ "stages": cards }));
+        let mut listing = json!({ "stages": cards });
+        if !registry.plugins().is_empty() || !registry.refused().is_empty() {
+            listing["plugins"] = registry.plugins().iter().map(plugin_json).collect();
+            listing["refused"] = registry.refused().iter().map(refused_json).collect();
+        }
+        streams.say(listing);
         return exit::DONE;
     }
     for role in ROLES {
@@ -36,10 +42,41 @@ pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -
             streams.say(role.as_str());
         }
         for card in cards {
-            streams.say(format!("  {:<22} {}", card.name, card.summary()));
+            let from = card.plugin.map_or(String::new(), |p| format!(" [plugin {}]", p.name));
+            streams.say(format!("  {:<22} {}{from}", card.name, card.summary()));
         }
     }
+    list_plugins(registry, streams);
     exit::DONE
+}
+
+/// The plugins, with the digests that pipelines may pin, and those that are refused.
+fn list_plugins(registry: &Registry, streams: &mut Streams<'_>) {
+    if !registry.plugins().is_empty() {
+        streams.say("plugins");
+    }
+    for p in registry.plugins() {
+        let (major, minor) = p.abi;
+        streams.say(format!("  {} {}, ABI {major}.{minor}, {}", p.id.name, p.id.version, p.file.display()));
+        streams.say(format!("    blake3: \"{}\"", p.id.digest.hex()));
+    }
+    if !registry.refused().is_empty() {
+        streams.say("refused plugins");
+    }
+    for r in registry.refused() {
+        let hint = r.hint.as_ref().map_or(String::new(), |h| format!(" ({h})"));
+        streams.say(format!("  {}: {}{hint}", r.file, r.reason));
+    }
+}
+
+fn plugin_json(p: &Plugin) -> Value {
+    json!({ "name": p.id.name, "version": p.id.version, "blake3": p.id.digest.hex(),
+        "abi": format!("{}.{}", p.abi.0, p.abi.1), "file": p.file.display().to_string(),
+        "stages": p.cards.iter().map(|c| c.name).collect::<Vec<_>>() })
+}
+
+fn refused_json(r: &Refused) -> Value {
+    json!({ "file": r.file, "reason": r.reason, "hint": r.hint })
 }
 
 /// Shows one card.
@@ -82,6 +119,9 @@ fn card_text(card: &Card) -> String {
     let contracts: Vec<String> = card.contracts.iter().map(|c| format!("{c:?}")).collect();
     if !contracts.is_empty() {
         s += &format!("\nPromises: {}\n", contracts.join(", "));
+    }
+    if let Some(p) = card.plugin {
+        s += &format!("\nFrom: plugin \"{}\" {}\n", p.name, p.version);
     }
     s + &format!("\nExample:\n  {}", card.example)
 }

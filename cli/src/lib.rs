@@ -82,7 +82,10 @@ where
 {
     let mut streams = Streams { out, err };
     match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => dispatch(arguments.command, registry, &mut streams),
+        Ok(arguments) => match with_plugins(registry, &arguments, &mut streams) {
+            Ok(registry) => dispatch(arguments.command, &registry, &mut streams),
+            Err(code) => code,
+        },
         Err(e) if e.use_stderr() => {
             streams.tell(e.render());
             exit::USAGE
@@ -92,6 +95,28 @@ where
             exit::DONE
         }
     }
+}
+
+/// The registry with the plugins that the arguments name. A refused one ends the command, but for the
+/// list of stages, which shows it with its reason.
+fn with_plugins(
+    registry: &Registry,
+    arguments: &Arguments,
+    streams: &mut Streams<'_>,
+) -> Result<Registry, u8> {
+    let mut registry = registry.clone();
+    let loads: Vec<_> = arguments.plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
+    if matches!(arguments.command, Command::Stages { .. }) {
+        return Ok(registry);
+    }
+    let refused: Vec<_> = loads.into_iter().filter_map(Result::err).collect();
+    for r in &refused {
+        streams.tell(format!("error: {r}"));
+        if let Some(hint) = &r.hint {
+            streams.tell(format!("  help: {hint}"));
+        }
+    }
+    if refused.is_empty() { Ok(registry) } else { Err(exit::INVALID) }
 }
 
 /// Every built-in stage.

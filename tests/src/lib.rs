@@ -1,5 +1,7 @@
 //! What the tests of whole pipelines share: calling the command, and the repository's folders.
 
+pub mod plugins;
+
 use std::path::{Path, PathBuf};
 
 /// What a call of the command printed, and its exit code.

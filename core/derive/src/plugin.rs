@@ -3,7 +3,6 @@
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::parse::{Parse, ParseStream};
-use syn::punctuated::Punctuated;
 use syn::{LitInt, Path, Token};
 
 /// What stands in the brackets: stages, then perhaps `; minor = 0`.
@@ -14,9 +13,13 @@ struct Stages {
 
 impl Parse for Stages {
     fn parse(input: ParseStream<'_>) -> syn::Result<Self> {
-        let stages = Punctuated::<Path, Token![,]>::parse_separated_nonempty(input)?;
-        if input.peek(Token![,]) {
+        let mut stages: Vec<Path> = vec![input.parse()?];
+        while input.peek(Token![,]) {
             input.parse::<Token![,]>()?;
+            if input.is_empty() || input.peek(Token![;]) {
+                break;
+            }
+            stages.push(input.parse()?);
         }
         let mut minor = None;
         if input.peek(Token![;]) {
@@ -28,7 +31,7 @@ impl Parse for Stages {
             input.parse::<Token![=]>()?;
             minor = Some(input.parse()?);
         }
-        Ok(Stages { stages: stages.into_iter().collect(), minor })
+        Ok(Stages { stages, minor })
     }
 }
 

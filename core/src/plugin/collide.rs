@@ -280,7 +280,7 @@ impl Foreign {
     fn fail(&self, what: String) -> ! {
         let error = StageError::new(ErrorCode::Internal, format!("{}: {what}", self.owner))
             .hint("this is a bug of the plugin, please report it to its author");
-        std::panic::panic_any(error)
+        std::panic::resume_unwind(Box::new(error))
     }
 
     fn ensure_contacts(&self, found: &[BodyContact], points: usize) {

@@ -179,7 +179,7 @@ struct LentInput<'a> {
     port: u32,
     kind: &'static str,
     name: &'a str,
-    record: Option<Lent>,
+    record: Option<Lent<'a>>,
     collider: Option<Box<abi::Collider>>,
 }
 
@@ -212,7 +212,7 @@ fn lend(inputs: &Inputs) -> Vec<LentInput<'_>> {
     let lent = entries.map(|(port, name, artifact)| {
         let any: &dyn Any = artifact.as_ref();
         let collider = any.downcast_ref::<Collider>().map(|c| Box::new(collide::lend(c)));
-        let record = artifact.record().as_ref().map(Lent::of);
+        let record = artifact.record().map(Lent::of);
         LentInput { port, kind: artifact.kind().0, name, record, collider }
     });
     lent.collect()

@@ -9,6 +9,7 @@ use crate::param::Check;
 use crate::text::intern;
 use crate::{Card, PluginId};
 use libloading::Library;
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -19,11 +20,14 @@ const MAX_BYTES: u64 = 1 << 30;
 /// The most stages of one plugin.
 const MAX_STAGES: usize = 1000;
 
-/// A library that stays loaded for as long as anything of it is used.
+/// A library that is loaded.
+///
+/// It stays so until the program ends: threads of its own may outlive its last object, and code that is
+/// taken from under a thread ends the program.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     id: PluginId,
-    _library: Library,
+    _library: ManuallyDrop<Library>,
 }
 
 impl Loaded {
@@ -180,7 +184,7 @@ unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugi
         )));
     }
     let id = PluginId { name: intern(name), version: intern(version), digest };
-    let loaded = Arc::new(Loaded { id, _library: library });
+    let loaded = Arc::new(Loaded { id, _library: ManuallyDrop::new(library) });
     let (cards, types) = unsafe { stages(&declaration, &loaded)? };
     Ok(Plugin { id, file: full, abi: (declaration.major, declaration.minor), cards, types })
 }

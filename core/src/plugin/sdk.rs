@@ -32,7 +32,9 @@ impl Tables {
     /// Where the tables lie, one after the other, `stage_size(minor)` bytes apart.
     pub fn give(&self, minor: u32, make: fn() -> Vec<abi::StageTable>, count: *mut usize) -> *const c_void {
         let stride = stage_size(minor) as usize;
-        let packed = self.0.get_or_init(|| pack(&make(), stride));
+        // A card that panics must not end the program: the library then has no stages.
+        let made = || catch_unwind(AssertUnwindSafe(make)).map_err(panic_text).unwrap_or_default();
+        let packed = self.0.get_or_init(|| pack(&made(), stride));
         if let Some(count) = unsafe { count.as_mut() } {
             *count = packed.len() * size_of::<u64>() / stride;
         }
@@ -274,7 +276,7 @@ fn give(host: &abi::Host, port: u32, name: &str, artifact: &dyn Artifact) -> Res
             host.give_collider.map(|give| unsafe { give(host.ctx, port, &lent) })
         }
         (None, Some(record)) => {
-            let lent = Lent::of(&record);
+            let lent = Lent::of(record);
             host.give.map(|give| unsafe { give(host.ctx, port, Text::of(name), lent.as_ptr()) })
         }
         (None, None) => None,
@@ -336,7 +338,7 @@ impl Parallel for Remote {
         }
         let panicked = work.panicked.into_inner().unwrap_or_else(PoisonError::into_inner);
         if let Some(text) = panicked {
-            std::panic::panic_any(text);
+            std::panic::resume_unwind(Box::new(text));
         }
     }
 }

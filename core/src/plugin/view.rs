@@ -10,38 +10,52 @@ use std::ffi::c_void;
 /// The longest list of fields of one record.
 const MAX_FIELDS: usize = 1000;
 
-/// A record in C's form, which borrows the lists of the record it was made from.
+/// A record in C's form, with the record whose lists it shows.
 #[derive(Debug)]
-pub(super) struct Lent {
+pub(super) struct Lent<'a> {
+    views: Views,
+    /// Its lists lie on the heap or elsewhere, so that they stay where they are when this moves.
+    _record: Record<'a>,
+}
+
+/// The views of one record and of all records within.
+#[derive(Debug)]
+struct Views {
     /// Pointed at from outside; boxed, so that it stays where it is.
     view: Box<abi::Record>,
     _fields: Vec<abi::Field>,
-    _parts: Vec<LentParts>,
+    _parts: Vec<Part>,
 }
 
 /// The records of one field: kept for their owners, and side by side for C.
 #[derive(Debug)]
-struct LentParts {
-    _owners: Vec<Lent>,
+struct Part {
+    _owners: Vec<Views>,
     _views: Vec<abi::Record>,
 }
 
-impl Lent {
-    /// Lends a record. The result must not outlive it.
-    pub(super) fn of(record: &Record<'_>) -> Lent {
-        let mut parts = Vec::new();
-        let fields: Vec<abi::Field> = record.fields.iter().map(|f| field(f, &mut parts)).collect();
-        let view = Box::new(abi::Record { fields: fields.as_ptr(), count: fields.len() });
-        Lent { view, _fields: fields, _parts: parts }
+impl<'a> Lent<'a> {
+    /// Lends a record for as long as the result lives.
+    pub(super) fn of(record: Record<'a>) -> Self {
+        Lent { views: Views::of(&record), _record: record }
     }
 
     /// Where it lies.
     pub(super) fn as_ptr(&self) -> *const abi::Record {
-        &*self.view
+        &*self.views.view
     }
 }
 
-fn field(field: &Field<'_>, parts: &mut Vec<LentParts>) -> abi::Field {
+impl Views {
+    fn of(record: &Record<'_>) -> Self {
+        let mut parts = Vec::new();
+        let fields: Vec<abi::Field> = record.fields.iter().map(|f| field(f, &mut parts)).collect();
+        let view = Box::new(abi::Record { fields: fields.as_ptr(), count: fields.len() });
+        Views { view, _fields: fields, _parts: parts }
+    }
+}
+
+fn field(field: &Field<'_>, parts: &mut Vec<Part>) -> abi::Field {
     let (kind, data): (u32, *const c_void) = match &field.data {
         Data::U8(x) => (abi::FIELD_U8, x.as_ptr().cast()),
         Data::U32(x) => (abi::FIELD_U32, x.as_ptr().cast()),
@@ -54,11 +68,11 @@ fn field(field: &Field<'_>, parts: &mut Vec<LentParts>) -> abi::Field {
     abi::Field { name: abi::Text::of(&field.name), data, count: field.data.len(), kind, width: field.width }
 }
 
-fn lend_all(records: &[Record<'_>], parts: &mut Vec<LentParts>) -> *const abi::Record {
-    let owners: Vec<Lent> = records.iter().map(Lent::of).collect();
+fn lend_all(records: &[Record<'_>], parts: &mut Vec<Part>) -> *const abi::Record {
+    let owners: Vec<Views> = records.iter().map(Views::of).collect();
     let views: Vec<abi::Record> = owners.iter().map(|o| *o.view).collect();
     let at = views.as_ptr();
-    parts.push(LentParts { _owners: owners, _views: views });
+    parts.push(Part { _owners: owners, _views: views });
     at
 }
 

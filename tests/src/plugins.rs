@@ -1,0 +1,34 @@
+//! Plugins for the tests: those that are built with them, and those of C, compiled here.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The library of a plugin crate that the tests depend on, such as `toile_faulty`.
+pub fn library(name: &str) -> PathBuf {
+    let file = format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
+    let beside = std::env::current_exe().ok().and_then(|e| e.parent().map(|dir| dir.join(&file)));
+    beside.unwrap_or_else(|| PathBuf::from(file))
+}
+
+/// Compiles a C source of the repository as a plugin into `dir`; gives the library.
+///
+/// Errors: what the compiler says.
+pub fn compiled(source: &str, dir: &Path, flags: &[&str]) -> Result<PathBuf, String> {
+    let out =
+        dir.join(format!("lib{}{}", flags.concat().replace(['=', '-'], "_"), std::env::consts::DLL_SUFFIX));
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".into());
+    let made = Command::new(&compiler)
+        .args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-O2", "-shared", "-fPIC"])
+        .args(flags)
+        .arg("-I")
+        .arg(crate::root().join("core/include"))
+        .arg("-o")
+        .arg(&out)
+        .arg(crate::root().join(source))
+        .output()
+        .map_err(|e| format!("there is no C compiler `{compiler}`: {e}"))?;
+    match made.status.success() {
+        true => Ok(out),
+        false => Err(String::from_utf8_lossy(&made.stderr).into_owned()),
+    }
+}

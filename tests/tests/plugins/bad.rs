@@ -1,0 +1,104 @@
+//! Libraries that are no plugins, or broken ones: each is refused or reported by name.
+
+use crate::kit::{bad, make, photo, run};
+use std::sync::Arc;
+
+/// Why a plugin is refused.
+fn refused(case: &str) -> String {
+    let dir = tempfile::tempdir().unwrap();
+    bad(case, dir.path()).map(|_| ()).unwrap_err().reason
+}
+
+#[test]
+fn a_wrong_declaration_is_refused() {
+    assert_eq!(refused("NO_SYMBOL"), "it declares no plugin");
+    assert_eq!(refused("WRONG_MAGIC"), "its declaration does not begin with TOILEPLG");
+    assert_eq!(refused("NEWER_MAJOR"), "it speaks ABI 2.1, this program speaks 1.0 to 1.1");
+    assert_eq!(refused("NEWER_MINOR"), "it speaks ABI 1.9, this program speaks 1.0 to 1.1");
+    assert_eq!(refused("SHORT_DECLARATION"), "its declaration has 40 bytes, at least 72 are needed");
+    assert_eq!(refused("SHORT_TABLES"), "its stage tables have 64 bytes, at least 192 are needed");
+    assert_eq!(refused("NULL_STAGES"), "it lacks the function `stages`");
+}
+
+#[test]
+fn wrong_stage_tables_are_refused() {
+    assert_eq!(refused("NO_STAGES"), "it lists 0 stages, 1 to 1000 are possible");
+    assert_eq!(refused("NULL_RUN"), "its stage `Passes` lacks the function `run`");
+    assert_eq!(refused("TAKEN_NAME"), "the stage name `Otsu` is taken by a stage of this program");
+    assert_eq!(refused("NO_NAME"), "\"no name\" is no name for a stage");
+    assert_eq!(refused("NOT_UTF8"), "a text is not UTF-8");
+    assert_eq!(refused("UNKNOWN_ROLE"), "its stage `Passes`: there is no role `ironer`");
+    assert_eq!(refused("UNKNOWN_KIND"), "its stage `Passes`: there is no kind `hologram`");
+}
+
+#[test]
+fn the_hint_says_what_to_do() {
+    let dir = tempfile::tempdir().unwrap();
+    let newer = bad("NEWER_MAJOR", dir.path()).map(|_| ()).unwrap_err();
+    assert_eq!(newer.hint.as_deref(), Some("use a newer toile"));
+    let taken = bad("TAKEN_NAME", dir.path()).map(|_| ()).unwrap_err();
+    assert_eq!(taken.hint.as_deref(), Some("its author must choose another name"));
+}
+
+#[test]
+fn what_is_no_library_is_never_loaded() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut registry = toile::registry();
+    let mut refused = |name: &str, content: &[u8]| {
+        let path = dir.path().join(name);
+        std::fs::write(&path, content).unwrap();
+        registry.load_plugin(&path, None).unwrap_err().reason
+    };
+    assert_eq!(refused("empty.so", b""), "it declares no plugin");
+    assert_eq!(refused("words.so", b"a garment"), "it declares no plugin");
+    let half = refused("half.so", b"\x7fELF...toile_plugin\0");
+    assert!(half == "it declares no plugin" || half.starts_with("the system cannot load it: "), "{half}");
+    let torn = refused("torn.so", b"\x7fELF\0toile_plugin\0 and no more");
+    assert!(torn.starts_with("the system cannot load it: "), "{torn}");
+    assert_eq!(registry.load_plugin(dir.path(), None).unwrap_err().reason, "it is not a file");
+    let gone = registry.load_plugin(&dir.path().join("gone.so"), None).unwrap_err();
+    assert_eq!(gone.reason, "there is no such file");
+    assert_eq!(registry.refused().len(), 6, "a refused plugin stays listed");
+}
+
+/// What a run of the plugin says.
+fn run_error(case: &str) -> String {
+    let dir = tempfile::tempdir().unwrap();
+    let registry = bad(case, dir.path()).unwrap();
+    let stage = make(&registry, "Passes", "()");
+    run(stage.as_ref(), vec![Arc::new(photo())]).unwrap_err().message
+}
+
+#[test]
+fn a_run_that_gives_what_cannot_be_is_reported() {
+    assert_eq!(
+        run_error("CLAIMS_ALLOC"),
+        "plugin \"bad\" 1.2.3: it asks for 1125899906842624 bytes, 4294967296 are left of the 4294967296 that one run may have"
+    );
+    assert_eq!(
+        run_error("CLAIMS_RECORD"),
+        "plugin \"bad\" 1.2.3: the field `pixels` claims 1125899906842624 bytes, 4294967296 are left of what is allowed"
+    );
+    assert_eq!(
+        run_error("NULL_DATA"),
+        "plugin \"bad\" 1.2.3: the field `pixels` has 12 elements at address zero"
+    );
+    assert_eq!(
+        run_error("NO_FIELDS"),
+        "plugin \"bad\" 1.2.3: its photo cannot be used: the field `size` is missing"
+    );
+    assert_eq!(run_error("UNKNOWN_STATUS"), "plugin \"bad\" 1.2.3 gave back 77, which means nothing");
+    assert_eq!(run_error("SILENT"), "plugin \"bad\" 1.2.3 failed and did not say why");
+    assert_eq!(run_error("TWICE"), "plugin \"bad\" 1.2.3: it gave its photo twice");
+    assert_eq!(run_error("OTHER_PORT"), "plugin \"bad\" 1.2.3: it gave to output 3 of 1");
+    assert_eq!(run_error("NO_OUTPUT"), "plugin \"bad\" 1.2.3 did not give its photo");
+}
+
+#[test]
+fn without_a_fault_the_same_plugin_passes_photos_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let registry = bad("NONE", dir.path()).unwrap();
+    let stage = make(&registry, "Passes", "()");
+    let made = run(stage.as_ref(), vec![Arc::new(photo())]).unwrap();
+    assert_eq!(crate::kit::only(&made), format!("{:?}", photo()));
+}

@@ -1,0 +1,10 @@
+//! The border of plugins: what crosses, and what is refused or reported, word for word, with the program
+//! alive afterwards. `docs/plugin-abi.md` is what they hold it against.
+#![allow(clippy::unwrap_used)]
+
+mod bad;
+mod colliders;
+mod kit;
+mod layout;
+mod pipelines;
+mod runs;
