@@ -291,6 +291,9 @@ impl Cache {
 
 /// The digest of a file's content; `None` where it cannot be read.
 pub(crate) fn file_hash(path: &Path) -> Option<Hash> {
+    if !path.is_file() {
+        return None;
+    }
     std::fs::read(path).ok().map(|bytes| Hash::of(&bytes))
 }
 

@@ -178,6 +178,20 @@ pub(crate) fn fields_of(params: &str) -> BTreeMap<String, String> {
     tree.entries().iter().filter_map(field).collect()
 }
 
+/// Every text in a stage's parameters.
+pub(crate) fn texts_of(params: &str) -> Vec<String> {
+    fn walk(params: &str, tree: &tree::Tree, texts: &mut Vec<String>) {
+        let text = params.get(tree.span.clone()).filter(|t| t.starts_with(['"', 'r']));
+        texts.extend(text.and_then(|t| crate::param::ron_options().from_str::<String>(t).ok()));
+        tree.entries().iter().for_each(|e| walk(params, &e.value, texts));
+    }
+    let mut texts = Vec::new();
+    if let Ok(tree) = parse(params) {
+        walk(params, &tree, &mut texts);
+    }
+    texts
+}
+
 fn parse(text: &str) -> Result<tree::Tree, Fault> {
     parser::parse(text).map_err(|e| {
         let fault = Fault::new("syntax", e.message).at(&e.span, "");

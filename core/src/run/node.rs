@@ -1,8 +1,8 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
 use crate::artifact::Measure;
-use crate::cache::Hash;
-use crate::pipeline::Node;
+use crate::cache::{Hash, file_hash};
+use crate::pipeline::{Node, texts_of};
 use crate::{Context, Inputs, PortValue, StageError};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -36,7 +36,8 @@ pub(super) fn run_entries(
 fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<Made, Failure> {
     let own = cx.for_entry(&entry);
     let outcome = guarded(node, inputs, &own);
-    let reads = own.take_reads();
+    let mut reads = own.take_reads();
+    reads.extend(named_files(node, cx));
     cx.absorb_reads(&reads);
     match outcome {
         Err(e) => Err((entry, e)),
@@ -45,6 +46,16 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
             Ok(Made { entry, outputs, figures, warnings, reads })
         }
     }
+}
+
+/// The files that a plugin's stage is given by name: it reads them on its own side of the border, where nothing
+/// sees which it reads.
+fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Hash>)> {
+    if node.card.plugin.is_none() {
+        return Vec::new();
+    }
+    let texts = texts_of(&node.stage.params()).into_iter().filter(|t| !t.is_empty());
+    texts.filter_map(|t| file_hash(&cx.resolve(&t)).map(|hash| (t, Some(hash)))).collect()
 }
 
 /// A stage that panics is a bug of the stage, not the end of the program.
