@@ -8,7 +8,7 @@
 use crate::args::RunArgs;
 use crate::run::once;
 use crate::{Streams, exit, interrupt};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
@@ -23,41 +23,37 @@ const PAUSE: Duration = Duration::from_millis(200);
 pub(crate) fn watch(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let cancel = interrupt::on_ctrl_c();
     loop {
-        let reads: Reads = Arc::new(Mutex::new(BTreeSet::from([args.pipeline.clone()])));
-        // What changes while the stages run is seen after them: this is how the files were before.
         let started = Instant::now();
-        let before = Files::look(&plus_known(&args.pipeline, &reads));
+        let reads: Reads = Arc::new(Mutex::new(BTreeMap::new()));
+        note(&reads, &args.pipeline);
         let code = once(args, registry, Some(&reads), streams);
         interrupt::end_writing();
         if cancel.is_cancelled() {
             return exit::DONE;
         }
-        let paths = reads.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        // What was edited while the stages ran has another content than they read.
+        let used = reads.lock().unwrap_or_else(PoisonError::into_inner).clone();
         streams.tell(format!(
             "{} in {:.2} s; watching {} files, Ctrl-C ends it",
             if code == exit::DONE { "done" } else { "not done" },
             started.elapsed().as_secs_f64(),
-            paths.len()
+            used.len()
         ));
-        let Some(changed) = Files::look(&paths).wait(&before, || cancel.is_cancelled()) else {
-            return exit::DONE;
-        };
+        let Some(changed) = wait(&used, || cancel.is_cancelled()) else { return exit::DONE };
         let names: Vec<String> = changed.iter().map(|p| p.display().to_string()).collect();
         streams.tell(format!("changed: {}", names.join(", ")));
     }
 }
 
-/// The pipeline's own file: what it reads is known after its first run.
-fn plus_known(pipeline: &Path, reads: &Reads) -> BTreeSet<PathBuf> {
-    let mut known = reads.lock().unwrap_or_else(PoisonError::into_inner).clone();
-    known.insert(pipeline.to_owned());
-    known
-}
-
 /// The files that a pipeline names beside those that its stages read: its plugins.
 pub(crate) fn plugins(pipeline: &Pipeline, reads: &Reads) {
-    let paths = pipeline.plugins.iter().map(|p| pipeline.base.join(&p.file));
-    reads.lock().unwrap_or_else(PoisonError::into_inner).extend(paths);
+    pipeline.plugins.iter().for_each(|p| note(reads, &pipeline.base.join(&p.file)));
+}
+
+/// Notes a file as it is now.
+fn note(reads: &Reads, path: &Path) {
+    let content = look(path, None).and_then(|l| l.content);
+    reads.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), content);
 }
 
 /// How many stages ran and how many came from the cache.
@@ -75,49 +71,31 @@ struct Look {
     content: Option<Hash>,
 }
 
-/// The state of some files.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Files(BTreeMap<PathBuf, Option<Look>>);
+/// How files are now; none of one that is not there.
+type Looks = BTreeMap<PathBuf, Option<Look>>;
 
-impl Files {
-    fn look(paths: &BTreeSet<PathBuf>) -> Self {
-        Files(paths.iter().map(|p| (p.clone(), look(p, None))).collect())
-    }
-
-    /// The state now; a file whose time and size are as before is not read again.
-    fn again(&self) -> Self {
-        Files(self.0.iter().map(|(p, was)| (p.clone(), look(p, was.as_ref()))).collect())
-    }
-
-    /// The files whose content is another than in `self`.
-    fn changed(&self, now: &Files) -> Vec<PathBuf> {
-        let content = |look: &Option<Look>| look.as_ref().and_then(|l| l.content);
-        let other =
-            |p: &PathBuf, was: &Option<Look>| now.0.get(p).is_some_and(|is| content(is) != content(was));
-        self.0.iter().filter(|(p, was)| other(p, was)).map(|(p, _)| p.clone()).collect()
-    }
-
-    /// Waits until a content changes and then stays; none once `stopped`. `before` is how some files were when the
-    /// run began.
-    fn wait(self, before: &Files, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
-        let mut base = self.clone();
-        base.0.extend(before.0.clone());
-        let mut last = self;
-        loop {
-            if stopped() {
-                return None;
-            }
-            std::thread::sleep(PAUSE);
-            let now = last.again();
-            let changed = base.changed(&now);
-            if !changed.is_empty() && now == last {
-                return Some(changed);
-            }
-            last = now;
+/// Waits until the content of a file is another than the one that was used, and then stays; none once `stopped`.
+fn wait(used: &BTreeMap<PathBuf, Option<Hash>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
+    let mut last: Looks = used.keys().map(|path| (path.clone(), look(path, None))).collect();
+    while !stopped() {
+        std::thread::sleep(PAUSE);
+        let now: Looks = last.iter().map(|(path, was)| (path.clone(), look(path, was.as_ref()))).collect();
+        let changed = changed(used, &now);
+        if !changed.is_empty() && now == last {
+            return Some(changed);
         }
+        last = now;
     }
+    None
 }
 
+/// The files whose content is another than the one that was used.
+fn changed(used: &BTreeMap<PathBuf, Option<Hash>>, now: &Looks) -> Vec<PathBuf> {
+    let content = |path: &PathBuf| now.get(path).and_then(|look| look.as_ref()?.content);
+    used.iter().filter(|(path, was)| content(path) != **was).map(|(path, _)| path.clone()).collect()
+}
+
+/// Looks at a file; one whose time and size are as before is not read again.
 fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
     let meta = std::fs::metadata(path).ok()?;
     let (modified, size) = (meta.modified().ok(), meta.len());
@@ -137,17 +115,23 @@ mod tests {
     #[test]
     fn a_file_counts_as_changed_by_its_content_alone() {
         let dir = tempfile::tempdir().unwrap();
-        let path = dir.path().join("a.ron");
+        let (path, missing) = (dir.path().join("a.ron"), dir.path().join("missing.jpg"));
         std::fs::write(&path, "one").unwrap();
-        let paths = BTreeSet::from([path.clone(), dir.path().join("missing.jpg")]);
-        let before = Files::look(&paths);
+        let reads: Reads = Arc::default();
+        note(&reads, &path);
+        note(&reads, &missing);
+        let used = reads.lock().unwrap().clone();
+        let now = || changed(&used, &used.keys().map(|p| (p.clone(), look(p, None))).collect());
         std::fs::write(&path, "one").unwrap();
-        assert_eq!(before.changed(&before.again()), Vec::<PathBuf>::new());
+        assert_eq!(now(), Vec::<PathBuf>::new());
         // As editors do: a new file takes the place of the old one.
         std::fs::write(dir.path().join("new"), "two").unwrap();
         std::fs::rename(dir.path().join("new"), &path).unwrap();
-        assert_eq!(before.changed(&before.again()), [path.clone()]);
-        std::fs::write(dir.path().join("missing.jpg"), "here").unwrap();
-        assert_eq!(before.changed(&before.again()).len(), 2);
+        assert_eq!(now(), [path.clone()]);
+        std::fs::write(&missing, "here").unwrap();
+        assert_eq!(now().len(), 2);
+        std::fs::remove_file(&missing).unwrap();
+        assert_eq!(wait(&used, || false), Some(vec![path]));
+        assert_eq!(wait(&used, || true), None);
     }
 }

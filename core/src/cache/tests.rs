@@ -482,7 +482,8 @@ fn every_ingredient_is_part_of_the_key() {
 
 #[test]
 fn files_are_named_by_texts_of_parameters_however_deep() {
-    let params = "(file: \"a.obj\", sets: {\"front\": (map: \"b \\\"c.mtl\")}, edge: \"3 mm\", on: true, n: 1.5)";
+    let params =
+        "(file: \"a.obj\", sets: {\"front\": (map: \"b \\\"c.mtl\")}, edge: \"3 mm\", on: true, n: 1.5)";
     assert_eq!(crate::pipeline::texts_of(params), ["a.obj", "b \"c.mtl", "3 mm"]);
     assert!(crate::pipeline::texts_of("(broken").is_empty());
 }

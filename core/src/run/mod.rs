@@ -15,7 +15,7 @@ use crate::cache::{Cache, Hash};
 use crate::pipeline::Pipeline;
 use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
 use std::any::Any;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -31,12 +31,13 @@ pub struct RunOptions {
     pub keep: bool,
     /// Where results of stages are kept and found; none runs everything.
     pub cache: Option<Arc<Cache>>,
-    /// Takes the paths of all files that stages read, or tried to, whether the run comes to its end or not.
+    /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
     pub reads: Option<Reads>,
 }
 
-/// Paths that a run fills in while it goes on.
-pub type Reads = Arc<Mutex<BTreeSet<PathBuf>>>;
+/// Files with the digest of the content that was read, none where there was no such file; a run fills it in while it
+/// goes on.
+pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Hash>>>>;
 
 /// What a run gives. Nothing is written yet.
 #[derive(Debug)]

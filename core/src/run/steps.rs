@@ -100,7 +100,7 @@ impl Run<'_> {
         for search in searches {
             match &search.found {
                 Found::Hit(manifest) => {
-                    self.note_reads(manifest.reads.iter().map(|(path, _)| path.clone()));
+                    self.note_reads(manifest.reads.clone());
                     for warning in &manifest.warnings {
                         self.listener.event(&node.id, &search.entry, &Event::Warning(warning.clone()));
                     }
@@ -184,14 +184,14 @@ impl Run<'_> {
         }
         let jobs = entries.iter().map(|e| (e.clone(), self.inputs(index, e))).collect();
         let made = run_entries(node, jobs, cx);
-        self.note_reads(cx.take_reads().into_iter().map(|(path, _)| path));
+        self.note_reads(cx.take_reads());
         made.map_err(|e| located(node, e))
     }
 
     /// Tells whoever asked which files were read.
-    fn note_reads(&self, paths: impl Iterator<Item = String>) {
+    fn note_reads(&self, files: impl IntoIterator<Item = (String, Option<Hash>)>) {
         if let Some(reads) = self.reads {
-            let full = paths.map(|path| self.pipeline.base.join(path));
+            let full = files.into_iter().map(|(path, hash)| (self.pipeline.base.join(path), hash));
             reads.lock().unwrap_or_else(PoisonError::into_inner).extend(full);
         }
     }
