@@ -44,7 +44,8 @@ impl Bench {
     fn run(&self, out: &str, more: &[&str]) -> (u8, Value) {
         let dir = self.path(out);
         let answer = self.toile("run", &[&["--out", &dir, "--json"], more].concat());
-        (answer.code, serde_json::from_str(&answer.out).unwrap_or_else(|e| panic!("{e}: {}", answer.err)))
+        assert!(!answer.out.is_empty(), "{}", answer.err);
+        (answer.code, serde_json::from_str(&answer.out).unwrap())
     }
 
     /// Runs without a cache.
