@@ -127,7 +127,7 @@ mod tests {
         // As editors do: a new file takes the place of the old one.
         std::fs::write(dir.path().join("new"), "two").unwrap();
         std::fs::rename(dir.path().join("new"), &path).unwrap();
-        assert_eq!(now(), [path.clone()]);
+        assert_eq!(now(), vec![path.clone()]);
         std::fs::write(&missing, "here").unwrap();
         assert_eq!(now().len(), 2);
         std::fs::remove_file(&missing).unwrap();
