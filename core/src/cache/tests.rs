@@ -33,7 +33,7 @@ impl Bytes2 {
         let read = |name: &str| {
             let bytes = cx.read(&format!("{name}.txt"))?;
             let level = bytes.first().copied().ok_or_else(|| StageError::invalid("it is empty"))?;
-            let pixels = Arc::new(RgbImage::from_pixel(2, 1, Rgb([level; 3])));
+            let pixels = Shared::new(RgbImage::from_pixel(2, 1, Rgb([level; 3])));
             let (file, mirrored) = (name.to_owned(), false);
             let photo =
                 Photo { pixels, alpha: None, px_per_metre: None, garment_width: None, mirrored, file };
