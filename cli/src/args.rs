@@ -27,7 +27,18 @@ pub(crate) enum Command {
         /// Print one JSON object and nothing else
         #[arg(long)]
         json: bool,
+        /// Print the JSON schema of pipeline files instead
+        #[arg(long, conflicts_with = "json")]
+        schema: bool,
     },
+    /// Make every stage and plugin, run each on tiny input, and say what fails
+    Doctor {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write a crate with a stage of one's own: it builds, loads, has a test and a benchmark
+    NewStage(NewStageArgs),
     /// Show one stage's card: what it does, its ports, parameters and promises
     Stage {
         /// The stage's name, like Otsu
@@ -221,6 +232,21 @@ pub(crate) struct WhyArgs {
     /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewStageArgs {
+    /// The stage's name, one word that begins with a capital, like FineMesher
+    pub(crate) name: String,
+    /// What it is for: denoiser, binariser, edge-detector, mesher, smoother, stitcher, collider or texturer
+    #[arg(long)]
+    pub(crate) role: String,
+    /// The folder in which the crate's own folder is made [default: the current one]
+    #[arg(long)]
+    pub(crate) dir: Option<PathBuf>,
+    /// The folder of toile-core, to build against it instead of the published version
+    #[arg(long, value_name = "PATH")]
+    pub(crate) core: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

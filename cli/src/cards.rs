@@ -3,7 +3,8 @@
 use crate::{Streams, exit};
 use serde_json::{Value, json};
 use toile_core::plugin::{Plugin, Refused};
-use toile_core::{Arity, Card, InPort, ParamDoc, Registry, Role};
+use toile_core::testkit::{checked, is_checked};
+use toile_core::{Arity, Card, Contract, InPort, ParamDoc, Registry, Role};
 
 /// The roles in the order of a pipeline.
 const ROLES: [Role; 15] = [
@@ -47,6 +48,12 @@ pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -
         }
     }
     list_plugins(registry, streams);
+    exit::DONE
+}
+
+/// Prints the JSON schema of pipeline files.
+pub(crate) fn schema(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    streams.say(format!("{:#}", crate::schema::schema(registry)));
     exit::DONE
 }
 
@@ -116,9 +123,12 @@ fn card_text(card: &Card) -> String {
     for p in &card.params {
         s += &param_text(p);
     }
-    let contracts: Vec<String> = card.contracts.iter().map(|c| format!("{c:?}")).collect();
-    if !contracts.is_empty() {
-        s += &format!("\nPromises: {}\n", contracts.join(", "));
+    if !card.contracts.is_empty() {
+        s += "\nPromises:\n";
+    }
+    for contract in &card.contracts {
+        let word = if is_checked(card, *contract) { "checked" } else { "not checked" };
+        s += &format!("  {:<24} {word}\n", format!("{contract:?}"));
     }
     if let Some(p) = card.plugin {
         s += &format!("\nFrom: plugin \"{}\" {}\n", p.name, p.version);
@@ -165,8 +175,9 @@ fn card_json(card: &Card) -> Value {
         })
         .collect();
     let outputs: Vec<Value> = card.outputs.iter().map(|p| json!({ "kind": p.kind.0 })).collect();
-    let contracts: Vec<String> = card.contracts.iter().map(|c| format!("{c:?}")).collect();
+    let names = |all: &[Contract]| all.iter().map(|c| format!("{c:?}")).collect::<Vec<_>>();
+    let (contracts, checked) = (names(&card.contracts), names(&checked(card)));
     json!({ "name": card.name, "role": card.role.as_str(), "doc": card.doc, "source": card.source,
-        "version": card.version, "example": card.example, "contracts": contracts, "params": params,
+        "version": card.version, "example": card.example, "contracts": contracts, "checked": checked, "params": params,
         "inputs": inputs, "outputs": outputs })
 }

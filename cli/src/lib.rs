@@ -8,13 +8,16 @@ mod at_hand;
 mod bench;
 mod cache;
 mod cards;
+mod doctor;
 mod explain;
 mod golden;
 mod interrupt;
 mod lock;
 mod migrate;
+mod new_stage;
 mod progress;
 mod run;
+mod schema;
 mod validate;
 mod watch;
 mod why;
@@ -38,6 +41,8 @@ pub mod exit {
     pub const QUALITY: u8 = 4;
     /// Out of time or stopped.
     pub const STOPPED: u8 = 5;
+    /// A fault of the program or of a stage.
+    pub const BUG: u8 = 70;
 }
 
 /// Where a command writes: `out` for its answer, `err` for progress and messages.
@@ -98,7 +103,7 @@ where
 }
 
 /// The registry with the plugins that the arguments name. A refused one ends the command, but for the
-/// list of stages, which shows it with its reason.
+/// list of stages and the doctor, which show it with its reason.
 fn with_plugins(
     registry: &Registry,
     arguments: &Arguments,
@@ -106,7 +111,7 @@ fn with_plugins(
 ) -> Result<Registry, u8> {
     let mut registry = registry.clone();
     let loads: Vec<_> = arguments.plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
-    if matches!(arguments.command, Command::Stages { .. }) {
+    if matches!(arguments.command, Command::Stages { .. } | Command::Doctor { .. }) {
         return Ok(registry);
     }
     let refused: Vec<_> = loads.into_iter().filter_map(Result::err).collect();
@@ -130,7 +135,14 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
     match command {
         Command::Run(args) => run::run(&args, registry, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),
-        Command::Stages { json } => cards::list(json, registry, streams),
+        Command::Stages { schema: true, .. } => cards::schema(registry, streams),
+        Command::Stages { json, .. } => cards::list(json, registry, streams),
+        Command::Doctor { json } => doctor::doctor(json, registry, streams),
+        Command::NewStage(args) => {
+            let (name, role) = (args.name.as_str(), args.role.as_str());
+            let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
+            new_stage::new_stage(&asked, registry, streams)
+        }
         Command::Stage { name, json } => cards::show(&name, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),

@@ -50,6 +50,8 @@ pub mod plugin;
 mod registry;
 mod run;
 mod stage;
+#[cfg(any(test, feature = "testkit"))]
+pub mod testkit;
 mod text;
 
 pub use artifact::{Artifact, ArtifactType, Kind};

@@ -1,4 +1,4 @@
-//! docs/stages.md is what the stages say of themselves.
+//! docs/stages.md, docs/stages.json and docs/pipeline.schema.json are what the stages say of themselves.
 //!
 //! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test catalogue`.
 #![allow(clippy::unwrap_used)]
@@ -65,4 +65,50 @@ fn the_page_of_stages_is_up_to_date() {
         "docs/stages.md is behind from that line on; see the head of this test"
     );
     assert_eq!(kept.lines().count(), page.lines().count());
+}
+
+/// A committed file is what the program prints now; `UPDATE_DOCS=1` writes it anew.
+fn committed(file: &str, arguments: &[&str]) {
+    let answer = toile_tests::toile(arguments);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let value: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+    let now = format!("{value:#}\n");
+    let path = root().join(file);
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(&path, &now).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    let behind = drift(&kept, &now);
+    assert!(behind.is_empty(), "{file} is behind; see the head of this test\n{behind}");
+}
+
+/// The first lines that differ, old ones with a minus, new ones with a plus.
+fn drift(kept: &str, now: &str) -> String {
+    const SHOWN: usize = 6;
+    let (kept, now): (Vec<&str>, Vec<&str>) = (kept.lines().collect(), now.lines().collect());
+    let same = kept.iter().zip(&now).take_while(|(a, b)| a == b).count();
+    if same == kept.len() && same == now.len() {
+        return String::new();
+    }
+    let lines = |sign: char, all: &[&str]| {
+        all.iter().skip(same).take(SHOWN).map(|l| format!("{sign} {l}\n")).collect::<String>()
+    };
+    format!("line {}:\n{}{}", same + 1, lines('-', &kept), lines('+', &now))
+}
+
+#[test]
+fn the_catalogue_is_up_to_date() {
+    committed("docs/stages.json", &["stages", "--json"]);
+}
+
+#[test]
+fn the_schema_of_pipeline_files_is_up_to_date() {
+    committed("docs/pipeline.schema.json", &["stages", "--schema"]);
+}
+
+#[test]
+fn drift_shows_the_first_lines_that_differ() {
+    assert_eq!(drift("a\nb\nc\n", "a\nx\nc\n"), "line 2:\n- b\n- c\n+ x\n+ c\n");
+    assert_eq!(drift("a\n", "a\n"), "");
+    assert_eq!(drift("", "a\n"), "line 1:\n+ a\n");
 }

@@ -70,6 +70,12 @@ impl Neckline {
         photos: Set<Photo>,
         cx: &Context,
     ) -> Result<Set<Outline>, StageError> {
+        if let Some((name, _)) = outlines.iter().find(|(_, o)| o.outer.points.len() < 3) {
+            return Err(StageError::invalid(format!("the outline of \"{name}\" has no points")));
+        }
+        if let Some((name, _)) = photos.iter().find(|(_, p)| p.pixels.as_raw().is_empty()) {
+            return Err(StageError::invalid(format!("the photo of \"{name}\" has no pixels")));
+        }
         outlines
             .iter()
             .map(|(name, o)| {

@@ -146,7 +146,7 @@ fn photo(e: &Edit, p: &mut Photo) {
         3 => p.garment_width = Some(e.number),
         4 => p.px_per_metre = None,
         5 => p.garment_width = None,
-        6 => p.alpha = Some(Arc::new(GrayImage::new(p.pixels.width(), p.pixels.height()))),
+        6 => p.alpha = Some(Shared::new(GrayImage::new(p.pixels.width(), p.pixels.height()))),
         7 => p.mirrored = !p.mirrored,
         8 => p.pixels = Shared::new(image::imageops::rotate90(p.pixels.as_ref())),
         _ => p.pixels = Shared::new(image::imageops::flip_vertical(p.pixels.as_ref())),
@@ -156,7 +156,7 @@ fn photo(e: &Edit, p: &mut Photo) {
 fn mask(e: &Edit, m: &mut Mask) {
     let (w, h) = SIZES[e.at % SIZES.len()];
     let side = m.pixels.dimensions();
-    let filled = |w, h, level| Arc::new(GrayImage::from_pixel(w, h, image::Luma([level])));
+    let filled = |w, h, level| Shared::new(GrayImage::from_pixel(w, h, image::Luma([level])));
     let noise = |x: u32, y: u32| if (x * 7919 + y * 104_729 + e.at as u32) % 97 < 40 { 255 } else { 0 };
     match e.list % 6 {
         0 => m.pixels = filled(w, h, 0),

@@ -1,0 +1,252 @@
+//! The JSON schema of pipeline files, written from the stages' cards.
+//!
+//! A pipeline file is RON; the schema describes the same values as JSON, for editors and for programs that write
+//! pipelines. RON's names become JSON's objects of one field:
+//!
+//! | RON | JSON |
+//! |---|---|
+//! | `(name: "vest", stages: [...])` | `{"name": "vest", "stages": [...]}` |
+//! | `Otsu(bias: 3)` | `{"Otsu": {"bias": 3}}` |
+//! | `Vest()` | `{"Vest": {}}` |
+//! | `Preset("poplin")`, a single value without a name | `{"Preset": "poplin"}` |
+//! | `Eight`, a choice | `"Eight"` |
+//! | `Sauvola(k: 0.1)`, a choice with values | `{"Sauvola": {"k": 0.1}}` |
+//! | `Match("front.hem", "back.hem")` | `{"Match": ["front.hem", "back.hem"]}` |
+//! | `(0.01, 60)` | `[0.01, 60]` |
+//! | `None` | `null` |
+//!
+//! Types are read from the words by which cards describe them, so that a schema cannot say other than the card.
+
+use serde_json::{Map, Value, json};
+use toile_core::{Card, ParamDoc, Registry, SectionValue};
+
+/// A number and a unit.
+const LENGTH: &str = "^\\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\\s*(mm|cm|m|in)\\s*$";
+/// What an id is made of: it names a folder.
+const ID: &str = "^[A-Za-z0-9_-]{1,64}$";
+
+/// The schema of the pipelines that a registry's stages make.
+pub(crate) fn schema(registry: &Registry) -> Value {
+    let mut defs = Map::new();
+    registry.cards().for_each(|card| drop(defs.insert(key(registry, card), stage(card))));
+    let any_stage: Vec<Value> = registry.cards().map(|c| reference(registry, c)).collect();
+    let mut fields = Map::new();
+    fields.insert("name".into(), json!({ "type": "string", "description": "The pipeline's name." }));
+    fields
+        .insert("stages".into(), json!({ "type": "array", "minItems": 1, "items": { "anyOf": any_stage } }));
+    fields.insert("plugins".into(), plugins());
+    for section in registry.sections() {
+        fields.insert(section.field.into(), section_schema(registry, section.holds));
+    }
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A pipeline of Toile as a JSON value",
+        "description": "RON's `Name(field: value)` is written {\"Name\": {\"field\": value}}, a choice `Eight` \"Eight\".",
+        "type": "object",
+        "properties": fields,
+        "required": ["stages"],
+        "additionalProperties": false,
+        "$defs": defs,
+    })
+}
+
+/// A stage's name; with its role where two share it.
+fn key(registry: &Registry, card: &Card) -> String {
+    match registry.named(card.name).count() {
+        1 => card.name.to_owned(),
+        _ => format!("{}_{}", card.name, card.role.as_str().replace(' ', "_")),
+    }
+}
+
+fn reference(registry: &Registry, card: &Card) -> Value {
+    json!({ "$ref": format!("#/$defs/{}", key(registry, card)) })
+}
+
+fn plugins() -> Value {
+    let pinned = json!({ "type": "object", "properties": { "file": { "type": "string" },
+        "blake3": { "type": "string", "pattern": "^[0-9a-fA-F]{64}$" } }, "required": ["file"],
+        "additionalProperties": false });
+    json!({ "type": "array", "items": { "anyOf": [{ "type": "string" }, pinned] },
+        "description": "Plugins to load, relative to the file." })
+}
+
+fn section_schema(registry: &Registry, holds: SectionValue) -> Value {
+    match holds {
+        SectionValue::Stage(role) => {
+            let fits: Vec<Value> = registry.of_role(role).map(|c| reference(registry, c)).collect();
+            json!({ "anyOf": fits })
+        }
+        SectionValue::Table { stage, param } => {
+            let doc = registry.card(stage).and_then(|c| c.params.iter().find(|p| p.name == param));
+            doc.map_or(json!({}), parameter)
+        }
+    }
+}
+
+fn stage(card: &Card) -> Value {
+    let mut fields = Map::new();
+    fields.insert("id".into(), json!({ "type": "string", "pattern": ID }));
+    let ids = json!({ "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }] });
+    fields.insert("from".into(), ids);
+    card.params.iter().for_each(|p| drop(fields.insert(p.name.into(), parameter(p))));
+    let named = json!({ "type": "object", "properties": fields, "additionalProperties": false });
+    let value = match card.params.first() {
+        Some(first) => json!({ "anyOf": [named, parameter(first)] }),
+        None => named,
+    };
+    json!({
+        "description": format!("{}: {}", card.role.as_str(), card.summary()),
+        "type": "object",
+        "properties": { card.name: value },
+        "required": [card.name],
+        "additionalProperties": false,
+    })
+}
+
+fn parameter(p: &ParamDoc) -> Value {
+    let mut schema = kind(&p.kind);
+    bound(&mut schema, p);
+    if let Value::Object(fields) = &mut schema {
+        let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
+        let range = p.range().map_or(String::new(), |r| format!(" ({r})"));
+        let doc = p.doc.split_whitespace().collect::<Vec<_>>().join(" ");
+        fields.insert("description".into(), json!(format!("{doc}{unit}{range}")));
+        fields.insert("x-default".into(), json!(p.default));
+    }
+    schema
+}
+
+/// Ranges of plain numbers; those of lengths stand in the description, since a length is a text.
+fn bound(schema: &mut Value, p: &ParamDoc) {
+    if p.kind != "number" && p.kind != "whole number" {
+        return;
+    }
+    let Value::Object(fields) = schema else { return };
+    p.min.into_iter().for_each(|x| drop(fields.insert("minimum".into(), json!(x))));
+    p.max.into_iter().for_each(|x| drop(fields.insert("maximum".into(), json!(x))));
+}
+
+/// The schema of a type as a card's words describe it; anything goes for words that are not known.
+fn kind(words: &str) -> Value {
+    let words = words.trim();
+    let choices = split(words, " | ");
+    if let Some(inner) = words.strip_suffix(" (or None)") {
+        return json!({ "anyOf": [kind(inner), { "type": "null" }] });
+    }
+    if let Some(inner) = words.strip_prefix("list of ") {
+        return json!({ "type": "array", "items": kind(inner) });
+    }
+    match words {
+        "number" => return json!({ "type": "number" }),
+        "whole number" => return json!({ "type": "integer" }),
+        "length" => return json!({ "type": "string", "pattern": LENGTH }),
+        "true | false" => return json!({ "type": "boolean" }),
+        "text" => return json!({ "type": "string" }),
+        "panel.edge" => return json!({ "type": "string", "pattern": "^[^.]+\\.[^.]+$" }),
+        "..." => return json!({}),
+        _ => {}
+    }
+    if choices.len() > 1 {
+        return json!({ "anyOf": choices.into_iter().map(kind).collect::<Vec<_>>() });
+    }
+    if let Some(inner) = enclosed(words, '{', '}').and_then(|w| w.strip_prefix("name: ")) {
+        return json!({ "type": "object", "additionalProperties": kind(inner) });
+    }
+    if let Some(inner) = enclosed(words, '(', ')') {
+        return group(inner);
+    }
+    match words.split_once('(') {
+        None if is_name(words) => json!({ "const": words }),
+        Some((name, rest)) if is_name(name) => {
+            let value = group(rest.strip_suffix(')').unwrap_or(rest));
+            json!({ "type": "object", "properties": { name: value }, "required": [name], "additionalProperties": false })
+        }
+        _ => json!({}),
+    }
+}
+
+/// What stands between brackets: named fields, one value, or several in their order.
+fn group(inner: &str) -> Value {
+    let parts = split(inner, ", ");
+    let named: Option<Vec<(&str, &str)>> = parts.iter().map(|p| p.split_once(": ")).collect();
+    match (named, parts.as_slice()) {
+        (Some(fields), _) => {
+            let fields: Map<String, Value> =
+                fields.into_iter().map(|(name, words)| (name.to_owned(), kind(words))).collect();
+            json!({ "type": "object", "properties": fields })
+        }
+        (None, [one]) => kind(one),
+        (None, several) => {
+            let n = several.len();
+            let items: Vec<Value> = several.iter().map(|w| kind(w)).collect();
+            json!({ "type": "array", "prefixItems": items, "minItems": n, "maxItems": n })
+        }
+    }
+}
+
+fn is_name(word: &str) -> bool {
+    word.starts_with(char::is_uppercase) && word.chars().all(|c| c.is_alphanumeric() || c == '_')
+}
+
+fn enclosed(words: &str, open: char, close: char) -> Option<&str> {
+    words.strip_prefix(open)?.strip_suffix(close)
+}
+
+/// Cuts at a separator outside of all brackets.
+fn split<'a>(words: &'a str, by: &str) -> Vec<&'a str> {
+    let (mut parts, mut depth, mut start) = (Vec::new(), 0, 0);
+    for (i, c) in words.char_indices() {
+        match c {
+            '(' | '{' | '[' => depth += 1,
+            ')' | '}' | ']' => depth -= 1,
+            _ => {}
+        }
+        if depth == 0 && i >= start && words[i..].starts_with(by) {
+            parts.push(&words[start..i]);
+            start = i + by.len();
+        }
+    }
+    parts.push(&words[start..]);
+    parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_become_types() {
+        assert_eq!(
+            kind("list of (number, number)"),
+            json!({ "type": "array", "items": {
+            "type": "array", "prefixItems": [{ "type": "number" }, { "type": "number" }], "minItems": 2, "maxItems": 2 } })
+        );
+        assert_eq!(
+            kind("whole number (or None)"),
+            json!({ "anyOf": [{ "type": "integer" }, { "type": "null" }] })
+        );
+        assert_eq!(kind("Y | Z"), json!({ "anyOf": [{ "const": "Y" }, { "const": "Z" }] }));
+        let mean = json!({ "type": "object", "properties": { "Mean": { "type": "object", "properties": { "offset": {} } } },
+            "required": ["Mean"], "additionalProperties": false });
+        assert_eq!(kind("Mean(offset: ...) | Flat"), json!({ "anyOf": [mean, { "const": "Flat" }] }));
+        let photos = kind("{name: (file: text, width: length) | MirrorOf(text)}");
+        let entry = &photos["additionalProperties"]["anyOf"];
+        assert_eq!(entry[0]["properties"]["file"], json!({ "type": "string" }));
+        assert_eq!(entry[1]["properties"]["MirrorOf"], json!({ "type": "string" }));
+    }
+
+    #[test]
+    fn every_stage_has_its_place_and_every_parameter_a_type() {
+        let registry = crate::registry();
+        let schema = schema(&registry);
+        for card in registry.cards() {
+            let stage = &schema["$defs"][key(&registry, card)]["properties"][card.name];
+            let fields = stage.get("anyOf").map_or(stage, |choices| &choices[0]);
+            for p in &card.params {
+                let param = &fields["properties"][p.name];
+                let typed = ["type", "anyOf", "const"].iter().any(|word| param.get(word).is_some());
+                assert!(typed, "{}.{}: {} is not understood", card.name, p.name, p.kind);
+            }
+        }
+    }
+}

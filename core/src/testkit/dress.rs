@@ -1,0 +1,388 @@
+//! A small body, garment and everything around them, and the files that examples name.
+
+use super::shapes;
+use crate::artifact::*;
+use crate::{Cancel, Card, Context, Inputs, PortValue, Registry};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Rings of the body: height, half width, half depth; metres.
+const RINGS: [[f64; 3]; 13] = [
+    [0.0, 0.12, 0.10],
+    [0.3, 0.14, 0.10],
+    [0.6, 0.16, 0.11],
+    [0.85, 0.17, 0.115],
+    [1.05, 0.135, 0.095],
+    [1.25, 0.15, 0.115],
+    [1.34, 0.16, 0.10],
+    [1.39, 0.15, 0.075],
+    [1.43, 0.08, 0.065],
+    [1.47, 0.055, 0.055],
+    [1.54, 0.055, 0.06],
+    [1.60, 0.075, 0.09],
+    [1.68, 0.06, 0.07],
+];
+/// Vertices a ring.
+const AROUND: usize = 28;
+
+/// A closed figure without arms, 1.7 m tall, with the landmarks that placement relies on.
+pub fn body() -> Body {
+    let ring = |[y, rx, rz]: [f64; 3]| {
+        (0..AROUND).map(move |k| {
+            let a = TAU * k as f64 / AROUND as f64;
+            Point3::new(rx * a.sin(), y, rz * a.cos())
+        })
+    };
+    let mut positions: Vec<Point3> = RINGS.into_iter().flat_map(ring).collect();
+    let (bottom, top) = (positions.len() as u32, positions.len() as u32 + 1);
+    positions.extend([Point3::new(0.0, 0.0, 0.0), Point3::new(0.0, 1.7, 0.0)]);
+    let at = |r: usize, k: usize| (r * AROUND + k % AROUND) as u32;
+    let mut triangles = Vec::new();
+    for k in 0..AROUND {
+        triangles.push([bottom, at(0, k + 1), at(0, k)]);
+        triangles.push([top, at(RINGS.len() - 1, k), at(RINGS.len() - 1, k + 1)]);
+        for r in 0..RINGS.len() - 1 {
+            triangles.push([at(r, k), at(r, k + 1), at(r + 1, k + 1)]);
+            triangles.push([at(r, k), at(r + 1, k + 1), at(r + 1, k)]);
+        }
+    }
+    let girth = |[_, rx, rz]: [f64; 3]| TAU * ((rx * rx + rz * rz) / 2.0).sqrt();
+    let named =
+        [("height", 1.7), ("bust", girth(RINGS[5])), ("waist", girth(RINGS[4])), ("hip", girth(RINGS[3]))];
+    let measurements = named.map(|(name, length)| (name.to_owned(), length)).into();
+    Body { positions, triangles, landmarks: landmarks(), measurements }
+}
+
+fn landmarks() -> BTreeMap<String, Landmark> {
+    let middle =
+        [("neck_base", 1.47, 0.055), ("bust", 1.25, 0.115), ("waist", 1.05, 0.095), ("hip", 0.85, 0.115)];
+    let sides = [
+        ("neck", 0.06, 1.45),
+        ("shoulder", 0.16, 1.36),
+        ("armpit", 0.155, 1.27),
+        ("elbow", 0.16, 1.1),
+        ("wrist", 0.17, 0.9),
+    ];
+    let mut all: BTreeMap<String, Landmark> = BTreeMap::new();
+    for (name, y, z) in middle {
+        all.insert(format!("{name}_front"), Point3::new(0.0, y, z));
+        all.insert(format!("{name}_back"), Point3::new(0.0, y, -z));
+    }
+    for (name, x, y) in sides {
+        all.insert(format!("{name}_left"), Point3::new(x, y, 0.0));
+        all.insert(format!("{name}_right"), Point3::new(-x, y, 0.0));
+    }
+    all.insert("crotch".into(), Point3::new(0.0, 0.78, 0.0));
+    all
+}
+
+/// A woven cotton.
+pub fn fabric() -> Fabric {
+    Fabric {
+        name: "suite cotton".into(),
+        area_density: 0.12,
+        warp: Curve(vec![(0.01, 60.0), (0.03, 400.0)]),
+        weft: Curve(vec![(0.02, 60.0), (0.06, 400.0)]),
+        shear: Curve::linear(40.0),
+        bending_warp: 1e-5,
+        bending_weft: 7e-6,
+        thickness: 3e-4,
+        friction: 0.3,
+        damping: 0.5,
+        source: "made up for tests".into(),
+    }
+}
+
+/// Size of a garment's panels: metres.
+const PANEL: [f64; 2] = [0.54, 0.5];
+
+/// A panel of the suite's garment.
+pub fn garment_panel() -> Panel {
+    shapes::panel(9, 8, PANEL[0], PANEL[1])
+}
+
+/// Seams at shoulders and sides, panels before and behind the body.
+pub fn plan() -> SewingPlan {
+    let seam = |edge: &str| Seam {
+        a: EdgeRef { panel: "front".into(), edge: edge.into() },
+        b: EdgeRef { panel: "back".into(), edge: edge.into() },
+        kind: SeamKind::Matched,
+        reversed: false,
+    };
+    let place = |behind| PanelPlacement {
+        limb: Limb::Torso,
+        behind,
+        anchor: Point2::new(0.0, PANEL[1]),
+        landmark: "neck_base_back",
+    };
+    SewingPlan {
+        seams: ["shoulder_left", "shoulder_right", "side_left", "side_right"].map(seam).into(),
+        placements: [("front".to_owned(), place(false)), ("back".to_owned(), place(true))].into(),
+    }
+}
+
+/// Two panels before and behind the body, their seams open.
+pub fn garment() -> Garment {
+    let panel = garment_panel();
+    let (n, t) = (panel.positions.len(), panel.triangles.len());
+    let fabric = Arc::new(fabric());
+    let lift = |q: &Point2, side: f64| Point3::new(side * q.x, 0.98 + q.y, side * 0.15);
+    let shifted = |v: &u32| v + n as u32;
+    let part = |name: &str, k: usize| GarmentPanel {
+        name: name.into(),
+        vertices: k * n..(k + 1) * n,
+        triangles: k * t..(k + 1) * t,
+        boundary: panel.boundary.iter().map(|v| v + (k * n) as u32).collect(),
+        photo_px: panel.photo_px.clone(),
+        fabric: fabric.clone(),
+    };
+    let other = |name: &str| match name {
+        "side_left" => "side_right",
+        "side_right" => "side_left",
+        "shoulder_left" => "shoulder_right",
+        _ => "shoulder_left",
+    };
+    // The back panel is seen from behind, so the wearer's left is its right.
+    let seam = |name: &str| {
+        let a = panel.edge(name).map_or(&[][..], |e| &e.vertices);
+        let b = panel.edge(other(name)).map_or(&[][..], |e| &e.vertices);
+        let pairs = a.iter().zip(b.iter().rev()).map(|(a, b)| [*a, shifted(b)]).collect();
+        GarmentSeam { name: format!("front.{name}"), kind: SeamKind::Matched, pairs, state: SeamState::Open }
+    };
+    let front = panel.positions.iter().map(|q| lift(q, 1.0));
+    let positions: Vec<Point3> = front.chain(panel.positions.iter().map(|q| lift(q, -1.0))).collect();
+    let back = panel.triangles.iter().map(|tri| tri.map(|v| shifted(&v)));
+    Garment {
+        velocities: vec![Vector3::zeros(); 2 * n],
+        rest: [panel.positions.clone(), panel.positions.clone()].concat(),
+        triangles: panel.triangles.iter().copied().chain(back).collect(),
+        panels: vec![part("front", 0), part("back", 1)],
+        seams: ["shoulder_left", "shoulder_right", "side_left", "side_right"].map(seam).into(),
+        weld: (0..2 * n as u32).collect(),
+        pinned: Vec::new(),
+        status: SolveStatus::default(),
+        positions,
+    }
+}
+
+/// The garment round the body like a tube, its sides sewn, its upper rim held.
+pub fn sewn_garment() -> Garment {
+    let mut garment = garment();
+    let half = garment.positions.len() / 2;
+    let radius = PANEL[0] / std::f64::consts::PI;
+    for (i, (at, rest)) in garment.positions.iter_mut().zip(&garment.rest).enumerate() {
+        let angle = rest.x / radius + if i < half { 0.0 } else { std::f64::consts::PI };
+        *at = Point3::new(radius * angle.sin(), 0.98 + rest.y, radius * angle.cos());
+    }
+    garment.seams.retain(|s| s.name.contains("side"));
+    for [a, b] in garment.seams.iter().flat_map(|s| s.pairs.clone()) {
+        let least = a.min(b);
+        (garment.weld[a as usize], garment.weld[b as usize]) = (least, least);
+        garment.positions[a.max(b) as usize] = garment.positions[least as usize];
+    }
+    garment.seams.iter_mut().for_each(|s| s.state = SeamState::Closed);
+    let top = garment.rest.iter().enumerate().filter(|(_, q)| q.y > PANEL[1] - 1e-9);
+    garment.pinned = top.map(|(i, _)| i as u32).collect();
+    garment
+}
+
+/// A garment without anything.
+pub fn no_garment() -> Garment {
+    Garment {
+        positions: vec![],
+        velocities: vec![],
+        rest: vec![],
+        triangles: vec![],
+        panels: vec![],
+        seams: vec![],
+        weld: vec![],
+        pinned: vec![],
+        status: SolveStatus::default(),
+    }
+}
+
+/// A body of capsules: exact, cheap, without the cloth's own contacts.
+#[derive(Debug, Clone)]
+struct Capsules(Vec<(Point3, Point3, f64)>);
+
+/// A trunk, shoulders and a neck.
+pub fn collider() -> Collider {
+    let part = |a: [f64; 3], b: [f64; 3], r: f64| (Point3::from(a), Point3::from(b), r);
+    let parts = vec![
+        part([-0.08, 1.38, 0.0], [0.08, 1.38, 0.0], 0.06),
+        part([-0.05, 0.8, 0.0], [-0.05, 1.3, 0.0], 0.1),
+        part([0.05, 0.8, 0.0], [0.05, 1.3, 0.0], 0.1),
+        part([0.0, 1.4, 0.0], [0.0, 1.6, 0.0], 0.05),
+    ];
+    Collider { scheme: Arc::new(Capsules(parts)), signature: "capsules".into() }
+}
+
+impl Capsules {
+    fn distance(&self, q: &Point3) -> (f64, Vector3) {
+        let one = |(a, b, r): &(Point3, Point3, f64)| {
+            let (ab, aq) = (b - a, q - a);
+            let out = aq - ab * (aq.dot(&ab) / ab.norm_squared()).clamp(0.0, 1.0);
+            (out.norm() - r, out.try_normalize(1e-12).unwrap_or_else(Vector3::z))
+        };
+        self.0.iter().map(one).fold((f64::INFINITY, Vector3::y()), |a, b| if b.0 < a.0 { b } else { a })
+    }
+}
+
+impl Collide for Capsules {
+    fn card(&self) -> ColliderCard {
+        ColliderCard {
+            thickness: 1.5e-3,
+            friction: 0.3,
+            restitution: 0.0,
+            self_collision: false,
+            penalty: None,
+        }
+    }
+
+    fn body_contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>) {
+        for (i, q) in positions.iter().enumerate() {
+            let (distance, normal) = self.distance(q);
+            if distance <= reach {
+                out.push(BodyContact { vertex: i as u32, point: q - normal * distance, normal, distance });
+            }
+        }
+    }
+
+    fn body_hits(&self, from: &[Point3], to: &[Point3], out: &mut Vec<BodyContact>) {
+        for (i, (a, b)) in from.iter().zip(to).enumerate() {
+            let (distance, normal) = self.distance(b);
+            if distance < 0.0 && self.distance(a).0 >= 0.0 {
+                out.push(BodyContact { vertex: i as u32, point: b - normal * distance, normal, distance });
+            }
+        }
+    }
+
+    fn self_contacts(&self, _: &[Point3], _: &[[u32; 3]], _: f64, _: &mut Vec<SelfContact>) {}
+
+    fn conservative_bounds(&self, positions: &[Point3], _: &[[u32; 3]], reach: f64) -> Vec<f64> {
+        vec![reach; positions.len()]
+    }
+
+    fn self_crossings(&self, _: &[Point3], _: &[[u32; 3]]) -> Vec<[u32; 2]> {
+        Vec::new()
+    }
+}
+
+/// What acts in a prepared scene.
+pub fn phases() -> Phases {
+    let phase =
+        |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
+    Phases(vec![phase("sew", 0.0), phase("drape", 9.81)])
+}
+
+/// A finished model: one textured triangle pair, and the body.
+pub fn model() -> Model {
+    let garment = garment();
+    let normals = garment.vertex_normals();
+    let material = |name: &str, texture| Material {
+        name: name.into(),
+        colour: [0.6, 0.6, 0.5],
+        texture,
+        unlit: false,
+        roughness: 0.9,
+        double_sided: true,
+    };
+    let front = &garment.panels[0];
+    let uv = |q: &Point2| [(q.x / 120.0) as f32, (q.y / 120.0) as f32];
+    let cloth = Mesh {
+        name: "front".into(),
+        positions: garment.positions[front.vertices.clone()].to_vec(),
+        normals: normals[front.vertices.clone()].to_vec(),
+        uv: front.photo_px.iter().map(uv).collect(),
+        triangles: garment.triangles[front.triangles.clone()].to_vec(),
+        material: 0,
+    };
+    let body = body();
+    let skin = Mesh {
+        name: "body".into(),
+        normals: body.vertex_normals(),
+        positions: body.positions,
+        uv: vec![],
+        triangles: body.triangles,
+        material: 1,
+    };
+    Model {
+        meshes: vec![cloth, skin],
+        materials: vec![material("front", Some(0)), material("body", None)],
+        textures: vec![Texture { name: "front".into(), pixels: shapes::photo().pixels }],
+    }
+}
+
+/// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
+/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
+///
+/// Errors: the system's, where a file cannot be written.
+pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
+    let lay = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))
+    };
+    for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
+        match name.rsplit_once('.').map(|(_, extension)| extension) {
+            Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
+            Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
+            Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
+            Some(extension) if extension.chars().all(char::is_alphabetic) => {
+                let ending = format!(".{extension}");
+                let files = registry.cards().find_map(|card| written(registry, card, &ending));
+                for file in files.into_iter().flatten() {
+                    let own = if file.path.ends_with(&ending) { name } else { &file.path };
+                    lay(own, &file.bytes)?;
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+fn picture(format: image::ImageFormat) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    // Writing into memory cannot fail; a stage that is given nothing says so.
+    let _ = shapes::photo().pixels.write_to(&mut bytes, format);
+    bytes.into_inner()
+}
+
+/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without
+/// arguments, since readers of bodies look for shoulders and legs, else the suite's own.
+fn body_file(registry: &Registry, z_up: bool) -> Vec<u8> {
+    let made = registry.of_role(crate::Role::Body).find_map(|card| {
+        let outcome =
+            registry.make(card, "()").ok()?.run_ports(&Inputs::default(), &Context::quiet()).ok()?;
+        first::<Body>(&outcome)
+    });
+    let mut body = made.unwrap_or_else(body);
+    if z_up {
+        body.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
+    }
+    body.export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
+}
+
+fn first<T: Clone + 'static>(made: &[PortValue]) -> Option<T> {
+    made.iter().flat_map(PortValue::entries).find_map(|(_, a)| {
+        let any: &dyn std::any::Any = a.as_ref();
+        any.downcast_ref::<T>().cloned()
+    })
+}
+
+/// What a writer of garments makes, where one of its files has that ending.
+fn written(registry: &Registry, card: &Card, ending: &str) -> Option<Vec<OutputFile>> {
+    let takes_garment = card.inputs.first().is_some_and(|port| port.kind == Garment::KIND);
+    if card.role != crate::Role::Writer || !takes_garment {
+        return None;
+    }
+    let cx = Context::new("suite", Path::new("."), Cancel::new(), Arc::new(()));
+    let made = registry.make(card, "()").ok()?.run_ports(&inputs_of(card), &cx).ok()?;
+    let files = first::<OutputFiles>(&made)?;
+    files.0.iter().any(|f| f.path.ends_with(ending)).then_some(files.0)
+}
+
+fn inputs_of(card: &Card) -> Inputs {
+    Inputs(card.inputs.iter().map(|port| super::suite::default_value(port)).collect())
+}

@@ -1,0 +1,5 @@
+//! What the collider promises.
+
+use toile_sdf::SdfCollider;
+
+toile_core::contracts!(SdfCollider);
