@@ -225,7 +225,9 @@ pub struct ParamDoc {
 
 /// How a parameter's text is checked: by its own type, or by the plugin that knows the type.
 #[derive(Clone)]
-pub struct Check(Arc<dyn Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync>);
+pub struct Check(Arc<CheckFn>);
+
+type CheckFn = dyn Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync;
 
 impl Check {
     /// Checks by the type `T`.

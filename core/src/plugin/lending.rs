@@ -10,8 +10,9 @@ use std::sync::Arc;
 
 type Keeper = Arc<dyn Any + Send + Sync>;
 
-/// The owners of a record's lists, in C's form.
+/// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list grows.
 #[derive(Debug, Default)]
+#[allow(clippy::vec_box)]
 pub(super) struct Owners(Vec<Box<abi::Owner>>);
 
 impl Owners {

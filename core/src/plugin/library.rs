@@ -231,7 +231,7 @@ unsafe fn handshake(declared: *const abi::Declaration) -> Result<abi::Declaratio
 }
 
 fn fits(what: &str, size: u32, least: usize) -> Result<(), Why> {
-    match size as usize >= least && size % 8 == 0 && size <= 1 << 16 {
+    match size as usize >= least && size.is_multiple_of(8) && size <= 1 << 16 {
         true => Ok(()),
         false => Err(short(what, size, least)),
     }

@@ -29,7 +29,10 @@ impl Tables {
         Tables(OnceLock::new())
     }
 
+    /// What the entry point of the macro gives: `count` is null or the host's.
+    ///
     /// Where the tables lie, one after the other, `stage_size(minor)` bytes apart.
+    #[allow(clippy::not_unsafe_ptr_arg_deref)]
     pub fn give(&self, minor: u32, make: fn() -> Vec<abi::StageTable>, count: *mut usize) -> *const c_void {
         let stride = stage_size(minor) as usize;
         // A card that panics must not end the program: the library then has no stages.
@@ -316,10 +319,14 @@ impl Listener for Remote {
     fn event(&self, _: &str, _: &str, event: &Event) {
         self.with(|h| match event {
             Event::Progress { share, text } => {
-                h.progress.map(|f| unsafe { f(h.ctx, *share, Text::of(text)) });
+                if let Some(f) = h.progress {
+                    unsafe { f(h.ctx, *share, Text::of(text)) };
+                }
             }
             Event::Warning(text) => {
-                h.warn.map(|f| unsafe { f(h.ctx, Text::of(text)) });
+                if let Some(f) = h.warn {
+                    unsafe { f(h.ctx, Text::of(text)) };
+                }
             }
         });
     }

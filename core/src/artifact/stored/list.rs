@@ -110,7 +110,7 @@ macro_rules! listed {
             }
             fn take(data: &Data<'_>) -> Option<Vec<Self>> {
                 match data {
-                    Data::$number(x) if x.len() % $width == 0 => Some(bytemuck::pod_collect_to_vec(x)),
+                    Data::$number(x) if x.len().is_multiple_of($width) => Some(bytemuck::pod_collect_to_vec(x)),
                     _ => None,
                 }
             }

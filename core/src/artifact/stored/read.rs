@@ -33,7 +33,7 @@ impl<'a> Reader<'a> {
         if field.width != T::WIDTH {
             return Err(format!("`{name}` has {} numbers an element, {} are wanted", field.width, T::WIDTH));
         }
-        if field.data.len() % T::WIDTH as usize != 0 {
+        if !field.data.len().is_multiple_of(T::WIDTH as usize) {
             return Err(format!("`{name}` has {} numbers, no whole number of elements", field.data.len()));
         }
         let wanted = T::lend(&[]);

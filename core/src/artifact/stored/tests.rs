@@ -44,7 +44,7 @@ fn panel() -> Panel {
         inner: vec![],
         photo_px: vec![],
         outline_area: 0.01,
-        outline_length: 0.5236,
+        outline_length: 0.52,
     }
 }
 
