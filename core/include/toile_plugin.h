@@ -42,12 +42,20 @@ typedef struct toile_text {
 #define TOILE_FIELD_TEXT 6
 #define TOILE_FIELD_RECORDS 7 /* data points at toile_record[count] */
 
+/* Keeps a list beyond the call that lent it. */
+typedef struct toile_owner {
+    void *ctx;
+    void *(*retain)(void *ctx);    /* a handle that keeps the list, unchanged, until release */
+    void (*release)(void *handle); /* from any thread */
+} toile_owner;
+
 typedef struct toile_field {
     toile_text name;
     const void *data;
     size_t count;   /* numbers, bytes of text, or records */
     uint32_t kind;  /* TOILE_FIELD_... */
     uint32_t width; /* numbers in one element: 3 for points in space */
+    const toile_owner *owner; /* null: the list must be copied before the call returns */
 } toile_field;
 
 typedef struct toile_record {

@@ -15,7 +15,7 @@ struct Grey {}
 #[stage]
 impl Grey {
     fn run(&self, _cx: &Context) -> Result<Set<Mask>, StageError> {
-        let pixels = Arc::new(GrayImage::from_pixel(2, 2, Luma([128])));
+        let pixels = Shared::new(GrayImage::from_pixel(2, 2, Luma([128])));
         Ok([("front".to_owned(), Mask { pixels })].into_iter().collect())
     }
 }

@@ -96,6 +96,7 @@ static int32_t run(const void *stage, const toile_host *host, const toile_call *
     if (!fields) return fail(host, "internal", "there is no memory", "");
     memcpy(fields, photo->fields, photo->count * sizeof *fields);
     fields[pixels - photo->fields].data = out;
+    fields[pixels - photo->fields].owner = NULL; /* memory of alloc: the program takes it as it is */
     toile_record made = {fields, photo->count};
     host->figure(host->ctx, text_of("white"), (double)((const invert *)stage)->white, text_of("grey levels"));
     toile_text whole = {NULL, 0};

@@ -93,8 +93,8 @@ fn named(outline: &Arc<dyn Artifact>, tee: bool) -> Result<(Outline, String), St
 fn photo(bytes: &[u8], file: &Path) -> Result<Arc<dyn Artifact>, String> {
     let decoded = decode(bytes, &file.display().to_string()).map_err(|e| e.to_string())?;
     Ok(Arc::new(Photo {
-        pixels: Arc::new(decoded.pixels),
-        alpha: decoded.alpha.map(Arc::new),
+        pixels: Shared::new(decoded.pixels),
+        alpha: decoded.alpha.map(Shared::new),
         px_per_metre: None,
         garment_width: Some(0.6),
         mirrored: false,

@@ -136,7 +136,7 @@ fn read(file: &Path) -> Result<Photo, Box<dyn Error>> {
     let decoded = decode(&std::fs::read(file)?, &name)?;
     Ok(Photo {
         pixels: decoded.pixels.into(),
-        alpha: decoded.alpha.map(Arc::new),
+        alpha: decoded.alpha.map(Shared::new),
         px_per_metre: None,
         garment_width: None,
         mirrored: false,

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let decoded = decode(&bytes, "photo")?;
         Ok(Photo {
             pixels: decoded.pixels.into(),
-            alpha: decoded.alpha.map(Arc::new),
+            alpha: decoded.alpha.map(Shared::new),
             px_per_metre: None,
             garment_width: None,
             mirrored: false,

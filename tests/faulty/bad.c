@@ -24,11 +24,11 @@ __attribute__((unused)) static int32_t run(const void *stage, const toile_host *
 #if defined(CASE_CLAIMS_ALLOC)
     if (!host->alloc(host->ctx, (size_t)1 << 50)) return TOILE_FAILED;
 #elif defined(CASE_CLAIMS_RECORD)
-    toile_field claims[] = {{TEXT("pixels"), &stage_object, (size_t)1 << 50, TOILE_FIELD_U8, 3}};
+    toile_field claims[] = {{TEXT("pixels"), &stage_object, (size_t)1 << 50, TOILE_FIELD_U8, 3, NULL}};
     toile_record record = {claims, 1};
     return host->give(host->ctx, 0, whole, &record);
 #elif defined(CASE_NULL_DATA)
-    toile_field empty[] = {{TEXT("pixels"), NULL, 12, TOILE_FIELD_U8, 3}};
+    toile_field empty[] = {{TEXT("pixels"), NULL, 12, TOILE_FIELD_U8, 3, NULL}};
     toile_record record = {empty, 1};
     return host->give(host->ctx, 0, whole, &record);
 #elif defined(CASE_NO_FIELDS)

@@ -1,15 +1,14 @@
 //! Which pixels of a photo belong to the garment.
 
 use super::sound::ensure;
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Shared};
 use image::GrayImage;
-use std::sync::Arc;
 
 /// A binary picture in the frame of its photo: 255 on the garment, 0 off it, nothing else.
 #[derive(Debug, Clone)]
 pub struct Mask {
     /// The pixels, 0 or 255.
-    pub pixels: Arc<GrayImage>,
+    pub pixels: Shared<GrayImage>,
 }
 
 impl Mask {

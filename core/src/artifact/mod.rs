@@ -24,6 +24,7 @@ mod phases;
 mod photo;
 mod runlog;
 mod sewing;
+mod shared;
 mod sound;
 pub mod stored;
 
@@ -45,6 +46,7 @@ pub use phases::{Phase, Phases};
 pub use photo::Photo;
 pub use runlog::{RunLog, StageRecord};
 pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SeamKind, SewingPlan};
+pub use shared::Shared;
 
 use std::any::Any;
 use std::fmt::Debug;

@@ -2,9 +2,8 @@
 
 use super::body::obj_text;
 use super::sound::{ensure, finite, indices, length};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Shared, Vector3};
 use image::RgbImage;
-use std::sync::Arc;
 
 /// A colour picture that materials refer to.
 #[derive(Debug, Clone)]
@@ -12,7 +11,7 @@ pub struct Texture {
     /// Name, also its file's stem.
     pub name: String,
     /// Pixels, sRGB, top row first.
-    pub pixels: Arc<RgbImage>,
+    pub pixels: Shared<RgbImage>,
 }
 
 /// How a surface looks.

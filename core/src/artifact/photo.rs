@@ -1,9 +1,8 @@
 //! A photo of a garment that lies flat.
 
 use super::sound::{ensure, positive};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Shared};
 use image::{GrayImage, RgbImage};
-use std::sync::Arc;
 
 /// An upright sRGB photo with its scale.
 ///
@@ -11,9 +10,9 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub struct Photo {
     /// The pixels, sRGB, 8 bits a channel.
-    pub pixels: Arc<RgbImage>,
+    pub pixels: Shared<RgbImage>,
     /// Opacity, where the file had an alpha channel that is not opaque everywhere.
-    pub alpha: Option<Arc<GrayImage>>,
+    pub alpha: Option<Shared<GrayImage>>,
     /// Scale: pixels per metre in the plane of the garment.
     ///
     /// `None` until it is known: a width given for the garment (`width: "52 cm"`) needs its mask.
@@ -29,7 +28,7 @@ pub struct Photo {
 impl Photo {
     /// The same photo with other pixels, as denoisers return it.
     pub fn with_pixels(&self, pixels: RgbImage) -> Photo {
-        Photo { pixels: Arc::new(pixels), ..self.clone() }
+        Photo { pixels: Shared::new(pixels), ..self.clone() }
     }
 }
 

@@ -44,6 +44,20 @@ pub struct Field {
     pub kind: u32,
     /// Numbers in one element: 3 for points in space.
     pub width: u32,
+    /// Who keeps the numbers beyond the call; null where they must be copied before it returns.
+    pub owner: *const Owner,
+}
+
+/// Keeps a list beyond the call that lent it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy)]
+pub struct Owner {
+    /// Argument of `retain`.
+    pub ctx: *mut c_void,
+    /// Gives a handle that keeps the list where it is, unchanged, until `release`; null where it cannot.
+    pub retain: Option<unsafe extern "C" fn(ctx: *mut c_void) -> *mut c_void>,
+    /// Ends a handle; may be called from any thread.
+    pub release: Option<unsafe extern "C" fn(handle: *mut c_void)>,
 }
 
 /// `uint8_t`.

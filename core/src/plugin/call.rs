@@ -1,9 +1,10 @@
 //! What the program offers to a plugin during one call, and what comes of it.
 
 use super::abi::{self, Text};
+use super::lending::Lending;
 use super::view::{record, text};
 use super::{collide, library::Loaded};
-use crate::artifact::stored::from_record;
+use crate::artifact::stored::{Data, Owner, Record, from_record};
 use crate::artifact::{Artifact, ArtifactType, Collider};
 use crate::{Arity, Cancel, OutPort, PortValue, StageError};
 use std::collections::BTreeMap;
@@ -50,13 +51,21 @@ pub(super) struct Call {
     library: Arc<Loaded>,
     outputs: Vec<OutPort>,
     made: Mutex<BTreeMap<(u32, String), Arc<dyn Artifact>>>,
-    /// Memory handed out; 16-byte units.
-    blocks: Mutex<Vec<Vec<u128>>>,
+    /// Memory handed out, by its address.
+    blocks: Mutex<BTreeMap<usize, Block>>,
     budget: Mutex<u64>,
     failure: Mutex<Option<Failure>>,
     answer: Mutex<String>,
     messages: Sender<Message>,
     cancel: Cancel,
+}
+
+/// Memory for an output, in 16-byte units.
+#[derive(Clone)]
+struct Block {
+    memory: Arc<Vec<u128>>,
+    /// As many bytes as were asked for.
+    bytes: usize,
 }
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
@@ -131,12 +140,15 @@ impl Call {
                 *budget
             ));
         }
-        let (mut block, units) = (Vec::<u128>::new(), bytes.div_ceil(size_of::<u128>()).max(1));
-        block.try_reserve_exact(units).map_err(|_| format!("there is no memory for {bytes} bytes"))?;
-        block.resize(units, 0);
+        let units = bytes.div_ceil(size_of::<u128>()).max(1);
+        Vec::<u128>::new()
+            .try_reserve_exact(units)
+            .map_err(|_| format!("there is no memory for {bytes} bytes"))?;
+        // Zero memory comes from the system untouched, page by page as it is used.
+        let mut block = vec![0_u128; units];
         *budget -= bytes as u64;
-        let at = block.as_mut_ptr().cast();
-        locked(&self.blocks).push(block);
+        let at: *mut c_void = block.as_mut_ptr().cast();
+        locked(&self.blocks).insert(at.addr(), Block { memory: Arc::new(block), bytes });
         Ok(at)
     }
 
@@ -168,12 +180,26 @@ impl Call {
         let name = unsafe { text(name)? };
         let kind = self.port(port, name)?.kind;
         let mut budget = locked(&self.budget);
-        let record = unsafe { record(view, &mut budget)? };
+        let mut record = unsafe { record(view, &mut budget)? };
         drop(budget);
+        self.own_blocks(&mut record);
         let of = if name.is_empty() { String::new() } else { format!(" \"{name}\"") };
         let artifact =
             from_record(kind, &record).map_err(|e| format!("its {kind}{of} cannot be used: {e}"))?;
         self.keep(port, name, artifact)
+    }
+
+    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the border nobody writes
+    /// to what was given.
+    fn own_blocks(&self, record: &mut Record<'_>) {
+        let blocks = locked(&self.blocks);
+        for field in &mut record.fields {
+            let Data::U8(bytes) = &field.data else { continue };
+            let block = blocks.get(&bytes.as_ptr().addr()).filter(|b| b.bytes >= bytes.len());
+            if let Some(block) = block {
+                field.owner = Owner::Foreign(Lending::block(block.memory.clone()));
+            }
+        }
     }
 
     /// # Safety

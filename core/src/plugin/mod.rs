@@ -16,10 +16,12 @@ mod card;
 mod collide;
 mod foreign;
 mod guard;
+mod lending;
 mod library;
 pub mod sdk;
 mod view;
 
 pub use call::MAX_OUTPUT_BYTES;
 pub(crate) use foreign::ForeignType;
+pub use lending::Lending;
 pub use library::{Plugin, Refused, load};

@@ -2,7 +2,8 @@
 //! as a pointer can be.
 
 use super::abi;
-use crate::artifact::stored::{Data, Field, MAX_DEPTH, Record};
+use super::lending::{Lending, Owners};
+use crate::artifact::stored::{Data, Field, MAX_DEPTH, Owner, Record};
 use bytemuck::Pod;
 use std::borrow::Cow;
 use std::ffi::c_void;
@@ -25,6 +26,7 @@ struct Views {
     view: Box<abi::Record>,
     _fields: Vec<abi::Field>,
     _parts: Vec<Part>,
+    _owners: Owners,
 }
 
 /// The records of one field: kept for their owners, and side by side for C.
@@ -48,14 +50,15 @@ impl<'a> Lent<'a> {
 
 impl Views {
     fn of(record: &Record<'_>) -> Self {
-        let mut parts = Vec::new();
-        let fields: Vec<abi::Field> = record.fields.iter().map(|f| field(f, &mut parts)).collect();
+        let (mut parts, mut owners) = (Vec::new(), Owners::default());
+        let fields: Vec<abi::Field> =
+            record.fields.iter().map(|f| field(f, &mut parts, &mut owners)).collect();
         let view = Box::new(abi::Record { fields: fields.as_ptr(), count: fields.len() });
-        Views { view, _fields: fields, _parts: parts }
+        Views { view, _fields: fields, _parts: parts, _owners: owners }
     }
 }
 
-fn field(field: &Field<'_>, parts: &mut Vec<Part>) -> abi::Field {
+fn field(field: &Field<'_>, parts: &mut Vec<Part>, owners: &mut Owners) -> abi::Field {
     let (kind, data): (u32, *const c_void) = match &field.data {
         Data::U8(x) => (abi::FIELD_U8, x.as_ptr().cast()),
         Data::U32(x) => (abi::FIELD_U32, x.as_ptr().cast()),
@@ -65,7 +68,12 @@ fn field(field: &Field<'_>, parts: &mut Vec<Part>) -> abi::Field {
         Data::Text(x) => (abi::FIELD_TEXT, x.as_ptr().cast()),
         Data::Records(records) => (abi::FIELD_RECORDS, lend_all(records, parts).cast()),
     };
-    abi::Field { name: abi::Text::of(&field.name), data, count: field.data.len(), kind, width: field.width }
+    let owner = match &field.owner {
+        Owner::Own(own) => owners.lend(own),
+        _ => std::ptr::null(),
+    };
+    let (name, count) = (abi::Text::of(&field.name), field.data.len());
+    abi::Field { name, data, count, kind, width: field.width, owner }
 }
 
 fn lend_all(records: &[Record<'_>], parts: &mut Vec<Part>) -> *const abi::Record {
@@ -147,7 +155,8 @@ unsafe fn one<'a>(f: &abi::Field, budget: &mut u64, depth: usize) -> Result<Fiel
         }
         other => return Err(format!("the field `{name}` has the unknown type {other}")),
     };
-    Ok(Field { name: Cow::Borrowed(name), width: f.width, data })
+    let owner = unsafe { Lending::of(f.owner) }.map_or(Owner::None, Owner::Foreign);
+    Ok(Field { name: Cow::Borrowed(name), width: f.width, data, owner })
 }
 
 unsafe fn numbers<'a, T: Pod>(f: &abi::Field, name: &str, budget: &mut u64) -> Result<Cow<'a, [T]>, String> {

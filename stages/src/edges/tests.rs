@@ -5,7 +5,6 @@ use crate::binarise::Otsu;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
 use std::path::Path;
-use std::sync::Arc;
 use toile_core::prelude::*;
 
 /// A sample's photo, true mask, true outline and corners, in metres.
@@ -39,7 +38,7 @@ fn sample((garment, side): (&str, &str)) -> Sample {
 
 fn photo(pixels: RgbImage, garment_width: Option<f64>) -> Photo {
     Photo {
-        pixels: Arc::new(pixels),
+        pixels: Shared::new(pixels),
         alpha: None,
         px_per_metre: None,
         garment_width,
@@ -49,7 +48,7 @@ fn photo(pixels: RgbImage, garment_width: Option<f64>) -> Photo {
 }
 
 fn mask(pixels: GrayImage) -> Mask {
-    Mask { pixels: Arc::new(pixels) }
+    Mask { pixels: Shared::new(pixels) }
 }
 
 fn to_polygon(p: Point2, polygon: &[Point2]) -> f64 {
@@ -248,7 +247,7 @@ fn holes_are_kept_and_specks_dropped() {
 fn where_no_edge_is_seen_the_masks_rim_stays() {
     // A photo of one even grey: nothing to see.
     let (mut photo, mask) = drawn(400, |p| square(p, 200.0, 120.0, 0.0, 30.0));
-    photo.pixels = Arc::new(RgbImage::from_pixel(400, 400, Rgb([90; 3])));
+    photo.pixels = Shared::new(RgbImage::from_pixel(400, 400, Rgb([90; 3])));
     let outline = found(&photo, &mask);
     assert_eq!(outline.outer.corners.len(), 4);
     assert!((outline.area() / 0.0576 - 1.0).abs() < 5e-3);

@@ -4,7 +4,6 @@ use super::entry::{scale_fault, width_fault};
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::sync::Arc;
 use toile_core::prelude::*;
 
 /// Reads the photos of the garment's sides.
@@ -74,8 +73,8 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
 
 /// Decoded pixels that several photos may share.
 struct Picture {
-    pixels: Arc<image::RgbImage>,
-    alpha: Option<Arc<image::GrayImage>>,
+    pixels: Shared<image::RgbImage>,
+    alpha: Option<Shared<image::GrayImage>>,
 }
 
 impl Picture {
@@ -95,7 +94,7 @@ fn read_file(file: &str, cx: &Context) -> Result<Picture, StageError> {
     cx.check()?;
     let bytes = cx.read(file).map_err(|e| e.at("photos"))?;
     let Decoded { pixels, alpha } = decode(&bytes, file).map_err(|e| e.at("photos"))?;
-    Ok(Picture { pixels: Arc::new(pixels), alpha: alpha.map(Arc::new) })
+    Ok(Picture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new) })
 }
 
 /// Follows mirrors to a file; true where the pattern is that file's mirror image.

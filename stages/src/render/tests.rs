@@ -8,7 +8,6 @@ use super::{Form, Frame, Line, Scene, View, garment_model, pictures_of, render};
 use crate::texture::fixture;
 use image::{Rgb, RgbImage};
 use proptest::prelude::*;
-use std::sync::Arc;
 use toile_core::artifact::*;
 
 const RED: [f32; 3] = [1.0, 0.0, 0.0];
@@ -104,7 +103,7 @@ fn a_texture_stands_upright() {
         (0, _) => Rgb([0, 0, 255]),
         _ => Rgb([255, 255, 255]),
     });
-    let texture = Texture { name: "t".into(), pixels: Arc::new(pixels) };
+    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels) };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
     let model =
         Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };
@@ -118,7 +117,7 @@ fn a_texture_stands_upright() {
 #[test]
 fn a_fine_pattern_seen_from_afar_turns_even() {
     let pixels = RgbImage::from_fn(512, 512, |x, y| Rgb([if (x + y) % 2 == 0 { 255 } else { 0 }; 3]));
-    let texture = Texture { name: "t".into(), pixels: Arc::new(pixels) };
+    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels) };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
     let model =
         Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };
@@ -207,7 +206,7 @@ fn every_kind_that_has_a_look_has_pictures() {
     assert_eq!(count(&body), 2);
     assert_eq!(count(&garment_model(&garment, None)), 2);
     assert_eq!(count(&SewingPlan::default()), 0);
-    let mask = Mask { pixels: Arc::new(image::GrayImage::new(0, 0)) };
+    let mask = Mask { pixels: Shared::new(image::GrayImage::new(0, 0)) };
     assert!(count(&mask) <= 1, "a mask without pixels is no panic");
 }
 

@@ -348,7 +348,7 @@ mod tests {
             Rgb(if inside { [90, 80, 70] } else { [120, 110, 100] })
         });
         Photo {
-            pixels: Arc::new(pixels),
+            pixels: Shared::new(pixels),
             alpha: None,
             px_per_metre: None,
             garment_width: None,

@@ -118,7 +118,7 @@ fn photo(colour: [u8; 3]) -> Photo {
         })
     });
     Photo {
-        pixels: Arc::new(pixels),
+        pixels: Shared::new(pixels),
         alpha: None,
         px_per_metre: Some(SCALE),
         garment_width: None,

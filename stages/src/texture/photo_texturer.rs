@@ -6,7 +6,6 @@
 
 use super::inside::{PixelBox, covered};
 use super::{bleed, crop, parts};
-use std::sync::Arc;
 use toile_core::prelude::*;
 
 /// What light does to the photo.
@@ -119,7 +118,7 @@ impl PhotoTexturer {
         if !bleed::bleed(&mut crop.pixels, &sure) && !bleed::bleed(&mut crop.pixels, &crop.inside) {
             return Err(off_photo(panel, photo));
         }
-        Ok(Texture { name: panel.name.clone(), pixels: Arc::new(crop.pixels) })
+        Ok(Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels) })
     }
 }
 

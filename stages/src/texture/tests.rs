@@ -7,7 +7,6 @@ use super::inside::{PixelBox, covered};
 use super::{PhotoTexturer, crop, fixture};
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
-use std::sync::Arc;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
 
@@ -250,7 +249,7 @@ fn one_and_two_threads_give_the_same_bits() {
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let model = pool.install(|| model("(size: 300)"));
-        model.textures.iter().map(|t| Arc::clone(&t.pixels)).collect::<Vec<_>>()
+        model.textures.iter().map(|t| t.pixels.clone()).collect::<Vec<_>>()
     };
     assert_eq!(with(1), with(2));
 }

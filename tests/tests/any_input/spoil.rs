@@ -6,7 +6,7 @@ use std::any::Any;
 use std::sync::Arc;
 use toile_core::artifact::{
     Artifact, Body, Fabric, Garment, Gauge, InnerKind, InnerLine, Mask, Mesh, Model, Outline, Panel, Photo,
-    Point2, SewingPlan,
+    Point2, SewingPlan, Shared,
 };
 
 /// One edit: which list, where in it, how, and with what number.
@@ -140,31 +140,31 @@ fn photo(e: &Edit, p: &mut Photo) {
     let (w, h) = SIZES[e.at % SIZES.len()];
     let grain = |x: u32, y: u32| ((x * 31 + y * 17 + e.at as u32) % 251) as u8;
     match e.list {
-        0 => p.pixels = Arc::new(RgbImage::new(w, h)),
-        1 => p.pixels = Arc::new(RgbImage::from_fn(w, h, |x, y| image::Rgb([grain(x, y); 3]))),
+        0 => p.pixels = Shared::new(RgbImage::new(w, h)),
+        1 => p.pixels = Shared::new(RgbImage::from_fn(w, h, |x, y| image::Rgb([grain(x, y); 3]))),
         2 => p.px_per_metre = Some(e.number),
         3 => p.garment_width = Some(e.number),
         4 => p.px_per_metre = None,
         5 => p.garment_width = None,
-        6 => p.alpha = Some(Arc::new(GrayImage::new(p.pixels.width(), p.pixels.height()))),
+        6 => p.alpha = Some(Shared::new(GrayImage::new(p.pixels.width(), p.pixels.height()))),
         7 => p.mirrored = !p.mirrored,
-        8 => p.pixels = Arc::new(image::imageops::rotate90(p.pixels.as_ref())),
-        _ => p.pixels = Arc::new(image::imageops::flip_vertical(p.pixels.as_ref())),
+        8 => p.pixels = Shared::new(image::imageops::rotate90(p.pixels.as_ref())),
+        _ => p.pixels = Shared::new(image::imageops::flip_vertical(p.pixels.as_ref())),
     }
 }
 
 fn mask(e: &Edit, m: &mut Mask) {
     let (w, h) = SIZES[e.at % SIZES.len()];
     let side = m.pixels.dimensions();
-    let filled = |w, h, level| Arc::new(GrayImage::from_pixel(w, h, image::Luma([level])));
+    let filled = |w, h, level| Shared::new(GrayImage::from_pixel(w, h, image::Luma([level])));
     let noise = |x: u32, y: u32| if (x * 7919 + y * 104_729 + e.at as u32) % 97 < 40 { 255 } else { 0 };
     match e.list % 6 {
         0 => m.pixels = filled(w, h, 0),
         1 => m.pixels = filled(w, h, 255),
         2 => m.pixels = filled(side.0, side.1, 255),
         3 => m.pixels = filled(side.0, side.1, 0),
-        4 => m.pixels = Arc::new(GrayImage::from_fn(side.0, side.1, |x, y| image::Luma([noise(x, y)]))),
-        _ => m.pixels = Arc::new(image::imageops::rotate180(m.pixels.as_ref())),
+        4 => m.pixels = Shared::new(GrayImage::from_fn(side.0, side.1, |x, y| image::Luma([noise(x, y)]))),
+        _ => m.pixels = Shared::new(image::imageops::rotate180(m.pixels.as_ref())),
     }
 }
 
@@ -263,7 +263,7 @@ fn model(e: &Edit, m: &mut Model) {
         2 => mesh(m, &|x| e.triangles(&mut x.triangles)),
         3 => mesh(m, &|x| e.apply(&mut x.uv, |uv, v| uv[0] = v as f32)),
         4 => e.apply(&mut m.materials, |x, v| x.colour[0] = v as f32),
-        5 => e.apply(&mut m.textures, |t, _| t.pixels = Arc::new(RgbImage::new(0, 0))),
+        5 => e.apply(&mut m.textures, |t, _| t.pixels = Shared::new(RgbImage::new(0, 0))),
         _ => e.apply(&mut m.meshes, |x, _| x.name = "a/b\n\"c\"".into()),
     }
 }

@@ -2,13 +2,13 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::artifact::{Artifact, Outline, Photo, Point2};
+use toile_core::artifact::{Artifact, Outline, Photo, Point2, Shared};
 use toile_core::plugin::Refused;
 use toile_core::{Context, Inputs, PortValue, Registry, Stage, StageError};
 use toile_tests::plugins::{compiled, library};
 
 /// The built-in stages and those of plugins.
-pub fn registry_with(names: &[&str]) -> Registry {
+pub(crate) fn registry_with(names: &[&str]) -> Registry {
     let mut registry = toile::registry();
     for name in names {
         registry.load_plugin(&library(name), None).unwrap();
@@ -16,14 +16,14 @@ pub fn registry_with(names: &[&str]) -> Registry {
     registry
 }
 
-pub fn make(registry: &Registry, name: &str, arguments: &str) -> Box<dyn Stage> {
+pub(crate) fn make(registry: &Registry, name: &str, arguments: &str) -> Box<dyn Stage> {
     registry.make(registry.card(name).unwrap(), arguments).unwrap()
 }
 
-pub fn photo() -> Photo {
+pub(crate) fn photo() -> Photo {
     let pixels = image::RgbImage::from_fn(40, 30, |x, y| image::Rgb([(x * 6) as u8, (y * 8) as u8, 99]));
     Photo {
-        pixels: Arc::new(pixels),
+        pixels: Shared::new(pixels),
         alpha: None,
         px_per_metre: Some(500.0),
         garment_width: Some(0.5),
@@ -32,18 +32,18 @@ pub fn photo() -> Photo {
     }
 }
 
-pub fn outline() -> Outline {
+pub(crate) fn outline() -> Outline {
     let points = vec![Point2::new(0.0, 0.0), Point2::new(0.1, 0.0), Point2::new(0.0, 0.2)];
     let outer = toile_core::artifact::Loop { points, corners: vec![0, 1, 2] };
     Outline { outer, holes: vec![], edges: vec![], inner: vec![], frame: None }
 }
 
 /// Runs a stage on single values.
-pub fn run(stage: &dyn Stage, inputs: Vec<Arc<dyn Artifact>>) -> Result<Vec<PortValue>, StageError> {
+pub(crate) fn run(stage: &dyn Stage, inputs: Vec<Arc<dyn Artifact>>) -> Result<Vec<PortValue>, StageError> {
     run_in(stage, inputs, &Context::quiet())
 }
 
-pub fn run_in(
+pub(crate) fn run_in(
     stage: &dyn Stage,
     inputs: Vec<Arc<dyn Artifact>>,
     cx: &Context,
@@ -52,13 +52,13 @@ pub fn run_in(
 }
 
 /// The artifact on the only port, in its own words.
-pub fn only(made: &[PortValue]) -> String {
+pub(crate) fn only(made: &[PortValue]) -> String {
     assert_eq!(made.len(), 1);
     format!("{:?}", made[0].entries()[0].1)
 }
 
 /// A plugin of `tests/faulty/bad.c`, wrong in one way.
-pub fn bad(case: &str, dir: &Path) -> Result<Registry, Refused> {
+pub(crate) fn bad(case: &str, dir: &Path) -> Result<Registry, Refused> {
     let library = compiled("tests/faulty/bad.c", dir, &[&format!("-DCASE_{case}")]).unwrap();
     let mut registry = toile::registry();
     registry.load_plugin(&library, None).map(|()| registry)

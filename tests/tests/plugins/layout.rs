@@ -16,7 +16,9 @@ macro_rules! fields {
 fn the_header_has_the_layout_of_the_rust_types() {
     let types = fields! {
         "toile_text" = abi::Text { "ptr" = ptr, "len" = len }
-        "toile_field" = abi::Field { "name" = name, "data" = data, "count" = count, "kind" = kind, "width" = width }
+        "toile_field" = abi::Field { "name" = name, "data" = data, "count" = count, "kind" = kind, "width" = width,
+            "owner" = owner }
+        "toile_owner" = abi::Owner { "ctx" = ctx, "retain" = retain, "release" = release }
         "toile_record" = abi::Record { "fields" = fields, "count" = count }
         "toile_port" = abi::Port { "name" = name, "kind" = kind, "arity" = arity, "flags" = flags }
         "toile_param" = abi::Param { "name" = name, "doc" = doc, "kind" = kind, "unit" = unit,

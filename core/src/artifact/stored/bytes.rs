@@ -5,7 +5,7 @@
 
 use super::super::Kind;
 use super::MAX_DEPTH;
-use super::list::{Data, Field, Record};
+use super::list::{Data, Field, Owner, Record};
 use bytemuck::{Pod, cast_slice, pod_collect_to_vec};
 use std::borrow::Cow;
 
@@ -132,7 +132,7 @@ impl<'a> Bytes<'a> {
             7 => Data::Records(self.records(count, depth)?),
             other => return Err(format!("the field `{name}` has the unknown type {other}")),
         };
-        Ok(Field { name, width, data })
+        Ok(Field { name, width, data, owner: Owner::None })
     }
 
     fn records(&mut self, count: u64, depth: usize) -> Result<Vec<Record<'a>>, String> {

@@ -2,25 +2,20 @@
 
 use super::super::{
     Edge, Gauge, InnerChain, InnerKind, InnerLine, Loop, Mask, Outline, Panel, PanelEdge, Photo, PhotoFrame,
-    Point2,
+    Point2, Shared,
 };
 use super::{Reader, Record, Stored};
 use image::{GrayImage, RgbImage};
-use std::sync::Arc;
 
 /// A colour picture as two fields.
-pub(super) fn rgb<'a>(record: Record<'a>, pixels: &'a RgbImage) -> Record<'a> {
+pub(super) fn rgb<'a>(record: Record<'a>, pixels: &'a Shared<RgbImage>) -> Record<'a> {
     let (w, h) = pixels.dimensions();
-    record.owned("size", [[w, h]]).field("pixels", 3, bytes(pixels.as_raw()))
+    record.owned("size", [[w, h]]).lent("pixels", 3, pixels.as_raw(), pixels.keeper())
 }
 
-fn grey<'a>(record: Record<'a>, pixels: &'a GrayImage) -> Record<'a> {
+fn grey<'a>(record: Record<'a>, pixels: &'a Shared<GrayImage>) -> Record<'a> {
     let (w, h) = pixels.dimensions();
-    record.owned("size", [[w, h]]).field("pixels", 1, bytes(pixels.as_raw()))
-}
-
-fn bytes(raw: &[u8]) -> super::Data<'_> {
-    super::Data::U8(raw.into())
+    record.owned("size", [[w, h]]).lent("pixels", 1, pixels.as_raw(), pixels.keeper())
 }
 
 impl Photo {
@@ -37,8 +32,8 @@ impl Photo {
 impl Stored for Photo {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
         Ok(Photo {
-            pixels: Arc::new(r.rgb("pixels")?),
-            alpha: r.maybe("alpha")?.map(|a| a.grey("pixels")).transpose()?.map(Arc::new),
+            pixels: r.rgb("pixels")?,
+            alpha: r.maybe("alpha")?.map(|a| a.grey("pixels")).transpose()?,
             px_per_metre: r.maybe_one("px_per_metre")?,
             garment_width: r.maybe_one("garment_width")?,
             mirrored: r.flag("mirrored")?,
@@ -55,7 +50,7 @@ impl Mask {
 
 impl Stored for Mask {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
-        Ok(Mask { pixels: Arc::new(r.grey("pixels")?) })
+        Ok(Mask { pixels: r.grey("pixels")? })
     }
 }
 

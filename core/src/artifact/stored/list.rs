@@ -1,18 +1,21 @@
 //! Records and their fields.
 
 use super::super::{Point2, Point3, Vector3};
+use crate::plugin::Lending;
 use bytemuck::{Pod, cast_slice};
+use std::any::Any;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Named fields, in the order in which they were added.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct Record<'a> {
     /// The fields.
     pub fields: Vec<Field<'a>>,
 }
 
 /// One field of a record.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Field<'a> {
     /// Its name, such as `positions`.
     pub name: Cow<'a, str>,
@@ -20,10 +23,24 @@ pub struct Field<'a> {
     pub width: u32,
     /// What it holds.
     pub data: Data<'a>,
+    /// Who keeps its memory beyond the record, where somebody does: then it may be lent and not copied.
+    pub owner: Owner,
+}
+
+/// Who keeps the memory of a list.
+#[derive(Debug, Clone, Default)]
+pub enum Owner {
+    /// Nobody beyond the record.
+    #[default]
+    None,
+    /// A shared value of this program.
+    Own(Arc<dyn Any + Send + Sync>),
+    /// The other side of a plugin's border.
+    Foreign(Lending),
 }
 
 /// What a field holds: numbers, a text or records.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Data<'a> {
     /// Bytes: pixels, flags.
     U8(Cow<'a, [u8]>),
@@ -173,7 +190,20 @@ impl<'a> Record<'a> {
 
     /// Adds a field.
     pub fn field(mut self, name: &'a str, width: u32, data: Data<'a>) -> Self {
-        self.fields.push(Field { name: Cow::Borrowed(name), width, data });
+        self.fields.push(Field { name: Cow::Borrowed(name), width, data, owner: Owner::None });
+        self
+    }
+
+    /// Adds bytes that are shared.
+    pub(super) fn lent(
+        mut self,
+        name: &'a str,
+        width: u32,
+        bytes: &'a [u8],
+        owner: Arc<dyn Any + Send + Sync>,
+    ) -> Self {
+        let data = Data::U8(Cow::Borrowed(bytes));
+        self.fields.push(Field { name: Cow::Borrowed(name), width, data, owner: Owner::Own(owner) });
         self
     }
 }

@@ -16,7 +16,7 @@ mod solid;
 #[cfg(test)]
 mod tests;
 
-pub use list::{Data, Field, Listed, Record};
+pub use list::{Data, Field, Listed, Owner, Record};
 pub use read::Reader;
 
 use super::{Artifact, ArtifactType, Kind};

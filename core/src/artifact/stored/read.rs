@@ -1,7 +1,10 @@
 //! Asking a record for its fields.
 
-use super::list::{Data, Field, Listed, Record};
+use super::super::Shared;
+use super::list::{Data, Field, Listed, Owner, Record};
 use image::{GrayImage, ImageBuffer, Pixel, RgbImage};
+
+type Picture<P> = Result<Shared<ImageBuffer<P, Vec<u8>>>, String>;
 
 /// Reads the fields of one record by their names.
 #[derive(Debug, Clone, Copy)]
@@ -87,20 +90,16 @@ impl<'a> Reader<'a> {
     }
 
     /// A colour picture: `size` (width, height) and three bytes a pixel.
-    pub fn rgb(&self, name: &str) -> Result<RgbImage, String> {
+    pub fn rgb(&self, name: &str) -> Result<Shared<RgbImage>, String> {
         self.picture(name, 3)
     }
 
     /// A grey picture: `size` and one byte a pixel.
-    pub fn grey(&self, name: &str) -> Result<GrayImage, String> {
+    pub fn grey(&self, name: &str) -> Result<Shared<GrayImage>, String> {
         self.picture(name, 1)
     }
 
-    fn picture<P: Pixel<Subpixel = u8>>(
-        &self,
-        name: &str,
-        width: u32,
-    ) -> Result<ImageBuffer<P, Vec<u8>>, String> {
+    fn picture<P: Pixel<Subpixel = u8>>(&self, name: &str, width: u32) -> Picture<P> {
         let [w, h] = self.one::<[u32; 2]>("size")?;
         let field = self.field(name)?;
         let Data::U8(bytes) = &field.data else {
@@ -113,7 +112,12 @@ impl<'a> Reader<'a> {
         if bytes.len() as u64 != wanted {
             return Err(format!("`{name}` has {} bytes, {w} x {h} pixels are {wanted}", bytes.len()));
         }
+        let lent = match &field.owner {
+            Owner::Foreign(lending) => lending.picture(bytes, w, h),
+            _ => None,
+        };
+        let copied = || ImageBuffer::from_raw(w, h, bytes.to_vec()).map(Shared::new);
         let cannot = || format!("`{name}` is no picture of {w} x {h} pixels");
-        ImageBuffer::from_raw(w, h, bytes.to_vec()).ok_or_else(cannot)
+        lent.or_else(copied).ok_or_else(cannot)
     }
 }

@@ -149,9 +149,8 @@ impl Model {
 
 impl Stored for Model {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
-        let texture = |t: Reader<'_>| {
-            Ok::<_, String>(Texture { name: t.text("name")?, pixels: Arc::new(t.rgb("pixels")?) })
-        };
+        let texture =
+            |t: Reader<'_>| Ok::<_, String>(Texture { name: t.text("name")?, pixels: t.rgb("pixels")? });
         Ok(Model {
             meshes: r.records("meshes")?.map(|m| mesh_of(&m)).collect::<Result<_, _>>()?,
             materials: r.records("materials")?.map(|m| material_of(&m)).collect::<Result<_, _>>()?,

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 fn photo() -> Photo {
     Photo {
-        pixels: Arc::new(image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8, y as u8, 7]))),
-        alpha: Some(Arc::new(image::GrayImage::from_pixel(3, 2, image::Luma([9])))),
+        pixels: Shared::new(image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8, y as u8, 7]))),
+        alpha: Some(Shared::new(image::GrayImage::from_pixel(3, 2, image::Luma([9])))),
         px_per_metre: Some(1000.0),
         garment_width: None,
         mirrored: true,
@@ -170,7 +170,7 @@ fn phases() -> Phases {
 fn every_kind() -> Vec<Arc<dyn Artifact>> {
     vec![
         Arc::new(photo()),
-        Arc::new(Mask { pixels: Arc::new(image::GrayImage::from_pixel(2, 2, image::Luma([255]))) }),
+        Arc::new(Mask { pixels: Shared::new(image::GrayImage::from_pixel(2, 2, image::Luma([255]))) }),
         Arc::new(outline()),
         Arc::new(panel()),
         Arc::new(fabric()),

@@ -1,0 +1,118 @@
+//! Pictures that cross the border without a copy: they stay where they were made, and whoever made them
+//! is told when the other side needs them no more.
+
+use super::abi;
+use crate::artifact::Shared;
+use image::{ImageBuffer, Pixel};
+use std::any::Any;
+use std::ffi::c_void;
+use std::sync::Arc;
+
+type Keeper = Arc<dyn Any + Send + Sync>;
+
+/// The owners of a record's lists, in C's form.
+#[derive(Debug, Default)]
+pub(super) struct Owners(Vec<Box<abi::Owner>>);
+
+impl Owners {
+    /// Where the owner lies; good for as long as both live.
+    pub(super) fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
+        let ctx = std::ptr::from_ref(keeper).cast_mut().cast();
+        self.0.push(Box::new(abi::Owner { ctx, retain: Some(retain), release: Some(release) }));
+        self.0.last().map_or(std::ptr::null(), |o| &raw const **o)
+    }
+}
+
+unsafe extern "C" fn retain(ctx: *mut c_void) -> *mut c_void {
+    let keeper = unsafe { &*ctx.cast::<Keeper>() };
+    Box::into_raw(Box::new(keeper.clone())).cast()
+}
+
+unsafe extern "C" fn release(handle: *mut c_void) {
+    drop(unsafe { Box::from_raw(handle.cast::<Keeper>()) });
+}
+
+/// An owner who can be asked to keep a list.
+#[derive(Clone)]
+pub struct Lending(Asked);
+
+#[derive(Clone)]
+enum Asked {
+    /// The other side.
+    Foreign(abi::Owner),
+    /// Memory that this side gave to the other for its output.
+    Block(Keeper),
+}
+
+// Its functions may be called from any thread, by the rules of the border.
+unsafe impl Send for Lending {}
+unsafe impl Sync for Lending {}
+
+impl std::fmt::Debug for Lending {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Lending")
+    }
+}
+
+/// A handle of the other side.
+struct Handle {
+    handle: *mut c_void,
+    release: unsafe extern "C" fn(*mut c_void),
+}
+
+unsafe impl Send for Handle {}
+unsafe impl Sync for Handle {}
+
+impl Drop for Handle {
+    fn drop(&mut self) {
+        unsafe { (self.release)(self.handle) };
+    }
+}
+
+impl Lending {
+    /// The owner that the other side names, if it names one.
+    ///
+    /// # Safety
+    /// The owner is there for as long as the result, or any copy of it, is asked.
+    pub(super) unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
+        let owner = unsafe { owner.as_ref() }?;
+        Some(Lending(Asked::Foreign(*owner)))
+    }
+
+    /// The owner of a block of this side.
+    pub(super) fn block(keeper: Keeper) -> Self {
+        Lending(Asked::Block(keeper))
+    }
+
+    fn keep(&self) -> Option<Keeper> {
+        match &self.0 {
+            Asked::Block(keeper) => Some(keeper.clone()),
+            Asked::Foreign(owner) => {
+                let (retain, release) = (owner.retain?, owner.release?);
+                let handle = unsafe { retain(owner.ctx) };
+                (!handle.is_null()).then(|| Arc::new(Handle { handle, release }) as Keeper)
+            }
+        }
+    }
+
+    /// The list as a picture, where it lies; `None` where its owner cannot keep it.
+    ///
+    /// `bytes` is the list that this owner was named for.
+    pub(crate) fn picture<P: Pixel<Subpixel = u8>>(
+        &self,
+        bytes: &[u8],
+        w: u32,
+        h: u32,
+    ) -> Option<Shared<ImageBuffer<P, Vec<u8>>>> {
+        let keeper = self.keep().filter(|_| !bytes.is_empty())?;
+        // The vector only shows the bytes: `Shared` gives out references alone and never drops it, so that
+        // it is neither grown nor freed; the keeper keeps the bytes for as long as it lives.
+        let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
+        let length = bytes.len() as u64;
+        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNEL_COUNT) {
+            std::mem::forget(shown);
+            return None;
+        }
+        ImageBuffer::from_raw(w, h, shown).map(|picture| Shared::lent(picture, keeper))
+    }
+}
