@@ -81,7 +81,7 @@ fn artifact(a: &Arc<dyn Artifact>, motion: Motion) -> Option<Arc<dyn Artifact>> 
     }
     let mask = any.downcast_ref::<Mask>()?;
     match motion {
-        Motion::Shift(..) => Some(Arc::new(Mask { pixels: Arc::new(shifted(mask.pixels.as_ref())) })),
+        Motion::Shift(..) => Some(Arc::new(Mask { pixels: Shared::new(shifted(mask.pixels.as_ref())) })),
         Motion::Scale(_) => Some(Arc::new(mask.clone())),
         Motion::Turn(_) => None,
     }

@@ -3,7 +3,6 @@
 use crate::artifact::*;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 /// Scale of the photos, px per metre: a vest is about 90 px wide.
 pub const SCALE: f64 = 160.0;
@@ -219,7 +218,7 @@ pub fn photo_of(outline: &Outline) -> (Photo, Mask) {
 /// A photo with the suite's scale.
 pub fn photo_from(pixels: RgbImage) -> Photo {
     Photo {
-        pixels: Arc::new(pixels),
+        pixels: Shared::new(pixels),
         alpha: None,
         px_per_metre: Some(SCALE),
         garment_width: None,
@@ -230,7 +229,7 @@ pub fn photo_from(pixels: RgbImage) -> Photo {
 
 /// A mask of these pixels.
 pub fn mask_from(pixels: GrayImage) -> Mask {
-    Mask { pixels: Arc::new(pixels) }
+    Mask { pixels: Shared::new(pixels) }
 }
 
 /// A vest on a dark ground, about 110 by 130 px.

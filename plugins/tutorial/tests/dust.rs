@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used)]
 
 use image::{Rgb, RgbImage};
-use std::sync::Arc;
 use toile_core::artifact::Photo;
 use toile_core::testkit;
 use toile_tutorial::Dust;
@@ -13,7 +12,7 @@ toile_core::contracts!(Dust);
 fn photo(speck: Option<(u32, u32)>) -> Photo {
     let mut pixels = RgbImage::from_fn(16, 8, |x, _| Rgb([if x < 8 { 60 } else { 200 }; 3]));
     speck.into_iter().for_each(|(x, y)| pixels.put_pixel(x, y, Rgb([255, 255, 255])));
-    Photo { pixels: Arc::new(pixels), ..testkit::photo() }
+    testkit::photo().with_pixels(pixels)
 }
 
 #[test]
