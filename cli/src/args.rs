@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
+use toile_core::cache::Bytes;
 use toile_core::pipeline::Override;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.
@@ -48,6 +49,14 @@ pub(crate) enum Command {
     },
     /// Say what a run would do, what it would leave out, and why
     Explain(ExplainArgs),
+    /// Say what a run would do again and why, or where a triangle of a result comes from
+    Why(WhyArgs),
+    /// Show the cache of results, make room in it or empty it
+    Cache(CacheArgs),
+    /// Keep what a pipeline is made of beside it, to run against with `run --locked`
+    Lock(LockArgs),
+    /// Rewrite old pipeline files to the names that stages and parameters have now
+    Migrate(MigrateArgs),
     /// Keep goldens: text sheets of measures for every edge of a pipeline
     Golden {
         #[command(subcommand)]
@@ -148,6 +157,79 @@ pub(crate) struct RunArgs {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Print the metrics as one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Run again on every edit of the pipeline, its files or its plugins, until Ctrl-C
+    #[arg(long, conflicts_with = "json")]
+    pub(crate) watch: bool,
+    /// Compare with PIPELINE.lock and say what differs
+    #[arg(long)]
+    pub(crate) locked: bool,
+    #[command(flatten)]
+    pub(crate) cache: CacheChoice,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LockArgs {
+    /// Pipeline files; the lock of `vest.ron` is `vest.ron.lock`
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cache: CacheChoice,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MigrateArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    /// Write nothing; exit code 4 where a file is not up to date
+    #[arg(long)]
+    pub(crate) check: bool,
+}
+
+/// Which cache a command uses.
+#[derive(Debug, Args, Default)]
+pub(crate) struct CacheChoice {
+    /// Run every stage, and keep no results
+    #[arg(long, conflicts_with = "cache_dir")]
+    pub(crate) no_cache: bool,
+    /// Folder of the cache [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache_dir: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CacheArgs {
+    /// Delete what was used longest ago until this much is left, like "500 MB"
+    #[arg(long, value_name = "SIZE", conflicts_with = "clear")]
+    pub(crate) prune: Option<Bytes>,
+    /// Delete everything
+    #[arg(long)]
+    pub(crate) clear: bool,
+    /// Folder of the cache [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache_dir: Option<PathBuf>,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WhyArgs {
+    /// A pipeline file, or a result of one with --face
+    pub(crate) target: PathBuf,
+    /// The stage to explain [default: all that would run]
+    pub(crate) stage: Option<String>,
+    /// A triangle of the result, counted from 0 in the order of the file
+    #[arg(long, value_name = "N", conflicts_with = "stage")]
+    pub(crate) face: Option<usize>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Folder of the cache [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache_dir: Option<PathBuf>,
+    /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,
 }

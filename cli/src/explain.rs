@@ -15,7 +15,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
             return exit::INVALID;
         }
     };
-    let options = RunOptions { until: args.until.clone(), keep: false };
+    let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };
     let plan = match plan(&pipeline, &options) {
         Ok(plan) => plan,
         Err(e) => {

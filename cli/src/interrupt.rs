@@ -30,6 +30,11 @@ pub(crate) fn on_ctrl_c() -> Cancel {
     cancel.clone()
 }
 
+/// Says that all files are written.
+pub(crate) fn end_writing() {
+    WRITING.store(false, Ordering::SeqCst);
+}
+
 /// Says that files are being written, which is not cut short.
 pub(crate) fn begin_writing() {
     WRITING.store(true, Ordering::SeqCst);

@@ -6,16 +6,21 @@
 mod args;
 mod at_hand;
 mod bench;
+mod cache;
 mod cards;
 mod doctor;
 mod explain;
 mod golden;
 mod interrupt;
+mod lock;
+mod migrate;
 mod new_stage;
 mod progress;
 mod run;
 mod schema;
 mod validate;
+mod watch;
+mod why;
 
 use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
@@ -140,6 +145,10 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         }
         Command::Stage { name, json } => cards::show(&name, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
+        Command::Why(args) => why::why(&args, registry, streams),
+        Command::Cache(args) => cache::cache(&args, streams),
+        Command::Lock(args) => lock::lock(&args, registry, streams),
+        Command::Migrate(args) => migrate::run(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),

@@ -3,35 +3,74 @@
 use crate::args::RunArgs;
 use crate::progress::Bar;
 use crate::validate::open;
-use crate::{Streams, exit, interrupt};
+use crate::{Streams, cache, exit, interrupt, lock, watch};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
+use toile_core::cache::Cache;
 use toile_core::pipeline::{Fault, Faults, Pipeline};
 use toile_core::{
-    Cancel, ErrorCode, Listener, Metrics, Registry, RunError, RunOptions, RunResult, StageError,
+    Cancel, ErrorCode, Listener, Metrics, Reads, Registry, RunError, RunOptions, RunResult, StageError,
     run as run_stages, write_files,
 };
 
-/// Runs a pipeline, writes its files and says what came of it.
+/// Runs a pipeline, once or until Ctrl-C.
 pub(crate) fn run(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    match args.watch {
+        true => watch::watch(args, registry, streams),
+        false => once(args, registry, None, streams),
+    }
+}
+
+/// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
+pub(crate) fn once(
+    args: &RunArgs,
+    registry: &Registry,
+    reads: Option<&Reads>,
+    streams: &mut Streams<'_>,
+) -> u8 {
     let pipeline = match open(&args.pipeline, &args.overrides.set, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams),
     };
     let bar = Arc::new(Bar::new(&pipeline));
+    let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
+        Ok(lock) => lock,
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            return exit::INVALID;
+        }
+    };
+    let cache = cache::chosen(&args.cache, streams);
+    // A lock is compared by digests, which a cache takes.
+    let cache = cache.or_else(|| lock.as_ref().map(|_| Arc::new(Cache::nowhere())));
+    if let Some(reads) = reads {
+        watch::plugins(&pipeline, reads);
+    }
     let outcome = on_threads(args.threads, || {
-        let options = RunOptions { until: args.until.clone(), keep: args.keep };
+        let options = RunOptions {
+            until: args.until.clone(),
+            keep: args.keep,
+            cache: cache.clone(),
+            reads: reads.cloned(),
+        };
         let listener: Arc<dyn Listener> = bar.clone();
         run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener)
     });
     for warning in bar.finish() {
         streams.tell(format!("warning: {warning}"));
     }
+    for warning in cache.iter().flat_map(|c| c.take_warnings()) {
+        streams.tell(format!("warning: {warning}"));
+    }
     match outcome {
         Err(e) => fail_run(&pipeline, &e, args.json, streams),
-        Ok(result) => finish(args, &pipeline, result, streams),
+        Ok(result) => {
+            let locked =
+                lock.map_or(exit::DONE, |l| lock::compare(&l, &pipeline, registry, &result, streams));
+            finish(args, &pipeline, result, streams).max(locked)
+        }
     }
 }
 
@@ -78,7 +117,8 @@ fn stem(args: &RunArgs) -> String {
 
 fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {
     for stage in metrics.stages.iter().filter(|s| s.skipped.is_none()) {
-        streams.say(format!("  {:<20} {:>8.3} s", stage.id, stage.wall_s));
+        let cached = if stage.cached { "  cached" } else { "" };
+        streams.say(format!("  {:<20} {:>8.3} s{cached}", stage.id, stage.wall_s));
     }
     if let Some(g) = &metrics.garment {
         let f = &g.figures;
@@ -90,7 +130,8 @@ fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], strea
             f.steps
         ));
     }
-    streams.say(format!("{:.2} s, {} files in {}", metrics.wall_s, files.len(), dir.display()));
+    let stages = watch::counts(metrics);
+    streams.say(format!("{:.2} s ({stages}), {} files in {}", metrics.wall_s, files.len(), dir.display()));
 }
 
 fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {

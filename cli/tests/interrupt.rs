@@ -13,7 +13,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 fn start(out: &Path) -> Child {
     let pipeline = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines/vest.ron");
     Command::new(env!("CARGO_BIN_EXE_toile"))
-        .arg("run")
+        .args(["run", "--no-cache"])
         .arg(pipeline)
         .arg("--out")
         .arg(out)

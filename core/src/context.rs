@@ -1,6 +1,7 @@
 //! What a running stage may ask of the outside world.
 
-use crate::artifact::Measure;
+use crate::artifact::{Digester, Measure};
+use crate::cache::{Cache, Hash};
 use crate::{ErrorCode, StageError};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -86,7 +87,10 @@ pub struct Context {
     listener: Arc<dyn Listener>,
     figures: Mutex<Vec<Measure>>,
     warnings: Mutex<Vec<String>>,
+    reads: Mutex<Vec<(String, Option<Hash>)>>,
     parallel: Option<Arc<dyn Parallel>>,
+    /// Where parts of the stage's work are kept, under keys that begin with the stage's own.
+    memo: Option<(Arc<Cache>, Hash)>,
 }
 
 impl Context {
@@ -100,13 +104,30 @@ impl Context {
             listener,
             figures: Mutex::default(),
             warnings: Mutex::default(),
+            reads: Mutex::default(),
             parallel: None,
+            memo: None,
         }
     }
 
     /// The same context with loops that run elsewhere.
     pub(crate) fn with_parallel(self, parallel: Arc<dyn Parallel>) -> Self {
         Context { parallel: Some(parallel), ..self }
+    }
+
+    /// The same context with a cache for [`Context::memo`]; `stage` stands for the stage and its version.
+    pub(crate) fn with_memo(self, cache: Option<Arc<Cache>>, stage: Hash) -> Self {
+        Context { memo: cache.map(|cache| (cache, stage)), ..self }
+    }
+
+    /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
+    /// earlier run made it, else made by `make` and kept. For parts that outlive a change of the others, such as
+    /// the light on a garment whose texture is edited.
+    pub fn memo(&self, key: &Digester, make: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
+        match &self.memo {
+            Some((cache, stage)) => cache.memo(&self.stage, stage, key, make),
+            None => make(),
+        }
     }
 
     /// Calls `body(i)` for every `i` below `count` on the threads that the user allows, in any order, and
@@ -147,6 +168,7 @@ impl Context {
         Context {
             entry: entry.to_owned(),
             parallel: self.parallel.clone(),
+            memo: self.memo.clone(),
             ..Context::new(&self.stage, &self.base, self.cancel.clone(), self.listener.clone())
         }
     }
@@ -194,7 +216,16 @@ impl Context {
     }
 
     /// Reads a file named by the pipeline.
+    ///
+    /// The run's cache keeps note of it: a stage whose file has changed runs again.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, StageError> {
+        let content = self.read_file(path);
+        let hash = content.as_ref().ok().map(|bytes| Hash::of(bytes));
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
+        content
+    }
+
+    fn read_file(&self, path: &str) -> Result<Vec<u8>, StageError> {
         let full = self.resolve(path);
         let fail = |why: String| {
             StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
@@ -208,6 +239,17 @@ impl Context {
             return Err(fail(format!("it has {} bytes, the limit is {MAX_FILE_BYTES}", meta.len())));
         }
         std::fs::read(&full).map_err(|e| fail(io_words(&e)))
+    }
+
+    /// The files that the stage has read so far, with the digests of their contents; `None` for one that could
+    /// not be read.
+    pub(crate) fn take_reads(&self) -> Vec<(String, Option<Hash>)> {
+        std::mem::take(&mut *self.reads.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Takes over the files that one entry of a set read.
+    pub(crate) fn absorb_reads(&self, reads: &[(String, Option<Hash>)]) {
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(reads);
     }
 
     /// Takes over what one entry of a set noted, under the entry's name.

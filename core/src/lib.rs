@@ -36,9 +36,11 @@
 extern crate self as toile_core;
 
 pub mod artifact;
+pub mod cache;
 mod context;
 mod error;
 pub mod golden;
+pub mod lock;
 mod metrics;
 mod output;
 pub mod param;
@@ -59,7 +61,7 @@ pub use metrics::{Metrics, StageMetrics};
 pub use output::write_files;
 pub use param::{Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{RunError, RunOptions, RunResult, add_implicit, plan, run};
+pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PluginId, PortValue, Role, Set, Stage,
     StageMeta, StageType,

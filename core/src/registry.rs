@@ -3,6 +3,7 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
+use crate::pipeline::{Change, Migration};
 use crate::plugin::{self, ForeignType, Plugin, Refused};
 use crate::{Card, Role, Stage, StageType};
 use std::collections::BTreeMap;
@@ -19,6 +20,7 @@ pub struct Registry {
     implicit: Vec<fn() -> Box<dyn Stage>>,
     plugins: Vec<Plugin>,
     refused: Vec<Refused>,
+    migrations: Vec<Migration>,
 }
 
 /// A stage type.
@@ -125,6 +127,30 @@ impl Registry {
     /// The plugins that were refused, with the reasons.
     pub fn refused(&self) -> &[Refused] {
         &self.refused
+    }
+
+    /// Says what was renamed or removed since pipeline files were written; changes stand in the order in which they
+    /// were made, and stay for good.
+    pub fn migrate(&mut self, migration: Migration) -> &mut Self {
+        self.migrations.push(migration);
+        self
+    }
+
+    /// All such changes.
+    pub fn migrations(&self) -> &[Migration] {
+        &self.migrations
+    }
+
+    /// The version of a stage's parameters: one more than the changes of them and of the stage's name.
+    pub fn params_version(&self, stage: &str) -> u32 {
+        let mut names = vec![stage];
+        // Names lead to older names; each change is taken once.
+        for m in self.migrations.iter().rev() {
+            if matches!(m.change, Change::Stage { to } if names.contains(&to)) {
+                names.push(m.stage);
+            }
+        }
+        1 + self.migrations.iter().filter(|m| names.contains(&m.stage)).count() as u32
     }
 
     /// Adds a section. A second one of the same field replaces the first.

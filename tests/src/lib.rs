@@ -15,10 +15,13 @@ pub struct Answer {
     pub err: String,
 }
 
-/// Calls `toile` with arguments, in this process.
+/// Calls `toile` with arguments, in this process. A run uses no cache but one that the arguments name: tests run stages,
+/// and leave no trace in the home folder.
 pub fn toile(arguments: &[&str]) -> Answer {
     let (mut out, mut err) = (Vec::new(), Vec::new());
-    let all = std::iter::once("toile").chain(arguments.iter().copied());
+    let off = arguments.first() == Some(&"run") && !arguments.contains(&"--cache-dir");
+    let off = off.then_some("--no-cache").filter(|flag| !arguments.contains(flag));
+    let all = std::iter::once("toile").chain(arguments.iter().copied()).chain(off);
     let code = toile::command(all, &mut out, &mut err);
     let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
     Answer { code, out: text(out), err: text(err) }

@@ -69,6 +69,9 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
                     params: ::std::vec![#(#docs),*],
                     inputs: ::std::vec![],
                     outputs: ::std::vec![],
+                    package: ::std::concat!(
+                        ::std::env!("CARGO_PKG_NAME"), " ", ::std::env!("CARGO_PKG_VERSION")
+                    ),
                     plugin: ::std::option::Option::None,
                 }
             }

@@ -16,7 +16,7 @@ pub struct StageRecord {
     pub params: String,
     /// Wall time, seconds.
     pub wall_s: f64,
-    /// What it made.
+    /// What it made; of a run that a stage reports on, without services such as a collider.
     pub outputs: Vec<PortValue>,
     /// Figures that the stage gave through its context.
     pub figures: Vec<Measure>,

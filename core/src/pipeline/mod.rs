@@ -19,6 +19,7 @@
 mod draft;
 mod fault;
 mod graph;
+mod migrate;
 pub(crate) mod near;
 mod order;
 mod overrides;
@@ -34,6 +35,7 @@ mod words;
 pub(crate) mod tests;
 
 pub use fault::{Fault, FaultRecord, Faults, Label};
+pub use migrate::{Change, Migrated, Migration, migrate};
 pub use near::nearest;
 pub use overrides::Override;
 pub use plugins::PluginUse;
@@ -166,6 +168,28 @@ fn check(
         faults.push(fault);
     }
     Some((read, drafts, feeds))
+}
+
+/// The fields of a stage's parameters, `(lambda: 0.5)`: name and value as text; none where it is no such text.
+pub(crate) fn fields_of(params: &str) -> BTreeMap<String, String> {
+    let Ok(tree) = parse(params) else { return BTreeMap::new() };
+    let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();
+    let field = |e: &tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));
+    tree.entries().iter().filter_map(field).collect()
+}
+
+/// Every text in a stage's parameters.
+pub(crate) fn texts_of(params: &str) -> Vec<String> {
+    fn walk(params: &str, tree: &tree::Tree, texts: &mut Vec<String>) {
+        let text = params.get(tree.span.clone()).filter(|t| t.starts_with(['"', 'r']));
+        texts.extend(text.and_then(|t| crate::param::ron_options().from_str::<String>(t).ok()));
+        tree.entries().iter().for_each(|e| walk(params, &e.value, texts));
+    }
+    let mut texts = Vec::new();
+    if let Ok(tree) = parse(params) {
+        walk(params, &tree, &mut texts);
+    }
+    texts
 }
 
 fn parse(text: &str) -> Result<tree::Tree, Fault> {

@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::pick::{Before, pick};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
-use super::{MAX_FAULTS, MAX_STAGES, PluginUse, near, plugins};
+use super::{MAX_FAULTS, MAX_STAGES, PluginUse, migrate, near, plugins};
 use crate::param::ron_options;
 use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue};
 use std::collections::{BTreeMap, BTreeSet};
@@ -229,6 +229,7 @@ impl Reader<'_> {
                 (Fault::new("wrong_role", message).hint(known), names.first().copied())
             }
             (Some(card), _) => return Some(card.clone()),
+            (None, _) if let Some((fault, to)) = migrate::old_stage(self.registry, name) => (fault, Some(to)),
             (None, _) => {
                 let listing = if section.is_some() { "there is" } else { "" };
                 let hint = near::hint(name, listing, &names)
@@ -296,6 +297,10 @@ impl Reader<'_> {
 
     fn unknown_param(&mut self, card: &Card, name: &str, key: &Range<usize>) {
         if self.faults.len() >= MAX_FAULTS {
+            return;
+        }
+        if let Some(old) = migrate::old_param(self.registry, card.name, name) {
+            self.push(old.at(key, ""));
             return;
         }
         let names: Vec<&str> = card.params.iter().map(|p| p.name).chain(GENERIC).collect();

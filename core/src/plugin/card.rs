@@ -134,6 +134,7 @@ pub(super) unsafe fn read(
         params: params.collect::<Result<_, _>>().map_err(fault)?,
         inputs: inputs.iter().map(|p| unsafe { read_in(p) }).collect::<Result<_, _>>().map_err(fault)?,
         outputs: outputs.iter().map(|p| unsafe { read_out(p) }).collect::<Result<_, _>>().map_err(fault)?,
+        package: intern(&format!("{} {}", plugin.name, plugin.version)),
         plugin: Some(plugin),
     })
 }

@@ -2,7 +2,7 @@
 //! garment behind `metrics.json`.
 
 use crate::pipeline::{Feed, Node, Pipeline};
-use crate::{Arity, Card, Kind, Registry, Stage};
+use crate::{Arity, Card, InPort, Registry, Stage};
 use std::collections::BTreeMap;
 
 /// Adds every implicit stage of the registry whose inputs the pipeline makes and which it does not
@@ -24,7 +24,7 @@ pub fn add_implicit(pipeline: &mut Pipeline, registry: &Registry) {
 fn feeds(pipeline: &Pipeline, card: &Card) -> Option<Vec<Feed>> {
     card.inputs
         .iter()
-        .map(|port| match latest(pipeline, port.kind, port.arity) {
+        .map(|port| match maker(pipeline, port) {
             Some(feed) => Some(feed),
             None if port.optional => Some(Feed::Nothing),
             None => None,
@@ -32,13 +32,15 @@ fn feeds(pipeline: &Pipeline, card: &Card) -> Option<Vec<Feed>> {
         .collect()
 }
 
-/// The last port that makes a kind.
-fn latest(pipeline: &Pipeline, kind: Kind, arity: Arity) -> Option<Feed> {
-    pipeline.nodes.iter().enumerate().rev().find_map(|(node, n)| {
-        let port = n.card.outputs.iter().position(|o| o.kind == kind)?;
+/// The last port that makes a kind; the first where the original is wanted.
+fn maker(pipeline: &Pipeline, wanted: &InPort) -> Option<Feed> {
+    let makes = |(node, n): (usize, &Node)| {
+        let port = n.card.outputs.iter().position(|o| o.kind == wanted.kind)?;
         let is_set = n.card.is_mapped() || n.card.outputs[port].arity == Arity::All;
-        (is_set == (arity != Arity::One)).then_some(Feed::Node { node, port })
-    })
+        (is_set == (wanted.arity != Arity::One)).then_some(Feed::Node { node, port })
+    };
+    let mut nodes = pipeline.nodes.iter().enumerate();
+    if wanted.original { nodes.find_map(makes) } else { nodes.rev().find_map(makes) }
 }
 
 fn insert(pipeline: &mut Pipeline, stage: Box<dyn Stage>, card: Card, inputs: Vec<Feed>) {

@@ -1,17 +1,26 @@
 //! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
 
+mod forecast;
 mod implicit;
 mod node;
+mod steps;
+mod value;
 
+pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
+pub(crate) use node::Made;
 
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
-use crate::pipeline::{Feed, Pipeline};
-use crate::{ArtifactType, Cancel, Context, Inputs, Listener, Metrics, PortValue, StageError, StageMetrics};
+use crate::cache::{Cache, Hash};
+use crate::pipeline::Pipeline;
+use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::ops::Range;
-use std::sync::Arc;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex};
 use std::time::Instant;
+use steps::{Run, Step};
 
 /// What is asked of a run.
 #[derive(Debug, Clone, Default)]
@@ -20,17 +29,28 @@ pub struct RunOptions {
     pub until: Option<String>,
     /// Give every stage's artifacts as files as well.
     pub keep: bool,
+    /// Where results of stages are kept and found; none runs everything.
+    pub cache: Option<Arc<Cache>>,
+    /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
+    pub reads: Option<Reads>,
 }
+
+/// Files with the digest of the content that was read, none where there was no such file; a run fills it in while it
+/// goes on.
+pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Hash>>>>;
 
 /// What a run gives. Nothing is written yet.
 #[derive(Debug)]
 pub struct RunResult {
     /// Files of the writers, and of `keep`, ready for [`crate::write_files`].
     pub files: Vec<OutputFile>,
-    /// The record of every stage with its artifacts.
+    /// The record of every stage with its artifacts; of a run with a cache, only with those that the run itself had
+    /// to read.
     pub log: RunLog,
     /// The content of `metrics.json`.
     pub metrics: Metrics,
+    /// The digest of what every stage made, by id; none without a cache, and for what has no digest.
+    pub results: Vec<(String, Option<Hash>)>,
 }
 
 /// A stage's failure with its place.
@@ -59,6 +79,9 @@ impl std::error::Error for RunError {}
 
 /// Runs `pipeline` in the current rayon pool.
 ///
+/// With a cache, a stage whose result is known is not run, and its result is only read where something
+/// needs it. What goes wrong with the cache is a warning of [`Cache::take_warnings`], never an error.
+///
 /// Errors: the first stage's error in file order; nothing has been written then.
 pub fn run(
     pipeline: &Pipeline,
@@ -68,16 +91,38 @@ pub fn run(
 ) -> Result<RunResult, RunError> {
     let plan = plan(pipeline, options)?;
     let started = Instant::now();
-    let mut run = Run { pipeline, outputs: Vec::new(), log: RunLog::default(), files: Vec::new() };
-    run.log.pipeline = pipeline.name.clone();
-    for (index, skipped) in plan.into_iter().enumerate() {
-        let made = match skipped {
-            None => run.step(index, cancel, listener)?,
-            Some(reason) => run.skip(index, reason),
-        };
-        run.outputs.push(made);
+    let cache = options.cache.as_ref();
+    let reads = options.reads.as_ref();
+    let mut run = Run { pipeline, cache, cancel, listener, reads, steps: Vec::new() };
+    for skipped in plan {
+        match skipped {
+            None => run.step()?,
+            Some(reason) => run.steps.push(Step::Skipped(reason)),
+        }
     }
-    Ok(run.finish(started.elapsed().as_secs_f64(), options))
+    let files = files(&mut run, options)?;
+    let judged: Vec<Figures> = run.all()?;
+    if let Some(cache) = cache {
+        cache.tidy();
+    }
+    let metrics = metrics(&run, &judged, started.elapsed().as_secs_f64());
+    let results = run.results();
+    Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results })
+}
+
+/// The writers' files and those of stages whose artifacts were asked for.
+fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
+    let mut files: Vec<OutputFile> = run.all::<OutputFiles>()?.into_iter().flat_map(|f| f.0).collect();
+    let nodes = run.pipeline.nodes.iter().enumerate();
+    let kept = |id: &str| options.keep || options.until.as_deref() == Some(id);
+    let kept: Vec<usize> = nodes.filter(|(_, n)| kept(&n.id)).map(|(i, _)| i).collect();
+    for &index in &kept {
+        run.ensure_all(index)?;
+    }
+    let ids: Vec<&str> = kept.iter().map(|i| run.pipeline.nodes[*i].id.as_str()).collect();
+    let log = run.log(run.steps.len());
+    files.extend(log.stages.iter().filter(|r| ids.contains(&r.id.as_str())).flat_map(exports));
+    Ok(files)
 }
 
 /// What a run would do: for every stage `None` where it runs, or the reason why it is left out.
@@ -119,117 +164,47 @@ fn unknown_stage(pipeline: &Pipeline, name: &str) -> RunError {
     RunError { stage: name.to_owned(), entry: String::new(), span: 0..0, error }
 }
 
-/// A run under way.
-struct Run<'a> {
-    pipeline: &'a Pipeline,
-    outputs: Vec<Vec<PortValue>>,
-    log: RunLog,
-    files: Vec<OutputFile>,
-}
-
-impl Run<'_> {
-    fn step(
-        &mut self,
-        index: usize,
-        cancel: &Cancel,
-        listener: &Arc<dyn Listener>,
-    ) -> Result<Vec<PortValue>, RunError> {
-        let node = &self.pipeline.nodes[index];
-        let cx = Context::new(&node.id, &self.pipeline.base, cancel.clone(), listener.clone());
-        cx.progress(0.0, "");
-        let started = Instant::now();
-        let inputs = Inputs(node.inputs.iter().map(|feed| self.fed_by(feed)).collect());
-        let outcome =
-            cx.check().map_err(|e| (String::new(), e)).and_then(|()| node::run_node(node, &inputs, &cx));
-        let made = outcome.map_err(|(entry, error)| {
-            let span = error.param.and_then(|p| node.params.get(p)).unwrap_or(&node.span).clone();
-            RunError { stage: node.id.clone(), entry, span, error }
-        })?;
-        cx.progress(1.0, "");
-        let (figures, warnings) = cx.take_notes();
-        self.collect_files(&made);
-        self.log.stages.push(StageRecord {
-            id: node.id.clone(),
-            name: node.card.name.to_owned(),
-            role: node.card.role,
-            params: node.stage.params(),
-            wall_s: started.elapsed().as_secs_f64(),
-            outputs: made.clone(),
-            figures,
-            warnings,
-        });
-        Ok(made)
-    }
-
-    fn skip(&mut self, index: usize, reason: String) -> Vec<PortValue> {
-        self.log.skipped.push((self.pipeline.nodes[index].id.clone(), reason));
-        Vec::new()
-    }
-
-    fn fed_by(&self, feed: &Feed) -> Option<PortValue> {
-        match feed {
-            Feed::Nothing => None,
-            Feed::RunLog => Some(PortValue::One(Arc::new(self.log.clone()))),
-            Feed::Node { node, port } => self.outputs.get(*node)?.get(*port).cloned(),
-        }
-    }
-
-    fn collect_files(&mut self, made: &[PortValue]) {
-        for artifact in made.iter().flat_map(PortValue::entries).map(|(_, a)| a) {
-            if let Some(files) = typed::<OutputFiles>(artifact) {
-                self.files.extend(files.0.iter().cloned());
-            }
-        }
-    }
-
-    fn finish(mut self, wall_s: f64, options: &RunOptions) -> RunResult {
-        let metrics = metrics(&self.log, wall_s);
-        let kept = |r: &&StageRecord| options.keep || options.until.as_deref() == Some(r.id.as_str());
-        let exports: Vec<OutputFile> = self.log.stages.iter().filter(kept).flat_map(exports).collect();
-        self.files.extend(exports);
-        RunResult { files: self.files, log: self.log, metrics }
-    }
-}
-
 /// An artifact as its own type.
 pub(crate) fn typed<T: ArtifactType>(artifact: &Arc<dyn Artifact>) -> Option<&T> {
     let any: &dyn Any = artifact.as_ref();
     any.downcast_ref()
 }
 
-fn metrics(log: &RunLog, wall_s: f64) -> Metrics {
-    let ran = log.stages.iter().map(|r| StageMetrics {
-        id: r.id.clone(),
-        name: r.name.clone(),
-        wall_s: r.wall_s,
-        cached: false,
-        skipped: None,
-        figures: StageMetrics::figure_map(&r.figures),
-        warnings: r.warnings.clone(),
+fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
+    let steps = || run.pipeline.nodes.iter().zip(&run.steps);
+    let ran = steps().filter_map(|(node, step)| match step {
+        Step::Skipped(_) => None,
+        Step::Ran(ran) => Some(StageMetrics {
+            id: node.id.clone(),
+            name: node.card.name.to_owned(),
+            wall_s: ran.wall_s,
+            cached: ran.cached,
+            skipped: None,
+            figures: StageMetrics::figure_map(&ran.figures),
+            warnings: ran.warnings.clone(),
+        }),
     });
-    let skipped = log.skipped.iter().map(|(id, reason)| StageMetrics {
-        id: id.clone(),
-        name: id.clone(),
-        wall_s: 0.0,
-        cached: false,
-        skipped: Some(reason.clone()),
-        figures: Default::default(),
-        warnings: Vec::new(),
+    let skipped = steps().filter_map(|(node, step)| match step {
+        Step::Ran(_) => None,
+        Step::Skipped(reason) => Some(StageMetrics {
+            id: node.id.clone(),
+            name: node.id.clone(),
+            wall_s: 0.0,
+            cached: false,
+            skipped: Some(reason.clone()),
+            figures: Default::default(),
+            warnings: Vec::new(),
+        }),
     });
     let mut metrics = Metrics {
-        pipeline: log.pipeline.clone(),
+        pipeline: run.pipeline.name.clone(),
         wall_s,
         stages: ran.chain(skipped).collect(),
         panels: Default::default(),
         garment: None,
         shortfalls: Vec::new(),
     };
-    let made = log.stages.iter().flat_map(|r| &r.outputs).flat_map(PortValue::entries);
-    for (_, artifact) in made {
-        if let Some(figures) = typed::<Figures>(artifact) {
-            metrics.judge(figures);
-        }
-    }
+    judged.iter().for_each(|figures| metrics.judge(figures));
     metrics
 }
 

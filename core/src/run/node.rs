@@ -1,39 +1,61 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
-use crate::pipeline::Node;
-use crate::{Arity, Context, Inputs, PortValue, StageError};
+use crate::artifact::Measure;
+use crate::cache::{Hash, file_hash};
+use crate::pipeline::{Node, texts_of};
+use crate::{Context, Inputs, PortValue, StageError};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// A failure with the entry at work.
-type Failure = (String, StageError);
+pub(super) type Failure = (String, StageError);
 
-pub(super) fn run_node(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, Failure> {
-    if !node.card.is_mapped() {
-        return guarded(node, inputs, cx).map_err(|e| (String::new(), e));
-    }
-    let names = entry_names(node, inputs)?;
-    let runs: Vec<Result<_, Failure>> = names
-        .par_iter()
-        .map(|name| {
-            let own = cx.for_entry(name);
-            let one = entry_inputs(node, inputs, name)?;
-            let made = guarded(node, &one, &own).map_err(|e| (name.clone(), e))?;
-            Ok((made, own.take_notes()))
-        })
-        .collect();
-    let mut sets: Vec<BTreeMap<_, _>> = vec![BTreeMap::new(); node.card.outputs.len()];
-    for (name, run) in names.iter().zip(runs) {
-        let (made, (figures, warnings)) = run?;
-        cx.absorb(name, figures, warnings);
-        for (set, value) in sets.iter_mut().zip(made) {
-            if let PortValue::One(artifact) = value {
-                set.insert(name.clone(), artifact);
-            }
+/// What one run of a stage gave.
+#[derive(Debug)]
+pub(crate) struct Made {
+    /// The entry of its sets; empty where it is not mapped.
+    pub(crate) entry: String,
+    pub(crate) outputs: Vec<PortValue>,
+    pub(crate) figures: Vec<Measure>,
+    pub(crate) warnings: Vec<String>,
+    /// The files that it read.
+    pub(crate) reads: Vec<(String, Option<Hash>)>,
+}
+
+/// Runs a stage for some entries, in parallel; the first failure in their order counts.
+pub(super) fn run_entries(
+    node: &Node,
+    jobs: Vec<(String, Inputs)>,
+    cx: &Context,
+) -> Result<Vec<Made>, Failure> {
+    let runs: Vec<Result<Made, Failure>> =
+        jobs.into_par_iter().map(|(entry, inputs)| run_entry(node, entry, &inputs, cx)).collect();
+    runs.into_iter().collect()
+}
+
+fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<Made, Failure> {
+    let own = cx.for_entry(&entry);
+    let outcome = guarded(node, inputs, &own);
+    let mut reads = own.take_reads();
+    reads.extend(named_files(node, cx));
+    cx.absorb_reads(&reads);
+    match outcome {
+        Err(e) => Err((entry, e)),
+        Ok(outputs) => {
+            let (figures, warnings) = own.take_notes();
+            Ok(Made { entry, outputs, figures, warnings, reads })
         }
     }
-    Ok(node.card.outputs.iter().zip(sets).map(|(port, set)| PortValue::Set(port.kind, set)).collect())
+}
+
+/// The files that a plugin's stage is given by name: it reads them on its own side of the border, where nothing
+/// sees which it reads.
+fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Hash>)> {
+    if node.card.plugin.is_none() {
+        return Vec::new();
+    }
+    let texts = texts_of(&node.stage.params()).into_iter().filter(|t| !t.is_empty());
+    texts.filter_map(|t| file_hash(&cx.resolve(&t)).map(|hash| (t, Some(hash)))).collect()
 }
 
 /// A stage that panics is a bug of the stage, not the end of the program.
@@ -64,36 +86,4 @@ fn checked(made: Vec<PortValue>) -> Result<Vec<PortValue>, StageError> {
         }
     }
     Ok(made)
-}
-
-/// The names of the sets on the mapped ports, which must all be the same.
-fn entry_names(node: &Node, inputs: &Inputs) -> Result<Vec<String>, Failure> {
-    let mut sets =
-        node.card.inputs.iter().zip(&inputs.0).filter_map(|(port, value)| match (port.arity, value) {
-            (Arity::Each, Some(PortValue::Set(kind, set))) => {
-                Some((*kind, set.keys().cloned().collect::<Vec<_>>()))
-            }
-            _ => None,
-        });
-    let Some((first_kind, names)) = sets.next() else { return Ok(Vec::new()) };
-    for (kind, other) in sets {
-        if other != names {
-            let message = format!(
-                "the {first_kind}s are named {} but the {kind}s {}",
-                names.join(", "),
-                other.join(", ")
-            );
-            return Err((String::new(), StageError::invalid(message)));
-        }
-    }
-    Ok(names)
-}
-
-/// The inputs of one entry: its own values on mapped ports, the others as they are.
-fn entry_inputs(node: &Node, inputs: &Inputs, name: &str) -> Result<Inputs, Failure> {
-    let of_entry = |(port, value): (&crate::InPort, &Option<PortValue>)| match (port.arity, value) {
-        (Arity::Each, Some(PortValue::Set(_, set))) => set.get(name).cloned().map(PortValue::One),
-        _ => value.clone(),
-    };
-    Ok(Inputs(node.card.inputs.iter().zip(&inputs.0).map(of_entry).collect()))
 }

@@ -30,6 +30,7 @@ pub use roberts::Roberts;
 pub use sobel::Sobel;
 
 use toile_core::Registry;
+use toile_core::pipeline::Migration;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
@@ -39,4 +40,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Roberts>();
     registry.add::<LaplacianOfGaussian>();
     registry.add::<Laplacian>();
+    registry.migrate(Migration::stage("LaplacianEdges", "Laplacian"));
 }

@@ -20,9 +20,9 @@ const MAP_PX: usize = 384;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Fineness {
     /// Directions of the ambient sphere.
-    ambient: usize,
+    pub(super) ambient: usize,
     /// Directions of a soft box.
-    soft_box: usize,
+    pub(super) soft_box: usize,
 }
 
 /// For finished pictures: no direction shows by itself.

@@ -13,6 +13,7 @@ mod light;
 mod mips;
 mod overlay;
 mod pictures;
+mod remember;
 mod scene;
 mod shade;
 #[cfg(test)]
@@ -21,8 +22,8 @@ mod tests;
 pub use camera::{Frame, View};
 pub(crate) use mips::{LINEAR, Mips, encode};
 pub use overlay::Line;
-pub(crate) use pictures::jpeg;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
+pub(crate) use pictures::{jpeg, scene_pictures};
 pub use scene::Scene;
 
 use image::RgbImage;

@@ -118,8 +118,12 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
 }
 
 fn model_pictures(model: &Model, height: u32) -> Vec<Picture> {
-    let scene = Scene::draft(model);
-    shots(&scene, &[], height)
+    scene_pictures(&Scene::draft(model), height)
+}
+
+/// The pictures of a model whose scene is there already.
+pub(crate) fn scene_pictures(scene: &Scene, height: u32) -> Vec<Picture> {
+    shots(scene, &[], height)
 }
 
 fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<Picture> {

@@ -8,12 +8,14 @@ use super::camera::{Camera, Projected, View};
 use super::cover::{Patch, STEPS};
 use super::light::{self, Fineness, Region};
 use super::mips::{Footprint, Mips, encode};
+use super::remember::Remember;
 use super::shade::{Lights, wall};
 use super::{Line, overlay};
 use image::RgbImage;
 use nalgebra::Matrix2;
 use rayon::prelude::*;
-use toile_core::artifact::{Mesh, Model, Point3, Vector3};
+use toile_core::Context;
+use toile_core::artifact::{Digester, Mesh, Model, Point3, Vector3};
 
 /// The name of the mesh that is the body.
 pub(crate) const BODY: &str = "body";
@@ -33,23 +35,55 @@ pub struct Scene<'a> {
     region: Region,
     fineness: Fineness,
     ambient: Vec<Vec<[f32; 2]>>,
+    remember: Option<Remember<'a>>,
 }
 
 impl<'a> Scene<'a> {
     /// Prepares a model.
     pub fn new(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::FINE)
+        Scene::prepare(model, light::FINE, None)
+    }
+
+    /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
+    pub fn new_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
+        Scene::prepare(model, light::FINE, Some(Remember::new(model, cx)))
     }
 
     /// Prepares a model for small pictures: the light is coarser and almost three times as fast.
     pub fn draft(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT)
+        Scene::prepare(model, light::DRAFT, None)
     }
 
-    fn prepare(model: &'a Model, fineness: Fineness) -> Scene<'a> {
+    /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
+    pub fn draft_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
+        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)))
+    }
+
+    fn prepare(model: &'a Model, fineness: Fineness, remember: Option<Remember<'a>>) -> Scene<'a> {
         let textures = model.textures.par_iter().map(|t| Mips::new(&t.pixels)).collect();
         let region = region(model);
-        Scene { model, textures, region, fineness, ambient: light::ambient(model, region, fineness) }
+        let make = || light::ambient(model, region, fineness);
+        let ambient = match &remember {
+            None => make(),
+            Some(r) => {
+                let key = |d: &mut Digester| {
+                    d.text("ambient").count(fineness.ambient);
+                };
+                r.light(key, make)
+            }
+        };
+        Scene { model, textures, region, fineness, ambient, remember }
+    }
+
+    /// The soft box's light from a direction.
+    fn soft_box(&self, towards: Vector3) -> Vec<Vec<f32>> {
+        let make = || light::soft_box(self.model, self.region, towards, self.fineness);
+        let Some(r) = &self.remember else { return make() };
+        let key = |d: &mut Digester| {
+            d.text("soft box").count(self.fineness.soft_box).floats([towards.x, towards.y, towards.z]);
+        };
+        let wide = || make().into_iter().map(|m| m.into_iter().map(|v| [v]).collect()).collect();
+        r.light::<1>(key, wide).into_iter().map(|m| m.into_iter().map(|[v]| v).collect()).collect()
     }
 
     /// A picture.
@@ -63,7 +97,7 @@ impl<'a> Scene<'a> {
         let lights = Lights::new(&camera);
         let shot = Shot {
             scene: self,
-            key: light::soft_box(self.model, self.region, lights.key, self.fineness),
+            key: self.soft_box(lights.key),
             faces: faces(self.model, &camera),
             lights,
             width: view.width as usize,

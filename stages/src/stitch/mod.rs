@@ -6,8 +6,14 @@ mod tests;
 
 pub use spring::SpringStitcher;
 use toile_core::Registry;
+use toile_core::pipeline::Migration;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<SpringStitcher>();
+    registry.migrate(Migration::removed(
+        "SpringStitcher",
+        "tugs",
+        "seams that are stuck are pulled harder by themselves",
+    ));
 }

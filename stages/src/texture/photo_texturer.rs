@@ -6,6 +6,7 @@
 
 use super::inside::{PixelBox, covered};
 use super::{bleed, crop, parts};
+use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// What light does to the photo.
@@ -68,20 +69,19 @@ impl PhotoTexturer {
     ) -> Result<Model, StageError> {
         check_garment(garment)?;
         let normals = garment.vertex_normals();
-        let mut model = Model::default();
+        let (mut model, mut pictures) = (Model::default(), Vec::new());
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.check()?;
-            cx.progress(i as f64 / garment.panels.len() as f64, format!("texture of {}", panel.name));
             let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
             let mut material = parts::plain_cloth(&panel.name, parts::UNDYED);
             match photo_of(panel, photos.as_ref(), cx) {
                 Some(photo) => {
                     let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
                         .ok_or_else(|| off_photo(panel, photo))?;
-                    model.textures.push(self.texture(garment, panel, photo, area)?);
+                    pictures.push((panel, photo, area));
                     mesh.uv = panel.photo_px.iter().map(|px| area.uv(px)).collect();
                     material.colour = [1.0; 3];
-                    material.texture = Some(model.textures.len() - 1);
+                    material.texture = Some(pictures.len() - 1);
                     material.unlit = self.light == Light::Replace;
                 }
                 None => cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name)),
@@ -89,6 +89,13 @@ impl PhotoTexturer {
             model.meshes.push(mesh);
             model.materials.push(material);
         }
+        cx.progress(0.5, format!("textures of {} panels", pictures.len()));
+        let texture = |(panel, photo, area): (&GarmentPanel, &Photo, PixelBox)| {
+            cx.check()?;
+            self.texture(garment, panel, photo, area)
+        };
+        let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
+        model.textures = textures.into_iter().collect::<Result<_, _>>()?;
         if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
             model.meshes.push(parts::body_mesh(body, model.materials.len()));
             model.materials.push(parts::mannequin());

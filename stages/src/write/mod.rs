@@ -5,6 +5,7 @@ mod garment_obj;
 mod glb;
 mod names;
 mod obj;
+pub mod origin;
 mod ply;
 mod preview;
 mod report;
@@ -30,6 +31,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Glb>();
     registry.add::<GarmentObj>();
     registry.add::<Obj>();
+    registry.add_implicit::<origin::Origin>();
     registry.add::<Ply>();
     registry.add::<Preview>();
     registry.add::<Report>();

@@ -39,7 +39,7 @@ pub struct Preview {
 impl Preview {
     pub(super) fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
-        let scene = Scene::new(model);
+        let scene = Scene::new_in(model, cx);
         let frame = match self.frame {
             Framing::Garment => Frame::Garment,
             Framing::Whole => Frame::Whole,

@@ -19,7 +19,15 @@ const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));
 /// Writes a page on the run: every stage with its pictures, parameters, time and numbers.
 ///
 /// One file with no links to others; opens in any browser, light or dark.
-#[stage(role = Writer, source = "none", example = "Report(name: \"report\", pictures: 300)")]
+///
+/// Its times are those of the run that made the page: where all that it reports on comes from the cache, the page
+/// does as well.
+#[stage(
+    role = Writer,
+    source = "none",
+    example = "Report(name: \"report\", pictures: 300)",
+    contracts(Deterministic)
+)]
 pub struct Report {
     /// The file's name without its extension.
     #[param(default = "report".to_owned())]

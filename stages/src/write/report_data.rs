@@ -1,15 +1,15 @@
 //! What stands on the report's page, gathered from the run's record.
 
 use super::report::PICTURE_BUDGET;
-use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of};
+use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, scene_pictures};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::any::Any;
 use toile_core::artifact::{
-    Artifact, Body, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
-    StageRecord, quantile,
+    Artifact, Body, Digester, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
+    StageRecord, quantile, stored,
 };
 use toile_core::{Context, StageError};
 
@@ -32,7 +32,7 @@ pub(super) struct Page {
 }
 
 /// A picture as the page holds it.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Serialize, Deserialize)]
 struct Shown {
     caption: String,
     /// A data URI: nothing in it needs escaping.
@@ -74,12 +74,14 @@ pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, Stag
     let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
     let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
-    let views = shown(views(run), &mut budget).0;
+    let scene = last::<Model>(run, run.stages.len()).map(|model| (model, Scene::draft_in(model, cx)));
+    let draw = Draw { run, height, scene, cx };
+    let views = within(draw.views(), &mut budget).0;
     let mut stages = Vec::new();
     for (i, record) in run.stages.iter().enumerate() {
         cx.check()?;
         cx.progress(i as f64 / run.stages.len() as f64, format!("pictures of {}", record.id));
-        stages.push(section(run, i, longest, height, &mut budget));
+        stages.push(section(&draw, i, longest, &mut budget));
     }
     let skipped = run.skipped.iter().map(|(name, why)| Figure { name: name.clone(), value: why.clone() });
     Ok(Page {
@@ -94,9 +96,9 @@ pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, Stag
     })
 }
 
-fn section(run: &RunLog, index: usize, longest: f64, height: u32, budget: &mut usize) -> Section {
-    let record = &run.stages[index];
-    let (pictures, left_out) = shown(stage_pictures(run, index, height), budget);
+fn section(draw: &Draw<'_>, index: usize, longest: f64, budget: &mut usize) -> Section {
+    let record = &draw.run.stages[index];
+    let (pictures, left_out) = within(draw.stage(index), budget);
     Section {
         id: record.id.clone(),
         name: record.name.clone(),
@@ -131,15 +133,65 @@ fn last<T: 'static>(run: &RunLog, stages: usize) -> Option<&T> {
     run.stages[..stages].iter().rev().flat_map(entries).find_map(|(_, a)| is(a))
 }
 
-/// Pictures of what a stage made, in the order of its outputs.
-fn stage_pictures(run: &RunLog, index: usize, height: u32) -> Vec<Picture> {
-    let body = last::<Body>(run, index);
-    let made: Vec<(&str, &dyn Artifact)> = entries(&run.stages[index]).collect();
-    let each = |(name, artifact): &(&str, &dyn Artifact)| {
-        let named = |p: Picture| Picture { caption: caption(name, &p.caption), ..p };
-        pictures_of(*artifact, body, height).into_iter().map(named).collect::<Vec<_>>()
-    };
-    made.par_iter().flat_map_iter(each).collect()
+/// What pictures are drawn from.
+struct Draw<'a> {
+    run: &'a RunLog,
+    /// Height of the stages' pictures.
+    height: u32,
+    /// The last model with its light.
+    scene: Option<(&'a Model, Scene<'a>)>,
+    cx: &'a Context,
+}
+
+impl Draw<'_> {
+    /// Pictures of what a stage made, in the order of its outputs.
+    fn stage(&self, index: usize) -> Vec<Shown> {
+        let body = last::<Body>(self.run, index);
+        let made: Vec<(&str, &dyn Artifact)> = entries(&self.run.stages[index]).collect();
+        let each = |(name, artifact): &(&str, &dyn Artifact)| {
+            let named = |p: Shown| Shown { caption: caption(name, &p.caption), ..p };
+            self.artifact(*artifact, body).into_iter().map(named).collect::<Vec<_>>()
+        };
+        made.par_iter().flat_map_iter(each).collect()
+    }
+
+    fn artifact(&self, artifact: &dyn Artifact, body: Option<&Body>) -> Vec<Shown> {
+        match (&self.scene, is::<Model>(artifact)) {
+            (Some((model, scene)), Some(this)) if std::ptr::eq(*model, this) => {
+                shown(scene_pictures(scene, self.height))
+            }
+            _ => self.known(artifact, body),
+        }
+    }
+
+    /// Pictures of an artifact that an earlier page may have shown: then they need not be drawn again.
+    fn known(&self, artifact: &dyn Artifact, body: Option<&Body>) -> Vec<Shown> {
+        let draw = || shown(pictures_of(artifact, body, self.height));
+        let Some(bytes) = stored::encode(artifact) else { return draw() };
+        let mut key = Digester::new();
+        key.text("pictures")
+            .count(self.height as usize)
+            .text(artifact.kind().0)
+            .count(bytes.len())
+            .bytes(&bytes);
+        if let (Some(_), Some(behind)) = (is::<Garment>(artifact), body.and_then(|b| stored::encode(b))) {
+            key.bytes(&behind);
+        }
+        let bytes = self.cx.memo(&key, || serde_json::to_vec(&draw()).unwrap_or_default());
+        serde_json::from_slice(&bytes).unwrap_or_else(|_| draw())
+    }
+
+    /// The three views at the head.
+    fn views(&self) -> Vec<Shown> {
+        let Some((_, scene)) = &self.scene else { return Vec::new() };
+        let named =
+            [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
+        let view = |(name, view): (&str, fn(u32) -> View)| {
+            let form = jpeg(&scene.render(&view(VIEW_HEIGHT)))?;
+            Some(Picture { caption: name.to_owned(), form })
+        };
+        shown(named.into_iter().filter_map(view).collect())
+    }
 }
 
 fn caption(name: &str, detail: &str) -> String {
@@ -150,27 +202,19 @@ fn caption(name: &str, detail: &str) -> String {
     }
 }
 
-/// The three views: those that a preview has drawn, else new ones.
-fn views(run: &RunLog) -> Vec<Picture> {
-    let Some(model) = last::<Model>(run, run.stages.len()) else { return Vec::new() };
-    let named = [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
-    let scene = Scene::draft(model);
-    let view = |(name, view): (&str, fn(u32) -> View)| {
-        let form = jpeg(&scene.render(&view(VIEW_HEIGHT)))?;
-        Some(Picture { caption: name.to_owned(), form })
-    };
-    named.into_iter().filter_map(view).collect()
+/// Pictures as data URIs.
+fn shown(pictures: Vec<Picture>) -> Vec<Shown> {
+    pictures.into_iter().map(|p| Shown { src: data_uri(&p.form), caption: p.caption }).collect()
 }
 
-/// Pictures as data URIs as far as the budget goes, and the number of those left out.
-fn shown(pictures: Vec<Picture>, budget: &mut usize) -> (Vec<Shown>, usize) {
+/// Pictures as far as the budget goes, and the number of those left out.
+fn within(pictures: Vec<Shown>, budget: &mut usize) -> (Vec<Shown>, usize) {
     let count = pictures.len();
     let mut kept = Vec::new();
     for picture in pictures {
-        let src = data_uri(&picture.form);
-        if src.len() <= *budget {
-            *budget -= src.len();
-            kept.push(Shown { caption: picture.caption, src });
+        if picture.src.len() <= *budget {
+            *budget -= picture.src.len();
+            kept.push(picture);
         }
     }
     let left_out = count - kept.len();

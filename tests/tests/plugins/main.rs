@@ -8,3 +8,4 @@ mod kit;
 mod layout;
 mod pipelines;
 mod runs;
+mod shipped;

@@ -63,6 +63,11 @@ pub(crate) fn from_trusted_record(kind: Kind, record: &Record<'_>) -> Result<Arc
     make(record)
 }
 
+/// True of kinds that have a record; a service such as a collider has none.
+pub fn is_stored(kind: Kind) -> bool {
+    MAKERS.iter().any(|(k, _)| *k == kind)
+}
+
 /// The kind of that name.
 pub fn kind_named(name: &str) -> Option<Kind> {
     let services = [super::Collider::KIND, super::RunLog::KIND];

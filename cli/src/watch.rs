@@ -1,0 +1,137 @@
+//! `toile run --watch`: runs again on every edit of the pipeline, of a file that it reads or of a plugin.
+//!
+//! The few files of a pipeline are looked at five times a second: their times and sizes, and where those
+//! differ their content. That needs no service of the system, works on every file system (network drives too), and does
+//! not lose a file that an editor replaces by another. A change counts once two looks in a row see the same,
+//! so that a file half written is not run.
+
+use crate::args::RunArgs;
+use crate::run::once;
+use crate::{Streams, exit, interrupt};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant, SystemTime};
+use toile_core::cache::Hash;
+use toile_core::pipeline::Pipeline;
+use toile_core::{Metrics, Reads, Registry};
+
+/// Time between two looks.
+const PAUSE: Duration = Duration::from_millis(200);
+
+/// Runs until Ctrl-C.
+pub(crate) fn watch(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let cancel = interrupt::on_ctrl_c();
+    loop {
+        let started = Instant::now();
+        let reads: Reads = Arc::new(Mutex::new(BTreeMap::new()));
+        note(&reads, &args.pipeline);
+        let code = once(args, registry, Some(&reads), streams);
+        interrupt::end_writing();
+        if cancel.is_cancelled() {
+            return exit::DONE;
+        }
+        // What was edited while the stages ran has another content than they read.
+        let used = reads.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        streams.tell(format!(
+            "{} in {:.2} s; watching {} files, Ctrl-C ends it",
+            if code == exit::DONE { "done" } else { "not done" },
+            started.elapsed().as_secs_f64(),
+            used.len()
+        ));
+        let Some(changed) = wait(&used, || cancel.is_cancelled()) else { return exit::DONE };
+        let names: Vec<String> = changed.iter().map(|p| p.display().to_string()).collect();
+        streams.tell(format!("changed: {}", names.join(", ")));
+    }
+}
+
+/// The files that a pipeline names beside those that its stages read: its plugins.
+pub(crate) fn plugins(pipeline: &Pipeline, reads: &Reads) {
+    pipeline.plugins.iter().for_each(|p| note(reads, &pipeline.base.join(&p.file)));
+}
+
+/// Notes a file as it is now.
+fn note(reads: &Reads, path: &Path) {
+    let content = look(path, None).and_then(|l| l.content);
+    reads.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), content);
+}
+
+/// How many stages ran and how many came from the cache.
+pub(crate) fn counts(metrics: &Metrics) -> String {
+    let ran = metrics.stages.iter().filter(|s| s.skipped.is_none());
+    let (cached, run): (Vec<_>, Vec<_>) = ran.partition(|s| s.cached);
+    format!("{} stages run, {} from the cache", run.len(), cached.len())
+}
+
+/// What tells one content of a file from another; none of a file that is not there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Look {
+    modified: Option<SystemTime>,
+    size: u64,
+    content: Option<Hash>,
+}
+
+/// How files are now; none of one that is not there.
+type Looks = BTreeMap<PathBuf, Option<Look>>;
+
+/// Waits until the content of a file is another than the one that was used, and then stays; none once `stopped`.
+fn wait(used: &BTreeMap<PathBuf, Option<Hash>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
+    let mut last: Looks = used.keys().map(|path| (path.clone(), look(path, None))).collect();
+    while !stopped() {
+        std::thread::sleep(PAUSE);
+        let now: Looks = last.iter().map(|(path, was)| (path.clone(), look(path, was.as_ref()))).collect();
+        let changed = changed(used, &now);
+        if !changed.is_empty() && now == last {
+            return Some(changed);
+        }
+        last = now;
+    }
+    None
+}
+
+/// The files whose content is another than the one that was used.
+fn changed(used: &BTreeMap<PathBuf, Option<Hash>>, now: &Looks) -> Vec<PathBuf> {
+    let content = |path: &PathBuf| now.get(path).and_then(|look| look.as_ref()?.content);
+    used.iter().filter(|(path, was)| content(path) != **was).map(|(path, _)| path.clone()).collect()
+}
+
+/// Looks at a file; one whose time and size are as before is not read again.
+fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
+    let meta = std::fs::metadata(path).ok()?;
+    let (modified, size) = (meta.modified().ok(), meta.len());
+    let same = was.filter(|w| w.modified == modified && w.size == size);
+    let content = match same {
+        Some(was) => was.content,
+        None => std::fs::read(path).ok().map(|bytes| Hash::of(&bytes)),
+    };
+    Some(Look { modified, size, content })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_file_counts_as_changed_by_its_content_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        let (path, missing) = (dir.path().join("a.ron"), dir.path().join("missing.jpg"));
+        std::fs::write(&path, "one").unwrap();
+        let reads: Reads = Arc::default();
+        note(&reads, &path);
+        note(&reads, &missing);
+        let used = reads.lock().unwrap().clone();
+        let now = || changed(&used, &used.keys().map(|p| (p.clone(), look(p, None))).collect());
+        std::fs::write(&path, "one").unwrap();
+        assert_eq!(now(), Vec::<PathBuf>::new());
+        // As editors do: a new file takes the place of the old one.
+        std::fs::write(dir.path().join("new"), "two").unwrap();
+        std::fs::rename(dir.path().join("new"), &path).unwrap();
+        assert_eq!(now(), vec![path.clone()]);
+        std::fs::write(&missing, "here").unwrap();
+        assert_eq!(now().len(), 2);
+        std::fs::remove_file(&missing).unwrap();
+        assert_eq!(wait(&used, || false), Some(vec![path]));
+        assert_eq!(wait(&used, || true), None);
+    }
+}

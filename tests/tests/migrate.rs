@@ -1,0 +1,88 @@
+//! `toile migrate`: files of earlier versions of the built-in stages.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use toile_tests::{PIPELINES, pipeline, toile};
+
+/// As the first versions wrote it: LaplacianEdges is Laplacian now, `tugs` of the stitcher is gone.
+const OLD: &str = r#"// My vest.
+(
+    photos: { "front": (file: "front.jpg", width: "52 cm"), "back": MirrorOf("front") },
+    style: Vest(),
+    body: Mannequin(),
+    fabric: Preset("cotton poplin"),
+    stages: [
+        Otsu(),
+        LaplacianEdges(threshold: 8.0),  // finer than Canny
+        GridMesher(),
+        Place(),
+        BvhCollider(),
+        SpringStitcher(
+            tugs: 3,            // pull
+            seam_distance: "1 mm",
+        ),
+    ],
+)
+"#;
+
+#[test]
+fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("old.ron");
+    let name = file.display().to_string();
+    fs::write(&file, OLD).unwrap();
+
+    let refused = toile(&["validate", &name, "--json"]);
+    assert_eq!(refused.code, 3);
+    for words in [
+        "the stage `LaplacianEdges` is now called `Laplacian`",
+        "the parameter `tugs` was removed: seams that are stuck are pulled harder by themselves",
+        "`toile migrate` rewrites the file to the new names",
+    ] {
+        assert!(refused.out.contains(words), "{words} is missing in {}", refused.out);
+    }
+
+    let changes = format!(
+        "{name}: line 9: stage LaplacianEdges -> Laplacian\n\
+         {name}: line 14: SpringStitcher: tugs removed: seams that are stuck are pulled harder by themselves\n"
+    );
+    let check = toile(&["migrate", "--check", &name]);
+    assert_eq!((check.code, check.out.as_str()), (4, changes.as_str()));
+    assert_eq!(fs::read_to_string(&file).unwrap(), OLD, "a check writes nothing");
+
+    let migrated = toile(&["migrate", &name]);
+    assert_eq!((migrated.code, migrated.out.as_str()), (0, changes.as_str()));
+    let new = fs::read_to_string(&file).unwrap();
+    assert_eq!(
+        new,
+        OLD.replace("LaplacianEdges", "Laplacian")
+            .replace("            tugs: 3,            // pull", "            // pull")
+    );
+    assert_eq!(toile(&["validate", &name]).code, 0, "{}", toile(&["validate", &name]).err);
+    assert_eq!(toile(&["migrate", &name]).out, format!("{name}: up to date\n"));
+}
+
+#[test]
+fn the_shipped_pipelines_are_up_to_date() {
+    for name in PIPELINES {
+        let answer = toile(&["migrate", "--check", &pipeline(name)]);
+        assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    }
+}
+
+#[test]
+fn what_is_no_pipeline_is_left_alone() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("broken.ron");
+    fs::write(&file, "(stages: [").unwrap();
+    let name = file.display().to_string();
+    assert_eq!(toile(&["migrate", &name]).code, 3);
+    let missing = dir.path().join("none.ron").display().to_string();
+    let answer = toile(&["migrate", &missing]);
+    assert!(
+        answer.err.starts_with(&format!("error: cannot read the pipeline \"{missing}\": ")),
+        "{}",
+        answer.err
+    );
+    assert_eq!((answer.code, fs::read_to_string(&file).unwrap().as_str()), (3, "(stages: ["));
+}

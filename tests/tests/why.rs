@@ -1,0 +1,117 @@
+//! `toile why`: causes before a run, origins after it.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use toile_tests::{pipeline, toile};
+
+#[test]
+fn the_cause_is_the_field_that_changed() {
+    let dir = tempfile::tempdir().unwrap();
+    let (cache, out) = (dir.path().join("cache").display().to_string(), dir.path().display().to_string());
+    let vest = pipeline("vest.ron");
+    let why = |more: &[&str]| toile(&[&["why", &vest, "--cache-dir", &cache], more].concat());
+    assert_eq!(why(&["Otsu"]).out.lines().next(), Some("Otsu: would run: never run"));
+    let until = ["--until", "PlaneSmoother", "--out", &out, "--cache-dir", &cache];
+    assert_eq!(toile(&[&["run", &vest][..], &until].concat()).code, 0);
+    assert_eq!(why(&["PlaneSmoother"]).out, "PlaneSmoother: from the cache\n");
+    assert_eq!(
+        why(&["PlaneSmoother", "--set", "stages.PlaneSmoother.lambda=0.6"]).out,
+        "PlaneSmoother: would run: lambda 0.5 -> 0.6; upstream \"GridMesher\" unchanged\n"
+    );
+    assert_eq!(
+        why(&["PlaneSmoother", "--set", "stages.GridMesher.edge=\"20 mm\""]).out,
+        "PlaneSmoother: would run: upstream \"GridMesher\" would run again\n  \
+         since GridMesher: would run: edge 16 mm -> 20 mm; upstream \"Vest\" unchanged\n"
+    );
+    let json: Value = serde_json::from_str(
+        &why(&["GridMesher", "--set", "stages.GridMesher.edge=\"20 mm\"", "--json"]).out,
+    )
+    .unwrap();
+    let entry = &json["stages"][0]["entries"][1];
+    assert_eq!((&entry["entry"], &entry["causes"][0]), (&"front".into(), &"edge 16 mm -> 20 mm".into()));
+    let unknown = why(&["Rost"]);
+    assert_eq!(
+        (unknown.code, unknown.err.as_str()),
+        (3, "error: Rost: there is no stage `Rost` in this pipeline\n")
+    );
+}
+
+#[test]
+fn a_triangle_is_followed_to_its_panel_edge_and_pixel() {
+    let dir = tempfile::tempdir().unwrap();
+    let ron = dir.path().join("vest.ron");
+    let text = fs::read_to_string(pipeline("vest.ron")).unwrap();
+    // Placed is enough: sewing moves no triangle in its panel.
+    let lines = text.lines().filter(|l| !l.contains("Rest()")).collect::<Vec<_>>().join("\n");
+    let lines = lines.replace("samples/", &format!("{}/samples/", pipeline("")));
+    fs::write(&ron, lines.replace("Preview(), Report(),", "")).unwrap();
+    let out = dir.path().join("out");
+    let path = |name: &str| out.join(name).display().to_string();
+    let run = toile(&["run", &ron.display().to_string(), "--out", &out.display().to_string()]);
+    assert_eq!(run.code, 4, "{}", run.err);
+
+    let why = |file: &str, face: &str, more: &[&str]| {
+        toile(&[&["why", &path(file), "--face", face], more].concat())
+    };
+    let glb: Value = serde_json::from_str(&why("garment.glb", "100", &["--json"]).out).unwrap();
+    let obj: Value = serde_json::from_str(&why("garment.obj", "100", &["--json"]).out).unwrap();
+    assert_eq!(glb, obj);
+    assert_eq!(glb["panel"], "back");
+    assert!(glb["photo"].as_str().unwrap().ends_with("samples/vest/back.jpg"), "{glb}");
+
+    // The pixel is that place: metres from the panel's middle, seen at the photo's scale.
+    let figure = |v: &Value| v.as_f64().unwrap();
+    let other: Value = serde_json::from_str(&why("garment.glb", "300", &["--json"]).out).unwrap();
+    let (dx, dpx) = (
+        figure(&other["place_m"][0]) - figure(&glb["place_m"][0]),
+        figure(&other["pixel"][0]) - figure(&glb["pixel"][0]),
+    );
+    let (dy, dpy) = (
+        figure(&other["place_m"][1]) - figure(&glb["place_m"][1]),
+        figure(&other["pixel"][1]) - figure(&glb["pixel"][1]),
+    );
+    let scale = dpx.hypot(dpy) / dx.hypot(dy);
+    assert!((dpx - scale * dx).abs() < 3.0 && (dpy + scale * dy).abs() < 3.0, "{glb} {other}");
+
+    let text = why("garment.glb", "100", &[]).out;
+    assert!(text.starts_with("face 100: triangle 100 of panel \"back\"\nin the panel: x "), "{text}");
+    assert!(text.contains("\nnearest edge: ") && text.contains(" mm away\nphoto: "), "{text}");
+
+    let far = why("garment.glb", "9999999", &[]);
+    let count = far.err.split(" has ").nth(1).and_then(|t| t.split(' ').next()).unwrap().to_owned();
+    let name = path("garment.glb");
+    assert_eq!(
+        (far.code, far.err),
+        (
+            3,
+            format!(
+                "error: {name}: face 9999999 is out of range: the file has {count} triangles, counted from 0\n"
+            )
+        )
+    );
+    let last = (count.parse::<usize>().unwrap() - 1).to_string();
+    assert_eq!(
+        why("garment.obj", &last, &[]).err,
+        format!(
+            "error: {}: face {last} belongs to \"body\", which is no panel of the garment\n",
+            path("garment.obj")
+        )
+    );
+    let png = why("metrics.json", "0", &[]);
+    assert_eq!(
+        png.err,
+        format!(
+            "error: {}: only the triangles of .glb and .obj files can be followed\n",
+            path("metrics.json")
+        )
+    );
+    fs::remove_file(out.join("origin.json")).unwrap();
+    let lost = why("garment.glb", "0", &[]);
+    assert_eq!(lost.code, 3);
+    assert!(
+        lost.err.starts_with(&format!("error: {name}: there is no \"origin.json\" beside it (")),
+        "{}",
+        lost.err
+    );
+}
