@@ -384,5 +384,5 @@ fn written(registry: &Registry, card: &Card, ending: &str) -> Option<Vec<OutputF
 }
 
 fn inputs_of(card: &Card) -> Inputs {
-    Inputs(card.inputs.iter().map(|port| super::suite::default_value(port)).collect())
+    Inputs(card.inputs.iter().map(super::suite::default_value).collect())
 }

@@ -86,13 +86,12 @@ fn channel(
     let own = guide.is_none();
     let mean_p = if own { mean_g.clone() } else { means(p.to_vec())? };
     let mean_gp = if own { mean_gg.clone() } else { means(g.iter().zip(p).map(|(g, p)| g * p).collect())? };
-    let (mut a, mut b) = (Vec::with_capacity(p.len()), Vec::with_capacity(p.len()));
-    for i in 0..p.len() {
+    let line = |i: usize| {
         let variance = (mean_gg[i] - mean_g[i] * mean_g[i]).max(0.0);
         let slope = (mean_gp[i] - mean_g[i] * mean_p[i]) / (variance + flat);
-        a.push(slope);
-        b.push(mean_p[i] - slope * mean_g[i]);
-    }
+        (slope, mean_p[i] - slope * mean_g[i])
+    };
+    let (a, b): (Vec<f32>, Vec<f32>) = (0..p.len()).map(line).unzip();
     let (a, b) = (means(a)?, means(b)?);
     Ok((0..p.len()).map(|i| a[i] * g[i] + b[i]).collect())
 }

@@ -171,8 +171,8 @@ impl Grid {
 fn boxed(line: &mut [Cell], radius: usize) {
     let n = line.len();
     let mut sums = vec![[0.0; 2]; n + 1];
-    for i in 0..n {
-        sums[i + 1] = [sums[i][0] + line[i][0], sums[i][1] + line[i][1]];
+    for (i, cell) in line.iter().enumerate() {
+        sums[i + 1] = [sums[i][0] + cell[0], sums[i][1] + cell[1]];
     }
     for (i, cell) in line.iter_mut().enumerate() {
         let (from, to) = (i.saturating_sub(radius), (i + radius + 1).min(n));

@@ -1,5 +1,5 @@
 //! The texturer in a pipeline. With `KEEP_PICTURES=DIR` its pictures are kept there.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::Path;
 

@@ -1,5 +1,5 @@
 //! The mesher by itself.
-#![allow(clippy::unwrap_used)]
+#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use toile_core::artifact::{Outline, Panel};
 use toile_core::testkit::{self, shapes};

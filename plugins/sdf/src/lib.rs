@@ -26,9 +26,9 @@ use toile_core::prelude::*;
 /// Keeps cloth out of the body by a signed-distance grid, and out of itself.
 ///
 /// Far from the skin a question costs eight numbers of the grid; near it the closest point of the skin is found from
-/// the triangles that these nodes are closest to. On the mannequin, with cells of 8 mm, contacts within 1 cm mostly agree with
-/// the exact closest points to 1 micrometre; farther off, distances are interpolated and off by up to a millimetre, and
-/// beyond 5 cm a little too long.
+/// the triangles that these nodes are closest to. On the mannequin, with cells of 8 mm, 99 of 100 distances below 1 cm
+/// are exact and the worst is 0.1 mm off; up to 5 cm they are interpolated, 0.05 mm off in the median, 4 mm at worst;
+/// beyond that they are a little too long. The grid of 2.3 million nodes takes two seconds to make and 19 MB.
 ///
 /// The body must be a closed mesh that faces outwards. Without a body only cloth against itself is looked for.
 #[stage(
