@@ -198,6 +198,8 @@ typedef struct toile_host {
     uint8_t (*cancelled)(void *ctx); /* ask at least every 50 ms */
 #if TOILE_ABI_MINOR >= 1
     void (*parallel_for)(void *ctx, size_t count, void *data, void (*body)(void *data, size_t index));
+    /* A file was read: run again when it changes. digest: BLAKE3 of its content, 32 bytes, or null. */
+    void (*reads)(void *ctx, toile_text path, const uint8_t *digest);
 #endif
 } toile_host;
 

@@ -1,6 +1,6 @@
 //! What a running stage may ask of the outside world.
 
-use crate::artifact::{Digester, Measure};
+use crate::artifact::{Digest, Digester, Measure};
 use crate::cache::{Cache, Hash};
 use crate::{ErrorCode, StageError};
 use rayon::prelude::*;
@@ -223,6 +223,12 @@ impl Context {
         let hash = content.as_ref().ok().map(|bytes| Hash::of(bytes));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
         content
+    }
+
+    /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else did.
+    pub(crate) fn note_read(&self, path: &str, digest: Option<[u8; 32]>) {
+        let hash = digest.map(|d| Hash(Digest(d))).or_else(|| crate::cache::file_hash(&self.resolve(path)));
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
     }
 
     fn read_file(&self, path: &str) -> Result<Vec<u8>, StageError> {

@@ -10,7 +10,7 @@ use std::ffi::c_void;
 pub const MAGIC: [u8; 8] = *b"TOILEPLG";
 /// Raised when a plugin built before can no longer be understood.
 pub const MAJOR: u32 = 1;
-/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`.
+/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`, `Host::reads`.
 pub const MINOR: u32 = 1;
 
 /// What a call gives back: done.
@@ -234,6 +234,10 @@ pub struct Host {
             body: Option<unsafe extern "C" fn(data: *mut c_void, index: usize)>,
         ),
     >,
+    /// Since 1.1. Tells that a file was read, so that the stage runs again when it has changed: its path as
+    /// the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null: the program then
+    /// looks itself.
+    pub reads: Option<unsafe extern "C" fn(ctx: *mut c_void, path: Text, digest: *const u8)>,
 }
 
 /// A stage type.

@@ -20,6 +20,8 @@ pub(super) enum Message {
     Progress(f64, String),
     Warning(String),
     Figure(String, f64, String),
+    /// A file was read, with the digest of its content where the plugin knows it.
+    Read(String, Option<[u8; 32]>),
     /// A loop to be run on the program's threads.
     Loop(Loop),
     /// The call is over, with this status.
@@ -112,6 +114,7 @@ impl Call {
             figure: Some(figure),
             cancelled: Some(cancelled),
             parallel_for: Some(parallel_for),
+            reads: Some(reads),
         }
     }
 
@@ -308,6 +311,11 @@ unsafe extern "C" fn figure(ctx: *mut c_void, name: Text, value: f64, unit: Text
 
 unsafe extern "C" fn cancelled(ctx: *mut c_void) -> u8 {
     u8::from(unsafe { call(ctx) }.cancel.is_cancelled())
+}
+
+unsafe extern "C" fn reads(ctx: *mut c_void, path: Text, digest: *const u8) {
+    let digest = unsafe { digest.cast::<[u8; 32]>().as_ref() }.copied();
+    let _ = unsafe { call(ctx).messages.send(Message::Read(words(path), digest)) };
 }
 
 unsafe extern "C" fn parallel_for(

@@ -278,6 +278,7 @@ impl Foreign {
                 Ok(Message::Progress(share, text)) => cx.progress(share, text),
                 Ok(Message::Warning(text)) => cx.warn(text),
                 Ok(Message::Figure(name, value, unit)) => cx.figure(&name, value, intern(&unit)),
+                Ok(Message::Read(path, digest)) => cx.note_read(&path, digest),
                 Ok(Message::Loop(work)) => serve_loop(&work),
                 Ok(Message::Done(status)) => return Ok(status),
                 Err(RecvTimeoutError::Timeout) => {}

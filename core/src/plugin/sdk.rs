@@ -205,6 +205,9 @@ fn run_stage<S: StageType>(
     let cx = Context::new(id, Path::new(base), cancel, listener).with_parallel(remote.clone());
     let cx = if own.is_empty() { cx } else { cx.for_entry(own) };
     let made = on_threads(remote.threads(), || stage.run_ports(&inputs, &cx));
+    for (path, digest) in cx.take_reads() {
+        remote.reads(&path, digest.map(|d| d.0.0));
+    }
     for figure in cx.take_notes().0 {
         remote.figure(&figure.name, figure.value, figure.unit);
     }
@@ -308,6 +311,11 @@ impl Remote {
 
     fn cancelled(&self) -> bool {
         self.with(|h| h.cancelled.is_some_and(|ask| unsafe { ask(h.ctx) } != 0)).unwrap_or(true)
+    }
+
+    fn reads(&self, path: &str, digest: Option<[u8; 32]>) {
+        let digest = digest.as_ref().map_or(std::ptr::null(), |d| d.as_ptr());
+        self.with(|h| h.reads.map(|f| unsafe { f(h.ctx, Text::of(path), digest) }));
     }
 
     fn figure(&self, name: &str, value: f64, unit: &str) {

@@ -330,7 +330,7 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
             Some(extension) if extension.chars().all(char::is_alphabetic) => {
                 let ending = format!(".{extension}");
-                let files = registry.cards().find_map(|card| written(registry, card, &ending));
+                let files = writers_for(registry, example).find_map(|card| written(registry, card, &ending));
                 for file in files.into_iter().flatten() {
                     let own = if file.path.ends_with(&ending) { name } else { &file.path };
                     lay(own, &file.bytes)?;
@@ -340,6 +340,13 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
         }
     }
     Ok(())
+}
+
+/// All cards, first those that are named after the stage of the example: `SceneJson` writes what `Scene` reads.
+fn writers_for<'r>(registry: &'r Registry, example: &'r str) -> impl Iterator<Item = &'r Card> {
+    let stage = example.split('(').next().unwrap_or("").trim();
+    let kin = move |card: &&Card| card.name.starts_with(stage);
+    registry.cards().filter(kin).chain(registry.cards())
 }
 
 fn picture(format: image::ImageFormat) -> Vec<u8> {

@@ -121,6 +121,11 @@ impl Measure {
             ErrorCode::StaticEquilibrium,
             "the cloth had not come to rest when the solver stopped".into(),
         );
+        miss(
+            g.steps == 0 && g.converged,
+            ErrorCode::FastFinish,
+            "the solver called the cloth at rest before its first step".into(),
+        );
         list
     }
 }

@@ -10,6 +10,7 @@ pub use collider::{PushesOut, Sphere, TrapCollider};
 pub use param::{PanicsInCreate, Trap};
 pub use run::{
     Forgets, GivesBadTriangles, GivesNan, Loops, NeverStops, PanicsInDrop, PanicsInLoop, PanicsInRun, Shades,
+    Tints,
 };
 
 toile_core::plugin!(
@@ -23,6 +24,7 @@ toile_core::plugin!(
     Forgets,
     Loops,
     Shades,
+    Tints,
     Sphere,
     TrapCollider,
     PushesOut,

@@ -137,6 +137,24 @@ impl Loops {
     }
 }
 
+/// Adds the first byte of a file to every level.
+#[stage(role = Denoiser, contracts(Deterministic))]
+pub struct Tints {
+    /// The file, without its ending.
+    #[param(default = "tint".into())]
+    stem: String,
+}
+
+#[stage]
+impl Tints {
+    fn run(&self, photo: &Photo, cx: &Context) -> Result<Photo, StageError> {
+        let tint = cx.read(&format!("{}.txt", self.stem))?.first().copied().unwrap_or(0);
+        let mut pixels = photo.pixels.as_ref().clone();
+        pixels.iter_mut().for_each(|v| *v = v.saturating_add(tint));
+        Ok(photo.with_pixels(pixels))
+    }
+}
+
 /// Multiplies every level: a stage as it should be.
 #[stage(role = Denoiser, source = "none", example = "Shades(by: 0.5)", contracts(Deterministic, ThreadInvariant))]
 pub struct Shades {

@@ -108,6 +108,24 @@ fn a_stage_of_a_plugin_that_panics_is_named_at_its_place() {
     assert!(answer.err.contains("p.ron:5"), "{}", answer.err);
 }
 
+#[test]
+fn a_file_that_a_plugin_reads_is_part_of_what_its_result_depends_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let pipeline = write(dir.path(), &format!("[{:?}]", library("toile_faulty")), "Tints()");
+    let [out, cache] = ["out", "cache"].map(|d| dir.path().join(d).display().to_string());
+    let picture = || {
+        let answer = toile(&["run", &pipeline, "--until", "Tints", "--out", &out, "--cache-dir", &cache]);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        (std::fs::read(dir.path().join("out/stages/Tints/front.png")).unwrap(), answer.out)
+    };
+    std::fs::write(dir.path().join("tint.txt"), [10]).unwrap();
+    let (first, _) = picture();
+    let (again, said) = picture();
+    assert!(first == again && said.contains("0 stages run"), "{said}");
+    std::fs::write(dir.path().join("tint.txt"), [90]).unwrap();
+    assert!(picture().0 != first, "a changed file gives another result");
+}
+
 /// Rust code that can end the program lies in one folder.
 #[test]
 fn unsafe_code_lies_in_the_plugin_boundary_alone() {

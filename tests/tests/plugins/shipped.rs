@@ -69,6 +69,6 @@ fn a_vest_of_plugins_is_the_same_loaded_and_linked_in() {
     let plugins: Vec<OsString> = SHIPPED.iter().map(|(name, _)| library(name).into()).collect();
     assert_eq!(vest(&linked, &[], &linked_out), (0, String::new()));
     assert_eq!(vest(&toile::registry(), &plugins, &loaded_out), (0, String::new()));
-    let [a, b] = [linked_out, loaded_out].map(|d| std::fs::read(d.join("vest.glb")).unwrap());
+    let [a, b] = [linked_out, loaded_out].map(|d| std::fs::read(d.join("garment.glb")).unwrap());
     assert!(a == b, "the two models differ");
 }

@@ -1,0 +1,137 @@
+//! The error codes that scripts match, each with its exact words where a pipeline meets it.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::sync::Arc;
+use toile_core::artifact::{Artifact, Collider, Figures, Garment, Outline, Point3};
+use toile_core::testkit;
+use toile_core::{Context, ErrorCode, Inputs, PortValue, StageError};
+use toile_tests::{pipeline, toile};
+
+/// Runs a stage by its example on single values.
+fn run(
+    name: &str,
+    arguments: &str,
+    inputs: Vec<Option<Arc<dyn Artifact>>>,
+) -> Result<Vec<PortValue>, StageError> {
+    let registry = toile::registry();
+    let stage = registry.make(registry.card(name).unwrap(), arguments).unwrap();
+    let ports = inputs.into_iter().map(|a| a.map(PortValue::One)).collect();
+    stage.run_ports(&Inputs(ports), &Context::quiet())
+}
+
+/// The limits that a garment misses: code and words.
+fn shortfalls(garment: Garment, collider: Option<Collider>) -> Vec<(ErrorCode, String)> {
+    let collider = collider.map(|c| Arc::new(c) as Arc<dyn Artifact>);
+    let made = run("Measure", "()", vec![Some(Arc::new(garment)), collider]).unwrap();
+    let any: Arc<dyn std::any::Any + Send + Sync> = made[0].entries()[0].1.clone();
+    let figures = any.downcast::<Figures>().unwrap();
+    figures.shortfalls.iter().map(|s| (s.code, s.message.clone())).collect()
+}
+
+/// A garment as it hangs when all is well.
+fn good() -> Garment {
+    let mut garment = testkit::dress::sewn_garment();
+    garment.status.steps = 10;
+    garment.status.converged = true;
+    garment
+}
+
+#[test]
+fn a_good_garment_misses_nothing() {
+    assert_eq!(shortfalls(good(), None), []);
+}
+
+#[test]
+fn static_equilibrium() {
+    let mut garment = good();
+    garment.status.converged = false;
+    let words = "the cloth had not come to rest when the solver stopped".to_owned();
+    assert_eq!(shortfalls(garment, None), [(ErrorCode::StaticEquilibrium, words)]);
+}
+
+#[test]
+fn fast_finish() {
+    let mut garment = good();
+    garment.status.steps = 0;
+    let words = "the solver called the cloth at rest before its first step".to_owned();
+    assert_eq!(shortfalls(garment, None), [(ErrorCode::FastFinish, words)]);
+}
+
+#[test]
+fn stitching_error() {
+    let mut garment = good();
+    let [a, _] = garment.seams[0].pairs[0];
+    garment.positions[a as usize].y += 3e-3;
+    let found = shortfalls(garment, None);
+    assert_eq!(found[0], (ErrorCode::StitchingError, "a seam gapes by 3 mm, the limit is 1 mm".to_owned()));
+}
+
+/// A collider on the suite's body.
+fn collider() -> Collider {
+    let made = run("BvhCollider", "()", vec![Some(Arc::new(testkit::dress::body()))]).unwrap();
+    let any: Arc<dyn std::any::Any + Send + Sync> = made[0].entries()[0].1.clone();
+    any.downcast::<Collider>().unwrap().as_ref().clone()
+}
+
+#[test]
+fn body_intersection() {
+    let mut garment = good();
+    let middle = testkit::dress::body();
+    let centre =
+        middle.positions.iter().fold(Point3::origin(), |c, p| c + p.coords / middle.positions.len() as f64);
+    garment.positions.iter_mut().for_each(|p| *p = centre + (*p - centre) * 1e-3);
+    let found = shortfalls(garment, Some(collider()));
+    let body = found.iter().find(|(code, _)| *code == ErrorCode::BodyIntersection).unwrap();
+    assert!(body.1.contains(" vertices lie in the body, the deepest by "), "{}", body.1);
+}
+
+#[test]
+fn self_intersection() {
+    let mut garment = good();
+    // A vertex of the front goes out through the back.
+    let front = garment.panels[0].vertices.clone();
+    let inner = front.clone().find(|i| !garment.panels[0].boundary.contains(&(*i as u32))).unwrap();
+    garment.positions[inner].z -= 2.0;
+    let found = shortfalls(garment, Some(collider()));
+    let own = found.iter().find(|(code, _)| *code == ErrorCode::SelfIntersection).unwrap();
+    let (count, words) = own.1.split_once(' ').unwrap();
+    assert!(count.parse::<usize>().unwrap() > 0);
+    assert_eq!(words, "pairs of triangles cross each other");
+}
+
+#[test]
+fn degenerate_triangles() {
+    let mut outline: Outline = testkit::outline();
+    outline.outer.points.swap(2, 40);
+    let e = run("GridMesher", "()", vec![Some(Arc::new(outline))]).unwrap_err();
+    assert_eq!(
+        (e.code, e.message.as_str()),
+        (ErrorCode::DegenerateTriangles, "the outline crosses or touches itself near (250.0, 0.0) mm")
+    );
+}
+
+/// What `toile run --json` says of a vest with one change.
+fn vest(change: &str) -> (u8, Value) {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out").display().to_string();
+    let answer = toile(&["run", &pipeline("vest.ron"), "--json", "--out", &out, "--set", change]);
+    assert!(!dir.path().join("out").exists(), "nothing is written");
+    (answer.code, serde_json::from_str(&answer.out).unwrap())
+}
+
+#[test]
+fn pattern_loading() {
+    let (code, said) = vest("photos.front.file=\"gone.jpg\"");
+    assert_eq!(
+        (code, &said["error"], &said["message"]),
+        (3, &"pattern_loading".into(), &"cannot read \"gone.jpg\": no such file".into())
+    );
+}
+
+#[test]
+fn timeout() {
+    let (code, said) = vest("stages.Rest.time_limit=0.001");
+    assert_eq!((code, &said["error"]), (5, &"timeout".into()));
+    assert_eq!(said["message"], "out of time after 0.0 s on level 1 of 3");
+}
