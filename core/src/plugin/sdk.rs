@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, Once, OnceLock, PoisonError, RwLock};
 
 /// A crate's stage tables, made when they are first asked for.
 #[derive(Debug, Default)]
@@ -217,6 +217,11 @@ fn run_stage<S: StageType>(
 /// Runs in a pool of as many threads as the user allows: a library has its own pool.
 fn on_threads<T: Send>(threads: u32, work: impl FnOnce() -> T + Send) -> T {
     static POOLS: Mutex<BTreeMap<u32, Arc<rayon::ThreadPool>>> = Mutex::new(BTreeMap::new());
+    static COMMON: Once = Once::new();
+    // Colliders are asked outside of any run: their loops fall to the library's common pool.
+    COMMON.call_once(|| {
+        let _ = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();
+    });
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let pool = match pools.get(&threads) {
         Some(pool) => Ok(pool.clone()),
