@@ -100,34 +100,76 @@ fn a_flat_sheet_bends_nowhere() {
     assert!(gradient(&elastic, &flat).iter().all(|g| g.norm() < 1e-12));
 }
 
-/// Found by the property below: pressed by 29 % and sheared, the energies differ by 0.3 %.
-#[test]
-#[ignore = "open: the two differ under strong pressing"]
-fn a_strongly_pressed_element_is_the_woven_one() {
-    let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
+const CORNERS: [[f64; 2]; 3] = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]];
+
+/// One element, by the law of the rest solver and by the woven membrane.
+fn one_element() -> (Elastic, impl Energy) {
+    let uv = CORNERS.map(|[x, y]| Vector2::new(x, y));
     let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
     let fabric = Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() };
     let elastic = Elastic::new(&sheet, &[&fabric], None, |_| 0);
-    let woven = Triangles::new(&sheet, Woven::new(&fabric).unwrap());
-    let x =
-        [Vec3::new(0.029_024_49, 0.0, 0.0), Vec3::new(0.075_224_27, 0.01, 0.0), Vec3::new(0.02, 0.12, 0.0)];
-    assert!((elastic.value(&x) - woven.value(&x)).abs() < 1e-12 * (1.0 + woven.value(&x)));
+    (elastic, Triangles::new(&sheet, Woven::new(&fabric).unwrap()))
+}
+
+/// The element's corners, each moved from its place on the plane.
+fn moved(places: &[f64; 9]) -> Vec<Vec3> {
+    let at = |([x, y], d): (&[f64; 2], &[f64])| Vec3::new(x + d[0], y + d[1], d[2]);
+    CORNERS.iter().zip(places.chunks(3)).map(at).collect()
+}
+
+/// Lengths of the element's weft and warp by those at rest, and the sine of the shear between them.
+fn yarns(x: &[Vec3]) -> ([f64; 2], f64) {
+    let [_, [a, b], [c, d]] = CORNERS;
+    let (p, q, area) = (x[1] - x[0], x[2] - x[0], a * d - b * c);
+    let (weft, warp) = ((p * d - q * b) / area, (q * a - p * c) / area);
+    ([weft.norm(), warp.norm()], weft.dot(&warp) / (weft.norm() * warp.norm()))
+}
+
+/// True where the rest solver's law claims to be the woven one: see the limits at the head of `law`.
+fn is_claimed(x: &[Vec3]) -> bool {
+    let (length, sine) = yarns(x);
+    length.iter().all(|l| *l > 0.5) && sine.abs() < 0.95
+}
+
+/// Found by the property below: a weft yarn at 0.48 of its length, where the shear follows it no longer. The
+/// law is another there than the woven one, and must still be the slope of its own energy.
+#[test]
+fn beyond_the_laws_limit_the_gradient_is_still_the_slope_of_the_energy() {
+    let (elastic, woven) = one_element();
+    let mut x =
+        moved(&[0.029_024_490_109_794_51, 0.0, 0.0, -0.024_775_725_924_386_774, 0.0, 0.0, 0.0, 0.0, 0.0]);
+    assert!((yarns(&x).0[0] - 0.477_476).abs() < 1e-6 && !is_claimed(&x));
+    assert!((elastic.value(&x) - woven.value(&x)).abs() > 1e-4, "the two laws part here");
+    let found = gradient(&elastic, &x);
+    for i in 0..3 {
+        for c in 0..3 {
+            let (h, at) = (1e-6, x[i][c]);
+            x[i][c] = at + h;
+            let up = elastic.value(&x);
+            x[i][c] = at - h;
+            let down = elastic.value(&x);
+            x[i][c] = at;
+            let slope = (up - down) / (2.0 * h);
+            assert!(
+                (slope - found[i][c]).abs() < 1e-6 * (1.0 + slope.abs()),
+                "{i} {c}: {slope} {}",
+                found[i][c]
+            );
+        }
+    }
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// One element answers as the woven membrane does, on any piece of its curves, up to a fifth of its size;
-    /// beyond, see `a_strongly_pressed_element_is_the_woven_one`.
+    /// One element answers as the woven membrane does, on any piece of its curves.
     #[test]
-    fn the_membrane_is_the_woven_one(places in proptest::array::uniform9(-0.02..0.02f64)) {
-        let uv = [[0.0, 0.0], [0.1, 0.01], [0.02, 0.12]].map(|[x, y]| Vector2::new(x, y));
-        let sheet = Sheet::flat(&uv, &[[0, 1, 2]], 0.1).unwrap();
-        let fabric = Fabric { bending_warp: 0.0, bending_weft: 0.0, ..measured() };
-        let elastic = Elastic::new(&sheet, &[&fabric], None, |_| 0);
-        let woven = Triangles::new(&sheet, Woven::new(&fabric).unwrap());
-        let x: Vec<Vec3> = uv.iter().zip(places.chunks(3)).map(|(p, d)| Vec3::new(p.x + d[0], p.y + d[1], d[2])).collect();
-        prop_assert!((elastic.value(&x) - woven.value(&x)).abs() < 1e-12 * (1.0 + woven.value(&x)));
+    fn the_membrane_is_the_woven_one(places in proptest::array::uniform9(-0.03..0.03f64)) {
+        let (elastic, woven) = one_element();
+        let x = moved(&places);
+        prop_assume!(is_claimed(&x));
+        let (own, other) = (elastic.value(&x), woven.value(&x));
+        prop_assert!((own - other).abs() < 1e-12 * (1.0 + other), "{} {}", own, other);
         let mut want = vec![Vec3::zeros(); 3];
         woven.add_gradient(&x, &mut want);
         for (g, w) in gradient(&elastic, &x).iter().zip(&want) {
