@@ -18,6 +18,8 @@ mod new_stage;
 mod progress;
 mod run;
 mod schema;
+mod trade;
+mod tune;
 mod validate;
 mod watch;
 mod why;
@@ -149,6 +151,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Cache(args) => cache::cache(&args, streams),
         Command::Lock(args) => lock::lock(&args, registry, streams),
         Command::Migrate(args) => migrate::run(&args, registry, streams),
+        Command::Trade(args) => trade::run(&args, registry, streams),
+        Command::Tune(args) => tune::run(&args, registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),

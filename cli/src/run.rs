@@ -75,10 +75,10 @@ pub(crate) fn once(
 }
 
 /// Runs `work` in a pool of so many threads.
-pub(crate) fn on_threads<T: Send>(
+pub(crate) fn on_threads<T: Send, E: Send>(
     threads: Option<u16>,
-    work: impl FnOnce() -> Result<T, RunError> + Send,
-) -> Result<T, RunError> {
+    work: impl FnOnce() -> Result<T, E> + Send,
+) -> Result<T, E> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
     match pool {
         Ok(pool) => pool.install(work),

@@ -1,0 +1,212 @@
+//! `toile trade`: how a pipeline trades accuracy for time.
+
+use crate::args::{StudyArgs, TradeArgs};
+use crate::run::on_threads;
+use crate::validate::open;
+use crate::{Streams, at_hand, exit, interrupt};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::channel;
+use std::time::Duration;
+use toile_core::pipeline::{Override, Pipeline};
+use toile_core::{Length, Registry, StageError, write_files};
+use toile_trade::default_knobs::default_knobs;
+use toile_trade::knob::KnobSpec;
+use toile_trade::measure::Bench;
+use toile_trade::record::{Clock, Trade};
+use toile_trade::slot::Source;
+use toile_trade::study::{Options, study};
+use toile_trade::table;
+
+/// Measures, writes the files of the measurement and prints its table.
+pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    let asked = Asked {
+        knobs: &args.knobs,
+        out: args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline)),
+        until: args.until.clone(),
+        points: args.points,
+        starts: args.starts,
+        study: &args.study,
+    };
+    match measured(&asked, &source, &pipeline, streams) {
+        Err(e) => failed(&e, streams),
+        Ok(trade) => {
+            match args.json {
+                true => streams.say(serde_json::to_string_pretty(&trade).unwrap_or_default()),
+                false => {
+                    table::lines(&trade, false).iter().for_each(|l| streams.say(l));
+                    streams.say(format!("table, pictures and page in {}", asked.out.display()));
+                }
+            }
+            exit::DONE
+        }
+    }
+}
+
+/// What a measurement takes from the command line.
+pub(crate) struct Asked<'a> {
+    pub(crate) knobs: &'a [String],
+    pub(crate) out: PathBuf,
+    pub(crate) until: Option<String>,
+    pub(crate) points: Option<usize>,
+    pub(crate) starts: usize,
+    pub(crate) study: &'a StudyArgs,
+}
+
+/// Measures and writes; progress goes to standard error.
+pub(crate) fn measured(
+    asked: &Asked<'_>,
+    source: &Source<'_>,
+    pipeline: &Pipeline,
+    streams: &mut Streams<'_>,
+) -> Result<Trade, StageError> {
+    let mut knobs = asked.knobs.iter().map(|k| k.parse()).collect::<Result<Vec<KnobSpec>, _>>()?;
+    if knobs.is_empty() {
+        knobs = default_knobs(pipeline, source.registry);
+    }
+    if knobs.is_empty() {
+        let message = "the pipeline has no knob that is turned by itself";
+        return Err(StageError::invalid(message).hint("name some, like `--knob \"mesher.edge=6..24 mm\"`"));
+    }
+    let options = Options {
+        out: asked.out.clone(),
+        budget: asked.study.budget,
+        limit: asked.study.limit,
+        points: asked.points,
+        repeats: asked.study.repeats,
+        starts: asked.starts,
+        jitter: asked.study.jitter,
+        clock: clock(asked.study),
+        bench: bench(asked.until.clone()),
+    };
+    let trade = with_progress(asked.study, streams, |tell| study(source, pipeline, &knobs, &options, tell))?;
+    let files = toile_trade::files(&trade, &asked.out)?;
+    interrupt::begin_writing();
+    let written = write_files(&asked.out, &files);
+    interrupt::end_writing();
+    written.map(|_| trade)
+}
+
+/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the budget.
+pub(crate) fn with_progress<T: Send>(
+    study: &StudyArgs,
+    streams: &mut Streams<'_>,
+    work: impl FnOnce(&mut dyn FnMut(String)) -> Result<T, StageError> + Send,
+) -> Result<T, StageError> {
+    let bar = ProgressBar::new(study.budget.as_secs().max(1));
+    if let Ok(style) =
+        ProgressStyle::with_template("{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}")
+    {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    let (send, receive) = channel::<String>();
+    let result = std::thread::scope(|scope| {
+        let worker =
+            scope.spawn(move || on_threads(study.threads, || work(&mut |line| drop(send.send(line)))));
+        for line in receive {
+            bar.set_position(bar.elapsed().as_secs());
+            bar.suspend(|| streams.tell(&line));
+        }
+        worker.join()
+    });
+    bar.finish_and_clear();
+    result.unwrap_or_else(|_| Err(StageError::internal("the measurement broke off")))
+}
+
+/// The pipeline with its source, checked.
+pub(crate) fn opened<'a>(
+    path: &Path,
+    set: &[Override],
+    registry: &'a Registry,
+    streams: &mut Streams<'_>,
+) -> Result<(Source<'a>, Pipeline), u8> {
+    let pipeline = open(path, set, registry).map_err(|faults| {
+        streams.fault(&faults);
+        exit::INVALID
+    })?;
+    let text = std::fs::read_to_string(path).map_err(|e| {
+        streams.tell(format!("error: cannot read the pipeline \"{}\": {e}", path.display()));
+        exit::INVALID
+    })?;
+    let source = Source {
+        text,
+        file: path.display().to_string(),
+        base: path.parent().unwrap_or(Path::new(".")).to_owned(),
+        set: at_hand::found(set),
+        registry,
+    };
+    Ok((source, pipeline))
+}
+
+/// How runs are made.
+pub(crate) fn bench(until: Option<String>) -> Bench {
+    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()) }
+}
+
+/// The clock of the front.
+fn clock(study: &StudyArgs) -> Clock {
+    if study.clock == "cpu" { Clock::Cpu } else { Clock::Wall }
+}
+
+/// Shows an error and gives its exit code.
+pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
+    streams.tell(format!("error: {e}"));
+    if let Some(hint) = &e.hint {
+        streams.tell(format!("  help: {hint}"));
+    }
+    e.code.exit_code()
+}
+
+/// Where the measurement of a pipeline lies.
+pub(crate) fn default_folder(pipeline: &Path) -> PathBuf {
+    let stem = pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
+    PathBuf::from("out").join(format!("{stem}-trade"))
+}
+
+/// `90s`, `800ms`, `5m`, `1h`.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let fault = || format!("`{text}` is no time; write a number and a unit, like 90s (ms, s, m, h)");
+    let text = text.trim();
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).ok_or_else(fault)?;
+    let (number, unit) = text.split_at(split);
+    let seconds = match unit {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "m" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(fault()),
+    };
+    let seconds = number.trim().parse::<f64>().map_err(|_| fault())? * seconds;
+    // A week is more than anybody means.
+    let is_sound = seconds > 0.0 && seconds < 604_800.0;
+    if is_sound { Ok(Duration::from_secs_f64(seconds)) } else { Err(fault()) }
+}
+
+/// A length with its unit.
+pub(crate) fn length(text: &str) -> Result<Length, String> {
+    let length: Length = text.parse()?;
+    if length.metres() > 0.0 { Ok(length) } else { Err(format!("`{text}` is not above zero")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_carry_their_unit() {
+        assert_eq!(duration("90s"), Ok(Duration::from_secs(90)));
+        assert_eq!(duration("1.5 m"), Ok(Duration::from_secs(90)));
+        assert_eq!(duration("800ms"), Ok(Duration::from_millis(800)));
+        for wrong in ["5", "-1s", "s", "1d", "1e9h", "NaNs"] {
+            let words = format!("`{wrong}` is no time; write a number and a unit, like 90s (ms, s, m, h)");
+            assert_eq!(duration(wrong), Err(words));
+        }
+        assert_eq!(length("0 mm"), Err("`0 mm` is not above zero".into()));
+    }
+}

@@ -1,0 +1,147 @@
+//! `toile tune`: a setting for an error or a time, proved and written into the pipeline file.
+
+use crate::args::TuneArgs;
+use crate::trade::{Asked, bench, default_folder, failed, measured, opened, with_progress};
+use crate::{Streams, exit, interrupt};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use toile_core::artifact::OutputFile;
+use toile_core::pipeline::Pipeline;
+use toile_core::{Registry, StageError, write_files};
+use toile_trade::ladder::setting_words;
+use toile_trade::record::{Clock, Trade, today};
+use toile_trade::slot::Source;
+use toile_trade::table;
+use toile_trade::tune::{Proof, Prover, Wish, check, picks};
+
+/// Picks, proves, writes.
+pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+        Ok(opened) => opened,
+        Err(code) => return code,
+    };
+    match tuned(args, &source, &pipeline, streams) {
+        Ok(()) => exit::DONE,
+        Err(e) => failed(&e, streams),
+    }
+}
+
+fn tuned(
+    args: &TuneArgs,
+    source: &Source<'_>,
+    pipeline: &Pipeline,
+    streams: &mut Streams<'_>,
+) -> Result<(), StageError> {
+    let file = target(args)?;
+    let (trade, folder) = front(args, source, pipeline, streams)?;
+    let wish = Wish {
+        max_error_mm: args.max_error.map(|e| e.metres() * 1e3),
+        max_time_s: args.max_time.map(|t| t.as_secs_f64()),
+    };
+    let bench = bench(trade.until.clone());
+    let prover = Prover {
+        source,
+        trade: &trade,
+        bench: &bench,
+        folder: &folder,
+        starts: args.starts,
+        jitter: args.study.jitter,
+    };
+    let proof = match picks(&trade, &wish).is_empty() {
+        // Nothing has to be run to refuse.
+        true => prover.prove(&wish, &mut |_| ()),
+        false => with_progress(&args.study, streams, |tell| prover.prove(&wish, tell)),
+    };
+    let proof = proof.inspect_err(|_| table::lines(&trade, true).iter().for_each(|l| streams.tell(l)))?;
+    let text = prover.tuned(&wish, &proof, &today())?;
+    write(&file, text)?;
+    say(args, &trade, &wish, &proof, &file, streams);
+    Ok(())
+}
+
+/// The measured front: read where a folder is named, else measured now.
+fn front(
+    args: &TuneArgs,
+    source: &Source<'_>,
+    pipeline: &Pipeline,
+    streams: &mut Streams<'_>,
+) -> Result<(Trade, PathBuf), StageError> {
+    if let Some(folder) = &args.from {
+        let path = folder.join("trade.json");
+        let refuse = |why: String| {
+            StageError::invalid(format!("cannot read \"{}\": {why}", path.display()))
+                .hint("--from is the folder of a `toile trade`")
+        };
+        let text = std::fs::read_to_string(&path).map_err(|e| refuse(e.to_string()))?;
+        let trade: Trade = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;
+        check(&trade, pipeline)?;
+        return Ok((trade, folder.clone()));
+    }
+    let out = default_folder(&args.pipeline);
+    let asked = Asked {
+        knobs: &args.knobs,
+        out: out.clone(),
+        until: None,
+        points: None,
+        starts: 3,
+        study: &args.study,
+    };
+    measured(&asked, source, pipeline, streams).map(|trade| (trade, out))
+}
+
+/// The file to write, which must lie beside the pipeline: its paths are relative to its folder.
+fn target(args: &TuneArgs) -> Result<PathBuf, StageError> {
+    let stem = args.pipeline.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let file = args.out.clone().unwrap_or_else(|| args.pipeline.with_file_name(format!("{stem}-tuned.ron")));
+    let folder = |path: &Path| match path.parent() {
+        Some(parent) if parent.as_os_str().is_empty() => Path::new(".").canonicalize(),
+        Some(parent) => parent.canonicalize(),
+        None => Path::new(".").canonicalize(),
+    };
+    match (folder(&file), folder(&args.pipeline)) {
+        (Ok(a), Ok(b)) if a == b => Ok(file),
+        _ => Err(StageError::invalid(format!("\"{}\" is not in the folder of the pipeline", file.display()))
+            .hint("paths in the pipeline are relative to its folder: write the tuned one beside it")),
+    }
+}
+
+fn write(file: &Path, text: String) -> Result<(), StageError> {
+    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let path = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    interrupt::begin_writing();
+    let written = write_files(folder, &[OutputFile { path, bytes: text.into_bytes() }]);
+    interrupt::end_writing();
+    written.map(|_| ())
+}
+
+fn say(args: &TuneArgs, trade: &Trade, wish: &Wish, proof: &Proof, file: &Path, streams: &mut Streams<'_>) {
+    let point = &trade.points[proof.point];
+    let (fresh, d) = (&proof.fresh, &proof.fresh.errors.distance_mm);
+    let starts: Vec<f64> = proof.starts.iter().map(|m| m.p95).collect();
+    if args.json {
+        streams.say(json!({
+            "setting": point.setting, "overrides": point.overrides, "file": file.display().to_string(),
+            "wall_s": fresh.time(Clock::Wall), "cpu_s": fresh.time(Clock::Cpu), "errors": fresh.errors,
+            "starts_p95_mm": starts,
+        }));
+        return;
+    }
+    streams.say(format!("{}: {}", wish.words(), setting_words(&point.setting)));
+    streams.say(format!(
+        "fresh run: {:.2} s wall, {:.2} s cpu, 95 % of the surface within {:.2} mm (mean {:.2}, worst {:.2})",
+        fresh.time(Clock::Wall),
+        fresh.time(Clock::Cpu),
+        d.p95,
+        d.mean,
+        d.max
+    ));
+    if let Some(e) = wish.max_error_mm.filter(|_| !starts.is_empty()) {
+        let worst = starts.iter().fold(0.0_f64, |a, b| a.max(*b));
+        streams.say(format!(
+            "{} of {} moved starts within {e} mm, the worst {worst:.2} mm",
+            proof.kept(e),
+            starts.len()
+        ));
+    }
+    streams.say(format!("written: {}", file.display()));
+}

@@ -1,0 +1,63 @@
+//! What is turned where the user names no knob.
+//!
+//! The stages decide most of a garment's time and error in this order: edge length of the mesh, solver, when it stops,
+//! mesher. Their ranges are factors around the pipeline's own values.
+
+use crate::knob::{KnobSpec, Number, Values};
+use crate::ladder::finer;
+use crate::slot::{Form, numeric};
+use crate::split::field;
+use toile_core::pipeline::{Node, Pipeline};
+use toile_core::{Registry, Role};
+
+/// Factors around the pipeline's own edge length: from rough to four times the triangles.
+const EDGES: [f64; 2] = [0.5, 3.0];
+/// Factors around any other resolution.
+const OTHERS: [f64; 2] = [0.1, 10.0];
+
+/// Knobs for a pipeline: edge length, choice of mesher and solver, and what ends the solver.
+pub fn default_knobs(pipeline: &Pipeline, registry: &Registry) -> Vec<KnobSpec> {
+    let mut knobs = Vec::new();
+    if let Some(mesher) = only(pipeline, Role::Mesher) {
+        knobs.extend(range(mesher, "mesher", "edge", EDGES));
+        knobs.extend(choice(mesher, "mesher", registry));
+    }
+    if let Some(solver) = only(pipeline, Role::Draper) {
+        knobs.extend(choice(solver, "solver", registry));
+        let ends = solver.card.params.iter().filter(|p| p.trades && finer(p.name).is_some());
+        knobs.extend(ends.filter_map(|p| range(solver, &solver.id, p.name, OTHERS)));
+    }
+    knobs
+}
+
+/// The only stage of a role.
+fn only(pipeline: &Pipeline, role: Role) -> Option<&Node> {
+    let mut nodes = pipeline.nodes.iter().filter(|n| n.card.role == role);
+    nodes.next().filter(|_| nodes.next().is_none())
+}
+
+fn choice(node: &Node, key: &str, registry: &Registry) -> Option<KnobSpec> {
+    let others = registry.of_role(node.card.role).map(|c| c.name).filter(|n| *n != node.card.name);
+    let names: Vec<String> = std::iter::once(node.card.name).chain(others).map(str::to_owned).collect();
+    (names.len() > 1).then(|| KnobSpec { owner: key.to_owned(), param: None, values: Values::List(names) })
+}
+
+/// A range around a parameter's own value, within what it takes.
+fn range(node: &Node, owner: &str, param: &str, factors: [f64; 2]) -> Option<KnobSpec> {
+    let doc = node.card.params.iter().find(|p| p.name == param)?;
+    let own = numeric(field(&node.stage.params(), param)?)?;
+    let number = |x: f64| match Form::of(doc)? {
+        Form::Length => Some(Number::Length(x)),
+        Form::Whole => Some(Number::Plain(x.round())),
+        Form::Real => Some(Number::Plain(x)),
+    };
+    let bound =
+        |factor: f64| number((own * factor).clamp(doc.min.unwrap_or(f64::MIN), doc.max.unwrap_or(f64::MAX)));
+    let (lo, hi) = (bound(factors[0])?, bound(factors[1])?);
+    let values = Values::Range(lo, hi);
+    (lo.value() < hi.value()).then(|| KnobSpec {
+        owner: owner.to_owned(),
+        param: Some(param.to_owned()),
+        values,
+    })
+}

@@ -1,0 +1,38 @@
+//! How a pipeline trades accuracy for time, measured, and settings picked by that measure.
+//!
+//! [`study`] runs a pipeline over its *knobs* and holds every garment against a converged *reference*; [`tune`] picks
+//! from what was measured and proves the choice by fresh runs. docs/trade.md defines every figure.
+//!
+//! - `split`, `knob`, `slot`, `default_knobs`: what may be turned, and how a setting becomes overrides of the pipeline file;
+//! - `sample`, `front`: which settings are tried, and which of them nothing beats;
+//! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
+//! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
+//! - `measure`: one run with its clocks; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
+//! - `tune`; `table`, `page`, `plot`: what people see.
+//!
+//! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
+
+pub mod default_knobs;
+pub mod errors;
+pub mod front;
+mod girth;
+pub mod jitter;
+pub mod knob;
+pub mod ladder;
+pub mod measure;
+mod page;
+mod plot;
+pub mod record;
+pub mod richardson;
+pub mod sample;
+mod silhouette;
+pub mod slot;
+mod split;
+pub mod store;
+pub mod study;
+pub mod surface;
+pub mod table;
+mod texture;
+pub mod tune;
+
+pub use page::files;

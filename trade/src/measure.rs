@@ -1,0 +1,145 @@
+//! One run of a pipeline with its clocks, cut short where it takes too long.
+//!
+//! Wall and processor time are those of the whole run, every stage of it, without the writing of files: what
+//! `toile run --no-cache` takes. No cache takes part where times count, since finding, digesting and keeping results is
+//! work of its own. The process is the clock's: nothing else of it may work meanwhile. Memory is the high-water mark of the
+//! process, put back before the run where the kernel lets a process do so (Linux); it includes what the process holds anyway.
+
+use cpu_time::ProcessTime;
+use std::any::Any;
+use std::collections::BTreeMap;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+use toile_core::artifact::{Body, Garment, Model, RunLog};
+use toile_core::cache::Cache;
+use toile_core::pipeline::Pipeline;
+use toile_core::{ArtifactType, Cancel, ErrorCode, Listener, Metrics, Reads, RunOptions, StageError, run};
+
+/// How often the watchdog looks at the clock.
+const WATCH: Duration = Duration::from_millis(20);
+
+/// How runs are made.
+#[derive(Clone)]
+pub struct Bench {
+    /// Stop after this stage.
+    pub until: Option<String>,
+    /// Raised to stop everything.
+    pub cancel: Cancel,
+    /// Hears the stages.
+    pub listener: Arc<dyn Listener>,
+}
+
+/// What a run gave.
+#[derive(Debug)]
+pub struct Ran {
+    /// The garment at the end.
+    pub garment: Garment,
+    /// Who wears it.
+    pub body: Option<Body>,
+    /// It with its textures.
+    pub model: Option<Model>,
+    /// The figures of the run.
+    pub metrics: Metrics,
+    /// Seconds of wall time.
+    pub wall_s: f64,
+    /// Seconds of processor time, all threads.
+    pub cpu_s: f64,
+    /// Files that it read, with the digests of their contents.
+    pub reads: BTreeMap<String, Option<String>>,
+}
+
+/// Why a run gave nothing.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Missed {
+    /// It was stopped after so many seconds.
+    OverLimit(f64),
+    /// A stage failed.
+    Failed(StageError),
+    /// The user stopped everything.
+    Cancelled,
+}
+
+impl Bench {
+    /// Runs a pipeline; `limit` ends it, `cache` is for runs whose times do not count.
+    pub fn run(
+        &self,
+        pipeline: &Pipeline,
+        limit: Option<Duration>,
+        cache: Option<Arc<Cache>>,
+    ) -> Result<Ran, Missed> {
+        let reads: Reads = Arc::default();
+        let keep = cache.is_some();
+        let options = RunOptions { until: self.until.clone(), keep, cache, reads: Some(reads.clone()) };
+        forget_peak();
+        let (started, cpu) = (Instant::now(), ProcessTime::now());
+        let result = self.watched(pipeline, &options, limit);
+        let (wall_s, cpu_s) = (started.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
+        let result = result.map_err(|e| match e.error.code {
+            ErrorCode::Cancelled if self.cancel.is_cancelled() => Missed::Cancelled,
+            ErrorCode::Cancelled => Missed::OverLimit(wall_s),
+            _ => Missed::Failed(StageError { message: e.to_string(), ..e.error }),
+        })?;
+        let no_garment = StageError::invalid("the pipeline makes no garment to be compared")
+            .hint("leave out --until, or name a stage behind the draper");
+        let garment = last::<Garment>(&result.log).ok_or(Missed::Failed(no_garment))?;
+        let reads = reads.lock().unwrap_or_else(PoisonError::into_inner);
+        let named = |(path, hash): (&std::path::PathBuf, &Option<toile_core::cache::Hash>)| {
+            (path.display().to_string(), hash.map(|h| h.hex()))
+        };
+        Ok(Ran {
+            garment,
+            body: last(&result.log),
+            model: last(&result.log),
+            metrics: result.metrics,
+            wall_s,
+            cpu_s,
+            reads: reads.iter().map(named).collect(),
+        })
+    }
+
+    /// Runs with a watchdog beside it.
+    fn watched(
+        &self,
+        pipeline: &Pipeline,
+        options: &RunOptions,
+        limit: Option<Duration>,
+    ) -> Result<toile_core::RunResult, toile_core::RunError> {
+        let own = Cancel::new();
+        let end = limit.map(|l| Instant::now() + l);
+        let (done, wait) = channel::<()>();
+        let (user, run_own) = (self.cancel.clone(), own.clone());
+        std::thread::scope(|scope| {
+            scope.spawn(move || {
+                while wait_is_on(&wait) {
+                    if user.is_cancelled() || end.is_some_and(|end| Instant::now() >= end) {
+                        run_own.cancel();
+                    }
+                }
+            });
+            let result = run(pipeline, options, &own, &self.listener);
+            // The watchdog ends once its channel is closed.
+            drop(done);
+            result
+        })
+    }
+}
+
+fn wait_is_on(wait: &Receiver<()>) -> bool {
+    matches!(wait.recv_timeout(WATCH), Err(RecvTimeoutError::Timeout))
+}
+
+/// The last artifact of a type.
+fn last<T: ArtifactType + Clone>(log: &RunLog) -> Option<T> {
+    let values = log.stages.iter().rev().flat_map(|s| &s.outputs);
+    let mut artifacts = values.flat_map(|v| v.entries()).map(|(_, a)| a);
+    artifacts.find_map(|a| {
+        let any: &dyn Any = a.as_ref();
+        any.downcast_ref::<T>().cloned()
+    })
+}
+
+/// Puts the high-water mark of memory back to what is held now; of no effect where the kernel does not do that.
+fn forget_peak() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}

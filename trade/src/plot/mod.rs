@@ -1,0 +1,207 @@
+//! The work-precision picture: time against distance, both logarithmic, with the front.
+//!
+//! One list of marks becomes an SVG and a PNG, so that both show the same.
+
+mod png;
+mod svg;
+
+pub(crate) use png::png;
+pub(crate) use svg::svg;
+
+use crate::record::{Measured, Trade};
+use std::collections::BTreeSet;
+
+/// Size of the picture, px.
+pub(crate) const SIZE: [u32; 2] = [960, 640];
+/// The frame of the axes: left, top, right, bottom.
+const FRAME: [f64; 4] = [84.0, 56.0, 936.0, 574.0];
+/// Grey of axes and text.
+const INK: [u8; 3] = [52, 56, 64];
+/// Grey of the grid.
+const GRID: [u8; 3] = [226, 229, 233];
+/// Grey of what does not count.
+const PALE: [u8; 3] = [150, 156, 164];
+/// Settings beyond which only those of the front are numbered: more numbers hide each other.
+const MOST_NUMBERS: usize = 12;
+
+/// Something drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Mark {
+    /// A line; dashed or not.
+    Line { ends: [[f64; 2]; 2], width: f64, colour: [u8; 3], dashed: bool },
+    /// A dot; a ring where it is hollow.
+    Dot { at: [f64; 2], radius: f64, colour: [u8; 3], hollow: bool },
+    /// A text whose left end, middle or right end is at a place.
+    Text { at: [f64; 2], anchor: Anchor, text: String, colour: [u8; 3], large: bool },
+}
+
+/// Which part of a text is at its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    /// Its left end.
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its right end.
+    End,
+}
+
+/// A logarithmic axis.
+struct Axis {
+    lo: f64,
+    hi: f64,
+    from: f64,
+    to: f64,
+}
+
+impl Axis {
+    fn over(values: &[f64], from: f64, to: f64) -> Self {
+        let (lo, hi) = values.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), v| (lo.min(*v), hi.max(*v)));
+        let (lo, hi) = if lo.is_finite() && lo > 0.0 { (lo, hi) } else { (1.0, 10.0) };
+        // Room at both ends, and never less than a factor of three in all.
+        let spare = (3.0 / (hi / lo)).max(1.0).sqrt();
+        Axis { lo: lo / spare / 1.25, hi: hi * spare * 1.25, from, to }
+    }
+
+    fn at(&self, v: f64) -> f64 {
+        self.from + (v / self.lo).ln() / (self.hi / self.lo).ln() * (self.to - self.from)
+    }
+
+    /// 1, 2 and 5 of every decade within, those that have a number first.
+    fn ticks(&self) -> Vec<f64> {
+        let decades = self.lo.log10().floor() as i32..=self.hi.log10().ceil() as i32;
+        let ticks = decades.flat_map(|d| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(d)));
+        ticks.filter(|t| (self.lo..=self.hi).contains(t)).collect()
+    }
+}
+
+/// The picture of a measurement.
+pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
+    let shown: Vec<(usize, &Measured)> = trade
+        .points
+        .iter()
+        .enumerate()
+        .filter_map(|(i, p)| Some((i, p.measured()?)))
+        .filter(|(_, m)| m.cost(trade.clock).error > 0.0)
+        .collect();
+    let floor = trade.reference.floor_mm().filter(|f| *f > 0.0);
+    let cost = |m: &Measured| m.cost(trade.clock);
+    let times: Vec<f64> = shown.iter().map(|(_, m)| cost(m).time).collect();
+    let errors: Vec<f64> = shown.iter().map(|(_, m)| cost(m).error).chain(floor).collect();
+    let (x, y) = (Axis::over(&times, FRAME[0], FRAME[2]), Axis::over(&errors, FRAME[3], FRAME[1]));
+    let mut marks = axes(&x, &y, trade);
+    if let Some(floor) = floor {
+        let at = y.at(floor);
+        marks.push(line([FRAME[0], at], [FRAME[2], at], 1.5, PALE, true));
+        marks.push(text([FRAME[2] - 6.0, at - 6.0], Anchor::End, "the reference is known to this", PALE));
+    }
+    marks.extend(steps(trade, &x, &y));
+    let kinds = kinds(trade);
+    for (i, m) in &shown {
+        let at = [x.at(cost(m).time), y.at(cost(m).error)];
+        let on_front = trade.front.contains(i);
+        let colour = kinds.iter().position(|k| *k == kind(trade, *i)).map_or(INK, colour);
+        marks.push(Mark::Dot { at, radius: if on_front { 6.5 } else { 4.5 }, colour, hollow: !m.sound });
+        if on_front || shown.len() <= MOST_NUMBERS {
+            marks.push(text([at[0] + 9.0, at[1] - 7.0], Anchor::Start, &(i + 1).to_string(), INK));
+        }
+    }
+    marks.extend(legend(&kinds));
+    marks
+}
+
+fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {
+    let mut marks = Vec::new();
+    for t in x.ticks() {
+        marks.push(line([x.at(t), FRAME[1]], [x.at(t), FRAME[3]], 1.0, GRID, false));
+        marks.push(text([x.at(t), FRAME[3] + 20.0], Anchor::Middle, &plain(t), INK));
+    }
+    for t in y.ticks() {
+        marks.push(line([FRAME[0], y.at(t)], [FRAME[2], y.at(t)], 1.0, GRID, false));
+        marks.push(text([FRAME[0] - 8.0, y.at(t) + 5.0], Anchor::End, &plain(t), INK));
+    }
+    marks.push(line([FRAME[0], FRAME[3]], [FRAME[2], FRAME[3]], 1.5, INK, false));
+    marks.push(line([FRAME[0], FRAME[1]], [FRAME[0], FRAME[3]], 1.5, INK, false));
+    let clock = if trade.clock == crate::record::Clock::Wall { "wall time" } else { "processor time" };
+    let across = (FRAME[0] + FRAME[2]) / 2.0;
+    marks.push(text([across, FRAME[3] + 46.0], Anchor::Middle, &format!("{clock} of a run, seconds"), INK));
+    marks.push(text(
+        [12.0, FRAME[1] - 16.0],
+        Anchor::Start,
+        "mm from the reference, 95 % of the surface",
+        INK,
+    ));
+    marks.push(Mark::Text {
+        at: [FRAME[2], 26.0],
+        anchor: Anchor::End,
+        text: trade.pipeline.clone(),
+        colour: INK,
+        large: true,
+    });
+    marks
+}
+
+/// The front as a stair: what can be had for a time.
+fn steps(trade: &Trade, x: &Axis, y: &Axis) -> Vec<Mark> {
+    let at = |i: &usize| {
+        let cost = trade.points[*i].measured()?.cost(trade.clock);
+        (cost.error > 0.0).then(|| [x.at(cost.time), y.at(cost.error)])
+    };
+    let places: Vec<[f64; 2]> = trade.front.iter().filter_map(at).collect();
+    let mut marks = Vec::new();
+    for w in places.windows(2) {
+        let corner = [w[1][0], w[0][1]];
+        marks.push(line(w[0], corner, 2.0, PALE, false));
+        marks.push(line(corner, w[1], 2.0, PALE, false));
+    }
+    if let Some(last) = places.last() {
+        marks.push(line(*last, [FRAME[2], last[1]], 2.0, PALE, false));
+    }
+    marks
+}
+
+/// The stages that a point chose: `GridMesher, Rest`.
+fn kind(trade: &Trade, i: usize) -> String {
+    let choices = trade.knobs.iter().filter(|k| !k.key.contains('.'));
+    choices.filter_map(|k| trade.points[i].setting.get(&k.key).cloned()).collect::<Vec<_>>().join(", ")
+}
+
+/// All of them that gave a garment, in a fixed order.
+fn kinds(trade: &Trade) -> Vec<String> {
+    let ran = (0..trade.points.len()).filter(|i| trade.points[*i].measured().is_some());
+    ran.map(|i| kind(trade, i)).collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+fn colour(i: usize) -> [u8; 3] {
+    toile_stages::render::PANEL_COLOURS[i % toile_stages::render::PANEL_COLOURS.len()]
+}
+
+fn legend(kinds: &[String]) -> Vec<Mark> {
+    let named = kinds.iter().enumerate().filter(|(_, k)| !k.is_empty());
+    let mut marks: Vec<Mark> = named
+        .flat_map(|(i, k)| {
+            let y = FRAME[1] + 18.0 + 20.0 * i as f64;
+            let dot =
+                Mark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: colour(i), hollow: false };
+            [dot, text([FRAME[2] - 28.0, y], Anchor::End, k, INK)]
+        })
+        .collect();
+    let y = FRAME[1] + 18.0 + 20.0 * kinds.iter().filter(|k| !k.is_empty()).count() as f64;
+    marks.push(Mark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: PALE, hollow: true });
+    marks.push(text([FRAME[2] - 28.0, y], Anchor::End, "misses a quality limit", PALE));
+    marks
+}
+
+fn line(a: [f64; 2], b: [f64; 2], width: f64, colour: [u8; 3], dashed: bool) -> Mark {
+    Mark::Line { ends: [a, b], width, colour, dashed }
+}
+
+fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) -> Mark {
+    Mark::Text { at, anchor, text: text.to_owned(), colour, large: false }
+}
+
+/// A tick's number without needless digits.
+fn plain(t: f64) -> String {
+    let rounded: f64 = format!("{t:.2e}").parse().unwrap_or(t);
+    format!("{rounded}")
+}

@@ -1,0 +1,151 @@
+//! Knobs of a real pipeline file.
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use crate::default_knobs::default_knobs;
+
+const FILE: &str = r#"(
+    name: "scene",
+    scene: Scene(file: "skirt.json"),
+    stages: [
+        Rest(speed: 0.002),   // to rest
+        GarmentObj(name: "result"),
+    ],
+)"#;
+
+const VEST: &str = r#"(
+    photos: { "front": (file: "a.jpg", width: "52 cm"), "back": MirrorOf("front") },
+    style: Vest(),
+    body: Mannequin(edge: "14 mm"),
+    fabric: Preset("cotton poplin"),
+    stages: [
+        Otsu(), Canny(), GridMesher(edge: "16 mm"), Place(), BvhCollider(thickness: "2 mm"), Rest(),
+    ],
+)"#;
+
+fn registry() -> Registry {
+    let mut registry = Registry::new();
+    toile_stages::register(&mut registry);
+    registry
+}
+
+fn source<'a>(text: &str, registry: &'a Registry) -> Source<'a> {
+    Source { text: text.into(), file: "my.ron".into(), base: PathBuf::from("."), set: Vec::new(), registry }
+}
+
+/// The overrides at a place of the cube, as one line.
+fn overrides(text: &str, knobs: &[&str], at: &[f64]) -> String {
+    let registry = registry();
+    let source = source(text, &registry);
+    let board = board(&source, knobs).unwrap();
+    let all = board.overrides(&board.setting(at));
+    assert!(source.load(&all).is_ok(), "{all:?}");
+    all.iter().map(|o| format!("{}={}", o.path, o.value)).collect::<Vec<_>>().join("; ")
+}
+
+fn board(source: &Source<'_>, knobs: &[&str]) -> Result<Board, StageError> {
+    let specs: Vec<KnobSpec> = knobs.iter().map(|k| k.parse().unwrap()).collect();
+    Board::new(source, &source.load(&[]).unwrap(), &specs)
+}
+
+fn refused(text: &str, knobs: &[&str]) -> (String, String) {
+    let registry = registry();
+    let e = board(&source(text, &registry), knobs).unwrap_err();
+    (e.message, e.hint.unwrap_or_default())
+}
+
+#[test]
+fn a_range_is_turned_by_factors_between_its_ends() {
+    let knobs = ["mesher.edge=6..24 mm"];
+    for (at, value) in [(0.0, "6 mm"), (0.5, "12 mm"), (1.0, "24 mm"), (0.75, "17 mm")] {
+        assert_eq!(overrides(VEST, &knobs, &[at]), format!("stages.GridMesher.edge=\"{value}\""));
+    }
+}
+
+#[test]
+fn another_stage_takes_over_what_it_knows_and_the_knobs_of_its_role() {
+    let knobs = ["mesher=GridMesher,DelaunayMesher", "mesher.edge=6..24 mm", "GridMesher.edge=1..2 mm"];
+    assert_eq!(overrides(VEST, &knobs[..1], &[0.9]), "stages.GridMesher=DelaunayMesher(edge: \"16 mm\")");
+    assert_eq!(overrides(VEST, &knobs[..2], &[0.9, 0.0]), "stages.GridMesher=DelaunayMesher(edge: \"6 mm\")");
+    // A knob of the one stage does not act on the other.
+    let only = [knobs[0], knobs[2]];
+    assert_eq!(overrides(VEST, &only, &[0.9, 0.0]), "stages.GridMesher=DelaunayMesher(edge: \"16 mm\")");
+    assert_eq!(overrides(VEST, &only, &[0.1, 0.0]), "stages.GridMesher.edge=\"1 mm\"");
+}
+
+#[test]
+fn stages_of_sections_lists_and_stages_brought_in_can_be_turned() {
+    assert_eq!(overrides(VEST, &["body.edge=10..20 mm"], &[0.0]), "body.edge=\"10 mm\"");
+    assert_eq!(
+        overrides(VEST, &["collider.volume=Aabb,KDop(14)"], &[0.9]),
+        "stages.BvhCollider.volume=KDop(14)"
+    );
+    let knobs = ["Xpbd.dt=0.002..0.008", "solver=Rest,Xpbd"];
+    assert_eq!(overrides(FILE, &knobs, &[0.9, 0.5]), "stages.Rest=Xpbd(dt: 0.004, speed: 0.002)");
+    assert_eq!(overrides(FILE, &knobs, &[0.1, 0.5]), "");
+    assert_eq!(overrides(VEST, &["mesher.edge=8 mm,12 mm"], &[0.9]), "stages.GridMesher.edge=\"12 mm\"");
+}
+
+#[test]
+fn the_own_setting_and_its_refinements() {
+    let registry = registry();
+    let source = source(VEST, &registry);
+    let board =
+        board(&source, &["mesher.edge=8..32 mm", "solver=Rest,Xpbd", "Rest.speed=1e-4..1e-2"]).unwrap();
+    let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
+    assert_eq!(words(board.own()), "Rest.speed 0.001, mesher.edge \"16 mm\", solver Rest");
+    assert_eq!(words(board.refined(2.0)), "Rest.speed 0.0005, mesher.edge \"8 mm\", solver Rest");
+    let fine = board.refined(4.0);
+    assert!(board.is_finer(&fine, 1.9) && !board.is_finer(&board.refined(2.0), 1.3));
+    assert!(
+        board.is_too_fine(&board.refined(4.0), &fine, 1.3) && !board.is_too_fine(&board.own(), &fine, 1.3)
+    );
+    // What stands at a place is found there again.
+    let setting = board.setting(&[0.9, 0.3, 0.7]);
+    assert_eq!(board.setting(&board.place(&setting)), setting);
+}
+
+#[test]
+fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
+    let registry = registry();
+    let pipeline = source(VEST, &registry).load(&[]).unwrap();
+    let found: Vec<String> = default_knobs(&pipeline, &registry).iter().map(KnobSpec::key).collect();
+    assert_eq!(found, ["mesher.edge", "mesher", "solver", "Rest.speed"]);
+    let scene = source(FILE, &registry).load(&[]).unwrap();
+    assert_eq!(
+        default_knobs(&scene, &registry).iter().map(KnobSpec::key).collect::<Vec<_>>(),
+        ["solver", "Rest.speed"]
+    );
+}
+
+#[test]
+fn faults_word_for_word() {
+    for (knob, message, hint) in [
+        ("mehser.edge=6..24 mm", "the pipeline has no stage or role `mehser`", "did you mean `mesher`?"),
+        ("mesher.egde=6..24 mm", "`mesher` has no parameter `egde`", "did you mean `mesher.edge`?"),
+        (
+            "mesher=GridMesher,DelauneyMesher",
+            "no mesher is called `DelauneyMesher`",
+            "did you mean `DelaunayMesher`?",
+        ),
+        ("mesher.edge=6..24", "`mesher.edge` is a length", "write the unit, like `6..24 mm`"),
+        ("Rest.speed=1..2 mm", "`Rest.speed` is a number", "write bare numbers"),
+        (
+            "solver=1..2",
+            "`solver` is a stage, which has no range",
+            "list stages, like `solver=Rest,Xpbd`, or name a parameter, like `solver.edge=6..24 mm`",
+        ),
+        (
+            "collider.volume=1..2",
+            "`collider.volume` is Aabb | Sphere | Obb | KDop(whole number), which has no range",
+            "list its values with commas",
+        ),
+        ("mesher.edge=6..2400 mm", "`mesher.edge`: `edge` is 2.4 m; the greatest allowed is 1 m", ""),
+    ] {
+        assert_eq!(refused(VEST, &[knob]), (message.to_owned(), hint.to_owned()));
+    }
+    assert_eq!(
+        refused(VEST, &["solver=Rest,Xpbd", "solver=Rest,Projective"]).0,
+        "there are two knobs `solver`"
+    );
+}
