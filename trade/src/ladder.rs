@@ -102,17 +102,17 @@ impl Search<'_> {
         };
         let Some(ran) = last else { return Err(StageError::internal("a reference without levels")) };
         let spread = self.spread(&levels, before.as_ref().unwrap_or(&ran), tell)?;
-        let order = |figure: fn(&Level) -> Option<f64>| order(&levels, figure);
         let reference = Reference {
             ratio: RATIO,
-            mean: order(|l| Some(l.moved_mm?.mean)),
-            p95: order(|l| Some(l.moved_mm?.p95)),
-            displacement: order(|l| Some(l.displaced_mm?.mean)),
+            mean: None,
+            p95: None,
+            displacement: None,
             stopped,
             spread,
             ease_mm: ease(&ran),
             levels,
         };
+        let reference = with_orders(reference);
         Ok(Found { reference, ran })
     }
 
@@ -123,7 +123,7 @@ impl Search<'_> {
         let finest =
             reference.levels.last().ok_or_else(|| StageError::invalid("the record holds no reference"))?;
         let ran = self.level(&finest.setting, None).map_err(error)?;
-        Ok(Found { ran, reference })
+        Ok(Found { ran, reference: with_orders(reference) })
     }
 
     fn level(&self, setting: &Setting, limit: Option<Duration>) -> Result<Ran, Missed> {
@@ -248,6 +248,17 @@ fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Re
         ease_mm: ease(ran),
         strain_p99: strain * 1e2,
     })
+}
+
+/// The reference with the orders that its levels show.
+fn with_orders(reference: Reference) -> Reference {
+    let order = |figure: fn(&Level) -> Option<f64>| order(&reference.levels, figure);
+    Reference {
+        mean: order(|l| Some(l.moved_mm?.mean)),
+        p95: order(|l| Some(l.moved_mm?.p95)),
+        displacement: order(|l| Some(l.displaced_mm?.mean)),
+        ..reference.clone()
+    }
 }
 
 fn order(levels: &[Level], figure: fn(&Level) -> Option<f64>) -> Option<Order> {

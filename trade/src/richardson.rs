@@ -4,11 +4,15 @@
 //! C h^p, d_k / d_{k+1} = r^p, so p = ln(d_k / d_{k+1}) / ln r, and the finest result still lacks d_last / (r^p - 1)
 //! (Richardson 1911; Roache 1998).
 //!
-//! Limit: both are statements on the last three results alone. Where distances do not shrink there is no order, and
-//! nothing is claimed.
+//! Limits: with exactly two distances nothing tells an order from luck; with more, each of the last three must be smaller
+//! than the one before. Where they do not shrink there is no order, and nothing is claimed. An order above that of the
+//! method ([`FORMAL_ORDER`]) is luck as well, so what is missing is estimated with no more.
 
 /// Below this order a sequence is not said to converge: the estimate would be many times the last step.
 pub const LEAST_ORDER: f64 = 0.2;
+
+/// Order of linear finite elements in the places of their vertices: the estimate counts on no more.
+pub const FORMAL_ORDER: f64 = 2.0;
 
 /// What the last distances between refinements say.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,12 +28,16 @@ pub struct Convergence {
 /// None with fewer than two distances, or where they do not shrink.
 pub fn convergence(distances: &[f64], ratio: f64) -> Option<Convergence> {
     let [.., coarse, fine] = distances else { return None };
+    let last = &distances[distances.len().saturating_sub(3)..];
+    if !last.windows(2).all(|w| w[1] < w[0] || w[1] == 0.0) {
+        return None;
+    }
     if *fine == 0.0 && *coarse >= 0.0 {
         return Some(Convergence { order: f64::INFINITY, missing: 0.0 });
     }
     let order = (coarse / fine).ln() / ratio.ln();
     let is_sound = order.is_finite() && order >= LEAST_ORDER;
-    is_sound.then(|| Convergence { order, missing: fine / (ratio.powf(order) - 1.0) })
+    is_sound.then(|| Convergence { order, missing: fine / (ratio.powf(order.min(FORMAL_ORDER)) - 1.0) })
 }
 
 #[cfg(test)]
@@ -53,6 +61,13 @@ mod tests {
                 "{found:?}, {rest}"
             );
         }
+    }
+
+    #[test]
+    fn luck_is_not_counted_on() {
+        assert_eq!(convergence(&[0.5, 1.4, 0.3], 2.0), None, "it grew before it shrank");
+        let found = convergence(&[16.0, 1.0], 2.0).unwrap();
+        assert!((found.order - 4.0).abs() < 1e-12 && (found.missing - 1.0 / 3.0).abs() < 1e-12, "{found:?}");
     }
 
     #[test]

@@ -125,3 +125,77 @@ pub fn digest(pipeline: &Pipeline, more: &[&str]) -> String {
     });
     d.finish().short()
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::record::Outcome;
+
+    fn reference() -> Reference {
+        let levels = Vec::new();
+        let ease_mm = BTreeMap::new();
+        let stopped = "it stopped moving".to_owned();
+        Reference {
+            ratio: 2.0,
+            levels,
+            mean: None,
+            p95: None,
+            displacement: None,
+            stopped,
+            spread: None,
+            ease_mm,
+        }
+    }
+
+    fn point(key: &str) -> Point {
+        let outcome = Outcome::OverLimit { seconds: 3.0 };
+        Point { key: key.into(), setting: BTreeMap::new(), overrides: Vec::new(), outcome }
+    }
+
+    fn kept(folder: &Path) -> Store {
+        let photo = folder.join("photo.jpg");
+        std::fs::write(&photo, "a photo").unwrap();
+        let path = photo.display().to_string();
+        let reads = BTreeMap::from([(path.clone(), content(&path))]);
+        let mut store = Store::new(folder, "base".into(), reads, reference());
+        store.add(point("one")).unwrap();
+        store.add(point("two")).unwrap();
+        store
+    }
+
+    #[test]
+    fn a_later_session_finds_every_setting() {
+        let dir = tempfile::tempdir().unwrap();
+        assert!(Store::open(dir.path(), "base").unwrap().is_none());
+        let store = kept(dir.path());
+        let again = Store::open(dir.path(), "base").unwrap().unwrap();
+        assert_eq!((again.head, again.points), (store.head, store.points));
+    }
+
+    #[test]
+    fn a_damaged_line_loses_itself_alone() {
+        let dir = tempfile::tempdir().unwrap();
+        kept(dir.path());
+        let path = dir.path().join(FILE);
+        let text = std::fs::read_to_string(&path).unwrap().replace("\"key\":\"one\"", "\"key\":\"one");
+        std::fs::write(&path, text).unwrap();
+        let again = Store::open(dir.path(), "base").unwrap().unwrap();
+        assert_eq!(again.points, [point("two")]);
+    }
+
+    #[test]
+    fn what_has_changed_is_not_gone_on_from() {
+        let dir = tempfile::tempdir().unwrap();
+        kept(dir.path());
+        let refused = |base: &str| Store::open(dir.path(), base).unwrap_err();
+        assert_eq!(refused("other"), "the pipeline or what is refined has changed");
+        let photo = dir.path().join("photo.jpg");
+        std::fs::write(&photo, "another").unwrap();
+        assert_eq!(refused("base"), format!("\"{}\" has changed", photo.display()));
+        std::fs::write(dir.path().join(FILE), "nonsense").unwrap();
+        assert_eq!(refused("base"), "it is of another version or damaged");
+        Store::put_aside(dir.path());
+        assert!(Store::open(dir.path(), "base").unwrap().is_none());
+    }
+}

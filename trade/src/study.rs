@@ -252,6 +252,8 @@ impl<'a> Study<'a> {
             }
             Err(Missed::Cancelled) => return Err(error(Missed::Cancelled)),
             Err(Missed::Failed(e)) => Outcome::Failed { code: e.code.to_string(), message: e.message },
+            // The end of the budget says nothing of the setting.
+            Err(Missed::OverLimit(_)) if self.left().is_zero() => return Ok(None),
             Err(Missed::OverLimit(seconds)) => Outcome::OverLimit { seconds },
         };
         Ok(Some(record(key, outcome)))
@@ -260,11 +262,7 @@ impl<'a> Study<'a> {
     /// Runs a setting as often as asked, fewer times where the budget ends.
     fn runs(&self, pipeline: &Pipeline) -> Result<(Ran, Measured), Missed> {
         let limit = self.options.limit.unwrap_or_else(|| self.options.budget.mul_f64(LIMIT_SHARE));
-        let first = self.options.bench.run(
-            pipeline,
-            Some(limit.min(self.left().max(Duration::from_secs(1)))),
-            None,
-        )?;
+        let first = self.options.bench.run(pipeline, Some(limit.min(self.left())), None)?;
         let mut measured = measured(&first, &self.found.ran).map_err(Missed::Failed)?;
         let digest = garment_digest(&first.garment);
         for _ in 1..self.options.repeats {

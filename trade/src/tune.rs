@@ -161,8 +161,12 @@ impl Prover<'_> {
             }
         }
         let message = format!("no setting that kept {} when it was measured keeps it again", wish.words());
+        let spread = self.trade.reference.spread.as_ref().and_then(|s| s.p95());
+        let rest = spread.map_or_else(String::new, |p| {
+            format!("; the garment has several states of rest, and moved starts of the reference differ by up to {p:.2} mm")
+        });
         Err(StageError::new(ErrorCode::StaticEquilibrium, message)
-            .hint("ask for a little more than is needed, or give `toile trade` more time"))
+            .hint(format!("ask for a little more than is needed, or give `toile trade` more time{rest}")))
     }
 
     /// The garment of the reference, from the cache of the measurement where it is still there.
@@ -191,6 +195,10 @@ impl Prover<'_> {
                 Ok(ran) => proof.starts.push(compare(&ran, reference).map_err(Missed::Failed)?.distance_mm),
                 Err(Missed::Failed(e)) => proof.failed.push(e.message),
                 Err(missed) => return Err(missed),
+            }
+            // One that misses is enough to look further.
+            if !proof.is_good(wish, self.trade.clock) {
+                break;
             }
         }
         Ok(proof)

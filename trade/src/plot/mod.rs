@@ -93,7 +93,7 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
     if let Some(floor) = floor {
         let at = y.at(floor);
         marks.push(line([FRAME[0], at], [FRAME[2], at], 1.5, PALE, true));
-        marks.push(text([FRAME[2] - 6.0, at - 6.0], Anchor::End, "the reference is known to this", PALE));
+        marks.push(text([FRAME[0] + 8.0, at - 6.0], Anchor::Start, "the reference is known to this", PALE));
     }
     marks.extend(steps(trade, &x, &y));
     let kinds = kinds(trade);
@@ -106,7 +106,7 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
             marks.push(text([at[0] + 9.0, at[1] - 7.0], Anchor::Start, &(i + 1).to_string(), INK));
         }
     }
-    marks.extend(legend(&kinds));
+    marks.extend(legend(&kinds, shown.iter().any(|(_, m)| !m.sound)));
     marks
 }
 
@@ -176,7 +176,7 @@ fn colour(i: usize) -> [u8; 3] {
     toile_stages::render::PANEL_COLOURS[i % toile_stages::render::PANEL_COLOURS.len()]
 }
 
-fn legend(kinds: &[String]) -> Vec<Mark> {
+fn legend(kinds: &[String], some_miss: bool) -> Vec<Mark> {
     let named = kinds.iter().enumerate().filter(|(_, k)| !k.is_empty());
     let mut marks: Vec<Mark> = named
         .flat_map(|(i, k)| {
@@ -186,6 +186,9 @@ fn legend(kinds: &[String]) -> Vec<Mark> {
             [dot, text([FRAME[2] - 28.0, y], Anchor::End, k, INK)]
         })
         .collect();
+    if !some_miss {
+        return marks;
+    }
     let y = FRAME[1] + 18.0 + 20.0 * kinds.iter().filter(|k| !k.is_empty()).count() as f64;
     marks.push(Mark::Dot { at: [FRAME[2] - 14.0, y - 5.0], radius: 5.0, colour: PALE, hollow: true });
     marks.push(text([FRAME[2] - 28.0, y], Anchor::End, "misses a quality limit", PALE));

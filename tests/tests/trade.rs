@@ -1,0 +1,125 @@
+//! `toile trade` and `toile tune` on a small sheet: measured, gone on with, picked, proved, written.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::Path;
+use toile_tests::{Answer, toile};
+
+const PIPELINE: &str = r#"// A napkin held at two corners.
+(
+    name: "napkin",
+    scene: Scene(file: "napkin.json"),
+    stages: [
+        Rest(speed: 0.01),  // mine
+    ],
+)
+"#;
+
+/// A square of 5 x 5 vertices, held at two corners, bent a little so that it knows which way to fall.
+fn napkin() -> Value {
+    let (n, step) = (5, 0.05);
+    let at = |i: usize| ((i % n) as f64 * step, (i / n) as f64 * step);
+    let rest: Vec<[f64; 2]> = (0..n * n).map(|i| [at(i).0, at(i).1]).collect();
+    let positions: Vec<[f64; 3]> = (0..n * n).map(|i| [at(i).0, at(i).1, 0.02 * at(i).1]).collect();
+    let cell = |k: usize| {
+        let a = k / (n - 1) * n + k % (n - 1);
+        [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]
+    };
+    let triangles: Vec<[usize; 3]> = (0..(n - 1) * (n - 1)).flat_map(cell).collect();
+    json!({
+        "format": "garment-scene-1", "name": "napkin",
+        "rest_uv": rest, "positions": positions, "triangles": triangles,
+        "panels": [{ "name": "napkin", "vertices": [0, n * n], "triangles": [0, triangles.len()] }],
+        "seams": [], "pinned": [n * (n - 1), n * n - 1], "body": null, "self_collision": true,
+        "material": { "area_density": 0.15, "stretch": 500.0, "shear": 50.0, "bend": 1e-5, "damping": 0.0,
+                      "friction": 0.4, "thickness": 0.001 },
+        "phases": [{ "name": "hang", "seconds": 1.0, "gravity": [0.0, -9.81, 0.0] }],
+    })
+}
+
+fn trade(dir: &Path, more: &[&str]) -> Answer {
+    let (file, out) = (dir.join("napkin.ron").display().to_string(), dir.join("out").display().to_string());
+    let fixed =
+        ["trade", &file, "--out", &out, "--knob", "Rest.speed=0.001..0.1", "--repeats", "1", "--starts", "1"];
+    toile(&[&fixed, more].concat())
+}
+
+fn record(dir: &Path) -> Value {
+    serde_json::from_str(&fs::read_to_string(dir.join("out/trade.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_front_is_measured_gone_on_with_and_tuned_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("napkin.ron"), PIPELINE).unwrap();
+    fs::write(dir.join("napkin.json"), napkin().to_string()).unwrap();
+
+    let first = trade(dir, &["--points", "3", "--budget", "2m"]);
+    assert_eq!(first.code, 0, "{}{}", first.out, first.err);
+    for file in ["trade.csv", "trade.json", "trade.svg", "trade.png", "trade.html", "trade.jsonl"] {
+        assert!(dir.join("out").join(file).metadata().unwrap().len() > 100, "{file}");
+    }
+    let before = record(dir);
+    assert_eq!(before["points"].as_array().unwrap().len(), 3);
+
+    let second = trade(dir, &["--points", "4", "--budget", "2m"]);
+    assert!(second.err.contains("goes on from 3 settings"), "{}", second.err);
+    let after = record(dir);
+    assert_eq!(after["points"].as_array().unwrap()[..3], before["points"].as_array().unwrap()[..]);
+    assert_eq!(after["points"].as_array().unwrap().len(), 4);
+
+    tuned(dir);
+    refused(dir);
+}
+
+fn tune(dir: &Path, more: &[&str]) -> Answer {
+    let (file, from) = (dir.join("napkin.ron").display().to_string(), dir.join("out").display().to_string());
+    toile(&[&["tune", &file, "--from", &from, "--starts", "2"], more].concat())
+}
+
+/// A wide wish is kept, and the file keeps its comments.
+fn tuned(dir: &Path) {
+    let out = dir.join("quick.ron").display().to_string();
+    let answer = tune(dir, &["--max-error", "20 cm", "--out", &out]);
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    assert!(answer.out.contains("2 of 2 moved starts within 200 mm"), "{}", answer.out);
+    let text = fs::read_to_string(&out).unwrap();
+    assert!(
+        text.starts_with("// toile tune: 20") && text.contains("// A napkin held at two corners.\n(\n"),
+        "{text}"
+    );
+    assert!(text.contains("),  // mine\n"), "{text}");
+    assert_eq!(toile(&["validate", &out]).code, 0);
+}
+
+fn refused(dir: &Path) {
+    let answer = tune(dir, &["--max-time", "1ms"]);
+    assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
+    let words = "error: no setting of the measured front keeps a time of at most 0.001 s\n  help: the most accurate keeps";
+    assert!(answer.err.contains(words), "{}", answer.err);
+    let elsewhere = tune(dir, &["--max-time", "1s", "--out", "elsewhere/quick.ron"]);
+    assert_eq!(elsewhere.code, 3);
+    assert!(
+        elsewhere.err.starts_with("error: \"elsewhere/quick.ron\" is not in the folder of the pipeline\n"),
+        "{}",
+        elsewhere.err
+    );
+    fs::write(dir.join("napkin.ron"), PIPELINE.replace("0.01", "0.02")).unwrap();
+    let stale = tune(dir, &["--max-time", "1s"]);
+    assert!(stale.err.starts_with("error: the measurement is of another state of "), "{}", stale.err);
+}
+
+#[test]
+fn faults_of_knobs_end_before_anything_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    fs::write(dir.join("napkin.ron"), PIPELINE).unwrap();
+    let answer = trade(dir, &["--knob", "Rest.sped=1..2"]);
+    assert_eq!(
+        (answer.code, answer.err.as_str()),
+        (3, "error: `Rest` has no parameter `sped`\n  help: did you mean `Rest.speed`?\n")
+    );
+    assert!(!dir.join("out").exists());
+}
