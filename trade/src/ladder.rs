@@ -147,7 +147,8 @@ impl Search<'_> {
             return Some(format!("{MOST_LEVELS} levels are the most"));
         }
         let growth = match levels {
-            [.., a, b] => (b.wall_s / a.wall_s).clamp(1.0, 8.0),
+            // No solver is quicker than its triangles are many.
+            [.., a, b] => (b.wall_s / a.wall_s).clamp(RATIO * RATIO, 8.0),
             _ => GROWTH,
         };
         let next = last.wall_s * growth;

@@ -137,7 +137,7 @@ fn faults_word_for_word() {
         ),
         (
             "collider.volume=1..2",
-            "`collider.volume` is Aabb | Sphere | Obb | KDop(whole number), which has no range",
+            "`collider.volume` is Aabb | Sphere | Obb | KDop(...), which has no range",
             "list its values with commas",
         ),
         ("mesher.edge=6..2400 mm", "`mesher.edge`: `edge` is 2.4 m; the greatest allowed is 1 m", ""),

@@ -29,7 +29,7 @@ fn a_plane_that_slides_in_itself_is_displaced_but_near() {
     near(moved.mean, 0.02, 1e-12);
     // Only a strip of 2 % of the area sticks out, by 1 cm in the mean, on one side of each.
     near(apart.mean, 0.02 * 0.01, 3e-5);
-    assert_eq!(apart.p95, 0.0);
+    near(apart.p95, 0.0, 1e-12);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::ladder::setting_words;
 use crate::record::{Clock, Measured, Outcome, Point, Trade};
+use crate::richardson::FORMAL_ORDER;
 use std::fmt::Write;
 
 /// A column: its head, its unit, and its value.
@@ -126,7 +127,7 @@ pub fn reference(trade: &Trade) -> Vec<String> {
     let order = |name: &str, o: Option<crate::record::Order>| match o {
         Some(o) => format!(
             "observed order of the {name} {}, {:.2} mm missing",
-            o.order.map_or_else(|| "beyond all bounds".into(), |p| format!("{p:.2}")),
+            o.order.map_or_else(|| "beyond all bounds".into(), order_words),
             o.missing_mm
         ),
         None => format!("no order of the {name}: the last levels do not come nearer"),
@@ -148,6 +149,14 @@ pub fn reference(trade: &Trade) -> Vec<String> {
         lines.push(format!("errors below {floor:.2} mm mean nothing"));
     }
     lines
+}
+
+/// An order above the method's own is luck: it is said how much of it counts.
+fn order_words(order: f64) -> String {
+    match order > FORMAL_ORDER {
+        true => format!("{order:.1} (counted as {FORMAL_ORDER})"),
+        false => format!("{order:.2}"),
+    }
 }
 
 fn line(trade: &Trade, i: usize) -> String {
