@@ -140,7 +140,7 @@ fn faults_word_for_word() {
             "`collider.volume` is Aabb | Sphere | Obb | KDop(...), which has no range",
             "list its values with commas",
         ),
-        ("mesher.edge=6..2400 mm", "`mesher.edge`: `edge` is 2.4 m; the greatest allowed is 1 m", ""),
+        ("mesher.edge=6..2400 mm", "`mesher.edge`: `edge` is 2.4 m, above its greatest value 1 m", ""),
     ] {
         assert_eq!(refused(VEST, &[knob]), (message.to_owned(), hint.to_owned()));
     }
