@@ -32,6 +32,8 @@ const LOOK_AROUND: usize = 5;
 const LIMIT_SHARE: f64 = 0.1;
 /// Settings without result after which a choice of stage is given up.
 const HOPELESS: usize = 2;
+/// Settings nearer than this to a measured one with the same choices, as a share of the knobs' ranges, tell nothing new.
+const LEAST_STEP: f64 = 0.03;
 /// Proposals that are looked at before there is said to be nothing new.
 const PROPOSALS: usize = 4000;
 
@@ -186,13 +188,21 @@ impl<'a> Study<'a> {
 
     /// New, coarser than the reference, not of a hopeless choice, and likely to be done in time.
     fn is_worth(&self, setting: &Setting) -> bool {
-        let is_known = self.store.points.iter().any(|p| p.setting == *setting);
+        let is_known =
+            self.store.points.iter().any(|p| p.setting == *setting || self.is_beside(setting, &p.setting));
         let finest = self.found.reference.levels.last().map(|l| &l.setting);
         let too_fine = finest.is_some_and(|f| self.board.is_too_fine(setting, f, FINER));
         !is_known
             && !too_fine
             && !self.is_hopeless(setting)
             && self.expected(setting) <= self.left().as_secs_f64()
+    }
+
+    /// True where two settings differ in no choice and hardly in numbers.
+    fn is_beside(&self, a: &Setting, b: &Setting) -> bool {
+        let (p, q) = (self.board.place(a), self.board.place(b));
+        let same_knobs = a.keys().eq(b.keys());
+        same_knobs && p.iter().zip(&q).all(|(x, y)| (x - y).abs() < LEAST_STEP)
     }
 
     fn is_hopeless(&self, setting: &Setting) -> bool {
