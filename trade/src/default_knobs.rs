@@ -3,9 +3,9 @@
 //! The stages decide most of a garment's time and error in this order: edge length of the mesh, solver, when it stops,
 //! mesher. Their ranges are factors around the pipeline's own values.
 
+use crate::dial::{Form, numeric};
 use crate::knob::{KnobSpec, Number, Values};
 use crate::ladder::finer;
-use crate::slot::{Form, numeric};
 use crate::split::field;
 use toile_core::pipeline::{Node, Pipeline};
 use toile_core::{Registry, Role};

@@ -3,7 +3,7 @@
 //! [`study`] runs a pipeline over its *knobs* and holds every garment against a converged *reference*; [`tune`] picks
 //! from what was measured and proves the choice by fresh runs. docs/trade.md defines every figure.
 //!
-//! - `split`, `knob`, `slot`, `default_knobs`: what may be turned, and how a setting becomes overrides of the pipeline file;
+//! - `split`, `knob`, `dial`, `slot`, `default_knobs`: what may be turned, and how a setting becomes overrides of the pipeline file;
 //! - `sample`, `front`: which settings are tried, and which of them nothing beats;
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
 //! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
@@ -13,6 +13,7 @@
 //! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
 
 pub mod default_knobs;
+pub mod dial;
 pub mod errors;
 pub mod front;
 mod girth;

@@ -5,12 +5,13 @@
 //! name (`GridMesher.edge`) on that stage alone. Where it has nothing to act on it is left out of the setting, so that
 //! settings that differ in nothing are one.
 
-use crate::knob::{KnobSpec, Number, Values, fault};
+use crate::dial::{Dial, Form, dial, is_finer, numeric, rounded};
+use crate::knob::{KnobSpec, Values, fault};
 use crate::split::field;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_core::pipeline::{Faults, Node, Override, Pipeline, load, nearest};
-use toile_core::{Card, Length, ParamDoc, Registry, Role, SectionValue, StageError, add_implicit};
+use toile_core::{Card, ParamDoc, Registry, Role, SectionValue, StageError, add_implicit};
 
 /// A pipeline file with what the user has set, ready to be loaded with other settings.
 #[derive(Debug, Clone)]
@@ -37,37 +38,6 @@ impl Source<'_> {
         add_implicit(&mut pipeline, self.registry);
         Ok(pipeline)
     }
-}
-
-/// What a knob may be.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Dial {
-    /// One of several stages, by name; the slot's own is among them or not.
-    Stage(Vec<String>),
-    /// One of several texts.
-    List(Vec<String>),
-    /// Between two numbers; `log` where steps are factors.
-    Range {
-        /// Least.
-        lo: f64,
-        /// Greatest.
-        hi: f64,
-        /// True where it is turned by factors.
-        log: bool,
-        /// How a number is written.
-        form: Form,
-    },
-}
-
-/// How a number stands in a pipeline file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// `"12 mm"`.
-    Length,
-    /// `12`.
-    Whole,
-    /// `0.5`.
-    Real,
 }
 
 /// A knob of a pipeline.
@@ -378,143 +348,6 @@ impl Board {
             .map(|(n, t)| (n.clone(), t.clone()))
             .collect()
     }
-}
-
-impl Dial {
-    /// The value at a share of the dial, as it stands in a file.
-    pub fn at(&self, share: f64) -> String {
-        let nth = |list: &[String]| {
-            let i = ((share * list.len() as f64) as usize).min(list.len().saturating_sub(1));
-            list.get(i).cloned().unwrap_or_default()
-        };
-        match self {
-            Dial::Stage(list) | Dial::List(list) => nth(list),
-            Dial::Range { lo, hi, log, form } => {
-                let x = if *log { lo * (hi / lo).powf(share) } else { lo + (hi - lo) * share };
-                form.write(rounded(x).clamp(*lo, *hi))
-            }
-        }
-    }
-
-    /// Its finest number, by the way in which the parameter is refined.
-    fn finest(&self, way: f64) -> Option<f64> {
-        match self {
-            Dial::Stage(_) => None,
-            Dial::List(list) => {
-                list.iter().filter_map(|v| numeric(v)).reduce(|a, b| if a * way < b * way { a } else { b })
-            }
-            Dial::Range { lo, hi, .. } => Some(if way > 0.0 { *lo } else { *hi }),
-        }
-    }
-
-    /// In words, for the record.
-    pub fn words(&self) -> String {
-        match self {
-            Dial::Stage(list) | Dial::List(list) => list.join(", "),
-            Dial::Range { lo, hi, form, .. } => {
-                format!("{} to {}", form.write(*lo).trim_matches('"'), form.write(*hi).trim_matches('"'))
-            }
-        }
-    }
-
-    /// True where it takes single values that cannot be averaged.
-    pub fn is_discrete(&self) -> bool {
-        !matches!(self, Dial::Range { .. })
-    }
-
-    /// The share at which a value stands; none for a value that the dial does not have.
-    pub fn place(&self, value: &str) -> Option<f64> {
-        match self {
-            Dial::Stage(list) | Dial::List(list) => {
-                let i = list.iter().position(|v| v == value)?;
-                Some((i as f64 + 0.5) / list.len() as f64)
-            }
-            Dial::Range { lo, hi, log, .. } => {
-                let x = numeric(value)?;
-                let share = if *log { (x / lo).ln() / (hi / lo).ln() } else { (x - lo) / (hi - lo) };
-                share.is_finite().then(|| share.clamp(0.0, 1.0))
-            }
-        }
-    }
-}
-
-impl Form {
-    /// A number as it stands in a file.
-    pub fn write(self, x: f64) -> String {
-        match self {
-            Form::Length => format!("\"{}\"", Length::m(x)),
-            Form::Whole => format!("{}", x.round()),
-            Form::Real => format!("{x:?}"),
-        }
-    }
-
-    /// How a parameter is written; none for one that is no number.
-    pub fn of(doc: &ParamDoc) -> Option<Form> {
-        match doc.kind.trim_end_matches(" (or None)") {
-            "length" => Some(Form::Length),
-            "whole number" => Some(Form::Whole),
-            "number" => Some(Form::Real),
-            _ => None,
-        }
-    }
-}
-
-/// A number or a quoted length of a file; a length in metres.
-pub fn numeric(text: &str) -> Option<f64> {
-    let bare = text.trim().trim_matches('"');
-    bare.parse::<f64>().ok().or_else(|| bare.parse::<Length>().ok().map(Length::metres))
-}
-
-/// To three digits: nobody reads more, and settings that are alike become equal.
-fn rounded(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
-}
-
-/// True where `value` is finer than `other` by a factor; `way` is 1 where less is finer, -1 where more is.
-fn is_finer(way: f64, value: f64, other: f64, factor: f64) -> bool {
-    (other / value).powf(way) >= factor * (1.0 - 1e-9)
-}
-
-fn dial(key: &str, doc: &ParamDoc, values: &Values) -> Result<Dial, StageError> {
-    match values {
-        Values::List(list) => {
-            let text = |v: &String| match Form::of(doc) {
-                Some(Form::Length) if v.parse::<Length>().is_ok() => format!("\"{v}\""),
-                _ => v.clone(),
-            };
-            let list: Vec<String> = list.iter().map(text).collect();
-            list.iter().try_for_each(|v| check(key, doc, v))?;
-            Ok(Dial::List(list))
-        }
-        Values::Range(lo, hi) => {
-            let form = Form::of(doc).ok_or_else(|| {
-                fault(format!("`{key}` is {}, which has no range", doc.kind))
-                    .hint("list its values with commas")
-            })?;
-            if (form == Form::Length) != matches!(hi, Number::Length(_)) {
-                let hint = if form == Form::Length {
-                    "write the unit, like `6..24 mm`"
-                } else {
-                    "write bare numbers"
-                };
-                return Err(fault(format!("`{key}` is a {}", doc.kind)).hint(hint));
-            }
-            let (lo, hi) = (lo.value(), hi.value());
-            check(key, doc, &form.write(lo))?;
-            check(key, doc, &form.write(hi))?;
-            Ok(Dial::Range { lo, hi, log: lo > 0.0, form })
-        }
-    }
-}
-
-fn check(key: &str, doc: &ParamDoc, text: &str) -> Result<(), StageError> {
-    doc.check.run(text, doc).map_err(|f| {
-        let e = fault(format!("`{key}`: {}", f.message));
-        match f.hint {
-            Some(hint) => e.hint(hint),
-            None => e,
-        }
-    })
 }
 
 /// The role of a key; `solver` is the draper.
