@@ -6,25 +6,6 @@ use toile_core::plugin::{Plugin, Refused};
 use toile_core::testkit::{checked, is_checked};
 use toile_core::{Arity, Card, Contract, InPort, ParamDoc, Registry, Role};
 
-/// The roles in the order of a pipeline.
-const ROLES: [Role; 15] = [
-    Role::Reader,
-    Role::Denoiser,
-    Role::Binariser,
-    Role::EdgeDetector,
-    Role::Style,
-    Role::Mesher,
-    Role::Smoother,
-    Role::Body,
-    Role::Fabric,
-    Role::Placement,
-    Role::Collider,
-    Role::Stitcher,
-    Role::Draper,
-    Role::Texturer,
-    Role::Writer,
-];
-
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if json {
@@ -37,7 +18,7 @@ pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -
         streams.say(listing);
         return exit::DONE;
     }
-    for role in ROLES {
+    for role in Role::ALL {
         let mut cards = registry.of_role(role).peekable();
         if cards.peek().is_some() {
             streams.say(role.as_str());

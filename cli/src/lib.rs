@@ -28,6 +28,7 @@ use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
+use std::path::PathBuf;
 use toile_core::Registry;
 use toile_core::pipeline::Faults;
 
@@ -89,10 +90,17 @@ where
 {
     let mut streams = Streams { out, err };
     match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => match with_plugins(registry, &arguments, &mut streams) {
-            Ok(registry) => dispatch(arguments.command, &registry, &mut streams),
-            Err(code) => code,
-        },
+        Ok(Arguments { command: Command::Run(args), plugins }) if args.watch => {
+            watch::watch(&args, &plugins, registry, &mut streams)
+        }
+        Ok(Arguments { command, plugins }) => {
+            // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
+            let (registry, all) = with_plugins(registry, &plugins);
+            match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
+                true => dispatch(command, &registry, &mut streams),
+                false => refused(&registry, &mut streams),
+            }
+        }
         Err(e) if e.use_stderr() => {
             streams.tell(e.render());
             exit::USAGE
@@ -104,26 +112,22 @@ where
     }
 }
 
-/// The registry with the plugins that the arguments name. A refused one ends the command, but for the
-/// list of stages and the doctor, which show it with its reason.
-fn with_plugins(
-    registry: &Registry,
-    arguments: &Arguments,
-    streams: &mut Streams<'_>,
-) -> Result<Registry, u8> {
+/// The registry with the plugins that the arguments name, and whether all of them are in it.
+fn with_plugins(registry: &Registry, plugins: &[PathBuf]) -> (Registry, bool) {
     let mut registry = registry.clone();
-    let loads: Vec<_> = arguments.plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
-    if matches!(arguments.command, Command::Stages { .. } | Command::Doctor { .. }) {
-        return Ok(registry);
-    }
-    let refused: Vec<_> = loads.into_iter().filter_map(Result::err).collect();
-    for r in &refused {
+    let loads: Vec<_> = plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
+    (registry, loads.iter().all(Result::is_ok))
+}
+
+/// Says which plugins were refused.
+fn refused(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    for r in registry.refused() {
         streams.tell(format!("error: {r}"));
         if let Some(hint) = &r.hint {
             streams.tell(format!("  help: {hint}"));
         }
     }
-    if refused.is_empty() { Ok(registry) } else { Err(exit::INVALID) }
+    exit::INVALID
 }
 
 /// Every built-in stage.
@@ -135,7 +139,7 @@ pub fn registry() -> Registry {
 
 fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     match command {
-        Command::Run(args) => run::run(&args, registry, streams),
+        Command::Run(args) => run::once(&args, registry, None, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),
         Command::Stages { schema: true, .. } => cards::schema(registry, streams),
         Command::Stages { json, .. } => cards::list(json, registry, streams),

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use toile_core::{Registry, Role, write_files};
 
 /// The roles that have a template.
-const TEMPLATES: [(&str, Role, Template); 8] = [
+const TEMPLATES: [(&str, Role, Template); 9] = [
     (
         "denoiser",
         Role::Denoiser,
@@ -34,6 +34,7 @@ const TEMPLATES: [(&str, Role, Template); 8] = [
         Role::Stitcher,
         Template { source: include_str!("new_stage/stitcher.txt"), dependencies: "" },
     ),
+    ("draper", Role::Draper, Template { source: include_str!("new_stage/draper.txt"), dependencies: "" }),
     (
         "collider",
         Role::Collider,

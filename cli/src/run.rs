@@ -15,14 +15,6 @@ use toile_core::{
     run as run_stages, write_files,
 };
 
-/// Runs a pipeline, once or until Ctrl-C.
-pub(crate) fn run(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    match args.watch {
-        true => watch::watch(args, registry, streams),
-        false => once(args, registry, None, streams),
-    }
-}
-
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
 pub(crate) fn once(
     args: &RunArgs,
@@ -46,7 +38,7 @@ pub(crate) fn once(
     // A lock is compared by digests, which a cache takes.
     let cache = cache.or_else(|| lock.as_ref().map(|_| Arc::new(Cache::nowhere())));
     if let Some(reads) = reads {
-        watch::plugins(&pipeline, reads);
+        watch::note_plugins(&pipeline, reads);
     }
     let outcome = on_threads(args.threads, || {
         let options = RunOptions {

@@ -7,26 +7,38 @@
 
 use crate::args::RunArgs;
 use crate::run::once;
-use crate::{Streams, exit, interrupt};
+use crate::{Streams, exit, interrupt, refused, with_plugins};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
 use toile_core::cache::Hash;
-use toile_core::pipeline::Pipeline;
+use toile_core::pipeline::{Pipeline, plugins_asked};
+use toile_core::plugin::plugin_files;
 use toile_core::{Metrics, Reads, Registry};
 
 /// Time between two looks.
 const PAUSE: Duration = Duration::from_millis(200);
 
-/// Runs until Ctrl-C.
-pub(crate) fn watch(args: &RunArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+/// Runs until Ctrl-C; `plugins` are those that the command line names.
+pub(crate) fn watch(
+    args: &RunArgs,
+    plugins: &[PathBuf],
+    registry: &Registry,
+    streams: &mut Streams<'_>,
+) -> u8 {
     let cancel = interrupt::on_ctrl_c();
+    let mut base = registry.clone();
+    // Plugins are built anew while their former selves are loaded.
+    base.load_plugins_apart();
     loop {
         let started = Instant::now();
         let reads: Reads = Arc::new(Mutex::new(BTreeMap::new()));
-        note(&reads, &args.pipeline);
-        let code = once(args, registry, Some(&reads), streams);
+        note_named(&reads, &args.pipeline, plugins);
+        let code = match with_plugins(&base, plugins) {
+            (registry, true) => once(args, &registry, Some(&reads), streams),
+            (registry, false) => refused(&registry, streams),
+        };
         interrupt::end_writing();
         if cancel.is_cancelled() {
             return exit::DONE;
@@ -45,9 +57,20 @@ pub(crate) fn watch(args: &RunArgs, registry: &Registry, streams: &mut Streams<'
     }
 }
 
-/// The files that a pipeline names beside those that its stages read: its plugins.
-pub(crate) fn plugins(pipeline: &Pipeline, reads: &Reads) {
-    pipeline.plugins.iter().for_each(|p| note(reads, &pipeline.base.join(&p.file)));
+/// Notes the pipeline and the plugins that it and the command line name: they are watched even where one of them cannot
+/// be read.
+fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
+    note(reads, pipeline);
+    let text = std::fs::read_to_string(pipeline).unwrap_or_default();
+    let folder = pipeline.parent().unwrap_or(Path::new(""));
+    let asked = plugins_asked(&text).into_iter().map(|p| folder.join(p.file));
+    asked.chain(plugins.iter().cloned()).flat_map(|p| plugin_files(&p)).for_each(|p| note(reads, &p));
+}
+
+/// Notes the plugins of a pipeline that may have got them by `--set`.
+pub(crate) fn note_plugins(pipeline: &Pipeline, reads: &Reads) {
+    let named = pipeline.plugins.iter().flat_map(|p| plugin_files(&pipeline.base.join(&p.file)));
+    named.for_each(|p| note(reads, &p));
 }
 
 /// Notes a file as it is now.

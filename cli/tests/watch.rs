@@ -25,11 +25,12 @@ struct Watch {
 }
 
 impl Watch {
-    fn start(folder: &Path) -> Self {
+    fn start(folder: &Path, more: &[&str]) -> Self {
         let path = |name: &str| folder.join(name).into_os_string();
         let mut child = Command::new(env!("CARGO_BIN_EXE_toile"))
             .args(["run", "--watch"])
             .args([path("vest.ron"), "--out".into(), path("out"), "--cache-dir".into(), path("cache")])
+            .args(more)
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
@@ -51,6 +52,15 @@ impl Watch {
             heard.push(line);
         }
         panic!("nothing with \"{words}\" in {heard:#?}");
+    }
+}
+
+impl Watch {
+    /// The end of a run that reached its end.
+    fn done(&self) -> String {
+        let line = self.hear("done in ");
+        assert!(line.starts_with("done in "), "{line}");
+        line
     }
 }
 
@@ -87,30 +97,30 @@ fn an_edit_of_pipeline_or_photo_runs_what_changed_and_ctrl_c_ends_it() {
     let (ron, photo) = (dir.path().join("vest.ron"), dir.path().join("front.jpg"));
     fs::write(&ron, PIPELINE).unwrap();
     fs::copy(samples().join("front.jpg"), &photo).unwrap();
-    let mut watch = Watch::start(dir.path());
-    let line = watch.hear("watching");
-    assert!(line.starts_with("done in ") && line.ends_with("s; watching 2 files, Ctrl-C ends it"), "{line}");
+    let mut watch = Watch::start(dir.path(), &[]);
+    let line = watch.done();
+    assert!(line.ends_with("s; watching 2 files, Ctrl-C ends it"), "{line}");
     assert_eq!(cached(dir.path()), [false, false, false]);
 
     replace(&ron, PIPELINE.replace("Otsu()", "Otsu(bias: 2)").as_bytes());
     assert_eq!(watch.hear("changed"), format!("changed: {}", ron.display()));
-    watch.hear("done in ");
+    watch.done();
     assert_eq!(cached(dir.path()), [true, true, false]);
 
     replace(&photo, &fs::read(samples().join("back.jpg")).unwrap());
     assert_eq!(watch.hear("changed"), format!("changed: {}", photo.display()));
-    watch.hear("done in ");
+    watch.done();
     assert_eq!(cached(dir.path()), [false, false, false]);
 
     // A fault does not end it, nor does a photo that is gone for a while.
     fs::write(&ron, "(stages: [").unwrap();
     watch.hear("not done in ");
     fs::write(&ron, PIPELINE).unwrap();
-    watch.hear("done in ");
+    watch.done();
     fs::remove_file(&photo).unwrap();
     watch.hear("not done in ");
     fs::copy(samples().join("front.jpg"), &photo).unwrap();
-    watch.hear("done in ");
+    watch.done();
     assert_eq!(cached(dir.path()), [true, true, true]);
 
     let done = Command::new("kill").arg("-INT").arg(watch.child.id().to_string()).status().unwrap();
@@ -124,4 +134,51 @@ fn an_edit_of_pipeline_or_photo_runs_what_changed_and_ctrl_c_ends_it() {
         }
     };
     assert_eq!(status.code(), Some(0));
+}
+
+/// The plugin in C, compiled to the file itself; `white` is what it takes every level from.
+fn build_invert(library: &Path, white: &str) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let source = library.with_extension("c");
+    let text = fs::read_to_string(root.join("plugins/c/invert.c")).unwrap();
+    assert!(text.contains("made->white = 255;"));
+    fs::write(&source, text.replace("made->white = 255;", &format!("made->white = {white};"))).unwrap();
+    let built = library.with_extension("built");
+    let mut compiler = Command::new(std::env::var("CC").unwrap_or_else(|_| "cc".into()));
+    compiler.args(["-std=c11", "-O1", "-shared", "-fPIC", "-I"]).arg(root.join("core/include"));
+    assert!(compiler.arg("-o").arg(&built).arg(&source).status().unwrap().success());
+    // Written over, which is the harder case: the old code is loaded while its file changes.
+    fs::write(library, fs::read(built).unwrap()).unwrap();
+}
+
+#[test]
+fn a_plugin_that_is_built_anew_runs_anew() {
+    let dir = tempfile::tempdir().unwrap();
+    let (ron, photo) = (dir.path().join("vest.ron"), dir.path().join("front.jpg"));
+    let library =
+        dir.path().join(format!("{}invert{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX));
+    let text = PIPELINE.replace("stages: [", "plugins: [\"invert\"], stages: [ InvertC(),");
+    fs::write(&ron, text).unwrap();
+    fs::copy(samples().join("front.jpg"), &photo).unwrap();
+    let watch = Watch::start(dir.path(), &["--keep"]);
+    let picture = || fs::read(dir.path().join("out/stages/InvertC/front.png")).unwrap();
+
+    // Named, but not built yet: it is waited for.
+    watch.hear("the plugin \"invert\" is refused");
+    watch.hear("not done in ");
+    build_invert(&library, "255");
+    assert_eq!(watch.hear("changed"), format!("changed: {}", library.display()));
+    watch.done();
+    let first = picture();
+
+    build_invert(&library, "200");
+    watch.hear("changed");
+    watch.done();
+    assert_eq!(cached(dir.path()), [true, false, false, false]);
+    assert_ne!(picture(), first, "the new code ran");
+
+    build_invert(&library, "255");
+    watch.hear("changed");
+    watch.done();
+    assert_eq!(picture(), first, "and the old one again, from the cache or not");
 }

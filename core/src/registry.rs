@@ -21,6 +21,8 @@ pub struct Registry {
     plugins: Vec<Plugin>,
     refused: Vec<Refused>,
     migrations: Vec<Migration>,
+    /// Whether plugins are loaded as copies.
+    apart: bool,
 }
 
 /// A stage type.
@@ -94,8 +96,15 @@ impl Registry {
     ///
     /// Errors: why it is refused; a refused plugin stays listed with its reason.
     pub fn load_plugin(&mut self, path: &Path, pinned: Option<&str>) -> Result<(), Refused> {
-        let loaded = plugin::load(path, pinned).and_then(|plugin| self.add_plugin(path, plugin));
+        let loaded = plugin::load(path, pinned, self.apart).and_then(|plugin| self.add_plugin(path, plugin));
         loaded.inspect_err(|refused| self.refused.push(refused.clone()))
+    }
+
+    /// From now on loads copies of plugins, so that their files may be replaced or written over while the program
+    /// goes on. A copy does not see libraries that lie beside the file.
+    pub fn load_plugins_apart(&mut self) -> &mut Self {
+        self.apart = true;
+        self
     }
 
     fn add_plugin(&mut self, path: &Path, plugin: Plugin) -> Result<(), Refused> {

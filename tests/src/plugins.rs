@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The library of a plugin crate that the tests depend on, such as `toile_faulty`.
+/// The library of a plugin crate that the tests depend on, such as `toile_faulty`: cargo puts it beside the tests'
+/// programs, which lie in `deps`, as examples do not.
 pub fn library(name: &str) -> PathBuf {
     let file = format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
-    let beside = std::env::current_exe().ok().and_then(|e| e.parent().map(|dir| dir.join(&file)));
-    beside.unwrap_or_else(|| PathBuf::from(file))
+    let program = std::env::current_exe().unwrap_or_default();
+    let beside = program.parent().map(|dir| dir.join(&file));
+    let in_deps = program.ancestors().nth(2).map(|dir| dir.join("deps").join(&file));
+    beside.into_iter().chain(in_deps).find(|path| path.is_file()).unwrap_or_else(|| PathBuf::from(file))
 }
 
 /// Compiles a C source of the repository as a plugin into `dir`; gives the library.

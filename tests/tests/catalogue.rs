@@ -106,6 +106,53 @@ fn the_schema_of_pipeline_files_is_up_to_date() {
     committed("docs/pipeline.schema.json", &["stages", "--schema"]);
 }
 
+/// The committed schema as a validator reads it.
+fn validator() -> (boon::Schemas, boon::SchemaIndex) {
+    let text = std::fs::read_to_string(root().join("docs/pipeline.schema.json")).unwrap();
+    let (mut schemas, mut compiler) = (boon::Schemas::new(), boon::Compiler::new());
+    compiler.add_resource("pipeline", serde_json::from_str(&text).unwrap()).unwrap();
+    let index = compiler.compile("pipeline", &mut schemas).unwrap();
+    (schemas, index)
+}
+
+#[test]
+fn shipped_pipelines_follow_the_schema() {
+    let (schemas, index) = validator();
+    let mut seen = 0;
+    for entry in std::fs::read_dir(root().join("pipelines")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|e| e == "ron") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let value = toile_core::pipeline::to_json(&text, "").unwrap();
+            let faults = schemas.validate(&value, index).err().map(|e| format!("{e:#}"));
+            assert_eq!(faults, None, "{}", path.display());
+            seen += 1;
+        }
+    }
+    assert!(seen >= 5, "{seen} pipelines");
+}
+
+#[test]
+fn the_schema_refuses_what_the_loader_refuses() {
+    let (schemas, index) = validator();
+    let text = std::fs::read_to_string(root().join("pipelines/vest.ron")).unwrap();
+    for (right, wrong) in [
+        ("Canny(low: 20", "Canny(lower: 20"),
+        ("edge: \"16 mm\"", "edge: 16"),
+        ("edge: \"16 mm\"", "edge: \"16 miles\""),
+        ("volume: Aabb", "volume: Box"),
+        ("radius: 1)", "radius: 1.5)"),
+        ("lambda: 0.5", "lambda: -0.5"),
+        ("style: Vest()", "style: Otsu()"),
+        ("fabric: Preset(", "fabrics: Preset("),
+        ("Rest()", "Resting()"),
+    ] {
+        assert!(text.contains(right), "{right}");
+        let value = toile_core::pipeline::to_json(&text.replace(right, wrong), "").unwrap();
+        assert!(schemas.validate(&value, index).is_err(), "{wrong}");
+    }
+}
+
 #[test]
 fn drift_shows_the_first_lines_that_differ() {
     assert_eq!(drift("a\nb\nc\n", "a\nx\nc\n"), "line 2:\n- b\n- c\n+ x\n+ c\n");

@@ -6,13 +6,14 @@ use std::path::Path;
 use std::process::Command;
 use toile_tests::{Answer, root, toile};
 
-const ROLES: [(&str, &str); 8] = [
+const ROLES: [(&str, &str); 9] = [
     ("FreshDenoiser", "denoiser"),
     ("FreshBinariser", "binariser"),
     ("FreshEdges", "edge-detector"),
     ("FreshMesher", "mesher"),
     ("FreshSmoother", "smoother"),
     ("FreshStitcher", "stitcher"),
+    ("FreshDraper", "draper"),
     ("FreshCollider", "collider"),
     ("FreshTexturer", "texturer"),
 ];
@@ -50,7 +51,7 @@ fn every_role_builds_and_passes_its_own_tests() {
         let folder = answer.out.lines().next().unwrap().strip_prefix("wrote ").unwrap().to_owned();
         folder.rsplit('/').next().unwrap().to_owned()
     });
-    // One workspace of all eight, so that cargo is started once.
+    // One workspace of all nine, so that cargo is started once.
     let members: Vec<String> = folders.iter().map(|f| format!("{f:?}")).collect();
     for folder in &folders {
         let manifest = dir.path().join(folder).join("Cargo.toml");
@@ -61,7 +62,7 @@ fn every_role_builds_and_passes_its_own_tests() {
     std::fs::write(dir.path().join("Cargo.toml"), workspace).unwrap();
     let text = cargo(dir.path(), &["test", "--workspace", "--test", "stage"]);
     assert!(!text.contains("warning: unused"), "{text}");
-    assert_eq!(text.matches("test result: ok. 10 passed").count(), 8, "{text}");
+    assert_eq!(text.matches("test result: ok. 10 passed").count(), 9, "{text}");
     // The benchmarks are alike but for their names: one is built and run, once through.
     cargo(dir.path(), &["test", "-p", "fresh-mesher", "--benches"]);
     for (name, folder) in ROLES.map(|(name, _)| name).iter().zip(&folders) {
@@ -94,7 +95,7 @@ fn what_cannot_be_is_refused_by_name() {
         refused("Otsu", "mesher"),
         "error: there is a binariser `Otsu` already; choose another name\n"
     );
-    let there = "denoiser, binariser, edge-detector, mesher, smoother, stitcher, collider, texturer";
+    let there = "denoiser, binariser, edge-detector, mesher, smoother, stitcher, draper, collider, texturer";
     assert_eq!(
         refused("Fine", "writer"),
         format!("error: there is no template for a writer; there are {there}\n")

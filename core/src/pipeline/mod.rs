@@ -19,6 +19,7 @@
 mod draft;
 mod fault;
 mod graph;
+mod json;
 mod migrate;
 pub(crate) mod near;
 mod order;
@@ -35,10 +36,11 @@ mod words;
 pub(crate) mod tests;
 
 pub use fault::{Fault, FaultRecord, Faults, Label};
+pub use json::to_json;
 pub use migrate::{Change, Migrated, Migration, migrate};
 pub use near::nearest;
 pub use overrides::Override;
-pub use plugins::PluginUse;
+pub use plugins::{PluginUse, asked as plugins_asked};
 
 use crate::{Card, Registry, Stage, StageError};
 use std::collections::BTreeMap;

@@ -63,8 +63,8 @@ fn digest(text: String, at: &Tree) -> Result<String, Wrong> {
     }
 }
 
-/// What a text asks for; nothing where it cannot be read, which the load itself reports.
-pub(super) fn asked(text: &str) -> Vec<PluginUse> {
+/// The plugins that a pipeline's text asks for; nothing where it cannot be read, which the load itself reports.
+pub fn asked(text: &str) -> Vec<PluginUse> {
     let Ok(tree) = super::parse(text) else { return Vec::new() };
     let named =
         tree.entries().iter().find(|e| e.key.as_ref().and_then(|k| text.get(k.clone())) == Some("plugins"));

@@ -9,9 +9,12 @@ use crate::param::Check;
 use crate::text::intern;
 use crate::{Card, PluginId};
 use libloading::Library;
+use std::collections::BTreeMap;
+use std::io::Write;
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
+use tempfile::NamedTempFile;
 
 /// What every entry symbol begins with.
 const SYMBOL: &[u8] = b"toile_plugin";
@@ -63,20 +66,27 @@ pub struct Refused {
     pub hint: Option<String>,
 }
 
-/// The file of a plugin that is named with or without the system's way of naming libraries.
-fn found(path: &Path) -> PathBuf {
+/// The files that a plugin's name may mean: the name itself, and dressed as the system names libraries.
+pub fn plugin_files(path: &Path) -> [PathBuf; 2] {
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let stem = path.file_name().map(|n| n.to_string_lossy().replace('-', "_")).unwrap_or_default();
-    let dressed = path.with_file_name(format!("{prefix}{stem}{suffix}"));
-    if !path.is_file() && dressed.is_file() { dressed } else { path.to_owned() }
+    [path.to_owned(), path.with_file_name(format!("{prefix}{stem}{suffix}"))]
+}
+
+/// The first of those that is there; the name itself where none is.
+fn found(path: &Path) -> PathBuf {
+    let files = plugin_files(path);
+    files.iter().find(|f| f.is_file()).unwrap_or(&files[0]).clone()
 }
 
 /// Loads a plugin; `pinned` is the BLAKE3 digest in hexadecimal that its file must have.
 ///
 /// Loading runs the library's own initialisation: a plugin is code that the user trusts.
 ///
+/// With `apart` a copy is loaded, so that the file may be replaced or written over while this program goes on.
+///
 /// Errors: why it is refused. A file that is no library, or not the pinned one, is never loaded.
-pub fn load(path: &Path, pinned: Option<&str>) -> Result<Plugin, Refused> {
+pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Refused> {
     let file = found(path);
     let refused =
         |(reason, hint): (String, Option<String>)| Refused { file: path.display().to_string(), reason, hint };
@@ -88,8 +98,35 @@ pub fn load(path: &Path, pinned: Option<&str>) -> Result<Plugin, Refused> {
         let hint = "a plugin exports `toile_plugin`; see docs/plugin-abi.md".to_owned();
         return Err(refused(("it declares no plugin".into(), Some(hint))));
     }
+    // A bare name would be looked for in the system's folders.
+    let full = std::fs::canonicalize(&file).map_err(|e| refused(plain(words(&e))))?;
+    let copy = (replaced(&full, digest) || apart).then(|| copy(&bytes)).transpose().map_err(refused)?;
     drop(bytes);
-    unsafe { open(&file, &symbols, digest) }.map_err(refused)
+    let from = copy.as_ref().map_or(full.as_path(), |copy| copy.path());
+    let mut plugin = unsafe { open(from, &symbols, digest) }.map_err(refused)?;
+    plugin.file = full;
+    Ok(plugin)
+}
+
+/// Whether this program has loaded another library from the same path: the system would give it again.
+fn replaced(path: &Path, digest: Digest) -> bool {
+    static LOADED: Mutex<BTreeMap<PathBuf, Digest>> = Mutex::new(BTreeMap::new());
+    let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
+    *loaded.entry(path.to_owned()).or_insert(digest) != digest
+}
+
+/// A copy of a library that is gone from its folder once it is loaded.
+fn copy(bytes: &[u8]) -> Result<NamedTempFile, Why> {
+    let fault = |e: std::io::Error| {
+        plain(format!("no copy of it can be made in the folder for temporary files: {}", words(&e)))
+    };
+    let mut file = tempfile::Builder::new()
+        .prefix("toile-plugin-")
+        .suffix(std::env::consts::DLL_SUFFIX)
+        .tempfile()
+        .map_err(fault)?;
+    file.write_all(bytes).map_err(fault)?;
+    Ok(file)
 }
 
 type Why = (String, Option<String>);
@@ -162,9 +199,7 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
 /// # Safety
 /// The library is trusted to obey the rules of the border.
 unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
-    // A bare name would be looked for in the system's folders.
-    let full = std::fs::canonicalize(file).map_err(|e| plain(words(&e)))?;
-    let library = unsafe { Library::new(&full) }.map_err(|e| {
+    let library = unsafe { Library::new(file) }.map_err(|e| {
         let reason = format!("the system cannot load it: {}", without_path(&e.to_string()));
         (reason, Some("is it a library for this machine?".to_owned()))
     })?;
@@ -186,7 +221,7 @@ unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugi
     let id = PluginId { name: intern(name), version: intern(version), digest };
     let loaded = Arc::new(Loaded { id, _library: ManuallyDrop::new(library) });
     let (cards, types) = unsafe { stages(&declaration, &loaded)? };
-    Ok(Plugin { id, file: full, abi: (declaration.major, declaration.minor), cards, types })
+    Ok(Plugin { id, file: file.to_owned(), abi: (declaration.major, declaration.minor), cards, types })
 }
 
 /// The system's message, without the path that it begins with.

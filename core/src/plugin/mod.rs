@@ -24,4 +24,4 @@ mod view;
 pub use call::MAX_OUTPUT_BYTES;
 pub(crate) use foreign::ForeignType;
 pub use lending::Lending;
-pub use library::{Plugin, Refused, load};
+pub use library::{Plugin, Refused, load, plugin_files};

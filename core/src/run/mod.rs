@@ -3,6 +3,7 @@
 mod forecast;
 mod implicit;
 mod node;
+mod record;
 mod steps;
 mod value;
 

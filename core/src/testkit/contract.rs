@@ -11,19 +11,6 @@ use std::any::Any;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
-/// Every contract, in the order of the kit's tests.
-pub const ALL: [Contract; 9] = [
-    Contract::Deterministic,
-    Contract::ThreadInvariant,
-    Contract::TranslationEquivariant,
-    Contract::RotationEquivariant,
-    Contract::ScaleEquivariant,
-    Contract::Idempotent,
-    Contract::BoundaryPreserving,
-    Contract::RefusesEmpty,
-    Contract::Cancellable,
-];
-
 /// Numbers of threads that must give the same bits.
 pub const THREADS: [usize; 3] = [1, 2, 5];
 /// How soon a stage stops.

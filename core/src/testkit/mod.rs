@@ -31,7 +31,7 @@ pub mod shapes;
 pub mod suite;
 pub mod trial;
 
-pub use contract::{ALL, check, checked, is_checked};
+pub use contract::{check, checked, is_checked};
 pub use shapes::{mask, noisy_photo, outline, photo};
 pub use suite::{Case, cases};
 pub use trial::{Outcome, Trial};

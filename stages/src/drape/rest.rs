@@ -14,6 +14,9 @@ use std::time::Duration;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
 use toile_core::prelude::*;
 
+/// Triangles may dip this deep into the body before it is said, m: the limit that vertices are judged by.
+const MOST_DIP: f64 = 1e-4;
+
 /// Sews the garment and brings it to rest, without the way there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
@@ -92,6 +95,12 @@ impl Rest {
         }
         let steps = progress.steps;
         let (state, converged) = self.judge(result, cx)?;
+        if state.dip > MOST_DIP {
+            let mm = state.dip * 1e3;
+            cx.warn(format!(
+                "between its vertices the cloth dips up to {mm:.1} mm into the body: try a finer mesh"
+            ));
+        }
         Ok(self.finish(garment, &state, steps, converged))
     }
 

@@ -3,9 +3,11 @@
 //! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
 
 mod fault;
+mod lost;
 mod scene;
 mod skin;
 
 pub use fault::{cloth_error, scene_error};
+pub use lost::lost;
 pub use scene::{Setting, garment_of, scene_of, weld_seams};
 pub use skin::SchemeSkin;

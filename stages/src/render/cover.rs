@@ -63,30 +63,33 @@ impl Patch {
         [part(b, c), part(c, a), part(a, b)].map(|e| e / self.area as f64)
     }
 
-    /// Calls `hit(x, y, nearness)` for every pixel in `columns` x `rows` whose sample lies in the triangle;
-    /// `sample` is the sample's place in its pixel, sub-pixel steps.
-    pub(super) fn scan(
+    /// Calls `hit(sample, x, y, nearness)` for every sample of every pixel in `columns` x `rows` that lies in the
+    /// triangle; `samples` are their places in a pixel, sub-pixel steps.
+    pub(super) fn scan<const N: usize>(
         &self,
         columns: i64,
         rows: std::ops::Range<i64>,
-        sample: [i64; 2],
-        mut hit: impl FnMut(usize, usize, f64),
+        samples: &[[i64; 2]; N],
+        mut hit: impl FnMut(usize, usize, usize, f64),
     ) {
         let ((x0, x1), (y0, y1)) = (self.span(0), self.span(1));
         let (x0, x1) = (x0.max(0), x1.min(columns - 1));
         let [a, b, c] = self.corners;
         let sides = [(b, c), (c, a), (a, b)];
-        let step = sides.map(|(p, q)| -(q[1] - p[1]) * STEPS);
+        let along = |[x, y]: [i64; 2]| sides.map(|(p, q)| (q[0] - p[0]) * y - (q[1] - p[1]) * x);
+        let (step, offsets) = (along([STEPS, 0]), samples.map(along));
         let share = self.near.map(|n| n / self.area as f64);
         for y in y0.max(rows.start)..=y1.min(rows.end - 1) {
-            let start = [x0 * STEPS + sample[0], y * STEPS + sample[1]];
-            let mut e = sides.map(|(p, q)| edge(p, q, start));
+            let mut corner = sides.map(|(p, q)| edge(p, q, [x0 * STEPS, y * STEPS]));
             for x in x0..=x1 {
-                if (e[0] | e[1] | e[2]) >= 0 {
-                    let near = e[0] as f64 * share[0] + e[1] as f64 * share[1] + e[2] as f64 * share[2];
-                    hit(x as usize, y as usize, near);
+                for (s, o) in offsets.iter().enumerate() {
+                    let e = [corner[0] + o[0], corner[1] + o[1], corner[2] + o[2]];
+                    if (e[0] | e[1] | e[2]) >= 0 {
+                        let near = e[0] as f64 * share[0] + e[1] as f64 * share[1] + e[2] as f64 * share[2];
+                        hit(s, x as usize, y as usize, near);
+                    }
                 }
-                e = [e[0] + step[0], e[1] + step[1], e[2] + step[2]];
+                corner = [corner[0] + step[0], corner[1] + step[1], corner[2] + step[2]];
             }
         }
     }

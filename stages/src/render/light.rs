@@ -204,7 +204,7 @@ impl DepthMap {
     fn draw(&mut self, patch: &Patch) {
         let side = MAP_PX as i64;
         let half = super::cover::STEPS / 2;
-        patch.scan(side, 0..side, [half, half], |x, y, near| {
+        patch.scan(side, 0..side, &[[half, half]], |_, x, y, near| {
             let cell = &mut self.nearest[y * MAP_PX + x];
             *cell = cell.max(near as f32);
         });

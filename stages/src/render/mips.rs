@@ -143,20 +143,34 @@ impl Level {
         Some(Level { width, height, texels })
     }
 
-    fn texel(&self, x: i64, y: i64) -> [f32; 3] {
-        let clamp = |v: i64, n: usize| v.clamp(0, n as i64 - 1) as usize;
-        let at = clamp(y, self.height) * self.width + clamp(x, self.width);
-        self.texels.get(at).map_or([1.0; 3], |t| t.map(|v| LINEAR[v as usize]))
+    /// The four texels around a lookup; the border goes on outwards.
+    fn around(&self, x: i64, y: i64) -> Option<[[u8; 3]; 4]> {
+        let clamp = |v: i64, n: usize| v.min(n as i64 - 1).max(0) as usize;
+        let (x0, x1) = (clamp(x, self.width), clamp(x.saturating_add(1), self.width));
+        let row = |y: i64| {
+            let from = clamp(y, self.height) * self.width;
+            self.texels.get(from..from + self.width).filter(|row| !row.is_empty())
+        };
+        let (top, bottom) = (row(y)?, row(y.saturating_add(1))?);
+        Some([top[x0], top[x1], bottom[x0], bottom[x1]])
     }
 
     fn bilinear(&self, uv: [f32; 2]) -> [f32; 3] {
         let (x, y) = (uv[0] * self.width as f32 - 0.5, uv[1] * self.height as f32 - 0.5);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
-        let (x, y) = (x.floor() as i64, y.floor() as i64);
-        let top = mix(self.texel(x, y), self.texel(x + 1, y), fx);
-        let bottom = mix(self.texel(x, y + 1), self.texel(x + 1, y + 1), fx);
-        mix(top, bottom, fy)
+        let ((x, fx), (y, fy)) = (split(x), split(y));
+        let Some(four) = self.around(x, y) else { return [1.0; 3] };
+        let linear = &*LINEAR;
+        let [a, b, c, d] = four.map(|t| t.map(|v| linear[v as usize]));
+        mix(mix(a, b, fx), mix(c, d, fx), fy)
     }
+}
+
+/// The whole number below, and the rest. (`floor` is a call into the mathematics library on processors that a plain
+/// build serves.)
+fn split(v: f32) -> (i64, f32) {
+    let towards_zero = v as i64;
+    let whole = if (towards_zero as f32) > v { towards_zero - 1 } else { towards_zero };
+    (whole, v - whole as f32)
 }
 
 fn mix(a: [f32; 3], b: [f32; 3], t: f32) -> [f32; 3] {

@@ -207,12 +207,13 @@ impl Shot<'_> {
     fn draw_band(&self, top: usize, band: &mut [u8]) {
         let rows = band.len() / (self.width * 3);
         let seen = self.visible(top, rows);
-        for (i, (pixel, samples)) in
-            band.chunks_exact_mut(3).zip(seen.chunks_exact(SAMPLES.len())).enumerate()
-        {
-            let (x, y) = (i % self.width, top + i / self.width);
-            let colour = self.pixel(x, y, samples);
-            pixel.copy_from_slice(&colour.map(encode));
+        let lines = band.chunks_exact_mut(self.width * 3).zip(seen.chunks_exact(self.width * SAMPLES.len()));
+        for (y, (line, seen)) in (top..).zip(lines) {
+            let wall = wall(y as u32, self.height);
+            let pixels = line.chunks_exact_mut(3).zip(seen.chunks_exact(SAMPLES.len()));
+            for (x, (pixel, samples)) in pixels.enumerate() {
+                pixel.copy_from_slice(&self.pixel([x, y], samples, wall).map(encode));
+            }
         }
     }
 
@@ -226,20 +227,21 @@ impl Shot<'_> {
             if last < range.start || first >= range.end {
                 continue;
             }
-            for (s, sample) in SAMPLES.iter().enumerate() {
-                face.patch.scan(self.width as i64, range.clone(), *sample, |x, y, near| {
-                    let at = ((y - top) * self.width + x) * SAMPLES.len() + s;
-                    if near as f32 > nearest[at] {
-                        (nearest[at], seen[at]) = (near as f32, id as u32);
-                    }
-                });
-            }
+            face.patch.scan(self.width as i64, range.clone(), &SAMPLES, |s, x, y, near| {
+                let at = ((y - top) * self.width + x) * SAMPLES.len() + s;
+                if near as f32 > nearest[at] {
+                    (nearest[at], seen[at]) = (near as f32, id as u32);
+                }
+            });
         }
         seen
     }
 
     /// Mean colour of a pixel's samples, linear light.
-    fn pixel(&self, x: usize, y: usize, samples: &[u32]) -> [f32; 3] {
+    fn pixel(&self, at: [usize; 2], samples: &[u32], wall: [f32; 3]) -> [f32; 3] {
+        if samples.iter().all(|id| *id == NONE) {
+            return wall;
+        }
         let mut sum = [0.0; 3];
         for (i, &id) in samples.iter().enumerate() {
             if samples[..i].contains(&id) {
@@ -248,10 +250,10 @@ impl Shot<'_> {
             let with = || samples.iter().zip(&SAMPLES).filter(|(s, _)| **s == id).map(|(_, at)| at);
             let count = with().count() as f32;
             let colour = match self.faces.get(id as usize) {
-                None => wall(y as u32, self.height),
+                None => wall,
                 Some(face) => {
                     let mean = |k: usize| with().map(|at| at[k] as f64).sum::<f64>() / f64::from(count);
-                    let corner = [x as i64 * STEPS, y as i64 * STEPS].map(|c| c as f64);
+                    let corner = at.map(|c| (c as i64 * STEPS) as f64);
                     self.colour(face, [corner[0] + mean(0), corner[1] + mean(1)])
                 }
             };

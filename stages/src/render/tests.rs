@@ -249,7 +249,7 @@ proptest! {
         let mut hits = vec![0; 20 * 20];
         for t in [[a, b, c], [b, a, d]] {
             if let Some(patch) = Patch::new(t.map(at)) {
-                patch.scan(20, 0..20, [128, 128], |x, y, _| hits[y * 20 + x] += 1);
+                patch.scan(20, 0..20, &[[128, 128]], |_, x, y, _| hits[y * 20 + x] += 1);
             }
         }
         for (i, count) in hits.into_iter().enumerate() {

@@ -1,10 +1,11 @@
 //! `Scene`: a prepared scene in the form `garment-scene-1`.
 //!
 //! Method: the engine's reader checks every index and number; the body becomes a collider over boxes along the axes, as
-//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: one fabric a scene.
+//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: bands, strain limits, layers and threads have no place
+//! in a garment; the stage names what it leaves out.
 
 use crate::collide::{Aabb, BvhScheme, check_body};
-use crate::engine::{garment_of, scene_error};
+use crate::engine::{garment_of, lost, scene_error};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_cloth::scene::{self, SceneError};
@@ -43,6 +44,7 @@ impl Scene {
             crate::scene::read::text(cx, &path.to_string_lossy()).map_err(unread)
         };
         let scene = scene::parse(&text, &beside).map_err(|e| scene_error(&e))?;
+        lost(&scene).into_iter().for_each(|what| cx.warn(what));
         let body = body_of(&scene);
         let collider = collider(&scene, &body, cx)?;
         let phases = scene.phases.iter().map(|p| Phase {

@@ -102,6 +102,46 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
 }
 
 #[test]
+fn what_a_garment_cannot_hold_is_named() {
+    let warnings = |scene: &toile_cloth::scene::Scene| {
+        let dir = tempfile::tempdir().unwrap();
+        std::fs::write(dir.path().join("scene.json"), to_json(scene, "body.obj")).unwrap();
+        std::fs::write(dir.path().join("body.obj"), body_to_obj(scene)).unwrap();
+        let cx = Context::new("Scene", dir.path(), Cancel::new(), Arc::new(()));
+        Scene { file: "scene.json".into() }.run(&cx).unwrap();
+        cx.take_notes().1
+    };
+    assert_eq!(warnings(&generate::tube(4, 5)), Vec::<String>::new());
+    assert_eq!(
+        warnings(&generate::banded(4, 4, 0.7)),
+        ["the scene is not held whole: its elastic bands (\"cuff\") are left out: a garment holds none"]
+    );
+    let mut scene = generate::tube(4, 5);
+    scene.strain_limit = Some(toile_cloth::scene::StrainLimit { warp: 0.05, weft: 0.05 });
+    scene.seams[0].joined = false;
+    scene.seams[1].gather = Some(1.5);
+    scene.panels[0].layer = 1;
+    scene.panels[1].body_friction = Some(0.1);
+    scene.material.poisson = 0.2;
+    let (a, b) = (scene.seams[0].name.clone(), scene.seams[1].name.clone());
+    let (p, q) = (scene.panels[0].name.clone(), scene.panels[1].name.clone());
+    let whole = "the scene is not held whole:";
+    assert_eq!(
+        warnings(&scene),
+        [
+            format!("{whole} its strain limit is left out: a garment's fabric has curves instead"),
+            format!("{whole} its seams \"{a}\" are joined: a garment has no threads"),
+            format!("{whole} the gathers of its seams \"{b}\" are left out"),
+            format!("{whole} the layers of its panels \"{p}\" are left out"),
+            format!(
+                "{whole} its panels \"{q}\" slide on the body as all others do: a garment's collider has one friction"
+            ),
+            format!("{whole} the Poisson's ratio of its fabric is left out"),
+        ]
+    );
+}
+
+#[test]
 fn a_stopped_rest_stops() {
     let (garment, _, collider, phases) = through_files(&generate::tube(6, 8)).unwrap();
     let cancel = Cancel::new();

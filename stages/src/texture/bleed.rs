@@ -10,66 +10,93 @@
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
 
+/// Where a column has no marked pixel.
+const NONE: u32 = u32::MAX;
+
 /// For every pixel the nearest marked one (as an index), by exact Euclidean distance. `None` where none is marked.
 pub(super) fn nearest(
     marked: impl Fn(usize, usize) -> bool + Sync,
     width: usize,
     height: usize,
 ) -> Option<Vec<u32>> {
-    let columns: Vec<Vec<Option<u32>>> =
-        (0..width).into_par_iter().map(|x| nearest_in_column(|y| marked(x, y), height)).collect();
-    if columns.iter().flatten().all(Option::is_none) {
+    let mut columns = vec![NONE; width * height];
+    let column = |(x, rows): (usize, &mut [u32])| nearest_in_column(|y| marked(x, y), rows);
+    columns.par_chunks_mut(height.max(1)).enumerate().for_each(column);
+    if columns.iter().all(|y| *y == NONE) {
         return None;
     }
-    let row = |y: usize| {
-        let height_at = |x: usize| columns[x][y].map(|n| (f64::from(n) - y as f64).powi(2));
-        lower_envelope(height_at, width).into_iter().map(move |x| (x, y)).collect::<Vec<_>>()
+    let mut found = vec![0; width * height];
+    let row = |hull: &mut Vec<Apex>, (y, row): (usize, &mut [u32])| {
+        lower_envelope(|x| columns[x * height + y], y, width, hull);
+        fill_row(row, hull, |x| columns[x * height + y]);
     };
-    let found = (0..height).into_par_iter().flat_map_iter(row);
-    Some(found.map(|(x, y)| columns[x][y].unwrap_or(0) * width as u32 + x as u32).collect())
+    found.par_chunks_mut(width).enumerate().for_each_init(Vec::new, row);
+    Some(found)
 }
 
-/// The row of the nearest marked pixel of one column.
-fn nearest_in_column(marked: impl Fn(usize) -> bool, height: usize) -> Vec<Option<u32>> {
-    let mut nearest = vec![None; height];
-    let mut last = None;
-    for (y, slot) in nearest.iter_mut().enumerate() {
-        last = if marked(y) { Some(y as u32) } else { last };
-        *slot = last;
+/// The row of the nearest marked pixel of one column, the upper of two.
+fn nearest_in_column(marked: impl Fn(usize) -> bool, rows: &mut [u32]) {
+    let mut last = NONE;
+    for (y, row) in rows.iter_mut().enumerate() {
+        last = if marked(y) { y as u32 } else { last };
+        *row = last;
     }
-    let mut next: Option<u32> = None;
-    for (y, slot) in nearest.iter_mut().enumerate().rev() {
-        next = if *slot == Some(y as u32) { *slot } else { next };
-        let closer = |n: &u32| slot.is_none_or(|l| (*n as usize - y) < y - l as usize);
-        *slot = next.filter(closer).or(*slot);
-    }
-    nearest
-}
-
-/// For every x the parabola (apex at its own x, at the given height) that is lowest there.
-fn lower_envelope(height_at: impl Fn(usize) -> Option<f64>, width: usize) -> Vec<usize> {
-    // Apexes on the envelope with the place from which each is lowest.
-    let mut hull: Vec<(usize, f64, f64)> = Vec::new();
-    for x in 0..width {
-        let Some(h) = height_at(x) else { continue };
-        let meets = |&(p, hp, _): &(usize, f64, f64)| {
-            let (x, p) = (x as f64, p as f64);
-            ((h + x * x) - (hp + p * p)) / (2.0 * (x - p))
-        };
-        while hull.last().is_some_and(|top| meets(top) <= top.2) {
-            hull.pop();
+    let mut next = NONE;
+    for (y, row) in rows.iter_mut().enumerate().rev() {
+        let y = y as u32;
+        next = if *row == y { y } else { next };
+        if next != NONE && (*row == NONE || next - y < y - *row) {
+            *row = next;
         }
-        let from = hull.last().map_or(f64::NEG_INFINITY, meets);
-        hull.push((x, h, from));
     }
+}
+
+/// A parabola on the lower envelope.
+struct Apex {
+    x: usize,
+    height: f64,
+    /// The place from which it is the lowest.
+    from: f64,
+}
+
+/// The parabolas that are lowest somewhere in row `y`, from left to right: each has its apex at its own x, as high
+/// as the square of the way to the nearest marked pixel of its column.
+fn lower_envelope(nearest: impl Fn(usize) -> u32, y: usize, width: usize, hull: &mut Vec<Apex>) {
+    hull.clear();
+    for x in 0..width {
+        let marked = nearest(x);
+        if marked == NONE {
+            continue;
+        }
+        let way = f64::from(marked) - y as f64;
+        let height = way * way;
+        let meets = |top: &Apex| {
+            let (x, p) = (x as f64, top.x as f64);
+            ((height + x * x) - (top.height + p * p)) / (2.0 * (x - p))
+        };
+        let mut from = f64::NEG_INFINITY;
+        while let Some(top) = hull.last() {
+            from = meets(top);
+            if from > top.from {
+                break;
+            }
+            hull.pop();
+            from = f64::NEG_INFINITY;
+        }
+        hull.push(Apex { x, height, from });
+    }
+}
+
+/// For every pixel of a row the marked one below its lowest parabola.
+fn fill_row(row: &mut [u32], hull: &[Apex], nearest: impl Fn(usize) -> u32) {
+    let width = row.len() as u32;
     let mut at = 0;
-    let lowest = |x: usize| {
-        while hull.get(at + 1).is_some_and(|next| next.2 <= x as f64) {
+    for (x, slot) in row.iter_mut().enumerate() {
+        while hull.get(at + 1).is_some_and(|next| next.from <= x as f64) {
             at += 1;
         }
-        hull.get(at).map_or(0, |top| top.0)
-    };
-    (0..width).map(lowest).collect()
+        *slot = hull.get(at).map_or(0, |top| nearest(top.x) * width + top.x as u32);
+    }
 }
 
 /// The inside without its rim of `depth` pixels. Beyond the picture counts as outside.
@@ -79,15 +106,22 @@ pub(super) fn eroded(inside: &GrayImage, depth: f64) -> GrayImage {
     // One pixel of outside is laid around the picture.
     let outside = |x: usize, y: usize| x == 0 || y == 0 || x > w || y > h || raw[(y - 1) * w + x - 1] == 0;
     let Some(near) = nearest(outside, w + 2, h + 2) else { return inside.clone() };
-    let keep = |i: usize| {
-        let (x, y) = (i % w + 1, i / w + 1);
-        let n = near[y * (w + 2) + x] as usize;
-        let (dx, dy) = ((n % (w + 2)).abs_diff(x) as f64, (n / (w + 2)).abs_diff(y) as f64);
-        // Half a pixel: the outline runs between the pixels' centres.
-        if dx.hypot(dy) - 0.5 > depth { 255 } else { 0 }
+    // Half a pixel: the outline runs between the pixels' centres.
+    let far = (depth + 0.5).max(0.0).powi(2);
+    let keep = |y: usize, x: usize| {
+        let n = near[(y + 1) * (w + 2) + x + 1] as usize;
+        let (dx, dy) = ((n % (w + 2)).abs_diff(x + 1) as f64, (n / (w + 2)).abs_diff(y + 1) as f64);
+        if dx * dx + dy * dy > far { 255 } else { 0 }
     };
-    let pixels = (0..w * h).into_par_iter().map(keep).collect();
-    GrayImage::from_raw(inside.width(), inside.height(), pixels).unwrap_or_else(|| inside.clone())
+    let mut kept = GrayImage::new(inside.width(), inside.height());
+    let row = |(y, row): (usize, &mut [u8])| {
+        row.iter_mut()
+            .enumerate()
+            .filter(|(x, _)| raw[y * w + x] != 0)
+            .for_each(|(x, slot)| *slot = keep(y, x));
+    };
+    kept.par_chunks_mut(w.max(1)).enumerate().for_each(row);
+    kept
 }
 
 /// Gives every pixel off `sure` the colour of the nearest pixel on it; false where there is none.
@@ -96,7 +130,13 @@ pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
     let raw = sure.as_raw();
     let Some(near) = nearest(|x, y| raw[y * w + x] != 0, w, h) else { return false };
     let before = pixels.clone();
-    let colour = |i: u32| before.get_pixel(i % w as u32, i / w as u32);
-    pixels.par_chunks_mut(3).zip(&near).for_each(|(pixel, n)| pixel.copy_from_slice(&colour(*n).0));
+    let row = |(y, row): (usize, &mut [u8])| {
+        let off = |(x, _): &(usize, &mut [u8])| raw[y * w + x] == 0;
+        for (x, pixel) in row.chunks_exact_mut(3).enumerate().filter(off) {
+            let from = near[y * w + x] as usize * 3;
+            pixel.copy_from_slice(&before.as_raw()[from..from + 3]);
+        }
+    };
+    pixels.par_chunks_mut(w * 3).enumerate().for_each(row);
     true
 }

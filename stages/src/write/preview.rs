@@ -4,6 +4,7 @@
 
 use crate::render::{Frame, Scene, View};
 use image::ImageFormat;
+use rayon::prelude::*;
 use std::io::Cursor;
 use toile_core::prelude::*;
 
@@ -49,16 +50,15 @@ impl Preview {
             ("back.png", View::back),
             ("side.png", View::side),
         ];
-        let mut files = Vec::new();
-        for (i, (path, view)) in views.into_iter().enumerate() {
+        let file = |(path, view): &(&str, fn(u32) -> View)| {
             cx.check()?;
-            cx.progress(i as f64 / 3.0, path);
             let mut bytes = Cursor::new(Vec::new());
             let fault = |e| StageError::internal(format!("{path} cannot be encoded: {e}"));
             let view = View { frame, ..view(self.size) };
             scene.render(&view).write_to(&mut bytes, ImageFormat::Png).map_err(fault)?;
-            files.push(OutputFile { path: path.to_owned(), bytes: bytes.into_inner() });
-        }
-        Ok(OutputFiles(files))
+            Ok(OutputFile { path: (*path).to_owned(), bytes: bytes.into_inner() })
+        };
+        let files: Vec<Result<OutputFile, StageError>> = views.par_iter().map(file).collect();
+        Ok(OutputFiles(files.into_iter().collect::<Result<_, _>>()?))
     }
 }

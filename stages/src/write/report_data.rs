@@ -186,11 +186,11 @@ impl Draw<'_> {
         let Some((_, scene)) = &self.scene else { return Vec::new() };
         let named =
             [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
-        let view = |(name, view): (&str, fn(u32) -> View)| {
+        let view = |(name, view): &(&str, fn(u32) -> View)| {
             let form = jpeg(&scene.render(&view(VIEW_HEIGHT)))?;
-            Some(Picture { caption: name.to_owned(), form })
+            Some(Picture { caption: (*name).to_owned(), form })
         };
-        shown(named.into_iter().filter_map(view).collect())
+        shown(named.par_iter().map(view).collect::<Vec<_>>().into_iter().flatten().collect())
     }
 }
 

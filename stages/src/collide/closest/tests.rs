@@ -5,6 +5,7 @@ use parry3d_f64::math::{Pose, Vector};
 use parry3d_f64::query::{PointQuery, details::closest_points_segment_segment_with_locations};
 use parry3d_f64::shape::{Segment, Triangle};
 use proptest::prelude::*;
+use toile_core::artifact::Vector3;
 
 fn to_parry(p: &Point3) -> Vector {
     Vector::new(p.x, p.y, p.z)
