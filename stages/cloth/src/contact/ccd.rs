@@ -19,6 +19,7 @@ pub const NEARNESS: f64 = 0.1;
 const MOST_STEPS: usize = 200;
 
 /// The fastest approach of the two sides, once what all share is taken away.
+#[inline]
 #[must_use]
 pub fn approach(kind: Kind, moves: &[Vec3; 4]) -> f64 {
     let shared = moves.iter().sum::<Vec3>() * 0.25;

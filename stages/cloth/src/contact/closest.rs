@@ -40,6 +40,7 @@ fn share(n: f64, d: f64) -> f64 {
 }
 
 /// The point of the triangle `t` that is closest to `p`.
+#[inline]
 #[must_use]
 pub fn on_triangle(p: &Vec3, t: &[Vec3; 3]) -> OnTriangle {
     let (ab, ac) = (t[1] - t[0], t[2] - t[0]);

@@ -40,6 +40,7 @@ pub struct Closest {
 
 impl Kind {
     /// The closest points at these places.
+    #[inline]
     #[must_use]
     pub fn closest(self, x: &[Vec3; 4]) -> Closest {
         match self {
@@ -64,12 +65,15 @@ impl Kind {
 
 impl Pair {
     /// Its nodes' values.
+    #[inline]
     #[must_use]
     pub fn at(&self, x: &[Vec3]) -> [Vec3; 4] {
-        self.nodes.map(|i| x[i as usize])
+        let [a, b, c, d] = self.nodes;
+        [x[a as usize], x[b as usize], x[c as usize], x[d as usize]]
     }
 
     /// Its closest points.
+    #[inline]
     #[must_use]
     pub fn closest(&self, x: &[Vec3]) -> Closest {
         self.kind.closest(&self.at(x))

@@ -56,6 +56,7 @@ impl Curve {
     }
 
     /// Force at `strain`.
+    #[inline]
     #[must_use]
     pub fn force(&self, strain: f64) -> f64 {
         let ([s, f, _], slope) = self.piece(strain);
@@ -63,12 +64,14 @@ impl Curve {
     }
 
     /// Slope of the force at `strain`.
+    #[inline]
     #[must_use]
     pub fn slope(&self, strain: f64) -> f64 {
         self.piece(strain).1
     }
 
     /// Work per unit of rest area up to `strain`.
+    #[inline]
     #[must_use]
     pub fn energy(&self, strain: f64) -> f64 {
         let ([s, f, e], slope) = self.piece(strain);
@@ -92,7 +95,11 @@ impl Curve {
             .fold(self.last_slope, f64::max)
     }
 
+    #[inline]
     fn piece(&self, strain: f64) -> ([f64; 3], f64) {
+        if let [start] = self.points[..] {
+            return (start, self.last_slope);
+        }
         let above = self.points.partition_point(|p| p[0] <= strain).clamp(1, self.points.len());
         let start = self.points[above - 1];
         let slope = match self.points.get(above) {

@@ -12,6 +12,26 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut, Par};
 use nalgebra::Matrix3;
 
+/// Nodes of a child's border that follow one another in the parent, too.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Run {
+    /// The first in the child's border.
+    pub(super) child: u32,
+    /// The first among the parent's rows.
+    pub(super) parent: u32,
+    /// How many.
+    pub(super) nodes: u32,
+}
+
+/// Adds a run of a child's column to the parent's, without its first rows.
+#[inline]
+fn add(from: &[f64], to: &mut [f64], first: usize, run: &Run, skip: usize) {
+    let (at, here) = (3 * run.child as usize, 3 * run.parent as usize - first);
+    let length = 3 * run.nodes as usize;
+    let to = &mut to[here + skip..here + length];
+    to.iter_mut().zip(&from[at + skip..at + length]).for_each(|(t, f)| *t += f);
+}
+
 /// One front at work.
 pub(super) struct Dense<'a> {
     /// Own columns, `m` rows each.
@@ -23,11 +43,15 @@ pub(super) struct Dense<'a> {
 }
 
 impl<'a> Dense<'a> {
-    /// A front of zeros in the memory of `columns`.
-    pub(super) fn zeros(columns: &'a mut Vec<f64>, m: usize, own: usize) -> Self {
-        columns.clear();
+    /// A front of zeros in the memory of `columns` and `border`.
+    pub(super) fn zeros(columns: &'a mut Vec<f64>, mut border: Vec<f64>, m: usize, own: usize) -> Self {
+        let n = m - own;
         columns.resize(m * own, 0.0);
-        Self { columns, border: vec![0.0; (m - own) * (m - own)], m, own }
+        border.truncate(n * n);
+        border.resize(n * n, 0.0);
+        (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(0.0));
+        (0..n).for_each(|c| border[c * n + c..(c + 1) * n].fill(0.0));
+        Self { columns, border, m, own }
     }
 
     /// Column `c` from its first row that is kept, and the number of that row.
@@ -50,18 +74,16 @@ impl<'a> Dense<'a> {
         }
     }
 
-    /// Adds what a child leaves, a lower triangle over its border, whose nodes are these rows here.
-    pub(super) fn extend_add(&mut self, update: &[f64], rows: &[u32]) {
-        let n = 3 * rows.len();
-        for (cb, &column) in rows.iter().enumerate() {
-            for c in 0..3 {
-                let from = &update[(3 * cb + c) * n..][..n];
-                let (to, first) = self.column(3 * column as usize + c);
-                for (&row, v) in rows.iter().zip(from.as_chunks::<3>().0).skip(cb) {
-                    let at = 3 * row as usize - first;
-                    let to = &mut to[at..at + 3];
-                    (0..3).for_each(|r| to[r] += v[r]);
-                }
+    /// Adds what a child leaves, a lower triangle over its border, whose nodes are the rows of these runs here.
+    pub(super) fn extend_add(&mut self, update: &[f64], runs: &[Run]) {
+        let n: usize = runs.iter().map(|r| 3 * r.nodes as usize).sum();
+        for (k, own) in runs.iter().enumerate() {
+            for c in 0..3 * own.nodes as usize {
+                let from = &update[(3 * own.child as usize + c) * n..][..n];
+                let (to, first) = self.column(3 * own.parent as usize + c);
+                // Within its own run from the diagonal on, in the later ones all.
+                add(from, to, first, own, c);
+                runs[k + 1..].iter().for_each(|run| add(from, to, first, run, 0));
             }
         }
     }
@@ -85,7 +107,7 @@ impl<'a> Dense<'a> {
             return Err(c);
         }
         solve_lower_triangular_in_place(top.rb(), below.rb_mut().transpose_mut(), Par::Seq);
-        let border = MatMut::from_column_major_slice_mut(&mut self.border, n, n);
+        let border = MatMut::from_column_major_slice_mut(&mut self.border[..], n, n);
         matmul(
             border,
             BlockStructure::TriangularLower,

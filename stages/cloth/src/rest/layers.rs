@@ -163,13 +163,30 @@ impl Layers {
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        let press = |c: &Contact, distance: f64| 0.5 * c.stiffness * (self.thickness - distance).powi(2);
-        let pull = |c: &Contact| {
+        self.pressure(&self.touching(x)) + self.pull(x)
+    }
+
+    /// The same at the step's start, whose contacts are known, J.
+    #[must_use]
+    pub fn value_at_start(&self, x: &[Vec3]) -> f64 {
+        self.pressure(&self.contacts) + self.pull(x)
+    }
+
+    fn pressed(&self, c: &Contact, distance: f64) -> f64 {
+        0.5 * c.stiffness * (self.thickness - distance).powi(2)
+    }
+
+    fn pressure(&self, contacts: &[Contact]) -> f64 {
+        contacts.iter().map(|c| self.pressed(c, c.distance)).sum()
+    }
+
+    /// Energy of what pulls crossings apart.
+    fn pull(&self, x: &[Vec3]) -> f64 {
+        let one = |c: &Contact| {
             let between: Vec3 = c.nodes.iter().zip(&c.weights).map(|(i, w)| x[*i as usize] * *w).sum();
-            press(c, c.normal.dot(&between).min(self.thickness))
+            self.pressed(c, c.normal.dot(&between).min(self.thickness))
         };
-        let touching: f64 = self.touching(x).iter().map(|c| press(c, c.distance)).sum();
-        touching + self.tangles.iter().map(pull).sum::<f64>()
+        self.tangles.iter().map(one).sum()
     }
 
     /// Adds the derivative at the step's start, N.

@@ -35,12 +35,13 @@ impl Linear {
         Self { layout, pattern, symbolic, values: Vec::new(), factor: Factor::default() }
     }
 
-    /// Follows the contacts: new pairs need new places in the matrix.
-    pub(super) fn follow(&mut self, system: &mut System<'_>) {
+    /// Follows the contacts: new pairs need new places in the matrix. Whether any did.
+    pub(super) fn follow(&mut self, system: &mut System<'_>) -> bool {
         let known = system.layers.iter().flat_map(|l| l.groups()).all(|nodes| self.pattern.couples(nodes));
         if !known {
             *self = Self::new(system, std::mem::take(&mut self.layout));
         }
+        !known
     }
 
     /// Takes up elements whose stiffness has changed.
@@ -70,8 +71,13 @@ impl Linear {
                 Err(halt) => return Err(halt),
             }
         }
+        Ok(self.again(g))
+    }
+
+    /// The step from a place so near that of the last one that its factor will do.
+    pub(super) fn again(&self, g: &[Vec3]) -> Vec<Vec3> {
         let mut step: Vec<Vec3> = g.iter().map(|g| -g).collect();
         self.symbolic.solve(&self.factor, &mut step);
-        Ok(step)
+        step
     }
 }

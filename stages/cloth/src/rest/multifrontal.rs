@@ -9,9 +9,10 @@
 //! factor, about 0.5 GB at 50,000 nodes.
 
 use super::dissect::{Part, dissect};
-use super::front::Dense;
+use super::front::{Dense, Run};
 use super::pattern::Pattern;
 use nalgebra::{Matrix3, Vector3};
+use std::sync::Mutex;
 
 /// Fronts above this many unknowns are worth a task of their own.
 const TASK_UNKNOWNS: usize = 400;
@@ -51,7 +52,7 @@ struct Front {
     border: Vec<u32>,
     children: Vec<usize>,
     /// For each child, where its border lies among this front's rows.
-    child_rows: Vec<Vec<u32>>,
+    child_runs: Vec<Vec<Run>>,
     /// Slot, local row and local column of each block that enters here, and whether it enters transposed.
     entries: Vec<(u32, u32, u32, bool)>,
     /// Unknowns of this front and all below it.
@@ -65,9 +66,26 @@ impl Front {
 }
 
 /// A factor: for each front the columns of its own nodes, `unknowns` rows each.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 pub struct Factor {
     columns: Vec<Vec<f64>>,
+    spare: Spare,
+}
+
+/// Memory of borders, kept from front to front and from one factorization to the next: fresh pages cost more than sums.
+#[derive(Debug, Default)]
+struct Spare(Mutex<Vec<Vec<f64>>>);
+
+impl Spare {
+    fn take(&self) -> Vec<f64> {
+        self.0.lock().map(|mut s| s.pop().unwrap_or_default()).unwrap_or_default()
+    }
+
+    fn give(&self, border: Vec<f64>) {
+        if let Ok(mut s) = self.0.lock() {
+            s.push(border);
+        }
+    }
 }
 
 impl Symbolic {
@@ -118,7 +136,11 @@ impl Symbolic {
     pub fn factor(&self, values: &[Matrix3<f64>], factor: &mut Factor, stop: &Stop) -> Result<(), Halt> {
         factor.columns.resize(self.fronts.len(), Vec::new());
         match self.fronts.len().checked_sub(1) {
-            Some(root) => self.eliminate(root, values, &mut factor.columns, stop).map(drop),
+            Some(root) => {
+                let border = self.eliminate(root, values, &mut factor.columns, &factor.spare, stop)?;
+                factor.spare.give(border);
+                Ok(())
+            }
             None => Ok(()),
         }
     }
@@ -129,22 +151,23 @@ impl Symbolic {
         k: usize,
         values: &[Matrix3<f64>],
         columns: &mut [Vec<f64>],
+        spare: &Spare,
         stop: &Stop,
     ) -> Result<Vec<f64>, Halt> {
         let front = &self.fronts[k];
         let Some((mine, below)) = columns.split_last_mut() else { return Ok(Vec::new()) };
-        let below = self.eliminate_children(front, values, below, stop)?;
+        let below = self.eliminate_children(front, values, below, spare, stop)?;
         if stop() {
             return Err(Halt::Stopped);
         }
-        let mut dense = Dense::zeros(mine, front.unknowns(), 3 * front.nodes.len());
+        let mut dense = Dense::zeros(mine, spare.take(), front.unknowns(), 3 * front.nodes.len());
         for &(slot, row, column, flipped) in &front.entries {
             dense.put(row as usize, column as usize, &values[slot as usize], flipped);
         }
-        for (update, rows) in below.iter().zip(&front.child_rows) {
-            dense.extend_add(update, rows);
+        for (update, runs) in below.into_iter().zip(&front.child_runs) {
+            dense.extend_add(&update, runs);
+            spare.give(update);
         }
-        drop(below);
         dense.eliminate().map_err(|c| NotPositive { node: front.nodes[c / 3] })?;
         Ok(dense.border)
     }
@@ -154,16 +177,17 @@ impl Symbolic {
         front: &Front,
         values: &[Matrix3<f64>],
         columns: &mut [Vec<f64>],
+        spare: &Spare,
         stop: &Stop,
     ) -> Result<Vec<Vec<f64>>, Halt> {
         match front.children[..] {
             [] => Ok(vec![]),
-            [a] => Ok(vec![self.eliminate(a, values, columns, stop)?]),
+            [a] => Ok(vec![self.eliminate(a, values, columns, spare, stop)?]),
             [a, b, ..] => {
                 // Children come one after the other, each after all below it.
                 let (left, right) = columns.split_at_mut(columns.len() - (b - a));
-                let mut left = || self.eliminate(a, values, left, stop);
-                let mut right = || self.eliminate(b, values, right, stop);
+                let mut left = || self.eliminate(a, values, left, spare, stop);
+                let mut right = || self.eliminate(b, values, right, spare, stop);
                 let (a, b) = if self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS {
                     rayon::join(left, right)
                 } else {
@@ -209,15 +233,26 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
         }
         own + border.binary_search_by_key(&at, |&b| order[b as usize]).unwrap_or(0) as u32
     };
-    let child_rows =
-        part.children.iter().map(|&c| fronts[c].border.iter().map(|&i| row(i)).collect()).collect();
+    let child_runs = part.children.iter().map(|&c| runs(fronts[c].border.iter().map(|&i| row(i)))).collect();
     let mut entries: Vec<_> = part.nodes.iter().map(|&i| (i, row(i), row(i), false)).collect();
     // Kept are blocks of row i and column j with i < j; the front wants the later node as the row.
     entries.extend(
         later.iter().map(|&(first, last, slot, last_is_row)| (slot, row(last), row(first), !last_is_row)),
     );
     let weight = 3 * part.nodes.len() + part.children.iter().map(|&c| fronts[c].weight).sum::<usize>();
-    Front { nodes: part.nodes, border, children: part.children, child_rows, entries, weight }
+    Front { nodes: part.nodes, border, children: part.children, child_runs, entries, weight }
+}
+
+/// Rows that follow one another, taken together.
+fn runs(rows: impl Iterator<Item = u32>) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (child, parent) in rows.enumerate() {
+        match runs.last_mut() {
+            Some(run) if run.parent + run.nodes == parent => run.nodes += 1,
+            _ => runs.push(Run { child: child as u32, parent, nodes: 1 }),
+        }
+    }
+    runs
 }
 
 fn gather(front: &Front, x: &[Vector3<f64>], local: &mut Vec<f64>) {

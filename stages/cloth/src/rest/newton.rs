@@ -10,12 +10,14 @@
 //! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
 //! be many times longer. It leaves the answer alone, for the forces are those of the places.
 //!
-//! Cost of a step: one factorization, O(n^1.5), and O(n) for all else.
+//! Cost of a step: one factorization, O(n^1.5), and O(n) for all else. Of the short steps that prove rest only the first of a
+//! row has its own; the cloth moves so little in them that it serves the others. What the search along a step has looked
+//! up at its end is not looked up again where the next step starts.
 
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
-use super::system::System;
+use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -42,6 +44,9 @@ const GROWTH: f64 = 1.5;
 
 /// Steps of [`REST_STEP`] in a row before the cloth is let go on.
 const MOST_PROOFS: usize = 3;
+
+/// Slow steps in a row before the next proof, once one has failed: a proof costs a factorization and hardly moves.
+const CALM: usize = 3;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
@@ -94,9 +99,24 @@ pub struct Descent {
     proves: bool,
     /// Steps of it made in a row.
     proofs: usize,
+    /// Whether the factor is that of such a step.
+    serves: bool,
+    /// Slow steps since the last of it.
+    calm: usize,
+    /// Whether a proof has failed.
+    failed: bool,
     dt: f64,
     /// How far the last step wanted to go, m.
     last: f64,
+    /// What the last step found where it ended.
+    before: Option<Before>,
+}
+
+/// What a step found where it ended.
+struct Before {
+    at: Vec<Vec3>,
+    lasting: f64,
+    sight: Vec<Sight>,
 }
 
 impl Descent {
@@ -121,21 +141,26 @@ impl Descent {
             heights: vec![],
             proves: false,
             proofs: 0,
+            serves: false,
+            calm: 0,
+            failed: false,
             dt: first,
             last: f64::INFINITY,
+            before: None,
         }
     }
 
     /// Takes up a system whose fabric, pins or body have changed.
     pub fn renew(&mut self, system: &mut System<'_>) {
         self.linear.bind(system);
+        self.before = None;
         self.wake();
     }
 
     /// What was at rest may be so no more.
     pub fn wake(&mut self) {
         self.heights.clear();
-        self.proves = false;
+        (self.proves, self.serves) = (false, false);
         self.outcome.at_rest = false;
     }
 
@@ -155,14 +180,34 @@ impl Descent {
         pace: &Pace,
         stop: &Stop,
     ) -> Result<Outcome, Halt> {
+        // One way into the pool of threads a step, not one for every loop.
+        rayon::scope(|_| self.step_here(system, x, pace, stop))
+    }
+
+    fn step_here(
+        &mut self,
+        system: &mut System<'_>,
+        x: &mut [Vec3],
+        pace: &Pace,
+        stop: &Stop,
+    ) -> Result<Outcome, Halt> {
         if system.is_tangled() {
             self.nearby.untangle(system, x);
         }
-        system.touch(x);
-        self.linear.follow(system);
+        let before = self.before.take().filter(|b| b.at == x);
+        let (lasting, sight) = match before {
+            Some(Before { lasting, sight, .. }) => (Some(lasting), Some(sight)),
+            None => (None, None),
+        };
+        system.touch_in_sight(x, sight);
+        let is_new = self.linear.follow(system);
         let g = system.gradient(x);
         let used = if self.proves { REST_STEP } else { self.dt };
-        let mut moves = self.linear.step(system, x, &g, used, self.last, stop)?;
+        let mut moves = match self.proves && self.serves && !is_new {
+            true => self.linear.again(&g),
+            false => self.linear.step(system, x, &g, used, self.last, stop)?,
+        };
+        self.serves = self.proves;
         let longest = greatest(&moves);
         let residual = greatest(&g);
         self.outcome = Outcome {
@@ -178,10 +223,16 @@ impl Descent {
         system.clear_of_body(x, &mut moves);
         self.nearby.seek(system, x, &moves);
         self.nearby.limit(system, x, &mut moves);
-        let share = if pulled { 1.0 } else { descend(system, x, &g, &mut moves, &mut self.heights) };
-        self.outcome.share = share;
+        let start = (!pulled).then(|| match lasting {
+            Some(lasting) => system.value_at_start(x, lasting),
+            None => system.value(x),
+        });
+        let way = start.map(|start| descend(system, x, &g, &mut moves, start, &mut self.heights));
+        self.outcome.share = way.as_ref().map_or(1.0, |w| w.share);
         system.elastic.foretell(x, &moves);
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
+        let end = way.and_then(|w| w.end);
+        self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
         self.plan(system, x, pulled, pace);
         Ok(self.outcome)
     }
@@ -194,6 +245,7 @@ impl Descent {
             // A long step leaves strain of second order behind, which the first short ones take away.
             self.proofs += 1;
             self.proves = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
+            (self.calm, self.failed) = (0, true);
             return;
         }
         self.proofs = 0;
@@ -201,7 +253,9 @@ impl Descent {
         if !slow {
             system.drag(x);
         }
-        self.proves = pace.prove && slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
+        let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
+        self.calm = if calm { self.calm + 1 } else { 0 };
+        self.proves = pace.prove && self.calm >= if self.failed { CALM } else { 1 };
     }
 
     /// How it stands after the last step.
@@ -269,13 +323,27 @@ fn shorten(moves: &mut [Vec3], share: f64) {
     }
 }
 
-/// Shortens the step until the potential falls below the highest of the last ones; the share that is left.
-fn descend(system: &System<'_>, x: &[Vec3], g: &[Vec3], moves: &mut [Vec3], heights: &mut Vec<f64>) -> f64 {
+/// The way gone in a step.
+struct Way {
+    /// The share of the step that is left.
+    share: f64,
+    /// What was found at its end, if anybody looked.
+    end: Option<Visit>,
+}
+
+/// Shortens the step until the potential falls below the highest of the last ones; it is `start` where the step begins.
+fn descend(
+    system: &System<'_>,
+    x: &[Vec3],
+    g: &[Vec3],
+    moves: &mut [Vec3],
+    start: f64,
+    heights: &mut Vec<f64>,
+) -> Way {
     if greatest(moves) < ROUNDING {
-        return 1.0;
+        return Way { share: 1.0, end: None };
     }
     let slope: f64 = g.iter().zip(moves.iter()).map(|(g, d)| g.dot(d)).sum();
-    let start = system.value(x);
     heights.push(start);
     if heights.len() > MEMORY {
         heights.remove(0);
@@ -285,11 +353,12 @@ fn descend(system: &System<'_>, x: &[Vec3], g: &[Vec3], moves: &mut [Vec3], heig
     let mut share = 1.0;
     for _ in 0..MOST_HALVINGS {
         let trial: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(p, d)| p + d).collect();
-        if system.value(&trial) <= highest + LEAST_FALL * share * slope.min(0.0) {
-            break;
+        let visit = system.visit(&trial);
+        if visit.energy <= highest + LEAST_FALL * share * slope.min(0.0) {
+            return Way { share, end: Some(visit) };
         }
         share *= 0.5;
         shorten(moves, 0.5);
     }
-    share
+    Way { share, end: None }
 }

@@ -56,6 +56,7 @@ impl Pattern {
     }
 
     /// The slot of the block of row `i` and column `j`; `None` where the pattern has none.
+    #[inline]
     pub fn slot(&self, i: u32, j: u32) -> Option<Slot> {
         if i == j {
             return Some(Slot { index: i, flipped: false });
@@ -101,6 +102,7 @@ fn pair_key(i: u32, j: u32) -> u64 {
 }
 
 /// Adds `block`, meant for the element's own order of nodes, at its slot.
+#[inline]
 pub fn add_at(values: &mut [Matrix3<f64>], slot: Slot, block: &Matrix3<f64>) {
     let value = &mut values[slot.index as usize];
     if slot.flipped {

@@ -101,6 +101,20 @@ pub struct Seen {
     pub exact: bool,
 }
 
+/// What a node sees of the body: how far it is, and the place that presses, if any does.
+pub type Sight = (Seen, Option<Nearest>);
+
+/// What was found at the end of a step, where the next one starts.
+#[derive(Debug, Clone)]
+pub struct Visit {
+    /// All energy, J.
+    pub energy: f64,
+    /// The part that no contact has a share in, J.
+    pub lasting: f64,
+    /// What each node sees of the body; empty without one.
+    pub sight: Vec<Sight>,
+}
+
 impl System<'_> {
     /// The pattern of its matrix.
     #[must_use]
@@ -110,20 +124,12 @@ impl System<'_> {
         Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads).chain(layers))
     }
 
-    /// The body nearest to each node, if it presses there.
-    fn nearest(&self, x: &[Vec3]) -> Vec<Option<Nearest>> {
+    /// The body nearest to each node, if it presses there; remembers what was seen, now or by who came here before.
+    fn look(&mut self, x: &[Vec3], sight: Option<Vec<Sight>>) -> Vec<Option<Nearest>> {
         if self.support.is_none() {
             return vec![None; x.len()];
         }
-        self.looks(x).into_iter().map(|(_, near)| near).collect()
-    }
-
-    /// The same, remembering what was seen.
-    fn look(&mut self, x: &[Vec3]) -> Vec<Option<Nearest>> {
-        if self.support.is_none() {
-            return vec![None; x.len()];
-        }
-        let found = self.looks(x);
+        let found = sight.unwrap_or_else(|| self.looks(x));
         self.seen = found.iter().map(|(seen, _)| *seen).collect();
         found.into_iter().map(|(_, near)| near).collect()
     }
@@ -138,7 +144,7 @@ impl System<'_> {
     }
 
     /// What each node sees of the body. What was seen earlier saves the search, or narrows it.
-    fn looks(&self, x: &[Vec3]) -> Vec<(Seen, Option<Nearest>)> {
+    fn looks(&self, x: &[Vec3]) -> Vec<Sight> {
         let Some(s) = &self.support else { return Vec::new() };
         let within: Vec<Option<f64>> =
             x.iter().enumerate().map(|(i, p)| s.reach(p, s.offsets[i], self.seen.get(i))).collect();
@@ -177,20 +183,41 @@ impl System<'_> {
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
-        let threads: f64 = self.threads.iter().map(|t| t.value(x)).sum();
+        self.visit(x).energy
+    }
+
+    /// Energy at `x`, and what a step that starts there need not look up again.
+    #[must_use]
+    pub fn visit(&self, x: &[Vec3]) -> Visit {
+        let lasting = self.stored(x) + self.threads.iter().map(|t| t.value(x)).sum::<f64>();
+        let sight = self.looks(x);
         let body: f64 = match &self.support {
             Some(s) => {
-                let press = |((n, o), k): ((Option<Nearest>, &f64), &f64)| {
-                    n.map_or(0.0, |n| 0.5 * k * (o - n.distance).max(0.0).powi(2))
+                let press = |((n, o), k): ((&Sight, &f64), &f64)| {
+                    n.1.as_ref().map_or(0.0, |n| 0.5 * k * (o - n.distance).max(0.0).powi(2))
                 };
-                self.nearest(x).into_iter().zip(&s.offsets).zip(&s.stiffness).map(press).sum()
+                sight.iter().zip(&s.offsets).zip(&s.stiffness).map(press).sum()
             }
             None => 0.0,
         };
         let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
-        self.elastic.value(x) + weight + threads + body + rub + layers
+        Visit { energy: lasting + body + rub + layers, lasting, sight }
+    }
+
+    /// Energy at the step's start, J, of which `lasting` does not depend on contacts.
+    #[must_use]
+    pub fn value_at_start(&self, x: &[Vec3], lasting: f64) -> f64 {
+        let body: f64 = match &self.support {
+            Some(s) => {
+                let press = |t: &Touch| 0.5 * t.force * t.force / s.stiffness[t.node as usize];
+                self.touches.iter().filter(|t| t.force > 0.0).map(press).sum()
+            }
+            None => 0.0,
+        };
+        let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
+        let layers = self.layers.as_ref().map_or(0.0, |l| l.value_at_start(x));
+        lasting + body + rub + layers
     }
 
     /// Elastic and gravitational energy at `x`, J.
@@ -208,10 +235,15 @@ impl System<'_> {
 
     /// Finds the touches at `x`: call it at the start of each step.
     pub fn touch(&mut self, x: &[Vec3]) {
+        self.touch_in_sight(x, None);
+    }
+
+    /// The same, where what was seen at `x` is known.
+    pub fn touch_in_sight(&mut self, x: &[Vec3], sight: Option<Vec<Sight>>) {
         if let Some(l) = &mut self.layers {
             l.contacts = l.touching(x);
         }
-        let near = self.look(x);
+        let near = self.look(x, sight);
         let Some(s) = &mut self.support else { return };
         s.allow_for_sag(&near, x);
         let mut anchors = vec![None; x.len()];

@@ -56,18 +56,22 @@ impl Yarn {
     }
 
     /// The stop and the strain beyond its start.
+    #[inline]
     fn beyond(&self, strain: f64) -> Option<(Stop, f64)> {
         self.stop.map(|s| (s, strain - s.start)).filter(|(_, over)| *over > 0.0)
     }
 
+    #[inline]
     fn force(&self, strain: f64) -> f64 {
         self.curve.force(strain) + self.beyond(strain).map_or(0.0, |(s, over)| s.growth * over * over)
     }
 
+    #[inline]
     fn slope(&self, strain: f64) -> f64 {
         self.curve.slope(strain) + self.beyond(strain).map_or(0.0, |(s, over)| 2.0 * s.growth * over)
     }
 
+    #[inline]
     fn energy(&self, strain: f64) -> f64 {
         self.curve.energy(strain) + self.beyond(strain).map_or(0.0, |(s, over)| s.growth * over.powi(3) / 3.0)
     }
@@ -92,6 +96,7 @@ struct Shape {
 }
 
 impl Shape {
+    #[inline]
     fn of([uu, vv, uv]: [f64; 3]) -> Self {
         let length = [uu.sqrt(), vv.sqrt()];
         let floor = length.map(|l| l.max(SHORTEST));
@@ -102,6 +107,7 @@ impl Shape {
     }
 
     /// Derivative of the shear angle by Green's strains; a yarn at its floor has no part in it.
+    #[inline]
     fn by_strain(&self) -> Vector3<f64> {
         let floor = self.length.map(|l| l.max(SHORTEST));
         let own = |k: usize| {
@@ -125,6 +131,7 @@ impl Law {
     }
 
     /// Energy per rest area at the squares and the product of the yarn directions' images, J/m².
+    #[inline]
     #[must_use]
     pub(super) fn density(&self, metric: [f64; 3]) -> f64 {
         let s = Shape::of(metric);
@@ -136,6 +143,7 @@ impl Law {
     }
 
     /// Stress there.
+    #[inline]
     #[must_use]
     pub(super) fn stress(&self, metric: [f64; 3]) -> [f64; 3] {
         let s = Shape::of(metric);
@@ -146,6 +154,7 @@ impl Law {
     }
 
     /// Stress and tangent there.
+    #[inline]
     #[must_use]
     pub(super) fn response(&self, metric: [f64; 3]) -> Response {
         let s = Shape::of(metric);
@@ -173,6 +182,7 @@ impl Law {
         }
     }
 
+    #[inline]
     fn tension(&self, s: &Shape) -> [f64; 2] {
         let [e1, e2] = s.length.map(|l| l - 1.0);
         [self.weft.force(e1) + self.coupling * e2, self.warp.force(e2) + self.coupling * e1]
