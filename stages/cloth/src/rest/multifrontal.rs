@@ -77,8 +77,12 @@ pub struct Factor {
 struct Spare(Mutex<Vec<Vec<f64>>>);
 
 impl Spare {
-    fn take(&self) -> Vec<f64> {
-        self.0.lock().map(|mut s| s.pop().unwrap_or_default()).unwrap_or_default()
+    /// The smallest that holds `size` numbers, or a new one: were a leaf's to grow for the root, all would in the end.
+    fn take(&self, size: usize) -> Vec<f64> {
+        let Ok(mut spare) = self.0.lock() else { return Vec::new() };
+        let fits = (0..spare.len()).filter(|&k| spare[k].capacity() >= size);
+        let best = fits.min_by_key(|&k| spare[k].capacity());
+        best.map_or_else(|| Vec::with_capacity(size), |k| spare.swap_remove(k))
     }
 
     fn give(&self, border: Vec<f64>) {
@@ -160,7 +164,8 @@ impl Symbolic {
         if stop() {
             return Err(Halt::Stopped);
         }
-        let mut dense = Dense::zeros(mine, spare.take(), front.unknowns(), 3 * front.nodes.len());
+        let border = spare.take(9 * front.border.len() * front.border.len());
+        let mut dense = Dense::zeros(mine, border, front.unknowns(), 3 * front.nodes.len());
         for &(slot, row, column, flipped) in &front.entries {
             dense.put(row as usize, column as usize, &values[slot as usize], flipped);
         }
