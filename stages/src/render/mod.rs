@@ -23,7 +23,7 @@ pub use camera::{Frame, View};
 pub(crate) use mips::{LINEAR, Mips, encode};
 pub use overlay::Line;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
-pub(crate) use pictures::{jpeg, scene_pictures};
+pub(crate) use pictures::{jpeg, thumbnail};
 pub use scene::Scene;
 
 use image::RgbImage;

@@ -65,7 +65,7 @@ pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) ->
     } else if let Some(garment) = any.downcast_ref::<Garment>() {
         garment_pictures(garment, body, height)
     } else if let Some(model) = any.downcast_ref::<Model>() {
-        model_pictures(model, height)
+        shots(&Scene::draft(model), &[], height)
     } else {
         Vec::new()
     }
@@ -90,7 +90,11 @@ fn reduced((w, h): (u32, u32), height: u32) -> (u32, u32) {
     (fit(w), fit(h))
 }
 
-fn thumbnail(picture: &RgbImage, height: u32) -> RgbImage {
+/// A picture brought down to `height`; never up.
+pub(crate) fn thumbnail(picture: &RgbImage, height: u32) -> RgbImage {
+    if picture.height() <= height {
+        return picture.clone();
+    }
     let (w, h) = reduced(picture.dimensions(), height);
     imageops::thumbnail(picture, w, h)
 }
@@ -115,15 +119,6 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
         .into_iter()
         .flatten()
         .collect()
-}
-
-fn model_pictures(model: &Model, height: u32) -> Vec<Picture> {
-    scene_pictures(&Scene::draft(model), height)
-}
-
-/// The pictures of a model whose scene is there already.
-pub(crate) fn scene_pictures(scene: &Scene, height: u32) -> Vec<Picture> {
-    shots(scene, &[], height)
 }
 
 fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<Picture> {

@@ -1,9 +1,10 @@
 //! What stands on the report's page, gathered from the run's record.
 
 use super::report::PICTURE_BUDGET;
-use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, scene_pictures};
+use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, thumbnail};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use image::RgbImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -75,8 +76,9 @@ pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, Stag
     let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
     let scene = last::<Model>(run, run.stages.len()).map(|model| (model, Scene::draft_in(model, cx)));
-    let draw = Draw { run, height, scene, cx };
-    let views = within(draw.views(), &mut budget).0;
+    let (model, heads) = scene.map_or((None, Vec::new()), |(model, scene)| (Some(model), heads(&scene)));
+    let draw = Draw { run, height, model, heads, cx };
+    let views = within(shown(draw.heads_at(VIEW_HEIGHT)), &mut budget).0;
     let mut stages = Vec::new();
     for (i, record) in run.stages.iter().enumerate() {
         cx.check()?;
@@ -138,8 +140,10 @@ struct Draw<'a> {
     run: &'a RunLog,
     /// Height of the stages' pictures.
     height: u32,
-    /// The last model with its light.
-    scene: Option<(&'a Model, Scene<'a>)>,
+    /// The last model.
+    model: Option<&'a Model>,
+    /// It from the front, the back and the side.
+    heads: Vec<(&'static str, RgbImage)>,
     cx: &'a Context,
 }
 
@@ -156,9 +160,9 @@ impl Draw<'_> {
     }
 
     fn artifact(&self, artifact: &dyn Artifact, body: Option<&Body>) -> Vec<Shown> {
-        match (&self.scene, is::<Model>(artifact)) {
-            (Some((model, scene)), Some(this)) if std::ptr::eq(*model, this) => {
-                shown(scene_pictures(scene, self.height))
+        match (self.model, is::<Model>(artifact)) {
+            (Some(last), Some(this)) if std::ptr::eq(last, this) => {
+                shown(self.heads_at(self.height).into_iter().take(2).collect())
             }
             _ => self.known(artifact, body),
         }
@@ -181,17 +185,20 @@ impl Draw<'_> {
         serde_json::from_slice(&bytes).unwrap_or_else(|_| draw())
     }
 
-    /// The three views at the head.
-    fn views(&self) -> Vec<Shown> {
-        let Some((_, scene)) = &self.scene else { return Vec::new() };
-        let named =
-            [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
-        let view = |(name, view): &(&str, fn(u32) -> View)| {
-            let form = jpeg(&scene.render(&view(VIEW_HEIGHT)))?;
+    /// The views at the head, at most so high.
+    fn heads_at(&self, height: u32) -> Vec<Picture> {
+        let picture = |(name, head): &(&str, RgbImage)| {
+            let form = jpeg(&thumbnail(head, height))?;
             Some(Picture { caption: (*name).to_owned(), form })
         };
-        shown(named.par_iter().map(view).collect::<Vec<_>>().into_iter().flatten().collect())
+        self.heads.par_iter().map(picture).collect::<Vec<_>>().into_iter().flatten().collect()
     }
+}
+
+/// The three views at the head.
+fn heads(scene: &Scene<'_>) -> Vec<(&'static str, RgbImage)> {
+    let named = [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
+    named.par_iter().map(|(name, view)| (*name, scene.render(&view(VIEW_HEIGHT)))).collect()
 }
 
 fn caption(name: &str, detail: &str) -> String {
