@@ -4,13 +4,11 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 use toile_core::artifact::{Photo, Shared};
-use toile_core::pipeline::{Override, load};
-use toile_core::{Cancel, Context, Inputs, Listener, PortValue, Registry, RunOptions, run};
-use toile_tests::plugins::library;
+use toile_core::{Context, Inputs, PortValue, Registry};
+use toile_tests::plugins::{library, vest_on_sdf};
 
 /// Linked in, and loaded.
 fn registries(name: &str, register: fn(&mut Registry)) -> [(&'static str, Registry); 2] {
@@ -59,14 +57,7 @@ fn collider(c: &mut Criterion) {
 
 /// The time of the solve alone.
 fn solve(registry: &Registry) -> Duration {
-    let file = toile_tests::pipeline("vest.ron");
-    let text = std::fs::read_to_string(&file).unwrap();
-    let swapped: Override = "stages.BvhCollider=SdfCollider()".parse().unwrap();
-    let base = Path::new(&file).parent().unwrap();
-    let pipeline = load(&text, &file, base, registry, &[swapped]).unwrap();
-    let options = RunOptions { until: Some("Rest".into()), ..RunOptions::default() };
-    let listener: Arc<dyn Listener> = Arc::new(());
-    let done = run(&pipeline, &options, &Cancel::new(), &listener).unwrap();
+    let done = vest_on_sdf(registry).unwrap();
     let rest = done.log.stages.iter().find(|s| s.id == "Rest").unwrap();
     Duration::from_secs_f64(rest.wall_s)
 }

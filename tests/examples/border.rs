@@ -8,11 +8,8 @@
 //!     perf stat -e instructions:u target/release/examples/border linked     (and: loaded)
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
-use std::path::Path;
-use std::sync::Arc;
-use toile_core::pipeline::{Override, load};
-use toile_core::{Cancel, Listener, Registry, RunOptions, run};
-use toile_tests::plugins::library;
+use toile_core::Registry;
+use toile_tests::plugins::{library, vest_on_sdf};
 
 /// Clock ticks a second in `/proc/self/stat`.
 const TICKS: f64 = 100.0;
@@ -61,15 +58,8 @@ fn loaded() -> Registry {
 
 /// Processor seconds of the vest up to rest, with everything before it.
 fn solve(registry: &Registry) -> f64 {
-    let file = toile_tests::pipeline("vest.ron");
-    let text = std::fs::read_to_string(&file).unwrap();
-    let swapped: Override = "stages.BvhCollider=SdfCollider()".parse().unwrap();
-    let base = Path::new(&file).parent().unwrap();
-    let pipeline = load(&text, &file, base, registry, &[swapped]).unwrap();
-    let options = RunOptions { until: Some("Rest".into()), ..RunOptions::default() };
-    let listener: Arc<dyn Listener> = Arc::new(());
     let before = processor_s();
-    run(&pipeline, &options, &Cancel::new(), &listener).unwrap();
+    vest_on_sdf(registry).unwrap();
     processor_s() - before
 }
 

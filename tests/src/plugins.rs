@@ -1,7 +1,11 @@
 //! Plugins for the tests: those that are built with them, and those of C, compiled here.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
+use toile_core::pipeline::{Override, load};
+use toile_core::{Cancel, Listener, Registry, RunOptions, RunResult, run};
 
 /// The library of a plugin crate that the tests depend on, such as `toile_faulty`: cargo puts it beside the tests'
 /// programs, which lie in `deps`, as examples do not.
@@ -11,6 +15,19 @@ pub fn library(name: &str) -> PathBuf {
     let beside = program.parent().map(|dir| dir.join(&file));
     let in_deps = program.ancestors().nth(2).map(|dir| dir.join("deps").join(&file));
     beside.into_iter().chain(in_deps).find(|path| path.is_file()).unwrap_or_else(|| PathBuf::from(file))
+}
+
+/// The shipped vest sewn and draped against `SdfCollider`, which is asked in the solver's inner loop.
+///
+/// Errors: what the loader or a stage says.
+pub fn vest_on_sdf(registry: &Registry) -> Result<RunResult, Box<dyn Error>> {
+    let file = crate::pipeline("vest.ron");
+    let base = Path::new(&file).parent().unwrap_or(Path::new("."));
+    let swapped: Override = "stages.BvhCollider=SdfCollider()".parse()?;
+    let pipeline = load(&std::fs::read_to_string(&file)?, &file, base, registry, &[swapped])?;
+    let options = RunOptions { until: Some("Rest".into()), ..RunOptions::default() };
+    let listener: Arc<dyn Listener> = Arc::new(());
+    Ok(run(&pipeline, &options, &Cancel::new(), &listener)?)
 }
 
 /// Compiles a C source of the repository as a plugin into `dir`; gives the library.

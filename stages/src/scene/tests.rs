@@ -119,7 +119,7 @@ fn what_a_garment_cannot_hold_is_named() {
     let mut scene = generate::tube(4, 5);
     scene.strain_limit = Some(toile_cloth::scene::StrainLimit { warp: 0.05, weft: 0.05 });
     scene.seams[0].joined = false;
-    scene.seams[1].gather = Some(1.5);
+    scene.seams[1].gather = Some(1.0);
     scene.panels[0].layer = 1;
     scene.panels[1].body_friction = Some(0.1);
     scene.material.poisson = 0.2;
