@@ -95,9 +95,9 @@ fn tuned(dir: &Path) {
 }
 
 fn refused(dir: &Path) {
-    let answer = tune(dir, &["--max-time", "1ms"]);
+    let answer = tune(dir, &["--max-time", "0.001ms"]);
     assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
-    let words = "error: no setting of the measured front keeps a time of at most 0.001 s\n  help: the most accurate keeps";
+    let words = "error: no setting of the measured front keeps a time of at most 0.000001 s\n  help: the most accurate keeps";
     assert!(answer.err.contains(words), "{}", answer.err);
     let elsewhere = tune(dir, &["--max-time", "1s", "--out", "elsewhere/quick.ron"]);
     assert_eq!(elsewhere.code, 3);
