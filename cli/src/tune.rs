@@ -135,13 +135,6 @@ fn say(args: &TuneArgs, trade: &Trade, wish: &Wish, proof: &Proof, file: &Path, 
         d.mean,
         d.max
     ));
-    if let Some(e) = wish.max_error_mm.filter(|_| !starts.is_empty()) {
-        let worst = starts.iter().fold(0.0_f64, |a, b| a.max(*b));
-        streams.say(format!(
-            "{} of {} moved starts within {e} mm, the worst {worst:.2} mm",
-            proof.kept(e),
-            starts.len()
-        ));
-    }
+    proof.starts_in_words(wish).into_iter().for_each(|words| streams.say(words));
     streams.say(format!("written: {}", file.display()));
 }

@@ -3,7 +3,7 @@
 //! See the renderer for method, cost and limits.
 
 use crate::render::{Frame, Scene, View};
-use image::ImageFormat;
+use image::{ImageFormat, RgbImage};
 use rayon::prelude::*;
 use std::io::Cursor;
 use toile_core::prelude::*;
@@ -50,15 +50,21 @@ impl Preview {
             ("back.png", View::back),
             ("side.png", View::side),
         ];
-        let file = |(path, view): &(&str, fn(u32) -> View)| {
+        let mut pictures = Vec::new();
+        for (i, (path, view)) in views.into_iter().enumerate() {
+            // One after the other, each on all threads: so a stop waits for one view at most.
             cx.check()?;
-            let mut bytes = Cursor::new(Vec::new());
-            let fault = |e| StageError::internal(format!("{path} cannot be encoded: {e}"));
-            let view = View { frame, ..view(self.size) };
-            scene.render(&view).write_to(&mut bytes, ImageFormat::Png).map_err(fault)?;
-            Ok(OutputFile { path: (*path).to_owned(), bytes: bytes.into_inner() })
-        };
-        let files: Vec<Result<OutputFile, StageError>> = views.par_iter().map(file).collect();
+            cx.progress(i as f64 / 3.0, path);
+            pictures.push((path, scene.render(&View { frame, ..view(self.size) })));
+        }
+        let files: Vec<Result<OutputFile, StageError>> = pictures.par_iter().map(file).collect();
         Ok(OutputFiles(files.into_iter().collect::<Result<_, _>>()?))
     }
+}
+
+fn file((path, picture): &(&str, RgbImage)) -> Result<OutputFile, StageError> {
+    let mut bytes = Cursor::new(Vec::new());
+    let fault = |e| StageError::internal(format!("{path} cannot be encoded: {e}"));
+    picture.write_to(&mut bytes, ImageFormat::Png).map_err(fault)?;
+    Ok(OutputFile { path: (*path).to_owned(), bytes: bytes.into_inner() })
 }
