@@ -1,10 +1,12 @@
 //! `toile explain`: what a run would do, what it would leave out, and why.
 
 use crate::args::ExplainArgs;
+use crate::costs::Known;
 use crate::validate::open;
 use crate::{Streams, exit};
 use toile_core::pipeline::{Feed, Node, Pipeline};
 use toile_core::{Registry, RunOptions, plan};
+use toile_trade::cost::{Forecast, forecast_lines, predict};
 
 /// Prints one line a stage: what feeds it, and whether it runs.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -27,7 +29,19 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
     for (node, skipped) in pipeline.nodes.iter().zip(&plan) {
         streams.say(line(&pipeline, node, skipped.as_deref()));
     }
+    expected(args, &pipeline, &plan, streams);
     exit::DONE
+}
+
+/// What the stages that run are expected to take.
+fn expected(args: &ExplainArgs, pipeline: &Pipeline, plan: &[Option<String>], streams: &mut Streams<'_>) {
+    let known = Known::open(&args.cache, args.threads);
+    if let Some(warning) = &known.warning {
+        streams.tell(format!("warning: {warning}"));
+    }
+    let forecasts = predict(pipeline, &known.costs);
+    let runs: Vec<&Forecast> = forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
+    forecast_lines(&runs, &known.source()).iter().for_each(|line| streams.say(line));
 }
 
 fn line(pipeline: &Pipeline, node: &Node, skipped: Option<&str>) -> String {

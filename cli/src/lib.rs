@@ -6,8 +6,10 @@
 mod args;
 mod at_hand;
 mod bench;
+mod bench_costs;
 mod cache;
 mod cards;
+mod costs;
 mod doctor;
 mod explain;
 mod golden;
@@ -161,6 +163,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
         Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
+        Command::Bench { what: Bench::Costs(args) } => bench_costs::costs(&args, registry, streams),
         Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }

@@ -3,6 +3,10 @@
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
 
+/// Counts the memory that the program holds, for what stages take (docs/costs.md).
+#[global_allocator]
+static MEMORY: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
+
 fn main() -> ExitCode {
     ExitCode::from(toile::command(std::env::args_os(), &mut stdout(), &mut stderr()))
 }

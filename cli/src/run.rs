@@ -1,6 +1,7 @@
 //! `toile run`.
 
 use crate::args::RunArgs;
+use crate::costs::{self, Known};
 use crate::progress::Bar;
 use crate::validate::open;
 use crate::{Streams, cache, exit, interrupt, lock, watch};
@@ -40,8 +41,12 @@ pub(crate) fn once(
     if let Some(reads) = reads {
         watch::note_plugins(&pipeline, reads);
     }
+    let known = Known::open(&args.cache, args.threads);
+    let predicted = Arc::new(known.by_stage(&pipeline));
     let outcome = on_threads(args.threads, || {
         let options = RunOptions {
+            meter: Some(Arc::new(costs::stopwatch())),
+            predicted: predicted.clone(),
             until: args.until.clone(),
             keep: args.keep,
             cache: cache.clone(),
@@ -59,6 +64,7 @@ pub(crate) fn once(
     match outcome {
         Err(e) => fail_run(&pipeline, &e, args.json, streams),
         Ok(result) => {
+            known.keep(&pipeline, &result.costs);
             let locked =
                 lock.map_or(exit::DONE, |l| lock::compare(&l, &pipeline, registry, &result, streams));
             finish(args, &pipeline, result, streams).max(locked)
@@ -95,7 +101,12 @@ fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut 
     }
     match args.json {
         true => streams.say(result.metrics.to_json()),
-        false => summary(&result.metrics, &dir, &files, streams),
+        false => {
+            summary(&result.metrics, &dir, &files, streams);
+            if args.verbose {
+                costs::beside(&result.metrics).iter().for_each(|line| streams.say(line));
+            }
+        }
     }
     for (code, message) in &result.metrics.shortfalls {
         streams.tell(format!("quality: {code}: {message}"));

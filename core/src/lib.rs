@@ -38,6 +38,7 @@ extern crate self as toile_core;
 pub mod artifact;
 pub mod cache;
 mod context;
+pub mod cost;
 mod error;
 pub mod golden;
 pub mod lock;

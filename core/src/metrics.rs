@@ -1,6 +1,7 @@
 //! `metrics.json`: the figures of a run, a contract with users.
 
 use crate::artifact::{Figures, GarmentFigures, Measure, PanelFigures};
+use crate::cost::{Predicted, Used};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -23,6 +24,12 @@ pub struct StageMetrics {
     /// Warnings that the stage gave.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub warnings: Vec<String>,
+    /// What its own work took, where it ran whole and somebody measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub used: Option<Used>,
+    /// What it was expected to take, where that was asked.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub predicted: Option<Predicted>,
 }
 
 impl StageMetrics {

@@ -1,6 +1,7 @@
 //! The one trait that every step of a pipeline stands behind.
 
 use crate::artifact::{Artifact, ArtifactType, Digest, Kind};
+use crate::cost::Size;
 use crate::{Context, ParamDoc, StageError};
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -17,6 +18,11 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
 
     /// Its parameters as RON: `(bias: 3.0)`.
     fn params(&self) -> String;
+
+    /// How much it makes of so much, all ports together; none where the rules of its role tell (see [`crate::cost`]).
+    fn sizes(&self, _given: &Size, _cx: &Context) -> Option<Size> {
+        None
+    }
 
     /// Runs it on its ports' values, in the order of the card's inputs.
     fn run_ports(&self, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError>;

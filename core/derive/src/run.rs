@@ -27,6 +27,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
         .ok_or(missing)?;
     let ports = ports(run)?;
     let out = output(run)?;
+    let sizes = sizes(&item);
     let in_ports = ports.iter().map(|Port { name, ty, original }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -53,6 +54,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                 fn params(&self) -> ::std::string::String {
                     ::toile_core::param::ron_text(self)
                 }
+                #sizes
                 fn run_ports(
                     &self,
                     inputs: &::toile_core::Inputs,
@@ -74,6 +76,23 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
             }
         };
     })
+}
+
+/// The trait's `sizes`, where the author says by `foresee` how sizes go through the stage.
+fn sizes(item: &ItemImpl) -> TokenStream {
+    let is_foresee = |i: &ImplItem| matches!(i, ImplItem::Fn(f) if f.sig.ident == "foresee");
+    match item.items.iter().any(is_foresee) {
+        false => TokenStream::new(),
+        true => quote! {
+            fn sizes(
+                &self,
+                given: &::toile_core::cost::Size,
+                cx: &::toile_core::Context,
+            ) -> ::std::option::Option<::toile_core::cost::Size> {
+                Self::foresee(self, given, cx)
+            }
+        },
+    }
 }
 
 /// The arguments between `&self` and the context; `#[original]` is read and taken off.

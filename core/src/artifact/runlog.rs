@@ -1,6 +1,7 @@
 //! What has happened in a run so far, for stages that report on it.
 
 use super::{Artifact, ArtifactType, Digester, Kind, Measure, Measures};
+use crate::cost::{Predicted, Used};
 use crate::stage::PortValue;
 
 /// One stage as it ran.
@@ -22,6 +23,10 @@ pub struct StageRecord {
     pub figures: Vec<Measure>,
     /// Warnings that the stage gave through its context.
     pub warnings: Vec<String>,
+    /// What its own work took, where it ran whole and somebody measured.
+    pub used: Option<Used>,
+    /// What it was expected to take, where that was asked.
+    pub predicted: Option<Predicted>,
 }
 
 /// The record of a run up to the stage that asks.

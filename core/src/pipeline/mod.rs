@@ -173,7 +173,7 @@ fn check(
 }
 
 /// The fields of a stage's parameters, `(lambda: 0.5)`: name and value as text; none where it is no such text.
-pub(crate) fn fields_of(params: &str) -> BTreeMap<String, String> {
+pub fn fields_of(params: &str) -> BTreeMap<String, String> {
     let Ok(tree) = parse(params) else { return BTreeMap::new() };
     let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();
     let field = |e: &tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));

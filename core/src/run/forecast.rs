@@ -44,6 +44,8 @@ pub fn forecast(
         cancel: &cancel,
         listener: &listener,
         reads: None,
+        meter: None,
+        predicted: &options.predicted,
         steps: Vec::new(),
     };
     let mut outlooks = Vec::new();
@@ -55,7 +57,7 @@ pub fn forecast(
                 let (entries, outputs) = look(&run, node, cache)?;
                 outlook.entries = entries;
                 let (figures, warnings) = (Vec::new(), Vec::new());
-                Step::Ran(Ran { outputs, wall_s: 0.0, cached: true, figures, warnings })
+                Step::Ran(Ran { outputs, wall_s: 0.0, cached: true, figures, warnings, cost: None })
             }
         };
         run.steps.push(step);

@@ -13,6 +13,7 @@ pub(crate) use node::Made;
 
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
 use crate::cache::{Cache, Hash};
+use crate::cost::{Meter, Predicted, StageCost};
 use crate::pipeline::Pipeline;
 use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
 use std::any::Any;
@@ -34,6 +35,10 @@ pub struct RunOptions {
     pub cache: Option<Arc<Cache>>,
     /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
     pub reads: Option<Reads>,
+    /// Measures what stages take; none measures nothing but wall time.
+    pub meter: Option<Arc<dyn Meter>>,
+    /// What stages are expected to take, by id, for the record and the report.
+    pub predicted: Arc<BTreeMap<String, Predicted>>,
 }
 
 /// Files with the digest of the content that was read, none where there was no such file; a run fills it in while it
@@ -52,6 +57,8 @@ pub struct RunResult {
     pub metrics: Metrics,
     /// The digest of what every stage made, by id; none without a cache, and for what has no digest.
     pub results: Vec<(String, Option<Hash>)>,
+    /// What every stage took that ran whole under a meter.
+    pub costs: Vec<StageCost>,
 }
 
 /// A stage's failure with its place.
@@ -94,7 +101,16 @@ pub fn run(
     let started = Instant::now();
     let cache = options.cache.as_ref();
     let reads = options.reads.as_ref();
-    let mut run = Run { pipeline, cache, cancel, listener, reads, steps: Vec::new() };
+    let mut run = Run {
+        pipeline,
+        cache,
+        cancel,
+        listener,
+        reads,
+        meter: options.meter.as_deref(),
+        predicted: &options.predicted,
+        steps: Vec::new(),
+    };
     for skipped in plan {
         match skipped {
             None => run.step()?,
@@ -108,7 +124,8 @@ pub fn run(
     }
     let metrics = metrics(&run, &judged, started.elapsed().as_secs_f64());
     let results = run.results();
-    Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results })
+    let costs = run.costs();
+    Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results, costs })
 }
 
 /// The writers' files and those of stages whose artifacts were asked for.
@@ -183,6 +200,8 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
             skipped: None,
             figures: StageMetrics::figure_map(&ran.figures),
             warnings: ran.warnings.clone(),
+            used: ran.cost.as_ref().map(|c| c.0),
+            predicted: run.predicted.get(&node.id).copied(),
         }),
     });
     let skipped = steps().filter_map(|(node, step)| match step {
@@ -195,6 +214,8 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
             skipped: Some(reason.clone()),
             figures: Default::default(),
             warnings: Vec::new(),
+            used: None,
+            predicted: None,
         }),
     });
     let mut metrics = Metrics {

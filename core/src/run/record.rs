@@ -56,7 +56,7 @@ impl Run<'_> {
                 Step::Ran(ran) => {
                     let shown =
                         node.card.outputs.iter().zip(&ran.outputs).filter(|(o, _)| stored::is_stored(o.kind));
-                    log.stages.push(record(node, ran, shown.map(|(_, held)| held)));
+                    log.stages.push(self.record(node, ran, shown.map(|(_, held)| held)));
                 }
             }
         }
@@ -69,10 +69,26 @@ impl Run<'_> {
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
                 Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
-                Step::Ran(ran) => log.stages.push(record(node, ran, ran.outputs.iter())),
+                Step::Ran(ran) => log.stages.push(self.record(node, ran, ran.outputs.iter())),
             }
         }
         log
+    }
+
+    fn record<'h>(&self, node: &Node, ran: &Ran, held: impl Iterator<Item = &'h Held>) -> StageRecord {
+        let outputs: Option<Vec<PortValue>> = held.map(|held| held.value(None)).collect();
+        StageRecord {
+            id: node.id.clone(),
+            name: node.card.name.to_owned(),
+            role: node.card.role,
+            params: node.stage.params(),
+            wall_s: ran.wall_s,
+            outputs: outputs.unwrap_or_default(),
+            figures: ran.figures.clone(),
+            warnings: ran.warnings.clone(),
+            used: ran.cost.as_ref().map(|c| c.0),
+            predicted: self.predicted.get(&node.id).copied(),
+        }
     }
 }
 
@@ -84,18 +100,4 @@ fn feed(d: &mut Digester, held: &Held) -> Option<()> {
         Fed::Nothing | Fed::Unknown => return None,
     };
     Some(())
-}
-
-fn record<'h>(node: &Node, ran: &Ran, held: impl Iterator<Item = &'h Held>) -> StageRecord {
-    let outputs: Option<Vec<PortValue>> = held.map(|held| held.value(None)).collect();
-    StageRecord {
-        id: node.id.clone(),
-        name: node.card.name.to_owned(),
-        role: node.card.role,
-        params: node.stage.params(),
-        wall_s: ran.wall_s,
-        outputs: outputs.unwrap_or_default(),
-        figures: ran.figures.clone(),
-        warnings: ran.warnings.clone(),
-    }
 }

@@ -6,9 +6,11 @@ use super::value::{Held, gather};
 use super::{Reads, RunError, typed};
 use crate::artifact::{Measure, stored};
 use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR, of_stage};
+use crate::cost::{Meter, Predicted, Size, StageCost, Used, size_of};
 use crate::pipeline::{Feed, Node, Pipeline};
 use crate::{Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
@@ -28,6 +30,8 @@ pub(super) struct Ran {
     pub(super) cached: bool,
     pub(super) figures: Vec<Measure>,
     pub(super) warnings: Vec<String>,
+    /// What it took and how much it made, where it ran whole under a meter.
+    pub(super) cost: Option<(Used, Size)>,
 }
 
 /// A run up to some stage.
@@ -37,6 +41,8 @@ pub(super) struct Run<'a> {
     pub(super) cancel: &'a Cancel,
     pub(super) listener: &'a Arc<dyn Listener>,
     pub(super) reads: Option<&'a Reads>,
+    pub(super) meter: Option<&'a dyn Meter>,
+    pub(super) predicted: &'a BTreeMap<String, Predicted>,
     pub(super) steps: Vec<Step>,
 }
 
@@ -60,8 +66,11 @@ impl Run<'_> {
         self.tell(node, &searches);
         let missing = searches.iter().filter(|s| matches!(s.found, Found::Miss(_)));
         let missing: Vec<String> = missing.map(|s| s.entry.clone()).collect();
-        let made = self.make(index, &missing, &cx)?;
+        let whole = missing.len() == searches.len() && !missing.is_empty();
+        let (made, used) = self.make(index, &missing, &cx)?;
+        let cost = used.filter(|_| whole).map(|used| (used, sizes(&made)));
         let mut ran = self.ran(node, searches, made, &cx);
+        ran.cost = cost;
         cx.progress(1.0, "");
         ran.wall_s = started.elapsed().as_secs_f64();
         self.steps.push(Step::Ran(ran));
@@ -153,7 +162,7 @@ impl Run<'_> {
             }
             false => entries.pop().map(|(_, outputs)| outputs).unwrap_or_default(),
         };
-        Ran { outputs, wall_s: 0.0, cached, figures: notes.0, warnings: notes.1 }
+        Ran { outputs, wall_s: 0.0, cached, figures: notes.0, warnings: notes.1, cost: None }
     }
 
     /// Puts into the cache what was made; none for what cannot be kept.
@@ -166,11 +175,27 @@ impl Run<'_> {
         made.par_iter().map(keep).collect()
     }
 
-    /// Runs a stage for some of its entries.
-    fn make(&mut self, index: usize, entries: &[String], cx: &Context) -> Result<Vec<Made>, RunError> {
+    /// What every stage took.
+    pub(super) fn costs(&self) -> Vec<StageCost> {
+        let cost = |(node, step): (&Node, &Step)| match step {
+            Step::Ran(Ran { cost: Some((used, made)), .. }) => {
+                Some(StageCost { stage: node.id.clone(), used: *used, made: made.clone() })
+            }
+            _ => None,
+        };
+        self.pipeline.nodes.iter().zip(&self.steps).filter_map(cost).collect()
+    }
+
+    /// Runs a stage for some of its entries, and says what that took.
+    fn make(
+        &mut self,
+        index: usize,
+        entries: &[String],
+        cx: &Context,
+    ) -> Result<(Vec<Made>, Option<Used>), RunError> {
         let node = &self.pipeline.nodes[index];
         if entries.is_empty() {
-            return Ok(Vec::new());
+            return Ok((Vec::new(), None));
         }
         for (port, feed) in node.card.inputs.iter().zip(&node.inputs) {
             match feed {
@@ -183,9 +208,11 @@ impl Run<'_> {
             }
         }
         let jobs = entries.iter().map(|e| (e.clone(), self.inputs(index, e))).collect();
+        self.meter.iter().for_each(|m| m.start());
         let made = run_entries(node, jobs, cx);
+        let used = self.meter.map(Meter::stop);
         self.note_reads(cx.take_reads());
-        made.map_err(|e| located(node, e))
+        made.map(|made| (made, used)).map_err(|e| located(node, e))
     }
 
     /// Tells whoever asked which files were read.
@@ -247,7 +274,7 @@ impl Run<'_> {
         // What it said came from the cache already.
         let cx = self.context(node, Arc::new(()));
         let started = Instant::now();
-        let made = self.make(index, entries, &cx)?;
+        let (made, _) = self.make(index, entries, &cx)?;
         for made in &made {
             if let Some((cache, key)) = self.key(node, &self.ingredients(index, &made.entry)) {
                 cache.keep(&key, made);
@@ -353,6 +380,12 @@ pub(super) fn held(node: &Node, made: Option<&Made>, manifest: Option<&Manifest>
         Held::of(out.kind, value, manifest.and_then(|m| m.outputs.get(i)))
     };
     node.card.outputs.iter().enumerate().map(port).collect()
+}
+
+/// How much was made, all entries and ports together.
+fn sizes(made: &[Made]) -> Size {
+    let ports = |m: &Made| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&size_of(v)));
+    made.iter().fold(Size::new(), |sum, m| sum.plus(&ports(m)))
 }
 
 /// A manifest that does not have the stage's ports is damaged.

@@ -55,6 +55,18 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<Decoded, StageError> {
     Ok(split(image))
 }
 
+/// Pixels across and down once it is upright, from the header alone; none for what [`decode`] would refuse.
+pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
+    check_header(bytes, "").ok()?;
+    let mut decoder = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?.into_decoder().ok()?;
+    let (w, h) = decoder.dimensions();
+    use image::metadata::Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
+    match decoder.orientation() {
+        Ok(Rotate90 | Rotate270 | Rotate90FlipH | Rotate270FlipH) => Some((h, w)),
+        _ => Some((w, h)),
+    }
+}
+
 fn check_header(bytes: &[u8], name: &str) -> Result<Header, StageError> {
     if bytes.is_empty() {
         return Err(damaged(name, "is empty"));

@@ -5,10 +5,12 @@
 //! | `photos` | the stage `Photos`: reads all photos of a pipeline in parallel |
 //! | `entry` | how a photo is written in a pipeline file |
 //! | `decode` | bytes to upright 8-bit sRGB pixels, with limits against decompression bombs |
+//! | `expected` | how much the photos are, for what a run will take |
 //! | `header` | size and completeness of a JPEG or PNG before anything is decoded |
 
 mod decode;
 mod entry;
+mod expected;
 mod header;
 mod photos;
 #[cfg(test)]

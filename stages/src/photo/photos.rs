@@ -1,9 +1,11 @@
 //! The stage that reads a pipeline's photos.
 
 use super::entry::{scale_fault, width_fault};
+use super::expected;
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use toile_core::cost::Size;
 use toile_core::prelude::*;
 
 /// Reads the photos of the garment's sides.
@@ -33,6 +35,11 @@ pub struct Photos {
 impl Photos {
     pub(crate) fn run(&self, cx: &Context) -> Result<Set<Photo>, StageError> {
         read_photos(&self.photos, cx)
+    }
+
+    /// How much it will read: from the files' headers.
+    pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
+        expected::size(&self.photos, cx)
     }
 }
 
@@ -98,7 +105,7 @@ fn read_file(file: &str, cx: &Context) -> Result<Picture, StageError> {
 }
 
 /// Follows mirrors to a file; true where the pattern is that file's mirror image.
-fn resolve<'a>(
+pub(super) fn resolve<'a>(
     entries: &'a BTreeMap<String, PhotoEntry>,
     name: &str,
 ) -> Result<(&'a PhotoFile, bool), StageError> {

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_cloth::scene::{self, SceneError};
 use toile_core::artifact::Digester;
+use toile_core::cost::{Quantity, Size};
 use toile_core::prelude::*;
 
 /// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
@@ -53,6 +54,24 @@ impl Scene {
             gravity: p.gravity,
         });
         Ok((garment_of(&scene), body, collider, Phases(phases.collect())))
+    }
+
+    /// How much it will read: by reading it, which is a small part of setting it up.
+    pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
+        let text = text(cx, &self.file).ok()?;
+        let folder = std::path::Path::new(&self.file).parent().map(std::path::Path::to_path_buf);
+        let beside = |obj: &str| {
+            let path = folder.clone().unwrap_or_default().join(obj);
+            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
+            crate::scene::read::text(cx, &path.to_string_lossy()).map_err(unread)
+        };
+        let scene = scene::parse(&text, &beside).ok()?;
+        let body = scene.body.as_ref().map_or(0, |b| b.triangles.len());
+        let size = Size::new().with(Quantity::Bytes, text.len() as f64);
+        Some(
+            size.with(Quantity::Triangles, scene.triangles.len() as f64)
+                .with(Quantity::BodyTriangles, body as f64),
+        )
     }
 }
 

@@ -12,6 +12,7 @@ use toile_core::artifact::{
     Artifact, Body, Digester, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
     StageRecord, quantile, stored,
 };
+use toile_core::cost::Estimate;
 use toile_core::{Context, StageError};
 
 /// Height of the three views at the head, px.
@@ -54,6 +55,8 @@ struct Section {
     role: &'static str,
     params: String,
     wall: String,
+    /// What was expected before the run; empty where nobody asked.
+    expected: String,
     /// Per cent of the longest stage.
     share: String,
     warnings: Vec<String>,
@@ -107,6 +110,7 @@ fn section(draw: &Draw<'_>, index: usize, longest: f64, budget: &mut usize) -> S
         role: record.role.as_str(),
         params: record.params.clone(),
         wall: seconds(record.wall_s),
+        expected: record.predicted.and_then(|p| p.wall_s).map_or_else(String::new, expected),
         share: format!("{:.1}", (record.wall_s / longest * 100.0).clamp(0.0, 100.0)),
         warnings: record.warnings.clone(),
         figures: record.figures.iter().map(figure).collect(),
@@ -339,6 +343,10 @@ fn grouped(value: i64) -> String {
 
 fn seconds(s: f64) -> String {
     if s < 1.0 { format!("{:.0} ms", s * 1e3) } else { format!("{s:.2} s") }
+}
+
+fn expected(e: Estimate) -> String {
+    format!("{} expected ({} to {})", seconds(e.value), seconds(e.low), seconds(e.high))
 }
 
 fn bytes(n: usize) -> String {

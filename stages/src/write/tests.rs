@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use toile_core::cost::{Estimate, Predicted};
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
 use toile_core::{Inputs, PortValue};
@@ -362,6 +363,11 @@ fn run_log() -> RunLog {
             tolerance: 0.0,
         }],
         warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()],
+        used: None,
+        predicted: (id == "Glb").then(|| Predicted {
+            wall_s: Some(Estimate { value: 0.2, low: 0.1, high: 0.4 }),
+            ..Predicted::default()
+        }),
     };
     let mut figures = Figures::default();
     figures.garment.body_penetration =
@@ -496,6 +502,8 @@ proptest! {
             outputs: Vec::new(),
             figures: Vec::new(),
             warnings: vec![text.clone()],
+            used: None,
+            predicted: None,
         };
         let run = RunLog { pipeline: text.clone(), stages: vec![record], skipped: vec![(text.clone(), text)] };
         assert_balanced(&report(&run, "()"));

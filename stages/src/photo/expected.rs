@@ -1,0 +1,37 @@
+//! How much a set of photos is, before they are decoded.
+
+use super::decode::upright_size;
+use super::photos::resolve;
+use super::{PhotoEntry, PhotoFile};
+use std::collections::BTreeMap;
+use toile_core::cost::{Quantity, Size, garment_area};
+use toile_core::{Context, Length};
+
+/// Pixels, bytes of the files and a guess at the garment's area; none where a photo cannot be read.
+///
+/// Cost: the files are read, not decoded.
+pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Option<Size> {
+    let mut files: BTreeMap<&str, (usize, (u32, u32))> = BTreeMap::new();
+    let (mut pixels, mut area) = (0.0, 0.0);
+    for name in entries.keys() {
+        let (photo, _) = resolve(entries, name).ok()?;
+        if !files.contains_key(photo.file.as_str()) {
+            let bytes = cx.read(&photo.file).ok()?;
+            files.insert(&photo.file, (bytes.len(), upright_size(&bytes)?));
+        }
+        let (_, (w, h)) = files.get(photo.file.as_str())?;
+        let (w, h) = (f64::from(*w), f64::from(*h));
+        pixels += w * h;
+        area += garment_area(w, h, width(photo, w));
+    }
+    let bytes: usize = files.values().map(|(bytes, _)| bytes).sum();
+    let size = Size::new().with(Quantity::Pieces, entries.len() as f64);
+    let size = size.with(Quantity::Pixels, pixels).with(Quantity::Bytes, bytes as f64);
+    Some(size.with(Quantity::Area, area))
+}
+
+/// The garment's width, metres; that of the frame where only the scale is known.
+fn width(photo: &PhotoFile, width_px: f64) -> f64 {
+    let by_scale = photo.px_per_metre.map(|scale| width_px / scale);
+    photo.width.map(Length::metres).or(by_scale).unwrap_or(0.0)
+}

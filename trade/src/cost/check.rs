@@ -1,0 +1,116 @@
+//! How well stages are predicted on pipelines that the laws were not fitted on.
+
+use super::{Costs, Place};
+use super::record::{CostRecord, Figure};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A prediction is right where it differs from the fact by at most this share of the fact.
+const RIGHT: f64 = 0.3;
+/// Shorter stages are timer and cache noise, seconds; lesser memory, bytes.
+const TELLING: (f64, f64) = (1e-3, 1e6);
+
+/// How many predictions are right.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Predictions.
+    pub count: usize,
+    /// Of these, within 30 % of the fact.
+    pub right: usize,
+    /// Of these, the fact lies in the range of 80 %.
+    pub in_range: usize,
+}
+
+impl Tally {
+    fn add(&mut self, right: bool, in_range: bool) {
+        self.count += 1;
+        self.right += usize::from(right);
+        self.in_range += usize::from(in_range);
+    }
+
+    /// Share of right ones, 0 to 1.
+    pub fn share(&self) -> f64 {
+        self.right as f64 / self.count.max(1) as f64
+    }
+}
+
+/// A stage of a pipeline that was left out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// The pipeline's name.
+    pub pipeline: String,
+    /// The stage's name.
+    pub stage: String,
+    /// True where no other pipeline has this stage, and others of its role stood in.
+    pub stand_in: bool,
+    /// Prediction / fact of each run, ascending.
+    pub ratios: Vec<f64>,
+    /// The middle of the facts.
+    pub fact: f64,
+    /// How many are right.
+    pub tally: Tally,
+}
+
+/// The whole of it, for one figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Check {
+    /// What was predicted.
+    pub figure: Figure,
+    /// By pipeline and stage.
+    pub stages: Vec<Verdict>,
+    /// Every prediction; stages without any law count as wrong.
+    pub all: Tally,
+    /// Those of facts that tell: 1 ms and longer, 1 MB and more.
+    pub telling: Tally,
+    /// Telling ones of stages that other pipelines have too.
+    pub met: Tally,
+}
+
+/// Leaves out each of the pipelines in turn, fits to the others and predicts it from its photos' headers and its
+/// settings alone. Without names all are left out in turn.
+pub fn check(records: &[CostRecord], names: &[String], figure: Figure) -> Check {
+    let known: BTreeSet<&str> = records.iter().map(|r| r.pipeline.as_str()).collect();
+    let chosen = known.into_iter().filter(|k| names.is_empty() || names.iter().any(|n| n == k));
+    let mut check = Check {
+        figure,
+        stages: Vec::new(),
+        all: Tally::default(),
+        telling: Tally::default(),
+        met: Tally::default(),
+    };
+    for name in chosen {
+        let (left_out, others): (Vec<CostRecord>, Vec<CostRecord>) =
+            records.iter().cloned().partition(|r| r.pipeline == name);
+        let threads = left_out.first().map_or(1, |r| r.threads);
+        judge(&mut check, name, &left_out, &Costs::fit(&others, &[], threads));
+    }
+    check
+}
+
+fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Costs) {
+    let mut by_stage: BTreeMap<&str, Vec<&CostRecord>> = BTreeMap::new();
+    left_out.iter().for_each(|r| by_stage.entry(&r.stage).or_default().push(r));
+    let least = if check.figure.is_time() { TELLING.0 } else { TELLING.1 };
+    for (stage, runs) in by_stage {
+        let (mut tally, mut ratios, mut facts) = (Tally::default(), Vec::new(), Vec::new());
+        for run in runs {
+            let Some(fact) = check.figure.of(&run.used) else { continue };
+            let estimate = costs.estimate(&Place { pipeline, stage, role: &run.role }, &run.foreseen, check.figure);
+            let right = estimate.is_some_and(|e| (e.value / fact - 1.0).abs() <= RIGHT);
+            let in_range = estimate.is_some_and(|e| e.holds(fact));
+            tally.add(right, in_range);
+            check.all.add(right, in_range);
+            if fact >= least {
+                check.telling.add(right, in_range);
+                if costs.knows(stage) {
+                    check.met.add(right, in_range);
+                }
+            }
+            ratios.extend(estimate.map(|e| e.value / fact));
+            facts.push(fact);
+        }
+        ratios.sort_by(f64::total_cmp);
+        let (pipeline, stage) = (pipeline.to_owned(), stage.to_owned());
+        let (stand_in, fact) = (!costs.knows(&stage), super::law::median(&mut facts));
+        check.stages.push(Verdict { pipeline, stage, stand_in, ratios, fact, tally });
+    }
+}

@@ -1,0 +1,122 @@
+//! Least squares with factors that are not negative, of relative errors, little swayed by outliers.
+//!
+//! Method: all subsets of the few terms are tried; on each, weighted least squares of prediction / fact - 1 with weights
+//! that fall off for what lies far out (Huber 1964, iteratively reweighted). Of the subsets whose factors are all
+//! positive, the one with the least generalised cross-validation counts (Golub, Heath, Wahba 1979). Non-negative factors
+//! keep a law rising, so that it can be used beyond the sizes that were measured.
+//! Cost: 2^terms small systems. Limit: five terms.
+
+/// One observation: the terms' values, the fact (greater than 0) and its weight.
+#[derive(Debug, Clone)]
+pub(super) struct Row {
+    pub(super) terms: Vec<f64>,
+    pub(super) fact: f64,
+    pub(super) weight: f64,
+}
+
+/// Relative errors beyond this count less.
+const FAR: f64 = 0.25;
+/// Rounds of reweighting.
+const ROUNDS: usize = 6;
+/// Keeps systems regular; relative to their diagonal.
+const RIDGE: f64 = 1e-9;
+
+/// The factors, one a term; none without a usable row.
+pub(super) fn fit(rows: &[Row], terms: usize) -> Option<Vec<f64>> {
+    let usable = |r: &&Row| r.fact > 0.0 && r.fact.is_finite() && r.weight > 0.0 && r.terms.len() == terms;
+    let rows: Vec<&Row> = rows.iter().filter(usable).collect();
+    let subsets = (1..1_usize << terms).map(|mask| (0..terms).filter(|i| mask >> i & 1 == 1).collect());
+    let tried = subsets.filter_map(|columns: Vec<usize>| {
+        let factors = robust(&rows, &columns)?;
+        let score = validation(&rows, &columns, &factors)?;
+        Some((score, columns, factors))
+    });
+    let (_, columns, factors) = tried.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
+    let mut all = vec![0.0; terms];
+    columns.iter().zip(&factors).for_each(|(c, f)| all[*c] = *f);
+    Some(all)
+}
+
+/// What a subset predicts of a row.
+fn predicted(row: &Row, columns: &[usize], factors: &[f64]) -> f64 {
+    columns.iter().zip(factors).map(|(c, f)| row.terms[*c] * f).sum()
+}
+
+/// Reweighted least squares; none where a factor is not positive.
+fn robust(rows: &[&Row], columns: &[usize]) -> Option<Vec<f64>> {
+    let mut weights: Vec<f64> = rows.iter().map(|r| r.weight).collect();
+    let mut factors = Vec::new();
+    for _ in 0..ROUNDS {
+        factors = least_squares(rows, columns, &weights)?;
+        for (w, row) in weights.iter_mut().zip(rows) {
+            let error = (predicted(row, columns, &factors) / row.fact - 1.0).abs();
+            *w = row.weight * (FAR / error.max(FAR));
+        }
+    }
+    factors.iter().all(|f| f.is_finite() && *f > 0.0).then_some(factors)
+}
+
+/// Normal equations of the relative errors, columns brought to like size.
+fn least_squares(rows: &[&Row], columns: &[usize], weights: &[f64]) -> Option<Vec<f64>> {
+    let k = columns.len();
+    let total: f64 = weights.iter().sum();
+    let scale: Vec<f64> = columns
+        .iter()
+        .map(|c| rows.iter().zip(weights).map(|(r, w)| w * r.terms[*c] / r.fact).sum::<f64>() / total)
+        .collect();
+    if !scale.iter().all(|s| s.is_finite() && *s > 0.0) {
+        return None;
+    }
+    let mut system = vec![vec![0.0; k + 1]; k];
+    for (row, w) in rows.iter().zip(weights) {
+        let a: Vec<f64> = columns.iter().zip(&scale).map(|(c, s)| row.terms[*c] / row.fact / s).collect();
+        for i in 0..k {
+            (0..k).for_each(|j| system[i][j] += w * a[i] * a[j]);
+            system[i][k] += w * a[i];
+        }
+    }
+    let x = solve(system)?;
+    Some(x.iter().zip(&scale).map(|(x, s)| x / s).collect())
+}
+
+/// Gaussian elimination of a positive definite system with its right side as the last column.
+fn solve(mut m: Vec<Vec<f64>>) -> Option<Vec<f64>> {
+    let k = m.len();
+    for (i, row) in m.iter_mut().enumerate() {
+        row[i] *= 1.0 + RIDGE;
+    }
+    for i in 0..k {
+        let pivot = m[i].clone();
+        if !pivot[i].is_finite() || pivot[i] <= 0.0 {
+            return None;
+        }
+        for row in m.iter_mut().skip(i + 1) {
+            let share = row[i] / pivot[i];
+            row.iter_mut().zip(&pivot).for_each(|(a, p)| *a -= share * p);
+        }
+    }
+    let mut x = vec![0.0; k];
+    for i in (0..k).rev() {
+        let rest: f64 = (i + 1..k).map(|j| m[i][j] * x[j]).sum();
+        x[i] = (m[i][k] - rest) / m[i][i];
+    }
+    Some(x)
+}
+
+/// Generalised cross-validation of the capped errors; none where there are no more rows than factors, save one of each.
+fn validation(rows: &[&Row], columns: &[usize], factors: &[f64]) -> Option<f64> {
+    let total: f64 = rows.iter().map(|r| r.weight).sum();
+    let error = |r: &&Row| {
+        let e = (predicted(r, columns, factors) / r.fact - 1.0).abs();
+        // Huber's loss.
+        r.weight * if e < FAR { e * e } else { FAR * (2.0 * e - FAR) }
+    };
+    let sum: f64 = rows.iter().map(error).sum();
+    let count = rows.len() as f64;
+    let free = 1.0 - columns.len() as f64 / count;
+    match (rows.len(), columns.len()) {
+        (1, 1) => Some(sum),
+        _ if free <= 0.0 => None,
+        _ => Some((sum / total + 1e-12) / (free * free)),
+    }
+}

@@ -1,0 +1,122 @@
+//! A stage's law with its uncertainty.
+
+use super::fit::{Row, fit};
+use super::terms::Term;
+use std::collections::BTreeMap;
+use toile_core::cost::{Estimate, Size};
+
+/// Quantile of the normal distribution that leaves out one case of ten.
+const NORMAL_90: f64 = 1.2816;
+/// The least spread of a law, as a logarithm: runs of the same work differ by this much.
+const LEAST_SPREAD: f64 = 0.05;
+/// Growth of the spread for each power of e beyond what was measured.
+const BEYOND: f64 = 0.25;
+/// How far the same stage differs from pipeline to pipeline before anything is known of that, as a logarithm, and for
+/// how many pipelines that counts.
+const BETWEEN: (f64, f64) = (0.2, 2.0);
+/// A single outlier among the errors counts as no more than this.
+const CAP: f64 = 1.5;
+
+/// A sum of terms with what is known of its errors.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Law {
+    terms: &'static [Term],
+    factors: Vec<f64>,
+    /// Standard deviation of ln(fact / prediction).
+    spread: f64,
+    /// Degrees of freedom of the spread.
+    free: f64,
+    /// Standard deviation of the same from pipeline to pipeline, and its degrees of freedom.
+    between: (f64, f64),
+    /// Least and greatest prediction of the runs that it was fitted on.
+    range: (f64, f64),
+    floor: f64,
+}
+
+/// A run that a law is fitted on.
+#[derive(Debug, Clone)]
+pub(super) struct Seen<'a> {
+    pub(super) pipeline: &'a str,
+    pub(super) size: &'a Size,
+    pub(super) fact: f64,
+    pub(super) weight: f64,
+}
+
+impl Law {
+    /// Fits a law; none where nothing was seen.
+    pub(super) fn fit(terms: &'static [Term], seen: &[Seen<'_>], floor: f64) -> Option<Self> {
+        let row = |s: &Seen<'_>| Row {
+            terms: terms.iter().map(|t| t.at(s.size)).collect(),
+            fact: s.fact,
+            weight: s.weight,
+        };
+        let rows: Vec<Row> = seen.iter().map(row).collect();
+        let factors = fit(&rows, terms.len())?;
+        let (range, between) = ((0.0, f64::INFINITY), (0.0, 1.0));
+        let mut law = Law { terms, factors, spread: 0.0, free: 1.0, between, range, floor };
+        let mut errors: Vec<f64> = seen.iter().map(|s| (s.fact / law.value(s.size)).ln()).collect();
+        // Least squares of relative errors lie low; the middle of the runs should be in the middle.
+        let middle = median(&mut errors);
+        law.factors.iter_mut().for_each(|f| *f *= middle.exp());
+        let values: Vec<f64> = seen.iter().map(|s| law.value(s.size)).collect();
+        law.range = values.iter().fold((f64::INFINITY, 0.0), |r, v| (r.0.min(*v), r.1.max(*v)));
+        let total: f64 = seen.iter().map(|s| s.weight).sum();
+        let square = |(s, v): (&Seen<'_>, &f64)| s.weight * (s.fact / v).ln().clamp(-CAP, CAP).powi(2);
+        let mean = seen.iter().zip(&values).map(square).sum::<f64>() / total;
+        let used = law.factors.iter().filter(|f| **f > 0.0).count() as f64;
+        let count = seen.len() as f64;
+        law.free = (count - used).max(1.0);
+        law.spread = (mean * count / law.free).sqrt().max(LEAST_SPREAD);
+        law.between = between_pipelines(seen, &values);
+        Some(law)
+    }
+
+    /// The middle.
+    pub(super) fn value(&self, size: &Size) -> f64 {
+        let sum: f64 = self.terms.iter().zip(&self.factors).map(|(t, f)| t.at(size) * f).sum();
+        sum.max(self.floor)
+    }
+
+    /// The middle with the range that 80 of 100 runs lie in; `met` where this machine has run the pipeline before, `more`
+    /// is spread from elsewhere, as a logarithm.
+    pub(super) fn estimate(&self, size: &Size, met: bool, more: f64) -> Estimate {
+        let value = self.value(size);
+        let beyond = (value / self.range.1).ln().max((self.range.0 / value).ln()).max(0.0);
+        let between = if met { 0.0 } else { self.between.0 * student(self.between.1) };
+        let other = NORMAL_90 * more.hypot(BEYOND * beyond);
+        let width = (self.spread * student(self.free)).hypot(between).hypot(other);
+        let factor = width.min(20.0).exp();
+        Estimate { value, low: value / factor, high: value * factor }
+    }
+}
+
+/// Student's quantile that leaves out one case of ten, to 5 % (Hill 1970 has it exactly).
+fn student(free: f64) -> f64 {
+    NORMAL_90 * (1.0 + 0.9 / free + 0.5 / (free * free))
+}
+
+/// How far pipelines lie from the law, each by the mean of its runs, drawn towards [`BETWEEN`] while they are few.
+fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
+    let mut means: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
+    for (s, v) in seen.iter().zip(values) {
+        let (sum, count) = means.entry(s.pipeline).or_default();
+        *sum += (s.fact / v).ln().clamp(-CAP, CAP);
+        *count += 1.0;
+    }
+    let count = means.len() as f64;
+    let squares: f64 = means.values().map(|(sum, n)| (sum / n).powi(2)).sum();
+    // The law was fitted to them: of two pipelines each lies half as far off as it would when left out.
+    let own = if count > 1.0 { squares * (count / (count - 1.0)).powi(2) } else { 0.0 };
+    let free = count - 1.0 + BETWEEN.1;
+    (((own + BETWEEN.0 * BETWEEN.0 * BETWEEN.1) / free).sqrt(), free)
+}
+
+/// The middle of some values; 0 of none.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[n / 2],
+        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
+    }
+}

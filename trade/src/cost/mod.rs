@@ -1,0 +1,40 @@
+//! What a run will take, predicted from what earlier runs took.
+//!
+//! Core says how much each stage is given and makes ([`toile_core::cost`]); this module holds the laws that lead from
+//! there to seconds and bytes:
+//!
+//! - `terms`, `fit`, `law`: a stage's law, a sum of terms of its sizes with factors that are not negative;
+//! - `record`, `store`, `shipped`: what stages took, on this machine and on the one of the shipped file;
+//! - `costs`: the laws of all stages; `predict`: a pipeline's forecast; `meter`, `note`: facts of a run;
+//! - `sweep`, `check`: the measurement that the shipped file comes from, and the proof by leaving pipelines out;
+//! - `words`: what people read.
+//!
+//! docs/costs.md has the figures.
+
+mod check;
+mod costs;
+mod fit;
+mod law;
+mod meter;
+mod note;
+mod predict;
+mod record;
+mod shipped;
+mod store;
+mod sweep;
+mod terms;
+mod words;
+
+#[cfg(test)]
+mod tests;
+
+pub use check::{Check, Tally, Verdict, check};
+pub use costs::{Costs, Place};
+pub use meter::{MemoryCount, Stopwatch};
+pub use note::note;
+pub use predict::{Forecast, predict, total};
+pub use record::{CostRecord, Figure, Host};
+pub use shipped::{Collection, parse as parse_collection, shipped};
+pub use store::{CostStore, Opened};
+pub use sweep::{Variation, variations};
+pub use words::{beside, check_lines, forecast_lines};

@@ -1,0 +1,69 @@
+//! A pipeline's forecast.
+
+use super::{Costs, Place};
+use super::record::Figure;
+use toile_core::artifact::Digester;
+use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
+use toile_core::pipeline::{Node, Pipeline};
+
+/// What is expected of one stage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// The stage's id.
+    pub stage: String,
+    /// How much it will be given and make.
+    pub sizes: Foreseen,
+    /// What it will take.
+    pub predicted: Predicted,
+    /// False where the stage has no record of its own and others of its role stand in.
+    pub known: bool,
+}
+
+/// Names what a stage is to be given, for finding what it made of the same before.
+pub(super) fn key(node: &Node, foreseen: &Size) -> String {
+    let mut d = Digester::new();
+    d.text("toile size").text(node.card.name).count(node.card.version as usize).text(&node.stage.params());
+    foreseen.iter().for_each(|(quantity, amount)| {
+        d.text(&format!("{quantity:?} {amount}"));
+    });
+    d.finish().short()
+}
+
+/// What each stage of a pipeline will be given, make and take. Nothing is run.
+pub fn predict(pipeline: &Pipeline, costs: &Costs) -> Vec<Forecast> {
+    let known = |i: usize, rule: &Size| costs.made(&key(&pipeline.nodes[i], rule)).cloned();
+    let sizes = foresee(pipeline, &known);
+    let forecast = |(node, sizes): (&Node, Foreseen)| {
+        let size = sizes.given.clone().joined(&sizes.made);
+        let at = Place { pipeline: &pipeline.name, stage: node.card.name, role: node.card.role.as_str() };
+        let predicted = costs.predicted(&at, &size);
+        Forecast { stage: node.id.clone(), sizes, predicted, known: costs.knows(node.card.name) }
+    };
+    pipeline.nodes.iter().zip(sizes).map(forecast).collect()
+}
+
+/// All stages together: times add up, with errors that do not depend on each other; memory is the peak of one stage on
+/// top of what those before it keep.
+pub fn total(stages: &[&Predicted]) -> Predicted {
+    let of = |p: &Predicted, f: Figure| f.predicted(p);
+    let sum = |figure| sum(stages.iter().filter_map(|p| of(p, figure)));
+    let mut held: Vec<Estimate> = Vec::new();
+    let mut peak: Option<Estimate> = None;
+    for p in stages {
+        if let Some(own) = of(p, Figure::Peak) {
+            let here = self::sum(held.iter().copied().chain([own]));
+            peak = peak.into_iter().chain(here).reduce(|a, b| if a.value < b.value { b } else { a });
+        }
+        held.extend(of(p, Figure::Kept));
+    }
+    Predicted { wall_s: sum(Figure::Wall), cpu_s: sum(Figure::Cpu), peak_bytes: peak, kept_bytes: sum(Figure::Kept) }
+}
+
+fn sum(all: impl Iterator<Item = Estimate>) -> Option<Estimate> {
+    let add = |(v, below, above): (f64, f64, f64), e: Estimate| {
+        (v + e.value, below.hypot(e.value - e.low), above.hypot(e.high - e.value))
+    };
+    let all: Vec<Estimate> = all.collect();
+    let (value, below, above) = all.iter().fold((0.0, 0.0, 0.0), |s, e| add(s, *e));
+    (!all.is_empty()).then(|| Estimate { value, low: (value - below).max(0.0), high: value + above })
+}

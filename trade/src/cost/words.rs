@@ -1,0 +1,115 @@
+//! What people read of forecasts.
+
+use super::check::{Check, Tally};
+use super::predict::{Forecast, total};
+use toile_core::cache::Bytes;
+use toile_core::cost::{Estimate, Predicted, Used};
+
+/// A time as people read it.
+fn time(s: f64) -> String {
+    match s {
+        s if s < 1e-3 => format!("{:.2} ms", s * 1e3),
+        s if s < 1e-2 => format!("{:.1} ms", s * 1e3),
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s if s < 100.0 => format!("{s:.1} s"),
+        s => format!("{s:.0} s"),
+    }
+}
+
+fn bytes(b: f64) -> String {
+    Bytes(b as u64).to_string()
+}
+
+fn range(e: Option<Estimate>, write: fn(f64) -> String) -> String {
+    e.map_or_else(
+        || "not known".to_owned(),
+        |e| format!("{} ({} to {})", write(e.value), write(e.low), write(e.high)),
+    )
+}
+
+fn row(name: &str, p: &Predicted) -> String {
+    format!("  {name:<20} {:<30} {}", range(p.wall_s, time), range(p.peak_bytes, bytes)).trim_end().to_owned()
+}
+
+/// The forecast of a pipeline's stages, all of which run.
+pub fn forecast_lines(forecasts: &[&Forecast], source: &str) -> Vec<String> {
+    let mut lines = vec![
+        "expected where nothing comes from the cache: wall time and memory at its peak beyond what is held before".to_owned(),
+        format!("(80 of 100 runs lie in the range; {source})"),
+    ];
+    for f in forecasts {
+        let mark = if f.known { "" } else { "  no record of it; others of its role stand in" };
+        lines.push(row(&f.stage, &f.predicted) + mark);
+    }
+    let all: Vec<&Predicted> = forecasts.iter().map(|f| &f.predicted).collect();
+    lines.push(row("all, one by one", &total(&all)));
+    lines
+}
+
+/// Prediction beside fact, a line a stage that ran whole, and how many were right.
+pub fn beside(stages: &[(&str, Used, Predicted)]) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut tally = Tally::default();
+    for (name, used, predicted) in stages {
+        let took = match used.peak_bytes {
+            Some(peak) => format!("{}, {}", time(used.wall_s), Bytes(peak)),
+            None => time(used.wall_s),
+        };
+        let expected = [range(predicted.wall_s, time), range(predicted.peak_bytes, bytes)].join(", ");
+        lines.push(format!("  {name:<20} took {took:<18} expected {expected}"));
+        if let Some(e) = predicted.wall_s {
+            tally.count += 1;
+            tally.right += usize::from((e.value / used.wall_s - 1.0).abs() <= 0.3);
+            tally.in_range += usize::from(e.holds(used.wall_s));
+        }
+    }
+    if tally.count > 0 {
+        lines.push(format!(
+            "expected times: {} of {} within 30 %, {} in the range of 80 %",
+            tally.right, tally.count, tally.in_range
+        ));
+    }
+    lines
+}
+
+fn share(tally: &Tally) -> String {
+    format!("{:.0} % ({} of {})", tally.share() * 100.0, tally.right, tally.count)
+}
+
+/// The table of a check.
+pub fn check_lines(check: &Check) -> Vec<String> {
+    let time_like = check.figure.is_time();
+    let write = if time_like { time } else { bytes };
+    let mut lines = vec![
+        format!("{}: prediction / fact on pipelines left out of the fit", check.figure.as_str()),
+        format!(
+            "  {:<11} {:<20} {:>4} {:>10} {:>7} {:>7} {:>7}  within 30 %",
+            "pipeline", "stage", "runs", "fact", "least", "middle", "most"
+        ),
+    ];
+    for v in &check.stages {
+        let at = |share: f64| {
+            let i = ((v.ratios.len().saturating_sub(1)) as f64 * share).round() as usize;
+            v.ratios.get(i).map_or_else(|| "-".to_owned(), |r| format!("{r:.2}"))
+        };
+        let mark = if v.stand_in { "  others of its role stand in" } else { "" };
+        lines.push(format!(
+            "  {:<11} {:<20} {:>4} {:>10} {:>7} {:>7} {:>7}  {} of {}{mark}",
+            v.pipeline,
+            v.stage,
+            v.tally.count,
+            write(v.fact),
+            at(0.0),
+            at(0.5),
+            at(1.0),
+            v.tally.right,
+            v.tally.count
+        ));
+    }
+    let least = if time_like { "1 ms" } else { "1 MB" };
+    lines.push(format!("within 30 %: {} of all, {} of those above {least}, {} of these where other pipelines have the stage",
+        share(&check.all), share(&check.telling), share(&check.met)));
+    let covered = check.telling.in_range as f64 / check.telling.count.max(1) as f64;
+    lines.push(format!("in the range of 80 %: {:.0} % of those above {least}", covered * 100.0));
+    lines
+}
