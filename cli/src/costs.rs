@@ -39,6 +39,7 @@ impl Known {
         let shipped = format!("the shipped figures of {}", self.shipped.host);
         match self.costs.own_runs() {
             0 => format!("from {shipped}; none of this machine's runs is known yet"),
+            1 => format!("from one run of a stage on this machine and {shipped}"),
             n => format!("from {n} runs of stages on this machine and {shipped}"),
         }
     }

@@ -19,7 +19,8 @@ pub struct Answer {
 /// and leave no trace in the home folder.
 pub fn toile(arguments: &[&str]) -> Answer {
     let (mut out, mut err) = (Vec::new(), Vec::new());
-    let off = arguments.first() == Some(&"run") && !arguments.contains(&"--cache-dir");
+    let caches = matches!(arguments.first(), Some(&"run" | &"explain"));
+    let off = caches && !arguments.contains(&"--cache-dir");
     let off = off.then_some("--no-cache").filter(|flag| !arguments.contains(flag));
     let all = std::iter::once("toile").chain(arguments.iter().copied()).chain(off);
     let code = toile::command(all, &mut out, &mut err);

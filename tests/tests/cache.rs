@@ -75,6 +75,7 @@ fn timeless(metrics: &Value) -> Value {
     m["garment"]["peak_memory_bytes"] = Value::Null;
     for stage in m["stages"].as_array_mut().unwrap() {
         (stage["wall_s"], stage["cached"]) = (Value::Null, Value::Null);
+        stage.as_object_mut().unwrap().retain(|key, _| key != "used" && key != "predicted");
     }
     m
 }

@@ -94,7 +94,8 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
         let (mut tally, mut ratios, mut facts) = (Tally::default(), Vec::new(), Vec::new());
         for run in runs {
             let Some(fact) = check.figure.of(&run.used) else { continue };
-            let estimate = costs.estimate(&Place { pipeline, stage, role: &run.role }, &run.foreseen, check.figure);
+            let size = costs.corrected(stage, &run.style, &run.foreseen);
+            let estimate = costs.estimate(&Place { pipeline, stage, role: &run.role }, &size, check.figure);
             let right = estimate.is_some_and(|e| (e.value / fact - 1.0).abs() <= RIGHT);
             let in_range = estimate.is_some_and(|e| e.holds(fact));
             tally.add(right, in_range);

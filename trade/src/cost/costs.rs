@@ -1,5 +1,6 @@
 //! The laws of all stages, from what this machine's runs took and from what is shipped.
 
+use super::bias::Bias;
 use super::law::{Law, Seen, median};
 use super::record::{CostRecord, Figure};
 use super::terms::terms;
@@ -26,6 +27,7 @@ pub struct Costs {
     roles: BTreeMap<(String, Figure), Entry>,
     /// What stages made of what they were to be given.
     made: BTreeMap<String, Size>,
+    bias: Bias,
     /// Pipelines that this machine has run.
     met: BTreeSet<String>,
     /// Runs of stages on this machine.
@@ -58,7 +60,8 @@ impl Costs {
         let own: Vec<&CostRecord> = own.iter().filter(|r| r.threads == threads).collect();
         let shipped: Vec<&CostRecord> = shipped.iter().collect();
         let met = own.iter().map(|r| r.pipeline.clone()).collect();
-        let mut costs = Costs { made, met, own: own.len(), ..Costs::default() };
+        let bias = Bias::learn(own.iter().chain(&shipped).copied());
+        let mut costs = Costs { made, bias, met, own: own.len(), ..Costs::default() };
         for figure in Figure::ALL {
             let prior = laws(&shipped, &[], figure, 1.0, |r| r.stage.clone());
             let speed = speed(&own, &prior, figure);
@@ -84,6 +87,11 @@ impl Costs {
     /// What a stage made last time of the same.
     pub fn made(&self, key: &str) -> Option<&Size> {
         self.made.get(key)
+    }
+
+    /// What the rules foresee at a stage, corrected by how far they were off in earlier runs; `style` as in the records.
+    pub fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
+        self.bias.corrected(stage, style, foreseen)
     }
 
     /// One figure of a stage of a pipeline; none where no stage of its role was ever seen.

@@ -13,7 +13,7 @@ const LEAST_SPREAD: f64 = 0.05;
 const BEYOND: f64 = 0.25;
 /// How far the same stage differs from pipeline to pipeline before anything is known of that, as a logarithm, and for
 /// how many pipelines that counts.
-const BETWEEN: (f64, f64) = (0.2, 2.0);
+const BETWEEN: (f64, f64) = (0.15, 3.0);
 /// A single outlier among the errors counts as no more than this.
 const CAP: f64 = 1.5;
 

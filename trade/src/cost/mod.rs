@@ -4,6 +4,7 @@
 //! there to seconds and bytes:
 //!
 //! - `terms`, `fit`, `law`: a stage's law, a sum of terms of its sizes with factors that are not negative;
+//! - `bias`: how far the rules of sizes lie beside the facts;
 //! - `record`, `store`, `shipped`: what stages took, on this machine and on the one of the shipped file;
 //! - `costs`: the laws of all stages; `predict`: a pipeline's forecast; `meter`, `note`: facts of a run;
 //! - `sweep`, `check`: the measurement that the shipped file comes from, and the proof by leaving pipelines out;
@@ -11,6 +12,7 @@
 //!
 //! docs/costs.md has the figures.
 
+mod bias;
 mod check;
 mod costs;
 mod fit;

@@ -6,7 +6,14 @@ use super::Costs;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use toile_core::cost::{Foreseen, Size, StageCost, foresee};
+use toile_core::Role;
 use toile_core::pipeline::Pipeline;
+
+/// The kind of garment that a pipeline makes: the name of its first style, which names the edges; empty without one.
+pub(super) fn style(pipeline: &Pipeline) -> String {
+    let style = pipeline.nodes.iter().find(|n| n.card.role == Role::Style);
+    style.map_or_else(String::new, |n| n.card.name.to_owned())
+}
 
 /// What the stages of a run took, with the sizes that they had; what came from the cache has none and is taken from
 /// earlier runs.
@@ -27,6 +34,7 @@ pub fn note(pipeline: &Pipeline, costs: &[StageCost], earlier: &Costs, threads: 
         let (node, cost) = (&pipeline.nodes[i], facts.get(pipeline.nodes[i].id.as_str())?);
         Some(CostRecord {
             pipeline: pipeline.name.clone(),
+            style: style(pipeline),
             stage: node.card.name.to_owned(),
             role: node.card.role.as_str().to_owned(),
             key,

@@ -1,6 +1,7 @@
 //! A pipeline's forecast.
 
 use super::{Costs, Place};
+use super::note::style;
 use super::record::Figure;
 use toile_core::artifact::Digester;
 use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
@@ -11,8 +12,8 @@ use toile_core::pipeline::{Node, Pipeline};
 pub struct Forecast {
     /// The stage's id.
     pub stage: String,
-    /// How much it will be given and make.
-    pub sizes: Foreseen,
+    /// How much it will be given and make, all together.
+    pub size: Size,
     /// What it will take.
     pub predicted: Predicted,
     /// False where the stage has no record of its own and others of its role stand in.
@@ -32,14 +33,25 @@ pub(super) fn key(node: &Node, foreseen: &Size) -> String {
 /// What each stage of a pipeline will be given, make and take. Nothing is run.
 pub fn predict(pipeline: &Pipeline, costs: &Costs) -> Vec<Forecast> {
     let known = |i: usize, rule: &Size| costs.made(&key(&pipeline.nodes[i], rule)).cloned();
-    let sizes = foresee(pipeline, &known);
-    let forecast = |(node, sizes): (&Node, Foreseen)| {
-        let size = sizes.given.clone().joined(&sizes.made);
-        let at = Place { pipeline: &pipeline.name, stage: node.card.name, role: node.card.role.as_str() };
-        let predicted = costs.predicted(&at, &size);
-        Forecast { stage: node.id.clone(), sizes, predicted, known: costs.knows(node.card.name) }
+    let (rules, facts) = (foresee(pipeline, &|_, _| None), foresee(pipeline, &known));
+    let style = style(pipeline);
+    let forecast = |(node, (rules, facts)): (&Node, (Foreseen, Foreseen))| {
+        let (name, role) = (node.card.name, node.card.role.as_str());
+        let size = best(&costs.corrected(name, &style, &all(&rules)), &all(&rules), &all(&facts));
+        let predicted = costs.predicted(&Place { pipeline: &pipeline.name, stage: name, role }, &size);
+        Forecast { stage: node.id.clone(), size, predicted, known: costs.knows(name) }
     };
-    pipeline.nodes.iter().zip(sizes).map(forecast).collect()
+    pipeline.nodes.iter().zip(rules.into_iter().zip(facts)).map(forecast).collect()
+}
+
+fn all(f: &Foreseen) -> Size {
+    f.given.clone().joined(&f.made)
+}
+
+/// What follows from facts of earlier runs where there are some, else the corrected rules.
+fn best(corrected: &Size, rules: &Size, facts: &Size) -> Size {
+    let told = facts.iter().filter(|(q, a)| rules.get(*q) != Some(*a));
+    told.fold(corrected.clone(), |all, (q, a)| all.with(q, a))
 }
 
 /// All stages together: times add up, with errors that do not depend on each other; memory is the peak of one stage on

@@ -92,6 +92,9 @@ impl std::fmt::Display for Host {
 pub struct CostRecord {
     /// The pipeline's name.
     pub pipeline: String,
+    /// The kind of garment: the name of the pipeline's first style.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub style: String,
     /// The stage's name.
     pub stage: String,
     /// Its role.
@@ -106,7 +109,7 @@ pub struct CostRecord {
     /// What it made.
     #[serde(default, skip_serializing_if = "Size::is_empty")]
     pub made: Size,
-    /// What it was expected to be given and to make before anything was known, for [`super::check`].
+    /// What it was expected to be given and to make before anything was known.
     #[serde(default, skip_serializing_if = "Size::is_empty")]
     pub foreseen: Size,
     /// What it took.

@@ -5,6 +5,7 @@
 
 use super::record::{CostRecord, Host};
 use serde::{Deserialize, Serialize};
+use toile_core::cost::Size;
 
 /// The version of this form; raised when old texts cannot be read any more.
 const SCHEME: u32 = 1;
@@ -58,12 +59,19 @@ impl Collection {
     pub fn slim(mut self) -> Self {
         for record in &mut self.records {
             record.key.clear();
-            (record.made, record.foreseen) = Default::default();
+            record.made = Size::new();
+            (record.size, record.foreseen) = (rounded(&record.size), rounded(&record.foreseen));
             record.used.wall_s = three_digits(record.used.wall_s);
             record.used.cpu_s = record.used.cpu_s.map(three_digits);
         }
         self
     }
+}
+
+/// To five digits.
+fn rounded(size: &Size) -> Size {
+    let amount = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
+    size.iter().fold(Size::new(), |all, (q, a)| all.with(q, amount(a)))
 }
 
 fn three_digits(x: f64) -> f64 {
