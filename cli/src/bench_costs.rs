@@ -33,7 +33,9 @@ pub(crate) fn costs(args: &CostsArgs, registry: &Registry, streams: &mut Streams
     streams.say(format!("{} runs of stages on {}", collection.records.len(), collection.host));
     if args.check {
         for figure in Figure::ALL {
-            check_lines(&check(&collection.records, &args.without, figure)).iter().for_each(|l| streams.say(l));
+            check_lines(&check(&collection.records, &args.without, figure))
+                .iter()
+                .for_each(|l| streams.say(l));
         }
     }
     exit::DONE
@@ -53,7 +55,8 @@ fn measure(
             exit::INVALID
         })
     };
-    let settings = variations(&load(&[], streams)?, &args.work).map_err(|e| refused(&e.to_string(), streams))?;
+    let settings =
+        variations(&load(&[], streams)?, &args.work).map_err(|e| refused(&e.to_string(), streams))?;
     // One pool for all runs: threads that end give memory back in the midst of the next run.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|e| refused(&format!("there are no threads: {e}"), streams))?;
@@ -62,7 +65,8 @@ fn measure(
         let pipeline = load(&setting.overrides, streams)?;
         for _ in 0..args.repeats {
             streams.tell(format!("{}: {}", pipeline.name, setting.words));
-            let ran = pool.install(|| once(&pipeline)).map_err(|e| fail_run(&pipeline, &e, false, streams))?;
+            let ran =
+                pool.install(|| once(&pipeline)).map_err(|e| fail_run(&pipeline, &e, false, streams))?;
             records.extend(ran);
         }
     }

@@ -8,7 +8,8 @@ use toile_core::Metrics;
 use toile_core::cost::{Predicted, StageCost};
 use toile_core::pipeline::Pipeline;
 use toile_trade::cost::{
-    Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, note, predict, shipped,
+    Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, note, predict,
+    shipped,
 };
 
 /// What is known of this machine's runs.

@@ -40,7 +40,8 @@ fn expected(args: &ExplainArgs, pipeline: &Pipeline, plan: &[Option<String>], st
         streams.tell(format!("warning: {warning}"));
     }
     let forecasts = predict(pipeline, &known.costs);
-    let runs: Vec<&Forecast> = forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
+    let runs: Vec<&Forecast> =
+        forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
     forecast_lines(&runs, &known.source()).iter().for_each(|line| streams.say(line));
 }
 

@@ -4,9 +4,9 @@
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
+use toile_core::cost::{Meter, Used};
 use toile_core::cost::{Quantity, Size, foresee};
 use toile_core::pipeline::{Override, Pipeline, load};
-use toile_core::cost::{Meter, Used};
 use toile_core::{Cancel, Listener, RunOptions, run};
 use toile_tests::{pipeline, root, toile};
 
@@ -41,7 +41,13 @@ fn edge(mm: u32) -> Override {
 
 #[test]
 fn sizes_are_foreseen_before_anything_runs() {
-    for (name, mm) in [("vest.ron", 16), ("vest.ron", 30), ("tshirt.ron", 12), ("photo_vest.ron", 22), ("photo_tee.ron", 22)] {
+    for (name, mm) in [
+        ("vest.ron", 16),
+        ("vest.ron", 30),
+        ("tshirt.ron", 12),
+        ("photo_vest.ron", 22),
+        ("photo_tee.ron", 22),
+    ] {
         let pipeline = loaded(name, &[edge(mm)]);
         let foreseen = foresee(&pipeline, &|_, _| None);
         for (stage, fact) in made(&pipeline, "Place") {
@@ -81,7 +87,11 @@ fn explain_says_what_a_run_will_take() {
         told[0],
         "expected where nothing comes from the cache: wall time and memory at its peak beyond what is held before"
     );
-    assert!(told[1].starts_with("(80 of 100 runs lie in the range; from the shipped figures of "), "{}", told[1]);
+    assert!(
+        told[1].starts_with("(80 of 100 runs lie in the range; from the shipped figures of "),
+        "{}",
+        told[1]
+    );
     assert!(told[1].ends_with(" cores; none of this machine's runs is known yet)"), "{}", told[1]);
     let names: Vec<&str> = told[2..].iter().map(|l| l[..22].trim()).collect();
     assert_eq!(names, ["Photos", "NeighbourhoodMean", "Otsu", "all, one by one"]);
@@ -92,7 +102,8 @@ fn explain_says_what_a_run_will_take() {
 }
 
 fn run_scene(cache: &Path, more: &[&str]) -> toile_tests::Answer {
-    let (file, cache, out) = (pipeline("scene.ron"), cache.display().to_string(), cache.join("out").display().to_string());
+    let (file, cache, out) =
+        (pipeline("scene.ron"), cache.display().to_string(), cache.join("out").display().to_string());
     let all = [&["run", &file, "--cache-dir", &cache, "--out", &out, "--until", "Scene"], more].concat();
     toile(&all)
 }
@@ -125,7 +136,11 @@ fn what_a_run_took_is_known_to_the_next() {
     let (file, cache) = (pipeline("scene.ron"), dir.path().display().to_string());
     let explain = || toile(&["explain", &file, "--cache-dir", &cache, "--until", "Scene"]);
     let answer = explain();
-    assert!(answer.out.contains("; from one run of a stage on this machine and the shipped figures of "), "{}", answer.out);
+    assert!(
+        answer.out.contains("; from one run of a stage on this machine and the shipped figures of "),
+        "{}",
+        answer.out
+    );
     // A result that comes from the cache took nothing.
     assert_eq!(run_scene(dir.path(), &[]).code, 0);
     assert_eq!(explain().out, answer.out);

@@ -70,7 +70,13 @@ impl Bench {
     ) -> Result<Ran, Missed> {
         let reads: Reads = Arc::default();
         let keep = cache.is_some();
-        let options = RunOptions { until: self.until.clone(), keep, cache, reads: Some(reads.clone()), ..RunOptions::default() };
+        let options = RunOptions {
+            until: self.until.clone(),
+            keep,
+            cache,
+            reads: Some(reads.clone()),
+            ..RunOptions::default()
+        };
         forget_peak();
         let (started, cpu) = (Instant::now(), ProcessTime::now());
         let result = self.watched(pipeline, &options, limit);

@@ -23,7 +23,10 @@ impl Bias {
             for (quantity, foreseen) in r.foreseen.iter().filter(|(_, f)| *f > 0.0) {
                 let Some(fact) = r.size.get(quantity).filter(|f| *f > 0.0) else { continue };
                 for style in [None, Some(r.style.clone())] {
-                    ratios.entry((r.stage.clone(), style, quantity)).or_default().push((fact / foreseen).ln());
+                    ratios
+                        .entry((r.stage.clone(), style, quantity))
+                        .or_default()
+                        .push((fact / foreseen).ln());
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! How well stages are predicted on pipelines that the laws were not fitted on.
 
-use super::{Costs, Place};
 use super::record::{CostRecord, Figure};
+use super::{Costs, Place};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A prediction is right where it differs from the fact by at most this share of the fact.

@@ -70,11 +70,17 @@ impl Costs {
                 (Some(speed), _) => (speed, 0.0),
                 (None, _) => (1.0, OTHER_MACHINE),
             };
-            let mut add = |to: fn(&mut Costs) -> &mut BTreeMap<(String, Figure), Entry>, fitted: Laws, more: f64| {
+            let mut add = |to: fn(&mut Costs) -> &mut BTreeMap<(String, Figure), Entry>,
+                           fitted: Laws,
+                           more: f64| {
                 to(&mut costs).extend(fitted.into_iter().map(|(n, law)| ((n, figure), Entry { law, more })));
             };
             add(|c| &mut c.stages, laws(&own, &shipped, figure, factor, |r| r.stage.clone()), more);
-            add(|c| &mut c.roles, laws(&own, &shipped, figure, factor, |r| r.role.clone()), more + OTHER_STAGE);
+            add(
+                |c| &mut c.roles,
+                laws(&own, &shipped, figure, factor, |r| r.role.clone()),
+                more + OTHER_STAGE,
+            );
         }
         costs
     }

@@ -16,6 +16,9 @@ pub(super) struct Row {
 
 /// Relative errors beyond this count less.
 const FAR: f64 = 0.25;
+/// Later subsets must be better by this: terms stand in the order of what is likely, and runs of one pipeline cannot tell
+/// some of them apart.
+const BETTER: f64 = 0.97;
 /// Rounds of reweighting.
 const ROUNDS: usize = 6;
 /// Keeps systems regular; relative to their diagonal.
@@ -31,7 +34,8 @@ pub(super) fn fit(rows: &[Row], terms: usize) -> Option<Vec<f64>> {
         let score = validation(&rows, &columns, &factors)?;
         Some((score, columns, factors))
     });
-    let (_, columns, factors) = tried.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
+    let (_, columns, factors) =
+        tried.reduce(|best, next| if next.0 < BETTER * best.0 { next } else { best })?;
     let mut all = vec![0.0; terms];
     columns.iter().zip(&factors).for_each(|(c, f)| all[*c] = *f);
     Some(all)

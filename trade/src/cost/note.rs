@@ -1,12 +1,12 @@
 //! From a run to its records.
 
+use super::Costs;
 use super::predict::key;
 use super::record::CostRecord;
-use super::Costs;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use toile_core::cost::{Foreseen, Size, StageCost, foresee};
 use toile_core::Role;
+use toile_core::cost::{Foreseen, Size, StageCost, foresee};
 use toile_core::pipeline::Pipeline;
 
 /// The kind of garment that a pipeline makes: the name of its first style, which names the edges; empty without one.

@@ -1,8 +1,8 @@
 //! A pipeline's forecast.
 
-use super::{Costs, Place};
 use super::note::style;
 use super::record::Figure;
+use super::{Costs, Place};
 use toile_core::artifact::Digester;
 use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
 use toile_core::pipeline::{Node, Pipeline};
@@ -25,7 +25,8 @@ pub(super) fn key(node: &Node, foreseen: &Size) -> String {
     let mut d = Digester::new();
     d.text("toile size").text(node.card.name).count(node.card.version as usize).text(&node.stage.params());
     foreseen.iter().for_each(|(quantity, amount)| {
-        d.text(&format!("{quantity:?} {amount}"));
+        // Text does not bring the last bit of a number back.
+        d.text(&format!("{quantity:?} {amount:.6e}"));
     });
     d.finish().short()
 }
@@ -68,7 +69,12 @@ pub fn total(stages: &[&Predicted]) -> Predicted {
         }
         held.extend(of(p, Figure::Kept));
     }
-    Predicted { wall_s: sum(Figure::Wall), cpu_s: sum(Figure::Cpu), peak_bytes: peak, kept_bytes: sum(Figure::Kept) }
+    Predicted {
+        wall_s: sum(Figure::Wall),
+        cpu_s: sum(Figure::Cpu),
+        peak_bytes: peak,
+        kept_bytes: sum(Figure::Kept),
+    }
 }
 
 fn sum(all: impl Iterator<Item = Estimate>) -> Option<Estimate> {

@@ -57,7 +57,9 @@ impl CostStore {
         };
         match parse(&text) {
             Err(why) => refused(why),
-            Ok(c) if c.toile != env!("CARGO_PKG_VERSION") => refused(&format!("was kept by version {}", c.toile)),
+            Ok(c) if c.toile != env!("CARGO_PKG_VERSION") => {
+                refused(&format!("was kept by version {}", c.toile))
+            }
             Ok(c) if c.host != *host => refused(&format!("is of another machine ({})", c.host)),
             Ok(c) => Opened { warning: damaged(c.damaged, &path), records: c.records },
         }

@@ -41,11 +41,11 @@ fn variation(
 ) -> Result<Variation, StageError> {
     let length = |metres: f64| format!("\"{}\"", Length::m((metres * edge * 1e4).round() / 1e4));
     let turned = edges.iter().filter(|_| edge != 1.0);
-    let mut overrides: Vec<Override> = turned
-        .map(|(id, own)| Override { path: format!("stages.{id}.edge"), value: length(*own) })
-        .collect();
+    let mut overrides: Vec<Override> =
+        turned.map(|(id, own)| Override { path: format!("stages.{id}.edge"), value: length(*own) }).collect();
     for (name, file) in photos.iter().filter(|_| side != 1.0) {
-        let path = resized(&pipeline.base.join(file), folder, &format!("{}-{name}-{side}", pipeline.name), side)?;
+        let path =
+            resized(&pipeline.base.join(file), folder, &format!("{}-{name}-{side}", pipeline.name), side)?;
         overrides.push(Override { path: format!("photos.{name}.file"), value: format!("{path:?}") });
     }
     Ok(Variation { words: format!("edge x {edge}, photos x {side}"), overrides })

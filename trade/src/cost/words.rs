@@ -107,8 +107,12 @@ pub fn check_lines(check: &Check) -> Vec<String> {
         ));
     }
     let least = if time_like { "1 ms" } else { "1 MB" };
-    lines.push(format!("within 30 %: {} of all, {} of those above {least}, {} of these where other pipelines have the stage",
-        share(&check.all), share(&check.telling), share(&check.met)));
+    lines.push(format!(
+        "within 30 %: {} of all, {} of those above {least}, {} of these where other pipelines have the stage",
+        share(&check.all),
+        share(&check.telling),
+        share(&check.met)
+    ));
     let covered = check.telling.in_range as f64 / check.telling.count.max(1) as f64;
     lines.push(format!("in the range of 80 %: {:.0} % of those above {least}", covered * 100.0));
     lines
