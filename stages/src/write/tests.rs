@@ -445,6 +445,12 @@ fn the_report_escapes_what_others_wrote() {
 }
 
 #[test]
+fn the_report_says_what_was_expected_beside_what_a_stage_took() {
+    let html = report(&run_log(), "(pictures: 32)");
+    assert_eq!(html.matches("250 ms · 200 ms expected (100 ms to 400 ms)<").count(), 1);
+}
+
+#[test]
 fn the_report_stands_alone() {
     let html = report(&run_log(), "(pictures: 32)");
     for source in html.split("src=\"").skip(1) {
