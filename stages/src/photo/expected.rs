@@ -4,6 +4,7 @@ use super::decode::upright_size;
 use super::photos::resolve;
 use super::{PhotoEntry, PhotoFile};
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use toile_core::cost::{Quantity, Size, garment_area};
 use toile_core::{Context, Length};
 
@@ -15,12 +16,14 @@ pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Opti
     let (mut pixels, mut area) = (0.0, 0.0);
     for name in entries.keys() {
         let (photo, _) = resolve(entries, name).ok()?;
-        if !files.contains_key(photo.file.as_str()) {
-            let bytes = cx.read(&photo.file).ok()?;
-            files.insert(&photo.file, (bytes.len(), upright_size(&bytes)?));
-        }
-        let (_, (w, h)) = files.get(photo.file.as_str())?;
-        let (w, h) = (f64::from(*w), f64::from(*h));
+        let (_, (w, h)) = match files.entry(&photo.file) {
+            Entry::Occupied(known) => *known.get(),
+            Entry::Vacant(new) => {
+                let bytes = cx.read(&photo.file).ok()?;
+                *new.insert((bytes.len(), upright_size(&bytes)?))
+            }
+        };
+        let (w, h) = (f64::from(w), f64::from(h));
         pixels += w * h;
         area += garment_area(w, h, width(photo, w));
     }

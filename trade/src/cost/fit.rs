@@ -74,9 +74,9 @@ fn least_squares(rows: &[&Row], columns: &[usize], weights: &[f64]) -> Option<Ve
     let mut system = vec![vec![0.0; k + 1]; k];
     for (row, w) in rows.iter().zip(weights) {
         let a: Vec<f64> = columns.iter().zip(&scale).map(|(c, s)| row.terms[*c] / row.fact / s).collect();
-        for i in 0..k {
-            (0..k).for_each(|j| system[i][j] += w * a[i] * a[j]);
-            system[i][k] += w * a[i];
+        for (line, own) in system.iter_mut().zip(&a) {
+            let sides = a.iter().chain(std::iter::once(&1.0));
+            line.iter_mut().zip(sides).for_each(|(cell, other)| *cell += w * own * other);
         }
     }
     let x = solve(system)?;
