@@ -126,6 +126,34 @@ pub(crate) struct StabilityArgs {
     /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Instead: where each solver holds, time step against stiffness and edge length; minutes
+    #[arg(long, conflicts_with_all = ["axes", "pairs", "large"])]
+    pub(crate) map: bool,
+    #[command(flatten)]
+    pub(crate) maps: MapArgs,
+}
+
+/// How stability maps are made.
+#[derive(Debug, Args)]
+pub(crate) struct MapArgs {
+    /// Folder for the maps' pictures, CSV and JSON [default: out/stability-map]
+    #[arg(long, value_name = "DIR", requires = "map")]
+    pub(crate) out: Option<PathBuf>,
+    /// A solver of the maps, like xpbd; may be given again [default: all]
+    #[arg(long = "solver", value_name = "NAME", requires = "map")]
+    pub(crate) solvers: Vec<String>,
+    /// Values of the time step and of the stiffness [default: 9]
+    #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=60))]
+    pub(crate) cells: Option<usize>,
+    /// Edges along the side of 10 cm; may be given again [default: 4, 8 and 16]
+    #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=64))]
+    pub(crate) along: Vec<usize>,
+    /// The error that the quickest cell keeps, in lengths of the sheet [default: 0.001]
+    #[arg(long, value_name = "SHARE", requires = "map", value_parser = crate::stability_map::share)]
+    pub(crate) max_error: Option<f64>,
+    /// Longest time of a cell; what would take longer is not run [default: 2s]
+    #[arg(long, value_name = "TIME", requires = "map", value_parser = crate::trade::duration)]
+    pub(crate) limit: Option<Duration>,
 }
 
 #[derive(Debug, Subcommand)]

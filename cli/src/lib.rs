@@ -18,6 +18,7 @@ mod new_stage;
 mod progress;
 mod run;
 mod schema;
+mod stability_map;
 mod trade;
 mod tune;
 mod validate;
@@ -161,6 +162,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
         Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
+        Command::Bench { what: Bench::Stability(args) } if args.map => stability_map::run(&args, streams),
         Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }

@@ -12,6 +12,7 @@ pub mod diagnostics;
 mod dynamics;
 mod friction;
 pub mod layout;
+pub mod map;
 mod plate;
 pub mod reference;
 mod score;
