@@ -91,6 +91,8 @@ pub(crate) enum Bench {
         #[arg(long)]
         json: bool,
     },
+    /// The two drivers of cost, particles and time step, against time and error for every solver
+    Drivers(DriversArgs),
     /// Extreme parameters, sizes and inputs: each converges or is refused by name
     Stability(StabilityArgs),
 }
@@ -108,6 +110,21 @@ pub(crate) struct AccuracyArgs {
     /// Every membrane and bending model, not the default ones alone
     #[arg(long)]
     pub(crate) models: bool,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DriversArgs {
+    /// Solvers, like XPBD or "implicit Euler, factor" [default: all]
+    pub(crate) solvers: Vec<String>,
+    /// Folder for drivers.csv and drivers.json
+    #[arg(long, value_name = "DIR", default_value = "out/drivers")]
+    pub(crate) out: PathBuf,
+    /// Longest time of a run; what would take longer is not made
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = crate::trade::duration)]
+    pub(crate) limit: Duration,
     /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,

@@ -9,6 +9,7 @@ mod bench;
 mod cache;
 mod cards;
 mod doctor;
+mod drivers;
 mod explain;
 mod golden;
 mod interrupt;
@@ -162,6 +163,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
         Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
+        Command::Bench { what: Bench::Drivers(args) } => drivers::run(&args, streams),
         Command::Bench { what: Bench::Stability(args) } if args.map => stability_map::run(&args, streams),
         Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),

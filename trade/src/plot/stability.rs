@@ -82,8 +82,9 @@ fn panels(map: &Map, scheme: Scheme) -> Vec<Panel<'_>> {
         map.cells.iter().filter(is_here).collect()
     };
     if !scheme.steps_in_time() {
-        let edges: Vec<f64> =
-            map.along.iter().map(|&a| 1e3 * toile_cloth::bench::map::SIDE / a as f64).collect();
+        let mut edges: Vec<f64> = of(None).iter().map(|c| Panel::across(c)).collect();
+        edges.sort_by(f64::total_cmp);
+        edges.dedup();
         return vec![Panel::new(of(None), String::new(), &edges, &map.stiffnesses, AREA)];
     }
     let count = map.along.len() as f64;
@@ -197,7 +198,7 @@ fn shade(digits: f64) -> [u8; 3] {
 fn legend() -> Vec<Mark> {
     let entries = [
         (shade(2.0), "2"),
-        (shade(4.5), "to 7 digits right"),
+        (shade(7.0), "to 7 digits right"),
         (OFF, "o at rest, wrong"),
         (DRIFTS, "~ not at rest, blown up"),
         (REFUSED, "x refused"),

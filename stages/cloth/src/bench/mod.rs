@@ -9,6 +9,7 @@ pub mod accuracy;
 mod cantilever;
 mod catenary;
 pub mod diagnostics;
+pub mod drivers;
 mod dynamics;
 mod friction;
 pub mod layout;

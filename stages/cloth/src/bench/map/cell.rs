@@ -2,7 +2,7 @@
 
 use super::Options;
 use super::hung::{Hung, SIDE, farthest};
-use super::scheme::Scheme;
+use super::scheme::{Cloth, Scheme};
 use crate::error::ClothError;
 use crate::force::Vec3;
 use crate::rest::solve::{Rest, RestError};
@@ -12,6 +12,8 @@ use serde::Serialize;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
+/// Force that implicit steps may leave, in weights of the sheet.
+const TOLERANCE: f64 = 1e-6;
 /// An answer farther than this from the right one is wrong, in lengths of the sheet.
 pub const OFF: f64 = 0.01;
 /// Cloth faster than this at the end is not at rest, in sides of the sheet a second.
@@ -53,7 +55,7 @@ pub struct Cell {
     pub scheme: Scheme,
     /// Edges along the side.
     pub along: usize,
-    /// Nominal edge length, m.
+    /// Mean edge length, m.
     pub edge: f64,
     /// Stretch stiffness, N/m.
     pub stiffness: f64,
@@ -110,7 +112,8 @@ fn in_time(scheme: Scheme, hung: &Hung, dt: f64, options: &Options) -> Option<Ra
     if nominal > options.longest && !is_refused(scheme, hung, dt) {
         return Some(Ran::without_state(Outcome::TooLong, 0));
     }
-    match scheme.solver(hung, dt) {
+    let cloth = Cloth { sheet: &hung.sheet, fabric: &hung.fabric, model: &hung.model };
+    match scheme.solver(&cloth, dt, TOLERANCE * hung.weight()) {
         Ok(Some(mut solver)) => stepped(&mut *solver, hung, steps as usize, options),
         Ok(None) => to_rest(hung, options),
         Err(e) => Some(Ran::refused(&e, 0)),
@@ -169,12 +172,7 @@ fn to_rest(hung: &Hung, options: &Options) -> Option<Ran> {
 
 /// The sheet as a scene without body and without self-contact.
 fn scene(hung: &Hung) -> Scene {
-    let mut scene = Scene::new("hung", hung.fabric.clone());
-    scene.add_panel("sheet", &hung.mesh.uv, &hung.start, &hung.mesh.triangles);
-    scene.pinned = (0..hung.start.len() as u32).filter(|&v| hung.model.fixed[v as usize]).collect();
-    scene.phases.iter_mut().for_each(|p| p.gravity = hung.model.gravity);
-    scene.self_collision = false;
-    scene
+    hung.mesh.scene(&hung.fabric, &hung.model, &hung.start)
 }
 
 impl Ran {

@@ -62,9 +62,10 @@ impl Hung {
         Ok(Self { along, stiffness, mesh, sheet, fabric, model, start, answer, limit, time })
     }
 
-    /// Nominal edge length, m.
+    /// Mean edge length, m.
     pub(super) fn edge(&self) -> f64 {
-        SIDE / self.along as f64
+        let edges = self.sheet.edges();
+        edges.iter().map(|e| e.rest_length).sum::<f64>() / edges.len() as f64
     }
 
     /// N.

@@ -21,6 +21,7 @@ mod tests;
 pub use cell::{Cell, OFF, Outcome};
 pub use hung::{DECAY, SIDE};
 pub use quickest::{Quickest, quickest};
+pub(super) use scheme::Cloth;
 pub use scheme::Scheme;
 
 use super::Progress;

@@ -1,13 +1,12 @@
 //! The solvers of a map.
 
-use super::hung::Hung;
 use crate::bending::Rigidity;
 use crate::error::ClothError;
-use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Projective, Solver, Xpbd};
+use crate::fabric::Fabric;
+use crate::mesh::Sheet;
+use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
 use serde::{Serialize, Serializer};
 
-/// Force that implicit steps may leave, in weights of the sheet.
-const TOLERANCE: f64 = 1e-6;
 /// Residual of conjugate gradients.
 const GRADIENTS: f64 = 1e-4;
 /// Turns of a step of projective dynamics.
@@ -116,26 +115,39 @@ impl Scheme {
         }
     }
 
-    /// The solver; none for `Rest`.
-    pub(super) fn solver(self, hung: &Hung, dt: f64) -> Result<Option<Box<dyn Solver>>, ClothError> {
-        let implicit = || ImplicitEuler::new(dt, TOLERANCE * hung.weight());
+    /// The solver for steps of `dt` (s), implicit ones to this largest force (N); none for `Rest`.
+    pub(in crate::bench) fn solver(
+        self,
+        cloth: &Cloth<'_>,
+        dt: f64,
+        tolerance: f64,
+    ) -> Result<Option<Box<dyn Solver>>, ClothError> {
+        let Cloth { sheet, fabric, model } = *cloth;
         Ok(Some(match self {
             Self::Explicit => Box::new(CentralDifferences::fixed(dt)),
             Self::Unguarded => Box::new(CentralDifferences::unguarded(dt)),
-            Self::Implicit => Box::new(implicit()),
+            Self::Implicit => Box::new(ImplicitEuler::new(dt, tolerance)),
             Self::Gradients => {
-                let mut solver = implicit();
+                let mut solver = ImplicitEuler::new(dt, tolerance);
                 solver.newton.linear = LinearMethod::ConjugateGradients { tolerance: GRADIENTS };
                 Box::new(solver)
             }
-            Self::Xpbd => Box::new(Xpbd::new(&hung.sheet, &hung.fabric, dt, 1)?),
+            Self::Xpbd => Box::new(Xpbd::new(sheet, fabric, dt, 1)?),
             Self::Projective => {
-                let rigidity = Rigidity::of(&hung.fabric);
-                Box::new(Projective::new(&hung.sheet, &hung.model, hung.stiffness, &rigidity, dt, TURNS)?)
+                let rigidity = Rigidity::of(fabric);
+                Box::new(Projective::new(sheet, model, fabric.stretch(), &rigidity, dt, TURNS)?)
             }
             Self::Rest => return Ok(None),
         }))
     }
+}
+
+/// What a solver is made for.
+#[derive(Clone, Copy)]
+pub(in crate::bench) struct Cloth<'a> {
+    pub sheet: &'a Sheet,
+    pub fabric: &'a Fabric,
+    pub model: &'a Model,
 }
 
 impl Serialize for Scheme {

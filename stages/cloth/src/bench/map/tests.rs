@@ -112,7 +112,7 @@ fn a_caller_can_stop_between_cells() {
     let mut heard = 0;
     let stopped = map(&Options::default(), &mut |share, what| {
         assert!(
-            (0.0..1.0).contains(&share) && what.starts_with("central differences, edge 25.0 mm, 1.000 N/m")
+            (0.0..1.0).contains(&share) && what.starts_with("central differences, edge ") && what.contains(" mm, 1.000 N/m, step ")
         );
         heard += 1;
         if heard > 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
