@@ -57,6 +57,8 @@ pub struct Support<'a> {
     pub clear: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
+    #[cfg(toile_without = "body")]
+    pub(super) never: std::convert::Infallible,
 }
 
 /// All that acts on the nodes.
