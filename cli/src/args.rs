@@ -117,7 +117,7 @@ pub(crate) struct AccuracyArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct DriversArgs {
-    /// Solvers, like XPBD or "implicit Euler, factor" [default: all]
+    /// Solvers, like xpbd or "static newton" [default: all]
     pub(crate) solvers: Vec<String>,
     /// Folder for drivers.csv and drivers.json
     #[arg(long, value_name = "DIR", default_value = "out/drivers")]

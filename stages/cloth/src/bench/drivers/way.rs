@@ -47,7 +47,7 @@ impl Way {
     pub fn name(self) -> String {
         let solver = self.scheme.map_or("static Newton", Scheme::name);
         match self.membrane {
-            Membrane::Springs => format!("{solver}, springs"),
+            Membrane::Springs => format!("{solver} on springs"),
             _ => solver.to_owned(),
         }
     }

@@ -48,11 +48,11 @@ impl Scheme {
     pub fn name(self) -> &'static str {
         match self {
             Self::Explicit => "central differences",
-            Self::Unguarded => "central differences, unguarded",
-            Self::Implicit => "implicit Euler, factor",
-            Self::Gradients => "implicit Euler, gradients",
+            Self::Unguarded => "central differences (unguarded)",
+            Self::Implicit => "implicit Euler (factor)",
+            Self::Gradients => "implicit Euler (gradients)",
             Self::Xpbd => "XPBD",
-            Self::Projective => "projective dynamics, 10 turns",
+            Self::Projective => "projective dynamics (10 turns)",
             Self::Rest => "Rest",
         }
     }

@@ -112,7 +112,9 @@ fn a_caller_can_stop_between_cells() {
     let mut heard = 0;
     let stopped = map(&Options::default(), &mut |share, what| {
         assert!(
-            (0.0..1.0).contains(&share) && what.starts_with("central differences, edge ") && what.contains(" mm, 1.000 N/m, step ")
+            (0.0..1.0).contains(&share)
+                && what.starts_with("central differences, edge ")
+                && what.contains(" mm, 1.000 N/m, step ")
         );
         heard += 1;
         if heard > 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
