@@ -17,7 +17,7 @@ type Vec3 = Vector3<f64>;
 #[cfg_attr(not(toile_without = "self_contact"), derive(Default))]
 pub struct Layers {
     #[cfg(toile_without = "self_contact")]
-    never: std::convert::Infallible,
+    pub(super) never: std::convert::Infallible,
     /// Distance at which contact begins, m.
     pub thickness: f64,
     /// Stiffness at each node, N/m.

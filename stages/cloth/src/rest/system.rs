@@ -245,6 +245,8 @@ impl System<'_> {
         if let Some(l) = &mut self.layers {
             l.contacts = l.touching(x);
         }
+        #[cfg(toile_without = "body")]
+        return;
         let near = self.look(x, sight);
         let Some(s) = &mut self.support else { return };
         s.allow_for_sag(&near, x);

@@ -42,7 +42,7 @@ pub struct Options {
     pub schemes: Vec<Scheme>,
     /// Values of the time step and of the stiffness, 2 or more.
     pub cells: usize,
-    /// Edges along the side of the sheet: one map each.
+    /// Edges along the side of the sheet, about: one map each. Rows of nearly equilateral triangles may take some more.
     pub along: Vec<usize>,
     /// The error that the quickest cell must keep, in lengths of the sheet.
     pub keep: f64,
@@ -59,7 +59,7 @@ impl Default for Options {
         Self {
             schemes: Scheme::ALL.to_vec(),
             cells: 9,
-            along: vec![4, 8, 16],
+            along: vec![2, 6, 14],
             keep: 1e-3,
             longest: 2.0,
             clock: wall,
