@@ -56,7 +56,7 @@ fn a_map_says_what_is_wrong_with_its_flags() {
     assert!(map(&["--along", "65"]).contains("65 is not in 2..=64"));
     let time = "`3` is no time; write a number and a unit, like 90s (ms, s, m, h)";
     assert!(map(&["--limit", "3"]).contains(time));
-    assert!(map(&["friction"]).contains("the argument '[AXES]...' cannot be used with '--map'"));
+    assert!(map(&["friction"]).contains("the argument '--map' cannot be used with '[AXES]...'"));
     let needs = refused(&["stability", "--cells", "5"]);
     assert!(needs.contains("the following required arguments were not provided:\n  --map"), "{needs}");
 }
