@@ -222,7 +222,7 @@ fn decades(ticks: &[f64]) -> Vec<f64> {
 /// `1e-5`, `0.1`, `10000`, `12.5`.
 fn short(t: f64) -> String {
     let rounded: f64 = format!("{t:.2e}").parse().unwrap_or(t);
-    if rounded < 1e-2 || rounded >= 1e5 { format!("{rounded:e}") } else { format!("{rounded}") }
+    if (1e-2..1e5).contains(&rounded) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 #[cfg(test)]

@@ -195,7 +195,7 @@ impl Ran {
 
     fn judged(hung: &Hung, x: &[Vec3], steps: usize, speed: Option<f64>) -> Self {
         let error = hung.error(x);
-        let outcome = match speed.is_some_and(|s| !(s < SLOW * SIDE)) {
+        let outcome = match speed.is_some_and(|s| s >= SLOW * SIDE) {
             true => Outcome::Drifts,
             false if error <= OFF => Outcome::Converges,
             false => Outcome::Off,
