@@ -91,6 +91,8 @@ pub(crate) enum Bench {
         #[arg(long)]
         json: bool,
     },
+    /// The two drivers of cost, particles and time step, against time and error for every solver
+    Drivers(DriversArgs),
     /// Extreme parameters, sizes and inputs: each converges or is refused by name
     Stability(StabilityArgs),
     /// What stages take at several edge lengths and photo sizes, and how well that is predicted
@@ -116,6 +118,21 @@ pub(crate) struct AccuracyArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct DriversArgs {
+    /// Solvers, like xpbd or "static newton" [default: all]
+    pub(crate) solvers: Vec<String>,
+    /// Folder for drivers.csv and drivers.json
+    #[arg(long, value_name = "DIR", default_value = "out/drivers")]
+    pub(crate) out: PathBuf,
+    /// Longest time of a run; what would take longer is not made
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = crate::trade::duration)]
+    pub(crate) limit: Duration,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct StabilityArgs {
     /// Axes, like friction [default: all]
     pub(crate) axes: Vec<String>,
@@ -128,6 +145,34 @@ pub(crate) struct StabilityArgs {
     /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+    /// Instead: where each solver holds, time step against stiffness and edge length; minutes
+    #[arg(long, conflicts_with_all = ["axes", "pairs", "large"])]
+    pub(crate) map: bool,
+    #[command(flatten)]
+    pub(crate) maps: MapArgs,
+}
+
+/// How stability maps are made.
+#[derive(Debug, Args)]
+pub(crate) struct MapArgs {
+    /// Folder for the maps' pictures, CSV and JSON [default: out/stability-map]
+    #[arg(long, value_name = "DIR", requires = "map")]
+    pub(crate) out: Option<PathBuf>,
+    /// A solver of the maps, like xpbd; may be given again [default: all]
+    #[arg(long = "solver", value_name = "NAME", requires = "map")]
+    pub(crate) solvers: Vec<String>,
+    /// Values of the time step and of the stiffness [default: 9]
+    #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=60))]
+    pub(crate) cells: Option<usize>,
+    /// Edges along the side of 10 cm, about; may be given again [default: 2, 6 and 14: edges of 29, 14 and 7 mm]
+    #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=64))]
+    pub(crate) along: Vec<usize>,
+    /// The error that the quickest cell keeps, in lengths of the sheet [default: 0.001]
+    #[arg(long, value_name = "SHARE", requires = "map", value_parser = crate::stability_map::share)]
+    pub(crate) max_error: Option<f64>,
+    /// Longest time of a cell; what would take longer is not run [default: 2s]
+    #[arg(long, value_name = "TIME", requires = "map", value_parser = crate::trade::duration)]
+    pub(crate) limit: Option<Duration>,
 }
 
 #[derive(Debug, Args)]

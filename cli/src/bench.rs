@@ -77,7 +77,11 @@ pub(crate) fn stability(args: &StabilityArgs, streams: &mut Streams<'_>) -> u8 {
 }
 
 /// Those of `known` whose label starts with one of `names`; all where there are no names.
-fn chosen<T: Copy>(names: &[String], known: &[T], label: impl Fn(&T) -> String) -> Result<Vec<T>, String> {
+pub(crate) fn chosen<T: Copy>(
+    names: &[String],
+    known: &[T],
+    label: impl Fn(&T) -> String,
+) -> Result<Vec<T>, String> {
     let fits = |name: &String, item: &T| label(item).to_lowercase().starts_with(&name.to_lowercase());
     if let Some(unknown) = names.iter().find(|n| !known.iter().any(|item| fits(n, item))) {
         let all: Vec<String> = known.iter().map(label).collect();
@@ -87,7 +91,8 @@ fn chosen<T: Copy>(names: &[String], known: &[T], label: impl Fn(&T) -> String) 
     Ok(known.iter().filter(is_chosen).copied().collect())
 }
 
-fn usage(message: &str, streams: &mut Streams<'_>) -> u8 {
+/// Says what is wrong with the arguments.
+pub(crate) fn usage(message: &str, streams: &mut Streams<'_>) -> u8 {
     streams.tell(format!("error: {message}"));
     exit::USAGE
 }
@@ -100,7 +105,8 @@ fn verdict(stopped: bool, pass: bool) -> u8 {
     }
 }
 
-fn bar() -> ProgressBar {
+/// The bar of a bench.
+pub(crate) fn bar() -> ProgressBar {
     let bar = ProgressBar::new(STEPS);
     if let Ok(style) = ProgressStyle::with_template("{elapsed:>4} [{bar:28}] {wide_msg}") {
         bar.set_style(style.progress_chars("=> "));
@@ -108,7 +114,8 @@ fn bar() -> ProgressBar {
     bar
 }
 
-fn tell(bar: &ProgressBar, share: f64, what: &str) -> ControlFlow<()> {
+/// Moves the bar, and stops at Ctrl-C.
+pub(crate) fn tell(bar: &ProgressBar, share: f64, what: &str) -> ControlFlow<()> {
     bar.set_position((share * STEPS as f64) as u64);
     bar.set_message(what.to_owned());
     if on_ctrl_c().is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -11,6 +11,7 @@ mod cache;
 mod cards;
 mod costs;
 mod doctor;
+mod drivers;
 mod explain;
 mod golden;
 mod interrupt;
@@ -20,6 +21,7 @@ mod new_stage;
 mod progress;
 mod run;
 mod schema;
+mod stability_map;
 mod trade;
 mod tune;
 mod validate;
@@ -164,6 +166,8 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
         Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
         Command::Bench { what: Bench::Costs(args) } => bench_costs::costs(&args, registry, streams),
+        Command::Bench { what: Bench::Drivers(args) } => drivers::run(&args, streams),
+        Command::Bench { what: Bench::Stability(args) } if args.map => stability_map::run(&args, streams),
         Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }

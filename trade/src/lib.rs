@@ -9,7 +9,7 @@
 //! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
 //! - `measure`: one run with its clocks; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
-//! - `tune`; `table`, `page`, `plot`: what people see.
+//! - `tune`; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
 //!
 //! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
 
@@ -38,4 +38,6 @@ pub mod table;
 mod texture;
 pub mod tune;
 
+pub use measure::processor_seconds;
 pub use page::files;
+pub use plot::pictures as stability_pictures;

@@ -16,6 +16,12 @@ use toile_core::cache::Cache;
 use toile_core::pipeline::Pipeline;
 use toile_core::{ArtifactType, Cancel, ErrorCode, Listener, Metrics, Reads, RunOptions, StageError, run};
 
+/// Seconds of processor time that this process has taken, all threads.
+#[must_use]
+pub fn processor_seconds() -> f64 {
+    ProcessTime::now().as_duration().as_secs_f64()
+}
+
 /// How often the watchdog looks at the clock.
 const WATCH: Duration = Duration::from_millis(20);
 

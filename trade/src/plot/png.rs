@@ -1,10 +1,11 @@
 //! Marks as a PNG: lines and dots at three times the size, brought down, then the glyphs.
 
-use super::{Anchor, Mark, SIZE};
+use super::mark::{Anchor, Mark, SIZE};
 use image::imageops::{FilterType, resize};
 use image::{ImageFormat, Rgb, RgbImage};
-use imageproc::drawing::{draw_filled_circle_mut, draw_polygon_mut};
+use imageproc::drawing::{draw_filled_circle_mut, draw_filled_rect_mut, draw_polygon_mut};
 use imageproc::point::Point;
+use imageproc::rect::Rect;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use std::io::Cursor;
 
@@ -39,6 +40,7 @@ fn shape(picture: &mut RgbImage, mark: &Mark) {
                 stroke(picture, at(from), at(from + DASH[0]), *width, *colour);
             }
         }
+        Mark::Rect { corners: [a, b], colour } => fill(picture, *a, *b, *colour),
         Mark::Dot { at, radius, colour, hollow } => {
             let centre = at.map(|c| (c * SHARP).round() as i32).into();
             let white = Rgb([255; 3]);
@@ -47,6 +49,15 @@ fn shape(picture: &mut RgbImage, mark: &Mark) {
             draw_filled_circle_mut(picture, centre, ((radius - 0.75) * SHARP) as i32, fill);
         }
         Mark::Text { .. } => {}
+    }
+}
+
+fn fill(picture: &mut RgbImage, a: [f64; 2], b: [f64; 2], colour: [u8; 3]) {
+    let at = |k: usize| [a[k].min(b[k]), a[k].max(b[k])].map(|c| (c * SHARP).round() as i32);
+    let ([left, right], [top, foot]) = (at(0), at(1));
+    if right > left && foot > top {
+        let rect = Rect::at(left, top).of_size((right - left) as u32, (foot - top) as u32);
+        draw_filled_rect_mut(picture, rect, Rgb(colour));
     }
 }
 

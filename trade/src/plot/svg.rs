@@ -1,6 +1,6 @@
 //! Marks as an SVG document.
 
-use super::{Anchor, Mark, SIZE};
+use super::mark::{Anchor, Mark, SIZE};
 use std::fmt::Write;
 
 /// The document.
@@ -27,6 +27,15 @@ fn mark(s: &mut String, mark: &Mark) {
             b[1],
             hex(colour),
             if *dashed { " stroke-dasharray=\"6 5\"" } else { "" }
+        ),
+        Mark::Rect { corners: [a, b], colour } => writeln!(
+            s,
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{}\"/>",
+            a[0].min(b[0]),
+            a[1].min(b[1]),
+            (b[0] - a[0]).abs(),
+            (b[1] - a[1]).abs(),
+            hex(colour)
         ),
         Mark::Dot { at, radius, colour, hollow } => {
             let (fill, stroke) =

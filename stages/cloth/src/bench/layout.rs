@@ -4,7 +4,11 @@ use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
 use crate::error::ClothError;
+use crate::fabric::Fabric;
+use crate::force::Vec3;
 use crate::mesh::Sheet;
+use crate::scene::Scene;
+use crate::solver::Model;
 
 /// Rounds of moving irregular points to the middle of their surroundings.
 const SMOOTHING: usize = 40;
@@ -85,6 +89,16 @@ impl Rectangle {
     /// See [`Sheet::flat`].
     pub fn sheet(&self, density: f64) -> Result<Sheet, ClothError> {
         Sheet::flat(&self.uv, &self.triangles, density)
+    }
+
+    /// As a scene without body and without self-contact, with the pins and the gravity of a model.
+    pub(super) fn scene(&self, fabric: &Fabric, model: &Model, start: &[Vec3]) -> Scene {
+        let mut scene = Scene::new("rectangle", fabric.clone());
+        scene.add_panel("sheet", &self.uv, start, &self.triangles);
+        scene.pinned = (0..start.len() as u32).filter(|&v| model.fixed[v as usize]).collect();
+        scene.phases.iter_mut().for_each(|p| p.gravity = model.gravity);
+        scene.self_collision = false;
+        scene
     }
 
     /// Whether vertex `v` lies on the lower (y = 0) edge.

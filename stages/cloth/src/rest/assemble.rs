@@ -27,6 +27,8 @@ pub struct Wearer<'a> {
     pub skin: &'a dyn Skin,
     /// Coulomb's coefficient of cloth on it.
     pub friction: f64,
+    #[cfg(toile_without = "body")]
+    pub(super) never: std::convert::Infallible,
 }
 
 /// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn point.
@@ -68,6 +70,8 @@ pub(super) fn assemble<'a>(
         depth: longest.clamp(0.02, 0.1),
         edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
         clear: pieces.rest.len() == scene.rest.len(),
+        #[cfg(toile_without = "body")]
+        never: b.never,
         stiffness: stiffness.clone(),
     });
     let mut corners = vec![0u16; n];

@@ -13,8 +13,11 @@ use rayon::prelude::*;
 type Vec3 = Vector3<f64>;
 
 /// Pairs that may touch, and how stiffly.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
+#[cfg_attr(not(toile_without = "self_contact"), derive(Default))]
 pub struct Layers {
+    #[cfg(toile_without = "self_contact")]
+    pub(super) never: std::convert::Infallible,
     /// Distance at which contact begins, m.
     pub thickness: f64,
     /// Stiffness at each node, N/m.
@@ -31,6 +34,13 @@ pub struct Layers {
     pub tangles: Vec<Contact>,
     /// Nodes of the tangles: among themselves they may pass through each other to get free.
     pub tangled: Vec<bool>,
+}
+
+#[cfg(toile_without = "self_contact")]
+impl Default for Layers {
+    fn default() -> Self {
+        std::process::abort()
+    }
 }
 
 /// Two features that touch.

@@ -209,8 +209,12 @@ impl Rest {
     /// # Errors
     /// Every [`RestError`].
     pub fn solve(&self, scene: &Scene, progress: &mut Progress<'_>) -> Result<Rested, RestError> {
+        #[cfg(not(toile_without = "body"))]
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        #[cfg(not(toile_without = "body"))]
         let wearer = body.as_ref().map(|(body, friction)| Wearer { skin: body, friction: *friction });
+        #[cfg(toile_without = "body")]
+        let wearer = None;
         self.solve_on(scene, wearer, progress)
     }
 
@@ -463,12 +467,14 @@ impl<'a> Work<'a> {
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
+        #[cfg(not(toile_without = "self_contact"))]
         let tree = self.tree(sheet, &x, false);
         let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
         let slides = self.pieces[0].spread(&system.held_back(&x));
         let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
         let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
+        #[cfg(not(toile_without = "self_contact"))]
         if self.scene.self_collision {
             let pairs = tree.crossings(&x).len();
             if pairs > 0 {

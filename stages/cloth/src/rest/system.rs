@@ -57,6 +57,8 @@ pub struct Support<'a> {
     pub clear: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
+    #[cfg(toile_without = "body")]
+    pub(super) never: std::convert::Infallible,
 }
 
 /// All that acts on the nodes.
@@ -243,6 +245,8 @@ impl System<'_> {
         if let Some(l) = &mut self.layers {
             l.contacts = l.touching(x);
         }
+        #[cfg(toile_without = "body")]
+        return;
         let near = self.look(x, sight);
         let Some(s) = &mut self.support else { return };
         s.allow_for_sag(&near, x);

@@ -19,6 +19,7 @@ const STEPS_PER_LOOK: usize = 200;
 enum Step {
     Adaptive { longest: f64 },
     Fixed(f64),
+    Unguarded(f64),
 }
 
 /// The solver.
@@ -42,6 +43,12 @@ impl CentralDifferences {
         Self { step: Step::Fixed(dt), limit: 0.0, since_look: STEPS_PER_LOOK, last_dt: 0.0 }
     }
 
+    /// Always this step (s), stable or not: to see where motion blows up.
+    #[must_use]
+    pub fn unguarded(dt: f64) -> Self {
+        Self { step: Step::Unguarded(dt), limit: 0.0, since_look: 0, last_dt: 0.0 }
+    }
+
     /// The largest stable step at a state, s.
     #[must_use]
     pub fn limit(model: &Model, x: &[Vec3]) -> f64 {
@@ -53,24 +60,28 @@ impl CentralDifferences {
         2.0 / w * ((1.0 + z * z).sqrt() - z)
     }
 
-    fn choose(&mut self, model: &Model, x: &[Vec3]) -> Result<f64, ClothError> {
-        if self.since_look >= STEPS_PER_LOOK {
-            (self.limit, self.since_look) = (Self::limit(model, x), 0);
+    /// The limit as it was found at the last look, which is now if that is long ago.
+    fn look(&mut self, model: &Model, x: &[Vec3]) -> f64 {
+        if self.since_look > STEPS_PER_LOOK {
+            (self.limit, self.since_look) = (Self::limit(model, x), 1);
         }
+        self.limit
+    }
+
+    fn choose(&mut self, model: &Model, x: &[Vec3]) -> Result<f64, ClothError> {
         self.since_look += 1;
         match self.step {
             Step::Adaptive { longest } => {
+                let limit = self.look(model, x);
                 check_parameter("longest step", longest, |v| v > 0.0, "above 0 s")?;
-                Ok(longest.min(SAFETY * self.limit))
+                Ok(longest.min(SAFETY * limit))
             }
             Step::Fixed(dt) => {
+                let limit = self.look(model, x);
                 check_parameter("dt", dt, |v| v > 0.0, "above 0 s")?;
-                if dt >= self.limit {
-                    Err(ClothError::TimeStepUnstable { dt, limit: self.limit })
-                } else {
-                    Ok(dt)
-                }
+                if dt >= limit { Err(ClothError::TimeStepUnstable { dt, limit }) } else { Ok(dt) }
             }
+            Step::Unguarded(dt) => check_parameter("dt", dt, |v| v > 0.0, "above 0 s").map(|()| dt),
         }
     }
 }

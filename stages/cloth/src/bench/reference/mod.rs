@@ -17,7 +17,10 @@ pub use cable::{Catenary, catenary};
 pub use elastica::{Curve, heart_loop, lateral_buckling, plate_pendulum, pressed_column};
 pub use plate::{clamped_plate, supported_plate};
 pub use stretch::{Orthotropic, hanging_linear, hanging_piecewise, hanging_stvk};
-pub use swing::{backward_euler_loss, backward_euler_period, bessel_zero, hanging_omega, membrane_frequency};
+pub use swing::{
+    HangingSwing, backward_euler_loss, backward_euler_period, bessel_zero, hanging_omega, hanging_swing,
+    membrane_frequency,
+};
 
 /// A root of a function that changes sign between `low` and `high`, by bisection to the last bits.
 pub(crate) fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {

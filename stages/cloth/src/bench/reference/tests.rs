@@ -102,3 +102,22 @@ fn pendulum_limits() {
     // 60 degrees: 7.32 % slower.
     close(plate_pendulum(std::f64::consts::FRAC_PI_3) / plate_pendulum(1e-6), 1.0731820, 1e-6);
 }
+
+#[test]
+fn a_swing_without_stretch_is_bessels() {
+    let (stiff, exact) = (hanging_swing(0.0), hanging_omega(1));
+    assert!((stiff.omega / exact - 1.0).abs() < 1e-6, "{}", stiff.omega);
+    let j0 =
+        |x: f64| integral(0.0, std::f64::consts::PI, 200, |t| (x * t.sin()).cos()) / std::f64::consts::PI;
+    for s in [0.0, 0.013, 0.25, 0.5, 0.99, 1.0_f64] {
+        let wanted = j0(bessel_zero(1) * s.sqrt());
+        assert!((stiff.at(s) - wanted).abs() < 1e-5, "{s}: {} against {wanted}", stiff.at(s));
+    }
+    // Soft cloth hangs lower and swings slower, at first by what Rayleigh's quotient of the stiff shape tells.
+    let mode = |s: f64| j0(bessel_zero(1) * s.sqrt());
+    let rise = |s: f64| (mode(s + 1e-4) - mode(s - 1e-4)) / 2e-4;
+    let loss = integral(1e-3, 1.0, 100, |s| s * s * rise(s).powi(2))
+        / integral(1e-3, 1.0, 100, |s| s * rise(s).powi(2));
+    let soft = hanging_swing(1e-3).omega / stiff.omega - 1.0;
+    assert!((soft / (-0.5 * 1e-3 * loss) - 1.0).abs() < 0.01, "{soft}, {loss}");
+}
