@@ -1,4 +1,4 @@
-//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--trace] [--jitter SEED]`; prints one line of JSON.
+//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--graded] [--trace] [--jitter SEED]`; prints one line of JSON.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -10,7 +10,7 @@ use toile_cloth::scene;
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let (Some(file), Some(out)) = (args.first(), args.get(1)) else {
-        return Err("usage: scene SCENE.json RESULT.obj [--trace]".into());
+        return Err("usage: scene SCENE.json RESULT.obj [--graded] [--trace] [--jitter SEED]".into());
     };
     let trace = args.iter().any(|a| a == "--trace");
     let mut scene = scene::read(Path::new(file))?;
@@ -19,17 +19,20 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let clock = Instant::now();
     let mut steps = 0;
-    let solved = Rest::default().solve(&scene, &mut |level| {
-        steps += 1;
-        if trace {
-            let o = &level.outcome;
-            eprintln!(
-                "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
-                level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
-            );
-        }
-        ControlFlow::Continue(())
-    });
+    let solved = Rest { graded: args.iter().any(|a| a == "--graded"), ..Rest::default() }.solve(
+        &scene,
+        &mut |level| {
+            steps += 1;
+            if trace {
+                let o = &level.outcome;
+                eprintln!(
+                    "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
+                    level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
+                );
+            }
+            ControlFlow::Continue(())
+        },
+    );
     let wall = clock.elapsed().as_secs_f64();
     let (state, error): (Rested, Option<String>) = match solved {
         Ok(state) => (state, None),

@@ -54,6 +54,10 @@ pub struct Rest {
     /// Wall time after which the drape stops as it is. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
+    /// Whether bending starts far too stiff and is let go mesh by mesh. A start moved by a hair then ends within a
+    /// fraction of the distance that it otherwise would, and other folds are found than straight away.
+    #[param(default = false)]
+    pub graded: bool,
     /// Distance at which cloth is held off itself where the pipeline names no collider.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.05)]
     pub thickness: Length,
@@ -113,6 +117,7 @@ impl Rest {
             finest_steps: self.steps,
             join_gap: self.join_gap.metres(),
             budget: Duration::from_secs_f64(self.time_limit),
+            graded: self.graded,
         }
     }
 

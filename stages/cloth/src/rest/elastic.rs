@@ -102,6 +102,12 @@ impl Elastic {
         Self { springs, ..self }
     }
 
+    /// Makes bending so many times stiffer; it counts from the next [`Self::bind`] on.
+    pub fn stiffen(&mut self, by: f64) {
+        self.hinges.iter_mut().for_each(|h| h.stiffness *= by);
+        self.borders.iter_mut().for_each(|b| b.stiffen(by));
+    }
+
     /// The groups of nodes that it couples.
     pub fn couplings(&self) -> impl Iterator<Item = &[u32]> {
         let sheet =

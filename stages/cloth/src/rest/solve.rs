@@ -9,7 +9,7 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Wearer;
-use super::assemble::{KEPT_PULL, assemble, cloths, gravity, kept_threads, spacing, strongest};
+use super::assemble::{KEPT_PULL, assemble, cloths, gravity, spacing, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
 use super::layers::Layers;
@@ -59,6 +59,9 @@ pub struct Rest {
     pub join_gap: f64,
     /// Wall time before giving up.
     pub budget: Duration,
+    /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
+    /// cloth began.
+    pub graded: bool,
 }
 
 impl Default for Rest {
@@ -70,6 +73,7 @@ impl Default for Rest {
             finest_steps: 500,
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
+            graded: false,
         }
     }
 }
@@ -257,7 +261,7 @@ impl Rest {
 }
 
 /// How the levels ended.
-enum Draped {
+pub(super) enum Draped {
     Rested(Box<Rested>),
     /// The state carried to the level of so many nodes crosses itself and could not be undone.
     Tangled {
@@ -269,23 +273,23 @@ enum Draped {
     },
 }
 
-struct Work<'a> {
-    rest: &'a Rest,
-    scene: &'a Scene,
-    body: Option<Wearer<'a>>,
+pub(super) struct Work<'a> {
+    pub(super) rest: &'a Rest,
+    pub(super) scene: &'a Scene,
+    pub(super) body: Option<Wearer<'a>>,
     /// What no panel and what each panel is made of.
-    cloths: Vec<&'a Fabric>,
+    pub(super) cloths: Vec<&'a Fabric>,
     clock: Instant,
     /// Fine to coarse.
-    pieces: Vec<Pieces>,
+    pub(super) pieces: Vec<Pieces>,
     /// How each level but the finest was made from the finer one.
-    coarser: Vec<Coarser>,
+    pub(super) coarser: Vec<Coarser>,
     /// Where the vertices of each level start.
-    starts: Vec<Vec<Vec3>>,
+    pub(super) starts: Vec<Vec<Vec3>>,
     /// Where the nodes of the level in work are.
-    x: Vec<Vec3>,
+    pub(super) x: Vec<Vec3>,
     joined_at: Option<f64>,
-    reports: Vec<LevelReport>,
+    pub(super) reports: Vec<LevelReport>,
 }
 
 impl<'a> Work<'a> {
@@ -395,47 +399,8 @@ impl<'a> Work<'a> {
         self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
 
-    /// Lets the sewn garment come to rest, level by level.
-    fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
-        let mut slides = Vec::new();
-        for k in (0..self.pieces.len()).rev() {
-            let sheet = self.pieces[k].sewn_sheet(&self.cloths)?;
-            let place = self.pieces[k].sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-            let mut system = assemble(self.scene, self.body, &self.pieces[k], &sheet, false)?;
-            let mut x = std::mem::take(&mut self.x);
-            if slides.len() == x.len() {
-                system.slides = std::mem::take(&mut slides);
-            }
-            let steps = if k == 0 { self.rest.finest_steps } else { self.rest.coarse_steps };
-            let speed = if k == 0 { self.rest.speed } else { 2.0 * self.rest.speed };
-            system.threads = kept_threads(self.scene, &self.pieces[k], self.rest.join_gap);
-            let pace = Pace { first: 0.05, longest: 1.0, steps, speed, farthest: 0.1, prove: k == 0 };
-            let report = self.run(&mut system, &sheet, &place, &mut x, &pace, &|_| false, progress)?;
-            self.reports.push(report);
-            if k == 0 {
-                self.clear(&mut system, &sheet, &place, &mut x, &pace, progress)?;
-            }
-            if system.is_tangled() {
-                let pairs = system.layers.as_ref().map_or(0, |l| l.tangles.len());
-                return Ok(Draped::Tangled { nodes: x.len(), pairs, levels: self.pieces.len() });
-            }
-            if k == 0 {
-                self.check_kept(&x)?;
-                self.check_strain(&system, &x)?;
-                return Ok(Draped::Rested(Box::new(self.finish(system, &sheet, x)?)));
-            }
-            let finer = |values: &[Vec3]| {
-                let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
-                self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
-            };
-            slides = finer(&system.held_back(&x));
-            self.x = finer(&x);
-        }
-        Err(ClothError::EmptyScene.into())
-    }
-
     /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
-    fn clear(
+    pub(super) fn clear(
         &mut self,
         system: &mut System<'_>,
         sheet: &Sheet,
@@ -461,7 +426,12 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    fn finish(self, mut system: System<'_>, sheet: &Sheet, x: Vec<Vec3>) -> Result<Rested, RestError> {
+    pub(super) fn finish(
+        self,
+        mut system: System<'_>,
+        sheet: &Sheet,
+        x: Vec<Vec3>,
+    ) -> Result<Rested, RestError> {
         system.touch(&x);
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
@@ -497,7 +467,7 @@ impl<'a> Work<'a> {
 
     /// Runs one level.
     #[allow(clippy::too_many_arguments)]
-    fn run(
+    pub(super) fn run(
         &self,
         system: &mut System<'_>,
         sheet: &Sheet,
@@ -559,7 +529,7 @@ impl<'a> Work<'a> {
     }
 
     /// Refuses seams that are not joined and stay open at the end.
-    fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
+    pub(super) fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
         let gap = widest(x, &self.pieces[0].kept_pairs());
         if gap <= self.rest.join_gap {
             return Ok(());
@@ -569,7 +539,7 @@ impl<'a> Work<'a> {
     }
 
     /// Refuses cloth that the strain limit could not hold.
-    fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
+    pub(super) fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
         match self.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
             Some((index, strain, limit)) => {
                 Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
@@ -619,6 +589,8 @@ fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
+#[cfg(test)]
+mod graded_tests;
 #[cfg(test)]
 mod sewn_tests;
 #[cfg(test)]

@@ -235,6 +235,21 @@ impl System<'_> {
         self.layers.as_ref().is_some_and(|l| !l.tangled.is_empty())
     }
 
+    /// Whether there is no friction with a body.
+    #[must_use]
+    pub fn rubs_nowhere(&self) -> bool {
+        self.support.as_ref().is_none_or(|s| s.friction.iter().all(|f| *f == 0.0))
+    }
+
+    /// Takes friction away, and gives it back.
+    pub fn swap_friction(&mut self, friction: &mut Vec<f64>) {
+        if let Some(s) = &mut self.support {
+            std::mem::swap(&mut s.friction, friction);
+        }
+        self.anchors.fill(None);
+        self.loads.fill(0.0);
+    }
+
     /// Finds the touches at `x`: call it at the start of each step.
     pub fn touch(&mut self, x: &[Vec3]) {
         self.touch_in_sight(x, None);

@@ -48,6 +48,11 @@ pub(super) fn borders(sheet: &Sheet, moment: impl Fn(usize) -> f64) -> Vec<Borde
 }
 
 impl Border {
+    pub(super) fn stiffen(&mut self, by: f64) {
+        self.own *= by;
+        self.mixed *= by;
+    }
+
     fn slopes(&self, x: &[Vec3]) -> [Vec3; 2] {
         let [apex, i, j] = self.nodes.map(|n| x[n as usize]);
         [(i - apex) * self.inverse[0], (j - apex) * self.inverse[1]]
