@@ -64,8 +64,7 @@ impl<'a> Work<'a> {
             let area = level.sheet.areas().iter().sum();
             if let Some(grade) = self.grade(area) {
                 if k + 1 == self.pieces.len() {
-                    stiff = grade.first();
-                    loose = self.first(&mut level, stiff, progress)?;
+                    (stiff, loose) = self.stiffest(&mut level, grade.first(), progress)?;
                 }
                 let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()).min(stiff) };
                 self.let_go(k, &mut level, stiff, end, loose, progress)?;
@@ -115,29 +114,46 @@ impl<'a> Work<'a> {
         Ok(Level { system, sheet, layout, x, friction: None })
     }
 
-    /// Brings the coarsest level to its first, stiff state; whether friction is not what holds it up, and was left out.
-    fn first(
+    /// Brings the coarsest level to a first, stiff state: how stiff, and whether without friction. A plate falls off a ball
+    /// that a cloth stays on.
+    fn stiffest(
+        &mut self,
+        level: &mut Level<'a>,
+        first: f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<(f64, bool), RestError> {
+        for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
+            let mut free = level.clone();
+            free.loosen();
+            let pace = Pace { steps: FIRST.0, speed: FIRST.1, ..self.pace() };
+            let is_free = self.rests(&mut free, stiff, pace, progress)?;
+            free.tighten();
+            let mut held = level.clone();
+            let is_held =
+                free.system.rubs_nowhere() || self.rests(&mut held, stiff, self.pace(), progress)?;
+            let loose = is_free && (free.system.rubs_nowhere() || apart(&held.x, &free.x) < MOST_SLIP);
+            if loose || is_held {
+                *level = if loose { free } else { held };
+                return Ok((stiff, loose));
+            }
+        }
+        Ok((1.0, false))
+    }
+
+    /// Whether the level comes to rest, so stiff, and does not fall.
+    fn rests(
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
+        pace: Pace,
         progress: &mut Progress<'_>,
     ) -> Result<bool, RestError> {
-        let mut held = (!level.system.rubs_nowhere()).then(|| level.clone());
-        level.loosen();
-        let pace = Pace { steps: FIRST.0, speed: FIRST.1, ..self.pace() };
-        let free = match self.settle(level, stiff, pace, progress) {
-            Ok(()) => true,
-            Err(RestError::Falls) => false,
-            Err(e) => return Err(e),
-        };
-        level.tighten();
-        let Some(held) = &mut held else { return Ok(free) };
-        self.settle(held, stiff, self.pace(), progress)?;
-        let free = free && apart(&held.x, &level.x) < MOST_SLIP;
-        if !free {
-            *level = held.clone();
+        match self.settle(level, stiff, pace, progress) {
+            // What still moves after so many steps slides.
+            Ok(()) => Ok(self.reports.last().is_some_and(|r| r.outcome.steps < pace.steps)),
+            Err(RestError::Falls) => Ok(false),
+            Err(e) => Err(e),
         }
-        Ok(free)
     }
 
     /// Lets the bending of level `k` go from one factor to another.

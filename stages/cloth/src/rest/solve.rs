@@ -245,6 +245,10 @@ impl Rest {
                 Ok(Draped::Tangled { nodes, .. }) => {
                     coarsest = if nodes > coarsest { nodes } else { FINER * coarsest }
                 }
+                // What slides off while it is stiff may stay on as cloth.
+                Err(RestError::Falls) if self.graded => {
+                    return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
+                }
                 // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
                 Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
                 Err(e) => return Err(e),

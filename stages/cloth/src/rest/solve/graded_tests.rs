@@ -12,20 +12,34 @@ fn graded(scene: &Scene) -> Rested {
     }
 }
 
-/// Mean distance, in mm, of where the same vertices are, from the scene's own start and from one with every vertex moved by 1 mm.
-fn spread(scene: &Scene, solve: impl Fn(&Scene) -> Rested) -> f64 {
-    let mut moved = scene.clone();
-    generate::jitter(&mut moved, 1e-3, 1);
-    let (a, b) = (solve(scene).positions, solve(&moved).positions);
-    a.iter().zip(&b).map(|(a, b)| (a - b).norm()).sum::<f64>() / a.len() as f64 * 1e3
+/// How many of four starts with every vertex moved by 1 mm end, in the mean, within 0.1 mm of the scene's own.
+fn alike(scene: &Scene, solve: impl Fn(&Scene) -> Rested) -> usize {
+    let own = solve(scene).positions;
+    let ends_there = |seed: &u64| {
+        let mut moved = scene.clone();
+        generate::jitter(&mut moved, 1e-3, *seed);
+        let end = solve(&moved).positions;
+        own.iter().zip(&end).map(|(a, b)| (a - b).norm()).sum::<f64>() < 1e-4 * own.len() as f64
+    };
+    (1..=4).filter(ends_there).count()
 }
 
 #[test]
-fn a_drape_from_a_moved_start_ends_where_the_other_does() {
-    let scene = generate::drape(33);
-    let straight = spread(&scene, super::tests::roughly);
-    let graded = spread(&scene, graded);
-    assert!(graded < 2.0 && graded < 0.2 * straight, "{graded} mm, straight away {straight} mm");
+fn a_skirt_from_moved_starts_ends_where_the_unmoved_one_does() {
+    // The stiff skirt, a polygon of few corners, has two ways to sit, so one start may end in the other.
+    let scene = generate::tube(22, 25);
+    assert_eq!(alike(&scene, super::tests::roughly), 0);
+    assert!(alike(&scene, graded) >= 3);
+}
+
+#[test]
+fn a_square_on_a_ball_keeps_its_friction_and_stays() {
+    // A plate falls off the ball, with friction or without: the cloth does not.
+    for cells in [12, 20] {
+        let state = graded(&generate::drape(cells));
+        assert!(state.outcome.at_rest);
+        assert!(state.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max) > 0.0);
+    }
 }
 
 #[test]
@@ -39,14 +53,6 @@ fn a_skirt_slides_on_where_only_friction_held_it_and_is_sound_there() {
     assert!(p99 < 0.03 && most < 0.04, "{p99} {most}");
     assert!(deepest(&scene, &state.positions) < 1e-4);
     assert_eq!(crossings(&scene, &state.positions), 0);
-}
-
-#[test]
-fn friction_that_holds_a_cloth_up_is_kept() {
-    // Without friction a square slides off a ball.
-    let state = graded(&generate::drape(12));
-    assert!(state.outcome.at_rest);
-    assert!(state.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max) > 0.0);
 }
 
 #[test]
