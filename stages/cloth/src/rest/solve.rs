@@ -5,6 +5,8 @@
 //! level starts from the coarser one's state, carried over by the triangles that its vertices lie in at rest. So the fall
 //! and the sewing happen where steps cost milliseconds, and the finest level only settles.
 //!
+//! With [`Rest::graded`] bending starts stiff and is let go on the way (see `graded`), so that chance has less of a say.
+//!
 //! Cost: about a dozen factorizations of the finest level. Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
