@@ -3,9 +3,9 @@
 //! Cloth has many states of rest, and a solver that goes straight to one of them picks it by chance: by the last digit of where
 //! the cloth began. A stiff sheet has few, mostly one. So the garment is sewn, and first comes to rest, as if its bending
 //! length were half of its size; each such state is brought so near rest that it forgets where it began. Stiffness then falls
-//! by steps (graduated non-convexity, Blake and Zisserman 1987), on each level down to the bending length that its edges
-//! resolve: a fold that a level cannot carry is not formed on it, but on a finer one, out of a state that is settled. The finest
-//! level ends with the fabric as it is.
+//! by steps (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending length of [`EDGES`] edges: a
+//! fold that a level would shape by its mesh is not formed on it, but on a finer one, out of a state that is settled. The
+//! finest level ends with the fabric as it is.
 //!
 //! Friction remembers, too. Where a garment stays in its place without it, as on shoulders, it is left out on the way and
 //! comes back at the end of each level. A skirt that slides down without it, or a cloth on a ball, keeps it all the way.
@@ -15,14 +15,18 @@
 
 use crate::fabric::Fabric;
 
-/// The coarsest level has this many nodes at least: a polygon of fewer corners has seats of its own on a body.
-pub(super) const COARSEST: usize = 1000;
+/// The coarsest level has about this many nodes at most: a polygon of much fewer corners has seats of its own on a body.
+pub(super) const COARSEST: usize = 700;
 
 /// Bending length of the first state, as a share of the garment's size (the root of its area).
 const FIRST_LENGTH: f64 = 0.5;
 
 /// Factor at most between the stiffness of one run and the next.
 const STRIDE: f64 = 8.0;
+
+/// Edges of a level in the bending length that it lets go to. What bends over fewer bends as its mesh lies: another mesh would
+/// pick other folds.
+const EDGES: f64 = 8.0;
 
 /// How stiff bending is on the way.
 #[derive(Debug, Clone, Copy)]
@@ -43,12 +47,18 @@ impl Grade {
 
     /// The factor of the first state.
     pub(super) fn first(&self) -> f64 {
-        self.resolved(self.first)
+        self.factor(self.first)
     }
 
-    /// The least factor whose folds edges of that length carry, m.
+    /// The least factor whose folds edges of that length carry, m: one of the same steps for every mesh, so that all of them
+    /// let go through the same states.
     pub(super) fn resolved(&self, edge: f64) -> f64 {
-        (edge / self.length).powi(3).max(1.0)
+        let strides = (self.first() / self.factor(EDGES * edge)).log(STRIDE).floor();
+        self.first() / STRIDE.powf(strides.max(0.0))
+    }
+
+    fn factor(&self, length: f64) -> f64 {
+        (length / self.length).powi(3).max(1.0)
     }
 }
 
@@ -78,11 +88,12 @@ mod tests {
     }
 
     #[test]
-    fn edges_of_half_a_bending_length_need_no_help() {
+    fn every_mesh_lets_go_through_the_same_states() {
         let cloth = Fabric::isotropic(0.1, 1000.0, 0.0, 0.1 * 10.0 * 0.02_f64.powi(3));
         let grade = Grade::of(&[&cloth], 10.0, 0.8).unwrap();
-        assert_eq!(grade.resolved(0.01), 1.0);
-        assert!((grade.resolved(0.04) - 8.0).abs() < 1e-9);
+        // Factors of 8000, 1000, 125, 15.6 and 1.95: of the last, edges of 3 mm carry the folds.
+        assert!((grade.resolved(0.01) - 125.0).abs() < 1e-9);
+        assert!((grade.resolved(0.003) - 1.953125).abs() < 1e-9);
         assert!((grade.first() - 8000.0).abs() < 1e-6);
     }
 

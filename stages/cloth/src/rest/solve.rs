@@ -232,7 +232,7 @@ impl Rest {
     ) -> Result<Rested, RestError> {
         let clock = Instant::now();
         scene.check()?;
-        let mut coarsest = if self.graded { self.coarsest.max(COARSEST) } else { self.coarsest };
+        let mut coarsest = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
         loop {
             match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
                 Ok(Draped::Rested(state)) => return self.judge(*state),
