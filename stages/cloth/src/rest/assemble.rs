@@ -70,6 +70,7 @@ pub(super) fn assemble<'a>(
         depth: longest.clamp(0.02, 0.1),
         edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
         clear: pieces.rest.len() == scene.rest.len(),
+        grows: false,
         #[cfg(toile_without = "body")]
         never: b.never,
         stiffness: stiffness.clone(),

@@ -1,7 +1,7 @@
 //! The sewn garment comes to rest, level by level and from stiff to limp.
 
 use super::assemble::{assemble, gravity, kept_threads};
-use super::graded::{Grade, Stillness, stages};
+use super::graded::{Grade, stages};
 use super::newton::Pace;
 use super::solve::{Draped, Progress, RestError, Work};
 use super::system::System;
@@ -11,15 +11,25 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Steps for the first, stiffest state, and the speed at which it rests, m/s: it is what the start is forgotten in.
-const FIRST: (usize, f64) = (200, 1e-4);
+/// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of that of the end: so near
+/// rest, the state forgets where it began.
+const FORGET: (usize, f64) = (60, 0.05);
 
-/// How far apart, in the mean, the first state may lie with friction and without, m: where it is farther, friction holds the
-/// garment up.
-const MOST_SLIP: f64 = 0.1;
+/// Steps of the first state: a skirt that nothing holds may turn about its body for ever.
+const FIRST_STEPS: usize = 40;
+
+/// How far apart, in the mean and as a share of the garment's size, the first state may lie with friction and without: where
+/// it is farther, friction holds the garment up.
+const MOST_SLIP: f64 = 0.03;
+
+/// How far the middle of a garment without friction may move from state to state, as a share of its size; else it slides off.
+const MOST_FALL: f64 = 0.1;
 
 /// First and longest step of pseudo-time, s, and the farthest way in a step, m.
 const SPAN: (f64, f64, f64) = (0.05, 1.0, 0.1);
+
+/// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
+const LONGEST: f64 = 10.0;
 
 /// One level at work.
 #[derive(Clone)]
@@ -42,15 +52,25 @@ impl Level<'_> {
         }
     }
 
-    fn tighten(&mut self) {
-        if let Some(mut friction) = self.friction.take() {
-            self.system.swap_friction(&mut friction);
-        }
+    /// Gives friction back; whether it was away.
+    fn tighten(&mut self) -> bool {
+        let friction = self.friction.take();
+        friction.map(|mut f| self.system.swap_friction(&mut f)).is_some()
     }
 
     fn edge(&self) -> f64 {
         let lengths = self.sheet.edges().iter().map(|e| e.rest_length);
         lengths.sum::<f64>() / self.sheet.edges().len().max(1) as f64
+    }
+
+    /// The root of its area, m.
+    fn size(&self) -> f64 {
+        self.sheet.areas().iter().sum::<f64>().sqrt()
+    }
+
+    fn middle(&self) -> Vec3 {
+        let sum: Vec3 = self.x.iter().zip(&self.system.masses).map(|(p, m)| p * *m).sum();
+        sum / self.system.masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
     }
 }
 
@@ -61,14 +81,13 @@ impl<'a> Work<'a> {
         let mut slides = Vec::new();
         for k in (0..self.pieces.len()).rev() {
             let mut level = self.level(k, std::mem::take(&mut slides))?;
-            let area = level.sheet.areas().iter().sum();
-            if let Some(grade) = self.grade(area) {
+            if let Some(grade) = self.grade(level.size()) {
+                let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()) };
                 if k + 1 == self.pieces.len() {
-                    (stiff, loose) = self.stiffest(&mut level, grade.first(), progress)?;
+                    (stiff, loose) = self.forget(k, &mut level, grade.first(), end, progress)?;
+                } else {
+                    stiff = self.carry_on(k, &mut level, [stiff, end.min(stiff)], loose, progress)?;
                 }
-                let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()).min(stiff) };
-                self.let_go(k, &mut level, stiff, end, loose, progress)?;
-                stiff = end;
             } else if k > 0 {
                 self.settle(&mut level, 1.0, self.pace(), progress)?;
             }
@@ -90,10 +109,10 @@ impl<'a> Work<'a> {
         Err(ClothError::EmptyScene.into())
     }
 
-    /// How bending is let go, if it is.
-    fn grade(&self, area: f64) -> Option<Grade> {
+    /// How bending is let go in a garment of that size, if it is.
+    pub(super) fn grade(&self, size: f64) -> Option<Grade> {
         let gravity = gravity(self.scene).norm();
-        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, area)).flatten()
+        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size)).flatten()
     }
 
     /// Level `k`, where the level before left the cloth.
@@ -114,73 +133,100 @@ impl<'a> Work<'a> {
         Ok(Level { system, sheet, layout, x, friction: None })
     }
 
-    /// Brings the coarsest level to a first, stiff state: how stiff, and whether without friction. A plate falls off a ball
-    /// that a cloth stays on.
-    fn stiffest(
+    /// Brings the coarsest level to its first state and on to `end`: how stiff it is then, and whether friction was left out.
+    /// A plate falls off a ball that a cloth stays on.
+    fn forget(
         &mut self,
+        k: usize,
         level: &mut Level<'a>,
         first: f64,
+        end: f64,
         progress: &mut Progress<'_>,
     ) -> Result<(f64, bool), RestError> {
-        for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
-            let mut free = level.clone();
+        let slick = level.system.rubs_nowhere();
+        let pace = Pace { steps: FIRST_STEPS, ..self.forgetful() };
+        for stiff in std::iter::once(first).chain(stages(first, end)) {
+            let (mut free, mut held) = (level.clone(), level.clone());
             free.loosen();
-            let pace = Pace { steps: FIRST.0, speed: FIRST.1, ..self.pace() };
-            let is_free = self.rests(&mut free, stiff, pace, progress)?;
-            free.tighten();
-            let mut held = level.clone();
-            let is_held =
-                free.system.rubs_nowhere() || self.rests(&mut held, stiff, self.pace(), progress)?;
-            let loose = is_free && (free.system.rubs_nowhere() || apart(&held.x, &free.x) < MOST_SLIP);
-            if loose || is_held {
-                *level = if loose { free } else { held };
-                return Ok((stiff, loose));
+            let stays = self.stays(&mut free, stiff, pace, progress)?;
+            let is_held = !slick && self.stays(&mut held, stiff, pace, progress)?;
+            let alike = slick || is_held && apart(&held.x, &free.x) < MOST_SLIP * level.size();
+            if stays && alike && self.let_go(k, &mut free, [stiff, end], progress)? {
+                *level = free;
+                return Ok((end, true));
+            }
+            if is_held && self.let_go(k, &mut held, [stiff, end], progress)? {
+                *level = held;
+                return Ok((end, false));
             }
         }
-        Ok((1.0, false))
+        Ok((end, false))
     }
 
-    /// Whether the level comes to rest, so stiff, and does not fall.
-    fn rests(
+    /// Brings a finer level from one stiffness to another, without friction if it stays; the stiffness reached.
+    fn carry_on(
+        &mut self,
+        k: usize,
+        level: &mut Level<'a>,
+        way: [f64; 2],
+        loose: bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<f64, RestError> {
+        let mut free = level.clone();
+        if loose {
+            free.loosen();
+        }
+        if self.let_go(k, &mut free, way, progress)? {
+            *level = free;
+        } else if loose {
+            self.let_go(k, level, way, progress)?;
+        }
+        Ok(way[1])
+    }
+
+    /// Lets the bending of level `k` go from one factor to another, and gives friction back; whether the garment stays.
+    fn let_go(
+        &mut self,
+        k: usize,
+        level: &mut Level<'a>,
+        [from, to]: [f64; 2],
+        progress: &mut Progress<'_>,
+    ) -> Result<bool, RestError> {
+        let mut stages = stages(from, to);
+        // The last stage of the finest level is its end.
+        if k == 0 {
+            stages.pop();
+        } else if stages.is_empty() {
+            stages.push(to);
+        }
+        for stage in stages {
+            if !self.stays(level, stage, self.forgetful(), progress)? {
+                return Ok(false);
+            }
+        }
+        if level.tighten() && k > 0 {
+            self.settle(level, to, self.forgetful(), progress)?;
+        }
+        Ok(true)
+    }
+
+    /// Brings a level near rest; whether it stays on the body. With friction only a free fall says that it does not.
+    fn stays(
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
         pace: Pace,
         progress: &mut Progress<'_>,
     ) -> Result<bool, RestError> {
+        let was = level.middle();
         match self.settle(level, stiff, pace, progress) {
-            // What still moves after so many steps slides.
-            Ok(()) => Ok(self.reports.last().is_some_and(|r| r.outcome.steps < pace.steps)),
+            Ok(()) if level.friction.is_some() => {
+                Ok((level.middle() - was).norm() < MOST_FALL * level.size())
+            }
+            Ok(()) => Ok(true),
             Err(RestError::Falls) => Ok(false),
             Err(e) => Err(e),
         }
-    }
-
-    /// Lets the bending of level `k` go from one factor to another.
-    fn let_go(
-        &mut self,
-        k: usize,
-        level: &mut Level<'a>,
-        from: f64,
-        to: f64,
-        loose: bool,
-        progress: &mut Progress<'_>,
-    ) -> Result<(), RestError> {
-        if loose && k > 0 {
-            level.loosen();
-        }
-        let mut stages = stages(from, to);
-        if k == 0 {
-            // The last stage of the finest level is its end.
-            stages.pop();
-        } else if stages.is_empty() {
-            stages.push(to);
-        }
-        for stage in stages {
-            self.settle(level, stage, self.pace(), progress)?;
-        }
-        level.tighten();
-        Ok(())
     }
 
     /// Brings a level near rest with bending so many times stiffer.
@@ -192,10 +238,22 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
         level.system.elastic.stiffen(stiff);
-        let still = Stillness::default();
-        let done = |x: &[Vec3]| self.rest.graded && still.sees(x);
-        let run =
-            self.run(&mut level.system, &level.sheet, &level.layout, &mut level.x, &pace, &done, progress);
+        let offsets = level.system.support.as_mut().filter(|_| self.rest.graded).map(|s| {
+            s.grows = true;
+            s.offsets.clone()
+        });
+        let run = self.run(
+            &mut level.system,
+            &level.sheet,
+            &level.layout,
+            &mut level.x,
+            &pace,
+            &|_| false,
+            progress,
+        );
+        if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
+            (s.grows, s.offsets) = (false, offsets);
+        }
         level.system.elastic.stiffen(1.0 / stiff);
         self.reports.push(run?);
         Ok(())
@@ -215,6 +273,11 @@ impl<'a> Work<'a> {
         let (first, longest, farthest) = SPAN;
         let (steps, speed) = (self.rest.coarse_steps, 2.0 * self.rest.speed);
         Pace { first, longest, steps, speed, farthest, prove: false }
+    }
+
+    /// The pace of a state on the way from stiff to limp.
+    fn forgetful(&self) -> Pace {
+        Pace { longest: LONGEST, steps: FORGET.0, speed: FORGET.1 * self.rest.speed, ..self.pace() }
     }
 
     /// Values at the nodes of level `k` carried to those of the next finer one.

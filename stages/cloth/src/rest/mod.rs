@@ -16,5 +16,6 @@ mod nearby;
 pub mod newton;
 pub mod pattern;
 pub mod pieces;
+mod sew;
 pub mod solve;
 pub mod system;

@@ -11,28 +11,27 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Wearer;
-use super::assemble::{KEPT_PULL, assemble, cloths, gravity, spacing, strongest};
+use super::assemble::{KEPT_PULL, cloths, gravity, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
+use super::graded::COARSEST;
 use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
-use super::system::{System, Thread};
+use super::sew::widest;
+use super::system::System;
 use crate::contact::body::Body;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::{Scene, SceneError, Seam};
+use crate::scene::{Scene, SceneError};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 type Vec3 = Vector3<f64>;
-
-/// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
-const SEAM_PULL: f64 = 0.01;
 
 /// How often nodes are moved out where triangles dip into the body.
 const CLEARINGS: usize = 4;
@@ -42,9 +41,6 @@ const CLEAR_STEP: f64 = 0.2;
 
 /// Factor by which the coarsest level has more nodes where sewing on it failed.
 const FINER: usize = 3;
-
-/// Factor by which a seam that stays open pulls harder, and how often.
-const HARDER: (f64, usize) = (3.0, 4);
 
 /// Settings of the rest solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -236,7 +232,7 @@ impl Rest {
     ) -> Result<Rested, RestError> {
         let clock = Instant::now();
         scene.check()?;
-        let mut coarsest = self.coarsest;
+        let mut coarsest = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
         loop {
             match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
                 Ok(Draped::Rested(state)) => return self.judge(*state),
@@ -294,7 +290,7 @@ pub(super) struct Work<'a> {
     pub(super) starts: Vec<Vec<Vec3>>,
     /// Where the nodes of the level in work are.
     pub(super) x: Vec<Vec3>,
-    joined_at: Option<f64>,
+    pub(super) joined_at: Option<f64>,
     pub(super) reports: Vec<LevelReport>,
 }
 
@@ -350,59 +346,6 @@ impl<'a> Work<'a> {
     fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
         self.sew(progress)?;
         self.drape(progress)
-    }
-
-    /// Closes the seams on the coarsest level and joins them.
-    fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let coarsest = self.pieces.len() - 1;
-        let pieces = &self.pieces[coarsest];
-        let sheet = pieces.open_sheet(&self.cloths)?;
-        let mut x = self.starts[coarsest].clone();
-        let pairs = pieces.seam_pairs();
-        let spacing = spacing(pieces, &pairs);
-        let mut pull = SEAM_PULL * strongest(&self.cloths);
-        for _ in 0..HARDER.1 {
-            let widest = widest(&x, &pairs);
-            if widest < self.rest.join_gap {
-                break;
-            }
-            let thread = |nodes: &[u32; 2]| Thread {
-                nodes: *nodes,
-                force: pull * spacing,
-                soft: 2.0 * self.rest.join_gap,
-            };
-            let mut system = assemble(self.scene, self.body, pieces, &sheet, true)?;
-            system.threads = pairs.iter().map(thread).collect();
-            let farthest = (0.2 * widest).max(0.05);
-            let pace =
-                Pace { first: 0.02, longest: 1.0, steps: 40, speed: self.rest.speed, farthest, prove: false };
-            let closed = |x: &[Vec3]| self.rest.join_gap > self::widest(x, &pairs);
-            let report =
-                self.run(&mut system, &sheet, &self.starts[coarsest], &mut x, &pace, &closed, progress)?;
-            self.reports.push(report);
-            pull *= HARDER.0;
-        }
-        if !pairs.is_empty() {
-            let gap = widest(&x, &pairs);
-            self.joined_at = Some(gap);
-            if gap > self.rest.join_gap {
-                let seam = self.widest_seam(coarsest, &x);
-                return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
-            }
-        }
-        self.x = pieces.sew(&x, sheet.masses());
-        Ok(())
-    }
-
-    /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
-    fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
-        let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
-        let worst = self.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let fine_of = |v: u32| self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
-        let point = |v: u32| self.pieces[0].point[v as usize];
-        let at = worst.map(|p| point(fine_of(p[0])));
-        let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
-        self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
 
     /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
@@ -589,10 +532,6 @@ fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, Res
         }
     }
     if depth > DEEPEST_START { Err(RestError::InitialPenetration { vertices, depth }) } else { Ok(start) }
-}
-
-fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
-    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -55,6 +55,8 @@ pub struct Support<'a> {
     pub edges: Vec<([u32; 2], f64)>,
     /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as keeps the girth right.
     pub clear: bool,
+    /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
+    pub grows: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
     #[cfg(toile_without = "body")]
@@ -168,18 +170,23 @@ impl System<'_> {
     }
 
     /// Ends moves that lead into the body just outside it.
-    pub fn clear_of_body(&self, x: &[Vec3], moves: &mut [Vec3]) {
-        let Some(s) = &self.support else { return };
-        let gap = |i: usize| 0.5 * s.offsets[i];
+    pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(s) = &mut self.support else { return };
+        let seen = &self.seen;
         let is_free = |i: usize| {
-            self.seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > gap(i))
+            seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > s.guard(i))
         };
         let asked: Vec<usize> = (0..x.len()).filter(|&i| !is_free(i)).collect();
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
-        let gaps: Vec<f64> = asked.iter().map(|&i| gap(i)).collect();
+        let gaps: Vec<f64> = asked.iter().map(|&i| s.guard(i)).collect();
         let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
         s.body.guard(&points, &mut guarded, &gaps);
-        asked.iter().zip(guarded).for_each(|(&i, m)| moves[i] = m);
+        for (&i, m) in asked.iter().zip(guarded) {
+            if s.grows && (moves[i] - m).norm() > NUDGE {
+                s.grow(i, seen.get(i).map_or(0.0, |n| n.distance));
+            }
+            moves[i] = m;
+        }
     }
 
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
@@ -350,6 +357,19 @@ impl System<'_> {
 }
 
 impl Support<'_> {
+    /// How near the body a move may lead node `i`, m.
+    fn guard(&self, i: usize) -> f64 {
+        GUARD * if self.grows { self.offset } else { self.offsets[i] }
+    }
+
+    /// Lets the layer under node `i` grow if it lies at its bottom. A stiff sheet presses harder on a few nodes than the layer
+    /// can carry; the guard would stop them at every step, and nothing would come to rest.
+    fn grow(&mut self, i: usize, distance: f64) {
+        if distance < PRESSED * self.offset {
+            self.offsets[i] += GUARD * self.offset;
+        }
+    }
+
     /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body.
     fn allow_for_sag(&mut self, near: &[Option<Nearest>], x: &[Vec3]) {
         let mut sags = vec![0.0f64; self.offsets.len()];
@@ -426,6 +446,12 @@ impl Thread {
         add_at(values, pattern.slot(i, j).unwrap_or(Slot { index: i, flipped: false }), &-k);
     }
 }
+
+/// Share of the offset that a move leaves between a node and the body.
+const GUARD: f64 = 0.5;
+
+/// Share of the offset below which a node that the guard stops is one that the layer cannot carry.
+const PRESSED: f64 = 0.6;
 
 /// What a bound on a distance is widened by against rounding, m.
 const NUDGE: f64 = 1e-9;

@@ -12,24 +12,24 @@ fn graded(scene: &Scene) -> Rested {
     }
 }
 
-/// How many of four starts with every vertex moved by 1 mm end, in the mean, within 0.1 mm of the scene's own.
-fn alike(scene: &Scene, solve: impl Fn(&Scene) -> Rested) -> usize {
+/// How far, in the mean, four starts with every vertex moved by 1 mm end from where the scene's own does, m.
+fn spread(scene: &Scene, solve: impl Fn(&Scene) -> Rested) -> Vec<f64> {
     let own = solve(scene).positions;
-    let ends_there = |seed: &u64| {
+    let apart = |seed: u64| {
         let mut moved = scene.clone();
-        generate::jitter(&mut moved, 1e-3, *seed);
+        generate::jitter(&mut moved, 1e-3, seed);
         let end = solve(&moved).positions;
-        own.iter().zip(&end).map(|(a, b)| (a - b).norm()).sum::<f64>() < 1e-4 * own.len() as f64
+        own.iter().zip(&end).map(|(a, b)| (a - b).norm()).sum::<f64>() / own.len() as f64
     };
-    (1..=4).filter(ends_there).count()
+    (1..=4).map(apart).collect()
 }
 
 #[test]
 fn a_skirt_from_moved_starts_ends_where_the_unmoved_one_does() {
-    // The stiff skirt, a polygon of few corners, has two ways to sit, so one start may end in the other.
     let scene = generate::tube(22, 25);
-    assert_eq!(alike(&scene, super::tests::roughly), 0);
-    assert!(alike(&scene, graded) >= 3);
+    let (straight, graded) = (spread(&scene, super::tests::roughly), spread(&scene, graded));
+    assert!(graded.iter().all(|d| *d < 2e-3), "{graded:?}");
+    assert!(straight.iter().all(|d| *d > 2e-3), "{straight:?}");
 }
 
 #[test]
@@ -43,14 +43,14 @@ fn a_square_on_a_ball_keeps_its_friction_and_stays() {
 }
 
 #[test]
-fn a_skirt_slides_on_where_only_friction_held_it_and_is_sound_there() {
-    // Straight away, friction holds it higher up, where it is strained by 1.5 % at most.
+fn a_skirt_that_slides_without_friction_keeps_it() {
+    // Without friction on the way it would rest 3 cm lower, strained by 3 %.
     let scene = generate::tube(22, 25);
     let state = graded(&scene);
     let strain = strains(&scene, &state.positions);
     assert!(state.outcome.at_rest);
     let (p99, most) = (strain[strain.len() * 99 / 100], strain[strain.len() - 1]);
-    assert!(p99 < 0.03 && most < 0.04, "{p99} {most}");
+    assert!(p99 < 0.015 && most < 0.025, "{p99} {most}");
     assert!(deepest(&scene, &state.positions) < 1e-4);
     assert_eq!(crossings(&scene, &state.positions), 0);
 }

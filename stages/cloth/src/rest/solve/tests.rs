@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
+use crate::scene::Seam;
 use crate::scene::{Phase, SceneBody, generate};
 
 pub(super) fn settle(scene: &Scene) -> Result<Rested, RestError> {

@@ -1,0 +1,124 @@
+//! Panels are sewn, on the coarsest level.
+
+use super::assemble::{assemble, spacing, strongest};
+use super::newton::Pace;
+use super::solve::{Progress, RestError, Work};
+use super::system::{System, Thread};
+use crate::mesh::Sheet;
+use crate::scene::Seam;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Force of a seam per metre, as a share of stretch stiffness: the strain that sewing causes.
+const SEAM_PULL: f64 = 0.01;
+
+/// Factor by which a seam that stays open pulls harder, and how often.
+const HARDER: (f64, usize) = (3.0, 4);
+
+/// Steps of sewing, its first step of pseudo-time, s, and the least way that is the farthest of a step, m.
+const SEWING: (usize, f64, f64) = (40, 0.02, 0.05);
+
+/// Steps in which cloth without seams is pressed flat.
+const PRESSING: usize = 10;
+
+impl Work<'_> {
+    /// Closes the seams on the coarsest level and joins them.
+    pub(super) fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
+        let coarsest = self.pieces.len() - 1;
+        let sheet = self.pieces[coarsest].open_sheet(&self.cloths)?;
+        let mut x = self.starts[coarsest].clone();
+        let pairs = self.pieces[coarsest].seam_pairs();
+        if pairs.is_empty() {
+            self.press(&sheet, &mut x, progress)?;
+        } else {
+            self.close(&sheet, &pairs, &mut x, progress)?;
+        }
+        self.x = self.pieces[coarsest].sew(&x, sheet.masses());
+        Ok(())
+    }
+
+    /// Pulls until the seams are closed, harder and harder.
+    fn close(
+        &mut self,
+        sheet: &Sheet,
+        pairs: &[[u32; 2]],
+        x: &mut [Vec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
+        let coarsest = self.pieces.len() - 1;
+        let spacing = spacing(&self.pieces[coarsest], pairs);
+        let mut pull = SEAM_PULL * strongest(&self.cloths);
+        for _ in 0..HARDER.1 {
+            let gap = widest(x, pairs);
+            if gap < self.rest.join_gap {
+                break;
+            }
+            let thread = |nodes: &[u32; 2]| Thread {
+                nodes: *nodes,
+                force: pull * spacing,
+                soft: 2.0 * self.rest.join_gap,
+            };
+            let mut system = self.open(sheet)?;
+            system.threads = pairs.iter().map(thread).collect();
+            let (steps, first, least) = SEWING;
+            let farthest = (0.2 * gap).max(least);
+            let pace = Pace { first, longest: 1.0, steps, speed: self.rest.speed, farthest, prove: false };
+            let closed = |x: &[Vec3]| self.rest.join_gap > widest(x, pairs);
+            let report = self.run(&mut system, sheet, &self.starts[coarsest], x, &pace, &closed, progress)?;
+            self.reports.push(report);
+            pull *= HARDER.0;
+        }
+        let gap = widest(x, pairs);
+        self.joined_at = Some(gap);
+        if gap > self.rest.join_gap {
+            let seam = self.widest_seam(coarsest, x);
+            return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
+        }
+        Ok(())
+    }
+
+    /// Lets stiff cloth without seams forget its unevenness before it has weight.
+    fn press(&mut self, sheet: &Sheet, x: &mut [Vec3], progress: &mut Progress<'_>) -> Result<(), RestError> {
+        if self.grade(size(sheet)).is_none() {
+            return Ok(());
+        }
+        let (_, first, farthest) = SEWING;
+        let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, prove: false };
+        let layout = x.to_vec();
+        let report = self.run(&mut self.open(sheet)?, sheet, &layout, x, &pace, &|_| false, progress)?;
+        self.reports.push(report);
+        Ok(())
+    }
+
+    /// Weightless cloth before it is sewn: stiff, if bending is to be let go later, so that seams close without a chance fold.
+    fn open<'b>(&'b self, sheet: &Sheet) -> Result<System<'b>, RestError> {
+        let mut system = assemble(self.scene, self.body, &self.pieces[self.pieces.len() - 1], sheet, true)?;
+        if let Some(grade) = self.grade(size(sheet)) {
+            system.elastic.stiffen(grade.first());
+            system.support.iter_mut().for_each(|s| s.grows = true);
+        }
+        Ok(system)
+    }
+
+    /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
+    pub(super) fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
+        let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
+        let worst = self.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let fine_of = |v: u32| self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
+        let point = |v: u32| self.pieces[0].point[v as usize];
+        let at = worst.map(|p| point(fine_of(p[0])));
+        let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
+        self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
+    }
+}
+
+/// The root of a sheet's area, m.
+fn size(sheet: &Sheet) -> f64 {
+    sheet.areas().iter().sum::<f64>().sqrt()
+}
+
+/// The widest gap of pairs of vertices, m.
+pub(super) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
+    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}
