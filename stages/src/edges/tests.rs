@@ -43,6 +43,7 @@ fn photo(pixels: RgbImage, garment_width: Option<f64>) -> Photo {
         px_per_metre: None,
         garment_width,
         mirrored: false,
+        joined: 1,
         file: "test.png".into(),
     }
 }
