@@ -79,3 +79,35 @@ pub fn lines(told: &[Told]) -> Vec<String> {
     }
     lines
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use toile_core::decide::{Decision, State, Tolerance};
+
+    #[test]
+    fn the_table_word_for_word() {
+        let decision = Decision {
+            rule: "few-pixels".into(),
+            state: State::Simplified,
+            what: "photos: fewer pixels".into(),
+            fact: "large photos".into(),
+            tolerance: Tolerance::Outline(1e-3),
+            saves: Saves::Modelled,
+            source: "Nyquist 1928".into(),
+            turn: Turn::Also,
+        };
+        let decided = Decided { stage: "Mean".into(), decision };
+        let told = Told { turned: decided.words(""), saves: "about 2 s".into(), decided };
+        let words = "\
+decisions: what is left out or simplified (`toile trade PIPELINE --ablate` measures each)
+  Mean                 simplified photos: fewer pixels (few-pixels)
+      by      large photos
+      within  outline 1 mm
+      saves   about 2 s
+      else    --also Mean
+      source  Nyquist 1928";
+        assert_eq!(lines(&[told]).join("\n"), words);
+        assert_eq!(lines(&[]), ["decisions: nothing is left out or simplified"]);
+    }
+}

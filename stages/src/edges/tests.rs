@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::binarise::Otsu;
+use crate::denoise::NeighbourhoodMean;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
 use std::path::Path;
@@ -349,4 +350,29 @@ proptest! {
             prop_assert!(polygon_area(&o.outer.points) > 0.0);
         }
     }
+}
+
+#[test]
+fn a_photo_of_joined_pixels_gives_the_outline_in_the_pixels_of_its_file() {
+    let truth = sample(SAMPLES[0]);
+    let (w, h) = truth.photo.pixels.dimensions();
+    let large = image::imageops::resize(truth.photo.pixels.as_ref(), 2 * w, 2 * h, image::imageops::Nearest);
+    let large = photo(large, truth.photo.garment_width);
+    let cx = Context::quiet();
+    let found = |from: &Photo, least: f64| {
+        let quiet = NeighbourhoodMean { pixel: Length::mm(least), ..NeighbourhoodMean::default() };
+        let quiet = quiet.run(from, &cx).unwrap();
+        let mask = Otsu::default().run(&quiet, &cx).unwrap();
+        (Canny::default().run(&quiet, &mask, &cx).unwrap(), quiet.joined)
+    };
+    let (joined, n) = found(&large, 0.5);
+    let (small, one) = found(&truth.photo, 0.5);
+    assert_eq!((n, one), (2, 1));
+    // Joining undoes the enlargement to the bit; the frame alone is that of the large file.
+    assert_eq!(joined.outer, small.outer);
+    assert_true(&joined, &truth, 0.3, 1.0, "joined");
+    let (a, b) = (joined.frame.unwrap(), small.frame.unwrap());
+    let p = Point2::new(0.1, 0.3);
+    assert!((a.to_px(p) - (b.to_px(p) * 2.0 + nalgebra::Vector2::repeat(0.5))).norm() < 1e-9);
+    assert!((a.joined(2).to_px(p) - b.to_px(p)).norm() < 1e-9);
 }

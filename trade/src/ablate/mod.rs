@@ -10,7 +10,7 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use record::{Ablation, Change, Row, SCHEME, Verdict};
+pub use record::{Ablation, Change, Row, SCHEME, Saved, Verdict};
 pub(crate) use run::path_to;
 pub use run::{Options, ablate};
 pub use table::{csv, lines};

@@ -21,7 +21,7 @@ pub fn lines(ablation: &Ablation) -> Vec<String> {
             "rule",
             "turned, s",
             "saved, s",
-            "least",
+            "+-",
             "95 %",
             "worst",
             "bits",
@@ -37,21 +37,21 @@ pub fn lines(ablation: &Ablation) -> Vec<String> {
         let why = row.failed.as_ref().map_or_else(String::new, |why| format!(": {why}"));
         lines.push(format!("    {}{why}", row.verdict.as_str()));
     }
-    lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; `least` is the round that saved least".into());
+    lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved".into());
     lines
 }
 
 fn line(row: &Row) -> String {
     let seconds = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |s| format!("{s:.2}"));
-    let least = row.saved_s.iter().copied().reduce(f64::min);
+    let saved = row.saved();
     let time = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
     let mut text = format!(
         "{:<20} {:<18} {:>9} {:>8} {:>8} | ",
         row.decided.stage,
         row.decided.decision.rule,
         seconds(time),
-        seconds(row.saved()),
-        seconds(least)
+        seconds(saved.map(|s| s.mean)),
+        seconds(saved.map(|s| s.noise))
     );
     let _ = match &row.change {
         Some(c) => write!(
@@ -78,7 +78,7 @@ fn crossings(c: &Change) -> String {
 }
 
 /// The columns of the file.
-const HEAD: &str = "stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,saved_s,saved_least_s,same_bits,\
+const HEAD: &str = "stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,saved_s,saved_noise_s,same_bits,\
     distance_mean_mm,distance_p95_mm,distance_max_mm,outline_p95_mm,outline_max_mm,texture_levels,crossings,\
     crossings_turned,verdict\n";
 
@@ -89,7 +89,6 @@ pub fn csv(ablation: &Ablation) -> String {
     for row in &ablation.rows {
         let d = &row.decided.decision;
         let turned = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
-        let least = row.saved_s.iter().copied().reduce(f64::min);
         let c = row.change.as_ref();
         let same = c.map_or("", |c| if c.same_bits { "true" } else { "false" });
         let numbers = [
@@ -102,7 +101,8 @@ pub fn csv(ablation: &Ablation) -> String {
             c.and_then(|c| c.crossings[0]).map(|n| n as f64),
             c.and_then(|c| c.crossings[1]).map(|n| n as f64),
         ];
-        let times = [Some(own), turned, row.saved(), least];
+        let noise = row.saved().map(|s| s.noise).filter(|n| n.is_finite());
+        let times = [Some(own), turned, row.saved().map(|s| s.mean), noise];
         let _ = writeln!(
             text,
             "{},{},{},{},\"{}\",{},{same},{},{}",
