@@ -23,8 +23,8 @@ pub struct Photo {
     pub mirrored: bool,
     /// How many pixels of the file, to a side, were joined into each of these: 1 for the photo as it was read.
     ///
-    /// Outlines lie in the file's pixels: what finds one in a photo of joined pixels gives its frame by
-    /// [`PhotoFrame::parted`](super::PhotoFrame::parted).
+    /// Stages need not look at it: the runner brings the frames of outlines to the file's pixels. Who holds an outline
+    /// against a photo of joined pixels takes its frame by [`PhotoFrame::joined`](super::PhotoFrame::joined).
     pub joined: u32,
     /// The file it was read from, for messages and the report.
     pub file: String,

@@ -3,6 +3,7 @@
 mod forecast;
 mod implicit;
 mod node;
+mod pixels;
 mod record;
 mod steps;
 mod value;

@@ -178,7 +178,7 @@ fn in_metres(photo: &Photo, outer: Loop, holes: Vec<Loop>) -> Result<Outline, St
         holes: holes.into_iter().map(convert).collect(),
         edges: Vec::new(),
         inner: Vec::new(),
-        frame: Some(frame.parted(photo.joined)),
+        frame: Some(frame),
     })
 }
 
