@@ -63,7 +63,7 @@ pub struct BvhCollider {
 }
 
 /// Share of the stage's time that distances where they are asked for save, on the vest.
-const SHARE: f64 = 0.8;
+const SHARE: f64 = 0.7;
 
 #[stage]
 impl BvhCollider {

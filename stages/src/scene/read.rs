@@ -34,7 +34,7 @@ pub struct Scene {
 }
 
 /// Share of the stage's time that distances where they are asked for save, on the skirt.
-const SHARE: f64 = 0.8;
+const SHARE: f64 = 0.75;
 
 #[stage]
 impl Scene {

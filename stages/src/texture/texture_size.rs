@@ -14,7 +14,7 @@ const ROOM: f64 = 1.25;
 /// Largest size that the parameter takes, px.
 pub(super) const LARGEST: u32 = 8192;
 /// Grey levels that grain and weave make up.
-const GRAIN: f64 = 8.0;
+const GRAIN: f64 = 4.0;
 
 /// The decision for textures of at most `size` px, where the photos are larger.
 pub(super) fn rule(known: &Known<'_>, size: u32) -> Option<Decision> {
