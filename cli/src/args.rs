@@ -234,6 +234,9 @@ pub(crate) struct RunArgs {
     /// Stop after this stage and write what it made
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
+    /// Run this stage though nothing asked for depends on it; may be given again
+    #[arg(long, value_name = "STAGE")]
+    pub(crate) also: Vec<String>,
     /// Write every stage's artifacts as files as well
     #[arg(long)]
     pub(crate) keep: bool,
@@ -311,7 +314,7 @@ pub(crate) struct TradeArgs {
     /// What to turn, like `mesher.edge=6..24 mm` or `solver=Rest,Xpbd`; may be given again [default: edge length, mesher and solver]
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
-    /// Folder for the results, and for going on with them [default: out/NAME-trade]
+    /// Folder for the results, and for going on with them [default: out/NAME-trade, with --ablate out/NAME-ablation]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Measure runs that stop after this stage
@@ -323,6 +326,9 @@ pub(crate) struct TradeArgs {
     /// Moved starts of the reference, which tell its own spread
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
+    /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what it saves and changes
+    #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "budget", "jitter", "clock"])]
+    pub(crate) ablate: bool,
     /// Print the record as one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,

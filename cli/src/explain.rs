@@ -2,39 +2,46 @@
 
 use crate::args::ExplainArgs;
 use crate::costs::Known;
-use crate::validate::open;
+use crate::trade::opened;
 use crate::{Streams, exit};
+use toile_core::decide::decisions;
 use toile_core::pipeline::{Feed, Node, Pipeline};
 use toile_core::{Registry, RunOptions, plan};
 use toile_trade::cost::{Forecast, forecast_lines, predict};
+use toile_trade::decided::{self, told};
 
 /// Prints one line a stage: what feeds it, and whether it runs.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let pipeline = match open(&args.pipeline, &args.overrides.set, registry) {
-        Ok(pipeline) => pipeline,
-        Err(faults) => {
-            streams.fault(&faults);
-            return exit::INVALID;
-        }
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+        Ok(opened) => opened,
+        Err(code) => return code,
     };
     let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };
-    let plan = match plan(&pipeline, &options) {
-        Ok(plan) => plan,
-        Err(e) => {
-            streams.tell(format!("error: {e}"));
-            return exit::INVALID;
-        }
-    };
+    let (plan, decided) =
+        match plan(&pipeline, &options).and_then(|p| Ok((p, decisions(&pipeline, &options)?))) {
+            Ok(both) => both,
+            Err(e) => {
+                streams.tell(format!("error: {e}"));
+                return exit::INVALID;
+            }
+        };
     streams.say(format!("{}: {} stages", pipeline.name, pipeline.nodes.len()));
     for (node, skipped) in pipeline.nodes.iter().zip(&plan) {
         streams.say(line(&pipeline, node, skipped.as_deref()));
     }
-    expected(args, &pipeline, &plan, streams);
+    let known = expected(args, &pipeline, &plan, streams);
+    let told = told(&source, &pipeline, decided, &known.costs);
+    decided::lines(&told).iter().for_each(|line| streams.say(line));
     exit::DONE
 }
 
 /// What the stages that run are expected to take.
-fn expected(args: &ExplainArgs, pipeline: &Pipeline, plan: &[Option<String>], streams: &mut Streams<'_>) {
+fn expected(
+    args: &ExplainArgs,
+    pipeline: &Pipeline,
+    plan: &[Option<String>],
+    streams: &mut Streams<'_>,
+) -> Known {
     let known = Known::open(&args.cache, args.threads);
     if let Some(warning) = &known.warning {
         streams.tell(format!("warning: {warning}"));
@@ -43,6 +50,7 @@ fn expected(args: &ExplainArgs, pipeline: &Pipeline, plan: &[Option<String>], st
     let runs: Vec<&Forecast> =
         forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
     forecast_lines(&runs, &known.source()).iter().for_each(|line| streams.say(line));
+    known
 }
 
 fn line(pipeline: &Pipeline, node: &Node, skipped: Option<&str>) -> String {

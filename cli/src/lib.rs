@@ -3,6 +3,7 @@
 //! Exit codes: 0 done; 2 usage; 3 invalid input; 4 the result fails its own quality limits; 5 out
 //! of time or stopped; 70 a bug.
 
+mod ablate;
 mod args;
 mod at_hand;
 mod bench;

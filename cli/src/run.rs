@@ -48,6 +48,7 @@ pub(crate) fn once(
             meter: Some(Arc::new(costs::stopwatch())),
             predicted: predicted.clone(),
             until: args.until.clone(),
+            also: args.also.clone(),
             keep: args.keep,
             cache: cache.clone(),
             reads: reads.cloned(),

@@ -3,7 +3,7 @@
 use crate::args::{StudyArgs, TradeArgs};
 use crate::run::on_threads;
 use crate::validate::open;
-use crate::{Streams, at_hand, exit, interrupt};
+use crate::{Streams, ablate, at_hand, exit, interrupt};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,9 +25,12 @@ pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if args.ablate {
+        return ablate::run(args, &source, &pipeline, streams);
+    }
     let asked = Asked {
         knobs: &args.knobs,
-        out: args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline)),
+        out: args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "trade")),
         until: args.until.clone(),
         points: args.points,
         starts: args.starts,
@@ -163,10 +166,10 @@ pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
     e.code.exit_code()
 }
 
-/// Where the measurement of a pipeline lies.
-pub(crate) fn default_folder(pipeline: &Path) -> PathBuf {
+/// Where a measurement of a pipeline lies.
+pub(crate) fn default_folder(pipeline: &Path, what: &str) -> PathBuf {
     let stem = pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
-    PathBuf::from("out").join(format!("{stem}-trade"))
+    PathBuf::from("out").join(format!("{stem}-{what}"))
 }
 
 /// `90s`, `800ms`, `5m`, `1h`.

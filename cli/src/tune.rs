@@ -77,7 +77,7 @@ fn front(
         check(&trade, pipeline)?;
         return Ok((trade, folder.clone()));
     }
-    let out = default_folder(&args.pipeline);
+    let out = default_folder(&args.pipeline, "trade");
     let asked = Asked {
         knobs: &args.knobs,
         out: out.clone(),

@@ -39,6 +39,7 @@ pub mod artifact;
 pub mod cache;
 mod context;
 pub mod cost;
+pub mod decide;
 mod error;
 pub mod golden;
 pub mod lock;

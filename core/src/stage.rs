@@ -2,6 +2,7 @@
 
 use crate::artifact::{Artifact, ArtifactType, Digest, Kind};
 use crate::cost::Size;
+use crate::decide::{Decision, Known};
 use crate::{Context, ParamDoc, StageError};
 use std::any::Any;
 use std::collections::BTreeMap;
@@ -22,6 +23,11 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
     /// How much it makes of so much, all ports together; none where the rules of its role tell (see [`crate::cost`]).
     fn sizes(&self, _given: &Size, _cx: &Context) -> Option<Size> {
         None
+    }
+
+    /// What it leaves out or simplifies here, by which facts of the scene (see [`crate::decide`]).
+    fn decisions(&self, _known: &Known<'_>) -> Vec<Decision> {
+        Vec::new()
     }
 
     /// Runs it on its ports' values, in the order of the card's inputs.

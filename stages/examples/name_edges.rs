@@ -98,6 +98,7 @@ fn photo(bytes: &[u8], file: &Path) -> Result<Arc<dyn Artifact>, String> {
         px_per_metre: None,
         garment_width: Some(0.6),
         mirrored: false,
+        joined: 1,
         file: file.display().to_string(),
     }))
 }

@@ -140,6 +140,7 @@ fn read(file: &Path) -> Result<Photo, Box<dyn Error>> {
         px_per_metre: None,
         garment_width: None,
         mirrored: false,
+        joined: 1,
         file: file.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
     })
 }

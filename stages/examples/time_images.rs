@@ -32,6 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             px_per_metre: None,
             garment_width: None,
             mirrored: false,
+            joined: 1,
             file: "photo".into(),
         })
     };

@@ -28,6 +28,7 @@ fn picture(c: &mut Criterion) {
         px_per_metre: None,
         garment_width: None,
         mirrored: false,
+        joined: 1,
         file: String::new(),
     };
     let inputs = Inputs(vec![Some(PortValue::One(Arc::new(photo)))]);

@@ -74,15 +74,28 @@ impl Bench {
         limit: Option<Duration>,
         cache: Option<Arc<Cache>>,
     ) -> Result<Ran, Missed> {
+        let options = RunOptions { keep: cache.is_some(), cache, ..RunOptions::default() };
+        self.timed(pipeline, limit, options)
+    }
+
+    /// Runs a pipeline with stages that nothing asked for depends on.
+    pub fn run_also(
+        &self,
+        pipeline: &Pipeline,
+        also: &[String],
+        limit: Option<Duration>,
+    ) -> Result<Ran, Missed> {
+        self.timed(pipeline, limit, RunOptions { also: also.to_vec(), ..RunOptions::default() })
+    }
+
+    fn timed(
+        &self,
+        pipeline: &Pipeline,
+        limit: Option<Duration>,
+        options: RunOptions,
+    ) -> Result<Ran, Missed> {
         let reads: Reads = Arc::default();
-        let keep = cache.is_some();
-        let options = RunOptions {
-            until: self.until.clone(),
-            keep,
-            cache,
-            reads: Some(reads.clone()),
-            ..RunOptions::default()
-        };
+        let options = RunOptions { until: self.until.clone(), reads: Some(reads.clone()), ..options };
         forget_peak();
         let (started, cpu) = (Instant::now(), ProcessTime::now());
         let result = self.watched(pipeline, &options, limit);

@@ -370,7 +370,7 @@ fn unknown(pipeline: &Pipeline, owner: &str) -> StageError {
 }
 
 /// The path by which overrides reach a stage: in the list, or in a section of the file.
-fn path_of(source: &Source<'_>, pipeline: &Pipeline, node: &Node) -> String {
+pub(crate) fn path_of(source: &Source<'_>, pipeline: &Pipeline, node: &Node) -> String {
     let sections = source.registry.sections().iter().filter_map(|s| match s.holds {
         SectionValue::Stage(role) if role == node.card.role => Some(s.field.to_owned()),
         _ => None,

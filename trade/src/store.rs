@@ -9,7 +9,7 @@ use crate::record::{Point, Reference, SCHEME};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use toile_core::artifact::{Digester, OutputFile};
+use toile_core::artifact::{Artifact, Digester, Garment, OutputFile};
 use toile_core::cache::Hash;
 use toile_core::pipeline::Pipeline;
 use toile_core::{StageError, write_files};
@@ -124,6 +124,13 @@ pub fn digest(pipeline: &Pipeline, more: &[&str]) -> String {
         d.text(text);
     });
     d.finish().short()
+}
+
+/// Names a garment by its content.
+pub(crate) fn garment_digest(garment: &Garment) -> String {
+    let mut d = Digester::new();
+    garment.digest(&mut d);
+    d.finish().hex()
 }
 
 #[cfg(test)]

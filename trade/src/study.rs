@@ -13,11 +13,11 @@ use crate::page::pictures;
 use crate::record::*;
 use crate::sample::{candidates, halton};
 use crate::slot::{Board, Setting, Source};
-use crate::store::{Store, digest};
+use crate::store::{Store, digest, garment_digest};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use toile_core::artifact::{Artifact, Digester, Garment};
+use toile_core::artifact::Digester;
 use toile_core::cache::Cache;
 use toile_core::pipeline::Pipeline;
 use toile_core::{Length, StageError, write_files};
@@ -353,10 +353,4 @@ pub(crate) fn measured(ran: &Ran, reference: &Ran) -> Result<Measured, StageErro
         shortfalls: ran.metrics.shortfalls.clone(),
         repeatable: true,
     })
-}
-
-fn garment_digest(garment: &Garment) -> String {
-    let mut d = Digester::new();
-    garment.digest(&mut d);
-    d.finish().hex()
 }

@@ -27,7 +27,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
         .ok_or(missing)?;
     let ports = ports(run)?;
     let out = output(run)?;
-    let sizes = sizes(&item);
+    let (sizes, decisions) = (sizes(&item), decisions(&item));
     let in_ports = ports.iter().map(|Port { name, ty, original }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -55,6 +55,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                     ::toile_core::param::ron_text(self)
                 }
                 #sizes
+                #decisions
                 fn run_ports(
                     &self,
                     inputs: &::toile_core::Inputs,
@@ -80,8 +81,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
 
 /// The trait's `sizes`, where the author says by `foresee` how sizes go through the stage.
 fn sizes(item: &ItemImpl) -> TokenStream {
-    let is_foresee = |i: &ImplItem| matches!(i, ImplItem::Fn(f) if f.sig.ident == "foresee");
-    match item.items.iter().any(is_foresee) {
+    match has(item, "foresee") {
         false => TokenStream::new(),
         true => quote! {
             fn sizes(
@@ -93,6 +93,26 @@ fn sizes(item: &ItemImpl) -> TokenStream {
             }
         },
     }
+}
+
+/// The trait's `decisions`, where the author tells them by `decide`.
+fn decisions(item: &ItemImpl) -> TokenStream {
+    match has(item, "decide") {
+        false => TokenStream::new(),
+        true => quote! {
+            fn decisions(
+                &self,
+                known: &::toile_core::decide::Known<'_>,
+            ) -> ::std::vec::Vec<::toile_core::decide::Decision> {
+                Self::decide(self, known)
+            }
+        },
+    }
+}
+
+/// Whether the author wrote a function of that name.
+fn has(item: &ItemImpl, name: &str) -> bool {
+    item.items.iter().any(|i| matches!(i, ImplItem::Fn(f) if f.sig.ident == name))
 }
 
 /// The arguments between `&self` and the context; `#[original]` is read and taken off.

@@ -71,6 +71,26 @@ impl PhotoFrame {
         )
     }
 
+    /// The same frame in pixels each of which joins `n` x `n` of these.
+    pub fn joined(self, n: u32) -> PhotoFrame {
+        if n <= 1 {
+            return self;
+        }
+        let n = f64::from(n);
+        let to = |x: f64| (x + 0.5) / n - 0.5;
+        PhotoFrame { origin_px: self.origin_px.map(to), px_per_metre: self.px_per_metre / n, ..self }
+    }
+
+    /// The same frame in pixels of which `n` x `n` were joined into each of these.
+    pub fn parted(self, n: u32) -> PhotoFrame {
+        if n <= 1 {
+            return self;
+        }
+        let n = f64::from(n);
+        let to = |x: f64| (x + 0.5) * n - 0.5;
+        PhotoFrame { origin_px: self.origin_px.map(to), px_per_metre: self.px_per_metre * n, ..self }
+    }
+
     /// The pattern point over a pixel.
     pub fn to_metres(&self, px: Point2) -> Point2 {
         let sign = if self.mirrored { -1.0 } else { 1.0 };

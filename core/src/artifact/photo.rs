@@ -21,6 +21,11 @@ pub struct Photo {
     pub garment_width: Option<f64>,
     /// True where the photo stands in for its mirror image (`back: MirrorOf("front")`).
     pub mirrored: bool,
+    /// How many pixels of the file, to a side, were joined into each of these: 1 for the photo as it was read.
+    ///
+    /// Stages need not look at it: the runner brings the frames of outlines to the file's pixels. Who holds an outline
+    /// against a photo of joined pixels takes its frame by [`PhotoFrame::joined`](super::PhotoFrame::joined).
+    pub joined: u32,
     /// The file it was read from, for messages and the report.
     pub file: String,
 }
@@ -50,6 +55,10 @@ impl Artifact for Photo {
             d.bytes(alpha.as_raw());
         }
         d.floats([self.px_per_metre.unwrap_or(0.0), self.garment_width.unwrap_or(0.0)]);
+        // Photos as they were read keep the digest that they had before pixels could be joined.
+        if self.joined != 1 {
+            d.text("joined").count(self.joined as usize);
+        }
     }
 
     fn measures(&self) -> Measures {
@@ -67,6 +76,7 @@ impl Artifact for Photo {
         if let Some(alpha) = &self.alpha {
             ensure(alpha.dimensions() == (w, h), || "its opacity has another size".to_owned())?;
         }
+        ensure(self.joined > 0, || "each of its pixels is joined from none".to_owned())?;
         self.px_per_metre.map_or(Ok(()), |s| positive("scale", s))?;
         self.garment_width.map_or(Ok(()), |w| positive("garment's width", w))
     }

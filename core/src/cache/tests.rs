@@ -35,8 +35,15 @@ impl Bytes2 {
             let level = bytes.first().copied().ok_or_else(|| StageError::invalid("it is empty"))?;
             let pixels = Shared::new(RgbImage::from_pixel(2, 1, Rgb([level; 3])));
             let (file, mirrored) = (name.to_owned(), false);
-            let photo =
-                Photo { pixels, alpha: None, px_per_metre: None, garment_width: None, mirrored, file };
+            let photo = Photo {
+                pixels,
+                alpha: None,
+                px_per_metre: None,
+                garment_width: None,
+                mirrored,
+                joined: 1,
+                file,
+            };
             Ok((name.to_owned(), photo))
         };
         ["back", "front"].into_iter().map(read).collect()

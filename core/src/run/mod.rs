@@ -3,6 +3,7 @@
 mod forecast;
 mod implicit;
 mod node;
+mod pixels;
 mod record;
 mod steps;
 mod value;
@@ -29,6 +30,8 @@ use steps::{Run, Step};
 pub struct RunOptions {
     /// Stop after this stage (its id): only it and what it needs are run.
     pub until: Option<String>,
+    /// Stages (ids) that are run though nothing asked for depends on them.
+    pub also: Vec<String>,
     /// Give every stage's artifacts as files as well.
     pub keep: bool,
     /// Where results of stages are kept and found; none runs everything.
@@ -145,9 +148,12 @@ fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, Run
 
 /// What a run would do: for every stage `None` where it runs, or the reason why it is left out.
 ///
-/// Errors: `until` names no stage of the pipeline.
+/// Errors: `until` or one of `also` names no stage of the pipeline.
 pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<String>>, RunError> {
-    let needed = pipeline.needed_for(&sinks(pipeline, options)?);
+    let find = |name: &String| pipeline.find(name).ok_or_else(|| unknown_stage(pipeline, name));
+    let mut asked = sinks(pipeline, options)?;
+    asked.extend(options.also.iter().map(find).collect::<Result<Vec<_>, _>>()?);
+    let needed = pipeline.needed_for(&asked);
     let reason = || match &options.until {
         Some(until) => format!("not needed until {until}"),
         None => "nothing asked for depends on it".to_owned(),

@@ -1,5 +1,6 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
+use super::pixels::of_the_file;
 use crate::artifact::Measure;
 use crate::cache::{Hash, file_hash};
 use crate::pipeline::{Node, texts_of};
@@ -61,7 +62,7 @@ fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Hash>)> {
 /// A stage that panics is a bug of the stage, not the end of the program.
 fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError> {
     match catch_unwind(AssertUnwindSafe(|| node.stage.run_ports(inputs, cx))) {
-        Ok(outcome) => outcome.and_then(checked),
+        Ok(outcome) => outcome.and_then(checked).map(|made| of_the_file(inputs, made)),
         Err(payload) if payload.is::<StageError>() => {
             Err(payload.downcast::<StageError>().map_or_else(|_| StageError::internal(""), |e| *e))
         }

@@ -223,6 +223,7 @@ pub fn photo_from(pixels: RgbImage) -> Photo {
         px_per_metre: Some(SCALE),
         garment_width: None,
         mirrored: false,
+        joined: 1,
         file: "suite.png".into(),
     }
 }

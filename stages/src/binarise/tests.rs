@@ -50,6 +50,7 @@ fn of(pixels: RgbImage) -> Photo {
         px_per_metre: None,
         garment_width: None,
         mirrored: false,
+        joined: 1,
         file: "front.jpg".into(),
     }
 }

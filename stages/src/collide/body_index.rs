@@ -8,6 +8,7 @@
 //! O(log n) a query, about a microsecond on 20,000 triangles. The mesh must have passed
 //! [`check_body`](super::check_body).
 
+use super::asked_distances::Distances;
 use super::bvh::{Bvh, Corners};
 use super::closest::{Feature, OnTriangle, on_triangle};
 use super::crossing::volume;
@@ -57,16 +58,17 @@ pub struct OnSkin {
 
 impl<V: BoundingVolume> BodyIndex<V> {
     /// The index of a body that has passed its checks.
-    pub fn new(body: &Body, cx: &Context) -> Result<Self, StageError> {
+    pub fn new(body: &Body, distances: Distances, cx: &Context) -> Result<Self, StageError> {
         let corners: Vec<Corners> =
             body.triangles.iter().map(|t| t.map(|i| body.positions[i as usize])).collect();
         let items = (0..corners.len() as u32).collect();
         let bvh = Bvh::fitted(items, LEAF, |t| corners[t as usize]);
         cx.check()?;
         let normals = feature_normals(&body.triangles, &corners);
-        let mut index = BodyIndex { bvh, corners, normals, lattice: Lattice::default() };
-        index.lattice =
-            Lattice::build(&body.positions, cx, |p, bound| index.closest(p, bound).map(|s| s.distance))?;
+        let index = BodyIndex { bvh, corners, normals, lattice: Lattice::around(&body.positions) };
+        if distances == Distances::Ahead {
+            index.lattice.fill(cx, |p, bound| index.distance_within(p, bound))?;
+        }
         Ok(index)
     }
 
@@ -83,6 +85,14 @@ impl<V: BoundingVolume> BodyIndex<V> {
             if better { d } else { bound }
         });
         best.map(|(_, t, on)| self.on_skin(p, t, &on))
+    }
+
+    fn distance_within(&self, p: &Point3, bound: f64) -> Option<f64> {
+        self.closest(p, bound).map(|s| s.distance)
+    }
+
+    fn bounds(&self, p: &Point3) -> Option<(f64, f64)> {
+        self.lattice.bounds(p, |p, bound| self.distance_within(p, bound))
     }
 
     fn on_skin(&self, p: &Point3, t: u32, on: &OnTriangle) -> OnSkin {
@@ -108,7 +118,7 @@ impl<V: BoundingVolume> BodyIndex<V> {
     /// The vertices within `reach` of the skin or inside, ascending.
     pub fn contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>) {
         let contact = |(i, p): (usize, &Point3)| {
-            let (least, most) = self.lattice.bounds(p)?;
+            let (least, most) = self.bounds(p)?;
             if least > reach {
                 return None;
             }
@@ -123,7 +133,7 @@ impl<V: BoundingVolume> BodyIndex<V> {
     /// The first places where paths enter the body, ascending.
     pub fn hits(&self, from: &[Point3], to: &[Point3], out: &mut Vec<BodyContact>) {
         let hit = |(i, (p, q)): (usize, (&Point3, &Point3))| {
-            let (least, _) = self.lattice.bounds(p)?;
+            let (least, _) = self.bounds(p)?;
             if least > (q - p).norm() {
                 return None;
             }

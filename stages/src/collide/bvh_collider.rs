@@ -1,9 +1,11 @@
 //! `BvhCollider`: body and cloth in hierarchies of bounding volumes.
 
+use super::asked_distances::{self, Distances};
 use super::body_check::check_body;
 use super::scheme::BvhScheme;
 use super::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
 use std::sync::Arc;
+use toile_core::decide::{Decision, Known};
 use toile_core::param::ron_text;
 use toile_core::prelude::*;
 
@@ -55,7 +57,13 @@ pub struct BvhCollider {
     /// Stiffness of the penalty response; without it contacts are resolved by impulses.
     #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
     penalty: Option<f64>,
+    /// When distances to the body are worked out; the results are the same.
+    #[param(default = Distances::Asked)]
+    distances: Distances,
 }
+
+/// Share of the stage's time that distances where they are asked for save, on the vest.
+const SHARE: f64 = 0.7;
 
 #[stage]
 impl BvhCollider {
@@ -77,6 +85,14 @@ impl BvhCollider {
         Ok(Collider { scheme, signature: self.signature(body) })
     }
 
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        let body = known.is_wired("body");
+        body.then(|| asked_distances::rule(self.distances, known.given, SHARE))
+            .flatten()
+            .into_iter()
+            .collect()
+    }
+
     fn scheme<V: BoundingVolume>(
         &self,
         body: Option<&Body>,
@@ -89,7 +105,7 @@ impl BvhCollider {
             self_collision: self.self_collision,
             penalty: self.penalty,
         };
-        Ok(Arc::new(BvhScheme::<V>::new(card, body, cx)?))
+        Ok(Arc::new(BvhScheme::<V>::new(card, body, self.distances, cx)?))
     }
 
     /// Names scheme, settings and body, so that colliders with different answers differ in it.

@@ -4,11 +4,15 @@
 //! every point in the cell: most vertices are known to be too far out without a look at the
 //! skin, and points deep inside get a bound to search within. The bounds are exact, never a guess.
 //!
-//! Cost: [`CELLS`] closest-point queries once, some 50 ms for a body of 20,000 triangles; half a
-//! megabyte. Outside the lattice the distance to its box is the bound.
+//! Cells are filled where points ask for them, each once; a body is mostly larger than what cloth comes near. Cost: a
+//! closest-point query a cell that is asked for; all [`CELLS`] of them, some 50 ms for a body of 20,000 triangles, where
+//! they are filled ahead. Half a megabyte. Outside the lattice the distance to its box is the bound.
+//!
+//! Bounds sort points out and never decide: which cells are filled, and by which thread, changes no answer.
 
 use super::volume::{Aabb, BoundingVolume};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 use toile_core::artifact::Point3;
 use toile_core::{Context, StageError};
 
@@ -28,43 +32,80 @@ pub(super) struct Lattice {
     origin: Point3,
     cell: f64,
     counts: [usize; 3],
-    distances: Vec<f64>,
+    /// Bits of the distances at the cells' middles; [`UNKNOWN`] where nobody has asked.
+    distances: Vec<AtomicU64>,
     slack: f64,
 }
 
+/// A cell that is not filled: the bits of no distance, since a missing one is the usual NaN.
+const UNKNOWN: u64 = u64::MAX;
+
 impl Lattice {
-    /// The lattice around `points`; `distance` gives the signed distance of a point whose skin is
-    /// within a bound.
-    pub(super) fn build(
-        points: &[Point3],
-        cx: &Context,
-        distance: impl Fn(&Point3, f64) -> Option<f64> + Sync,
-    ) -> Result<Self, StageError> {
+    /// The empty lattice around `points`.
+    pub(super) fn around(points: &[Point3]) -> Self {
         let frame = Aabb::fit(points);
         let extent = frame.extent();
         let cell = (extent.product() / CELLS).cbrt().max(extent.amax() / MOST_ALONG_AXIS as f64);
         let counts = [0, 1, 2].map(|k| (extent[k] / cell).ceil().max(1.0) as usize);
         let slack = SLACK * (frame.min.coords.amax().max(frame.max.coords.amax()) + cell);
-        let mut lattice = Lattice { origin: frame.min, cell, counts, distances: Vec::new(), slack };
-        for z in 0..counts[2] {
-            cx.check()?;
-            let row = |y: usize| lattice.row(y, z, &distance);
-            let slab: Vec<Vec<f64>> = (0..counts[1]).into_par_iter().map(row).collect();
-            lattice.distances.extend(slab.into_iter().flatten());
-        }
-        Ok(lattice)
+        let distances = (0..counts.iter().product()).map(|_| AtomicU64::new(UNKNOWN)).collect();
+        Lattice { origin: frame.min, cell, counts, distances, slack }
     }
 
-    /// A row of cells, each searched within what its neighbour allows.
-    fn row(&self, y: usize, z: usize, distance: &(impl Fn(&Point3, f64) -> Option<f64> + Sync)) -> Vec<f64> {
+    /// Fills every cell; `distance` gives the signed distance of a point whose skin is within a bound.
+    pub(super) fn fill(
+        &self,
+        cx: &Context,
+        distance: impl Fn(&Point3, f64) -> Option<f64> + Sync,
+    ) -> Result<(), StageError> {
+        for z in 0..self.counts[2] {
+            cx.check()?;
+            (0..self.counts[1]).into_par_iter().for_each(|y| self.fill_row(y, z, &distance));
+        }
+        Ok(())
+    }
+
+    /// Fills a row of cells, each searched within what its neighbour allows.
+    fn fill_row(&self, y: usize, z: usize, distance: &(impl Fn(&Point3, f64) -> Option<f64> + Sync)) {
         let mut bound = f64::INFINITY;
-        (0..self.counts[0])
-            .map(|x| {
-                let d = distance(&self.middle([x, y, z]), bound).unwrap_or(f64::NAN);
-                bound = if d.is_nan() { f64::INFINITY } else { d.abs() + self.cell + self.slack };
-                d
-            })
-            .collect()
+        for x in 0..self.counts[0] {
+            let d = self.ask([x, y, z], bound, distance);
+            bound = if d.is_nan() { f64::INFINITY } else { d.abs() + self.cell + self.slack };
+        }
+    }
+
+    /// The distance at a cell's middle, where the skin is within `bound` of it.
+    fn ask(&self, at: [usize; 3], bound: f64, distance: &impl Fn(&Point3, f64) -> Option<f64>) -> f64 {
+        if let Some(known) = self.known(at) {
+            return known;
+        }
+        // Two threads that meet here work out the same.
+        let d = distance(&self.middle(at), bound).unwrap_or(f64::NAN);
+        self.slot(at).store(d.to_bits(), Ordering::Relaxed);
+        d
+    }
+
+    /// How far the skin can be from a cell's middle, by the neighbours that are filled.
+    fn reach(&self, at: [usize; 3]) -> f64 {
+        let next = |k: usize, to: Option<usize>| {
+            let to = to.filter(|i| *i < self.counts[k])?;
+            let mut cell = at;
+            cell[k] = to;
+            self.known(cell)
+        };
+        let both = (0..3).flat_map(|k| [next(k, at[k].checked_sub(1)), next(k, Some(at[k] + 1))]);
+        let nearest = both.flatten().map(f64::abs).fold(f64::INFINITY, f64::min);
+        nearest + self.cell + self.slack
+    }
+
+    fn slot(&self, at: [usize; 3]) -> &AtomicU64 {
+        &self.distances[(at[2] * self.counts[1] + at[1]) * self.counts[0] + at[0]]
+    }
+
+    /// The distance of a cell that is filled; a missing one is NaN.
+    fn known(&self, at: [usize; 3]) -> Option<f64> {
+        let bits = self.slot(at).load(Ordering::Relaxed);
+        (bits != UNKNOWN).then(|| f64::from_bits(bits))
     }
 
     fn middle(&self, at: [usize; 3]) -> Point3 {
@@ -73,8 +114,12 @@ impl Lattice {
     }
 
     /// The least and the greatest signed distance that `p` can have; `None` where it is no finite
-    /// number.
-    pub(super) fn bounds(&self, p: &Point3) -> Option<(f64, f64)> {
+    /// number. `distance` fills the cell where nobody has asked for it yet.
+    pub(super) fn bounds(
+        &self,
+        p: &Point3,
+        distance: impl Fn(&Point3, f64) -> Option<f64>,
+    ) -> Option<(f64, f64)> {
         if !p.iter().all(|x| x.is_finite()) {
             return None;
         }
@@ -85,7 +130,7 @@ impl Lattice {
             return Some((outside - self.slack, f64::INFINITY));
         }
         let at = [0, 1, 2].map(|k| (((p[k] - self.origin[k]) / self.cell) as usize).min(self.counts[k] - 1));
-        let d = self.distances[(at[2] * self.counts[1] + at[1]) * self.counts[0] + at[0]];
+        let d = self.ask(at, self.reach(at), &distance);
         let r = (p - self.middle(at)).norm() + self.slack;
         Some(if d.is_nan() { (f64::NEG_INFINITY, f64::INFINITY) } else { (d - r, d + r) })
     }

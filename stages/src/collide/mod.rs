@@ -8,6 +8,7 @@
 //! - [`closest`], [`proximity`], [`crossing`], [`ccd`]: tests of a few points, free functions that
 //!   solvers may call on their own.
 
+pub(crate) mod asked_distances;
 pub mod body_check;
 pub mod body_index;
 pub mod bvh;
@@ -22,6 +23,7 @@ pub mod scheme;
 mod self_collision;
 pub mod volume;
 
+pub use asked_distances::Distances;
 pub use body_check::check_body;
 pub use body_index::{BodyIndex, OnSkin};
 pub use bvh_collider::{BvhCollider, Volume};

@@ -1,5 +1,6 @@
 //! The collision service: a body's skin, the cloth's hierarchy, and the settings.
 
+use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
 use super::cloth_tree::ClothTree;
 use super::volume::BoundingVolume;
@@ -22,8 +23,13 @@ pub struct BvhScheme<V> {
 
 impl<V: BoundingVolume> BvhScheme<V> {
     /// The scheme for a body that has passed its checks, or for cloth alone.
-    pub fn new(card: ColliderCard, body: Option<&Body>, cx: &Context) -> Result<Self, StageError> {
-        let body = body.map(|b| BodyIndex::new(b, cx)).transpose()?;
+    pub fn new(
+        card: ColliderCard,
+        body: Option<&Body>,
+        distances: Distances,
+        cx: &Context,
+    ) -> Result<Self, StageError> {
+        let body = body.map(|b| BodyIndex::new(b, distances, cx)).transpose()?;
         Ok(BvhScheme { card, body, pool: Mutex::default() })
     }
 

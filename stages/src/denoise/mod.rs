@@ -14,6 +14,8 @@
 mod bands;
 mod bilateral;
 mod gaussian;
+mod join;
+mod joined_pixels;
 mod mean;
 mod median;
 #[cfg(test)]

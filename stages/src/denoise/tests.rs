@@ -110,6 +110,7 @@ fn stages_keep_alpha_scale_and_name() {
         px_per_metre: Some(800.0),
         garment_width: None,
         mirrored: true,
+        joined: 1,
         file: "a.png".into(),
     };
     let out = NeighbourhoodMean::default().run(&photo, &Context::quiet()).unwrap();

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::binarise::Otsu;
+use crate::denoise::NeighbourhoodMean;
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
 use std::path::Path;
@@ -43,6 +44,7 @@ fn photo(pixels: RgbImage, garment_width: Option<f64>) -> Photo {
         px_per_metre: None,
         garment_width,
         mirrored: false,
+        joined: 1,
         file: "test.png".into(),
     }
 }
@@ -348,4 +350,25 @@ proptest! {
             prop_assert!(polygon_area(&o.outer.points) > 0.0);
         }
     }
+}
+
+#[test]
+fn a_photo_of_joined_pixels_gives_the_outline_of_the_small_one() {
+    let truth = sample(SAMPLES[0]);
+    let (w, h) = truth.photo.pixels.dimensions();
+    let large = image::imageops::resize(truth.photo.pixels.as_ref(), 2 * w, 2 * h, image::imageops::Nearest);
+    let large = photo(large, truth.photo.garment_width);
+    let cx = Context::quiet();
+    let found = |from: &Photo, least: f64| {
+        let quiet = NeighbourhoodMean { pixel: Length::mm(least), ..NeighbourhoodMean::default() };
+        let quiet = quiet.run(from, &cx).unwrap();
+        let mask = Otsu::default().run(&quiet, &cx).unwrap();
+        (Canny::default().run(&quiet, &mask, &cx).unwrap(), quiet.joined)
+    };
+    let (joined, n) = found(&large, 0.5);
+    let (small, one) = found(&truth.photo, 0.5);
+    assert_eq!((n, one), (2, 1));
+    // Joining undoes the enlargement to the bit. The runner parts the frame.
+    assert_eq!(joined, small);
+    assert_true(&joined, &truth, 0.3, 1.0, "joined");
 }

@@ -48,6 +48,10 @@ impl Photos {
     pub fn new(photos: BTreeMap<String, PhotoEntry>) -> Self {
         Photos { photos }
     }
+
+    pub(super) fn entries(&self) -> &BTreeMap<String, PhotoEntry> {
+        &self.photos
+    }
 }
 
 /// Reads all photos in parallel; a file that is named twice is decoded once.
@@ -92,6 +96,7 @@ impl Picture {
             px_per_metre: file.px_per_metre,
             garment_width: file.width.map(Length::metres),
             mirrored,
+            joined: 1,
             file: file.file.clone(),
         }
     }

@@ -4,13 +4,14 @@
 //! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: bands, strain limits, layers and threads have no place
 //! in a garment; the stage names what it leaves out.
 
-use crate::collide::{Aabb, BvhScheme, check_body};
+use crate::collide::{Aabb, BvhScheme, Distances, asked_distances, check_body};
 use crate::engine::{garment_of, lost, scene_error};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_cloth::scene::{self, SceneError};
 use toile_core::artifact::Digester;
 use toile_core::cost::{Quantity, Size};
+use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
 /// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
@@ -27,7 +28,13 @@ pub struct Scene {
     /// The file, relative to the pipeline; the body's OBJ lies beside it.
     #[param(default = String::new())]
     pub file: String,
+    /// When distances to the body are worked out; the results are the same.
+    #[param(default = Distances::Asked)]
+    pub distances: Distances,
 }
+
+/// Share of the stage's time that distances where they are asked for save, on the skirt.
+const SHARE: f64 = 0.75;
 
 #[stage]
 impl Scene {
@@ -47,13 +54,18 @@ impl Scene {
         let scene = scene::parse(&text, &beside).map_err(|e| scene_error(&e))?;
         lost(&scene).into_iter().for_each(|what| cx.warn(what));
         let body = body_of(&scene);
-        let collider = collider(&scene, &body, cx)?;
+        let collider = collider(&scene, &body, self.distances, cx)?;
         let phases = scene.phases.iter().map(|p| Phase {
             name: p.name.clone(),
             seconds: p.seconds,
             gravity: p.gravity,
         });
         Ok((garment_of(&scene), body, collider, Phases(phases.collect())))
+    }
+
+    pub(crate) fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        let size = self.foresee(known.given, known.cx).unwrap_or_default();
+        asked_distances::rule(self.distances, &size, SHARE).into_iter().collect()
     }
 
     /// How much it will read: by reading it, which is a small part of setting it up.
@@ -82,7 +94,12 @@ fn text(cx: &Context, file: &str) -> Result<String, StageError> {
     })
 }
 
-fn collider(scene: &scene::Scene, body: &Body, cx: &Context) -> Result<Collider, StageError> {
+fn collider(
+    scene: &scene::Scene,
+    body: &Body,
+    distances: Distances,
+    cx: &Context,
+) -> Result<Collider, StageError> {
     let body = Some(body).filter(|b| !b.triangles.is_empty());
     body.map(check_body).transpose()?;
     let card = ColliderCard {
@@ -95,7 +112,7 @@ fn collider(scene: &scene::Scene, body: &Body, cx: &Context) -> Result<Collider,
     let mut digester = Digester::new();
     body.iter().for_each(|b| b.digest(&mut digester));
     let signature = format!("Scene {card:?} body {}", digester.finish().short());
-    Ok(Collider { scheme: Arc::new(BvhScheme::<Aabb>::new(card, body, cx)?), signature })
+    Ok(Collider { scheme: Arc::new(BvhScheme::<Aabb>::new(card, body, distances, cx)?), signature })
 }
 
 /// The scene's body; one without vertices where it has none.

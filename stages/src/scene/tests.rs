@@ -21,7 +21,7 @@ fn through_files(scene: &toile_cloth::scene::Scene) -> Result<Made, StageError> 
 
 fn read(folder: &Path, file: &str) -> Result<Made, StageError> {
     let cx = Context::new("Scene", folder, Cancel::new(), Arc::new(()));
-    Scene { file: file.into() }.run(&cx)
+    Scene { file: file.into(), ..Scene::default() }.run(&cx)
 }
 
 #[test]
@@ -108,7 +108,7 @@ fn what_a_garment_cannot_hold_is_named() {
         std::fs::write(dir.path().join("scene.json"), to_json(scene, "body.obj")).unwrap();
         std::fs::write(dir.path().join("body.obj"), body_to_obj(scene)).unwrap();
         let cx = Context::new("Scene", dir.path(), Cancel::new(), Arc::new(()));
-        Scene { file: "scene.json".into() }.run(&cx).unwrap();
+        Scene { file: "scene.json".into(), ..Scene::default() }.run(&cx).unwrap();
         cx.take_notes().1
     };
     assert_eq!(warnings(&generate::tube(4, 5)), Vec::<String>::new());

@@ -99,7 +99,9 @@ impl Neckline {
         }
         let found = match self.depth {
             Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
-            None => photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame, &collar)),
+            None => {
+                photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar))
+            }
         };
         let curve = found.unwrap_or_else(|| {
             cx.warn(format!(
@@ -353,6 +355,7 @@ mod tests {
             px_per_metre: None,
             garment_width: None,
             mirrored: false,
+            joined: 1,
             file: "front.jpg".into(),
         }
     }

@@ -123,6 +123,7 @@ fn photo(colour: [u8; 3]) -> Photo {
         px_per_metre: Some(SCALE),
         garment_width: None,
         mirrored: false,
+        joined: 1,
         file: "photo.png".to_owned(),
     }
 }

@@ -9,6 +9,7 @@ pub(crate) mod parts;
 mod photo_texturer;
 #[cfg(test)]
 mod tests;
+mod texture_size;
 
 pub use photo_texturer::{BodyShown, Light, PhotoTexturer};
 

@@ -5,8 +5,11 @@
 //! Cost: a few passes over the photo's pixels. Limit: light and shadow in the photo stay in the texture.
 
 use super::inside::{PixelBox, covered};
+use super::texture_size::{self, LARGEST};
 use super::{bleed, crop, parts};
 use rayon::prelude::*;
+use toile_core::cost::Size;
+use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
 /// What light does to the photo.
@@ -45,7 +48,7 @@ pub struct PhotoTexturer {
     #[param(default = Light::Modulate)]
     light: Light,
     /// Longer side of a texture at most; larger crops are scaled down.
-    #[param(default = 2048, min = 16, max = 8192, unit = "px", trades)]
+    #[param(default = 2048, min = 16, max = LARGEST, unit = "px", trades)]
     size: u32,
     /// How far inside the outline colours are taken: past the garment's own rim and shadow.
     #[param(default = Length::mm(2.0), min = 0.0, max = 0.05)]
@@ -101,6 +104,15 @@ impl PhotoTexturer {
             model.materials.push(parts::mannequin());
         }
         Ok(model)
+    }
+
+    /// How many texels it will make.
+    fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+        texture_size::foreseen(given, self.size)
+    }
+
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        texture_size::rule(known, self.size).into_iter().collect()
     }
 }
 

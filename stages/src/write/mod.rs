@@ -10,6 +10,7 @@ mod ply;
 mod preview;
 mod report;
 mod report_data;
+mod report_views;
 mod scene_json;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ pub use obj::Obj;
 pub use ply::Ply;
 pub use preview::{Framing, Preview};
 pub use report::Report;
+pub use report_views::Views;
 pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
 

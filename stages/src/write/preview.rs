@@ -36,6 +36,13 @@ pub struct Preview {
     frame: Framing,
 }
 
+impl Preview {
+    /// Whether the garment fills its pictures, which are at least so high, px.
+    pub(super) fn is_of_garment(&self, height: u32) -> bool {
+        self.frame == Framing::Garment && self.size >= height
+    }
+}
+
 #[stage]
 impl Preview {
     pub(super) fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {

@@ -4,10 +4,12 @@
 //! Cost: two small drawings for every garment on the way. Limit: pictures beyond [`PICTURE_BUDGET`] are left out,
 //! and the page says so.
 
-use super::report_data::{Page, page};
+use super::report_data::{Page, VIEW_HEIGHT, page};
+use super::report_views::{self, Views};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
+use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
 /// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
@@ -24,6 +26,7 @@ const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));
 /// does as well.
 #[stage(
     role = Writer,
+    version = 2,
     source = "none",
     example = "Report(name: \"report\", pictures: 300)",
     contracts(Deterministic)
@@ -35,16 +38,23 @@ pub struct Report {
     /// Height of the stages' pictures.
     #[param(default = 300, min = 32, max = 1200, unit = "px", trades)]
     pictures: u32,
+    /// Where the views of the result at the head come from.
+    #[param(default = Views::Taken, trades)]
+    views: Views,
 }
 
 #[stage]
 impl Report {
     pub(super) fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
         super::names::check_name(&self.name)?;
-        let page = page(run, self.pictures, cx)?;
+        let page = page(run, self.pictures, self.views, cx)?;
         let html =
             html(&page).map_err(|e| StageError::internal(format!("the report's template fails: {e}")))?;
         Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
+    }
+
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        report_views::rule(known, self.views, VIEW_HEIGHT).into_iter().collect()
     }
 }
 

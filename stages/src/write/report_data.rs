@@ -1,6 +1,7 @@
 //! What stands on the report's page, gathered from the run's record.
 
 use super::report::PICTURE_BUDGET;
+use super::report_views::{Views, taken};
 use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, thumbnail};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -16,7 +17,7 @@ use toile_core::cost::Estimate;
 use toile_core::{Context, StageError};
 
 /// Height of the three views at the head, px.
-const VIEW_HEIGHT: u32 = 640;
+pub(super) const VIEW_HEIGHT: u32 = 640;
 /// A longer text output of a stage is cut.
 const MOST_NOTES: usize = 24;
 
@@ -74,12 +75,12 @@ struct Output {
 }
 
 /// Gathers the page; `height` is that of the stages' pictures.
-pub(super) fn page(run: &RunLog, height: u32, cx: &Context) -> Result<Page, StageError> {
+pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Result<Page, StageError> {
     let longest = run.stages.iter().map(|s| s.wall_s).fold(1e-9, f64::max);
     let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
-    let scene = last::<Model>(run, run.stages.len()).map(|model| (model, Scene::draft_in(model, cx)));
-    let (model, heads) = scene.map_or((None, Vec::new()), |(model, scene)| (Some(model), heads(&scene)));
+    let model = last::<Model>(run, run.stages.len());
+    let heads = model.map_or_else(Vec::new, |model| heads(run, model, views, cx));
     let draw = Draw { run, height, model, heads, cx };
     let views = within(shown(draw.heads_at(VIEW_HEIGHT)), &mut budget).0;
     let mut stages = Vec::new();
@@ -200,8 +201,14 @@ impl Draw<'_> {
 }
 
 /// The three views at the head.
-fn heads(scene: &Scene<'_>) -> Vec<(&'static str, RgbImage)> {
-    let named = [("front", View::front as fn(u32) -> View), ("back", View::back), ("left side", View::side)];
+fn heads(run: &RunLog, model: &Model, views: Views, cx: &Context) -> Vec<(&'static str, RgbImage)> {
+    let names = ["front", "back", "left side"];
+    if let Some(pictures) = (views == Views::Taken).then(|| taken(run, VIEW_HEIGHT)).flatten() {
+        return names.into_iter().zip(pictures).collect();
+    }
+    let scene = Scene::draft_in(model, cx);
+    let drawn = [View::front as fn(u32) -> View, View::back, View::side];
+    let named: Vec<_> = names.into_iter().zip(drawn).collect();
     named.par_iter().map(|(name, view)| (*name, scene.render(&view(VIEW_HEIGHT)))).collect()
 }
 

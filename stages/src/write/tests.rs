@@ -437,6 +437,29 @@ fn the_report_tells_of_every_stage() {
 }
 
 #[test]
+fn the_reports_views_are_those_of_a_preview_that_has_drawn_the_model() {
+    let mut run = run_log();
+    let drawn = report(&run, "(pictures: 32)");
+    let preview = params::<Preview>("(size: 640)");
+    let mut record = run.stages[4].clone();
+    (record.id, record.name, record.params) = ("Preview".into(), "Preview".into(), "(size: 640)".into());
+    record.outputs = vec![one(preview.run(&model(), &Context::quiet()).unwrap())];
+    run.stages.insert(5, record);
+    let heads = |html: &str| {
+        let sources = html.split("src=\"").skip(1).take(3);
+        sources.filter_map(|s| s.split('"').next().map(str::to_owned)).collect::<Vec<_>>()
+    };
+    let (taken, own) = (report(&run, "(pictures: 32)"), report(&run, "(pictures: 32, views: Drawn)"));
+    assert_eq!(heads(&own), heads(&drawn), "drawn for the page");
+    assert_ne!(heads(&taken), heads(&drawn), "in the finer light of the preview");
+    let count = |html: &str| html.matches("<img ").count();
+    assert_eq!(count(&taken), count(&own));
+    // A smaller preview will not do.
+    run.stages[5].params = "(size: 600)".into();
+    assert_eq!(heads(&report(&run, "(pictures: 32)")), heads(&drawn));
+}
+
+#[test]
 fn the_report_escapes_what_others_wrote() {
     let html = report(&run_log(), "(pictures: 32)");
     assert!(!html.contains("<script>") && !html.contains("<inside>"));

@@ -28,6 +28,7 @@ pub(crate) fn photo() -> Photo {
         px_per_metre: Some(500.0),
         garment_width: Some(0.5),
         mirrored: false,
+        joined: 1,
         file: "front.jpg".into(),
     }
 }

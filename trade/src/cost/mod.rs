@@ -39,4 +39,5 @@ pub use record::{CostRecord, Figure, Host};
 pub use shipped::{Collection, parse as parse_collection, shipped};
 pub use store::{CostStore, Opened};
 pub use sweep::{Variation, variations};
+pub(crate) use words::time;
 pub use words::{beside, check_lines, forecast_lines};

@@ -6,7 +6,7 @@ use toile_core::cache::Bytes;
 use toile_core::cost::{Estimate, Predicted, Used};
 
 /// A time as people read it.
-fn time(s: f64) -> String {
+pub(crate) fn time(s: f64) -> String {
     match s {
         s if s < 1e-3 => format!("{:.2} ms", s * 1e3),
         s if s < 1e-2 => format!("{:.1} ms", s * 1e3),

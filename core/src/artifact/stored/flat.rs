@@ -25,6 +25,7 @@ impl Photo {
             .maybe_number("px_per_metre", self.px_per_metre)
             .maybe_number("garment_width", self.garment_width)
             .flag("mirrored", self.mirrored)
+            .maybe_number("joined", (self.joined != 1).then_some(f64::from(self.joined)))
             .text("file", &self.file)
     }
 }
@@ -37,6 +38,7 @@ impl Stored for Photo {
             px_per_metre: r.maybe_one("px_per_metre")?,
             garment_width: r.maybe_one("garment_width")?,
             mirrored: r.flag("mirrored")?,
+            joined: r.maybe_one::<f64>("joined")?.map_or(1, |n| n as u32),
             file: r.text("file")?,
         })
     }

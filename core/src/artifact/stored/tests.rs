@@ -13,6 +13,7 @@ fn photo() -> Photo {
         px_per_metre: Some(1000.0),
         garment_width: None,
         mirrored: true,
+        joined: 3,
         file: "front.jpg".into(),
     }
 }

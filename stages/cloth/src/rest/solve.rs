@@ -387,14 +387,14 @@ impl<'a> Work<'a> {
         let positions = self.pieces[0].spread(&x);
         let energy = system.stored(&x);
         #[cfg(not(toile_without = "self_contact"))]
-        let tree = self.tree(sheet, &x, false);
+        let tree = self.scene.self_collision.then(|| self.tree(sheet, &x, false));
         let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
         let slides = self.pieces[0].spread(&system.held_back(&x));
         let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
         let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
         #[cfg(not(toile_without = "self_contact"))]
-        if self.scene.self_collision {
+        if let Some(tree) = tree {
             let pairs = tree.crossings(&x).len();
             if pairs > 0 {
                 return Err(RestError::Crossing { pairs, state: Box::new(state) });

@@ -8,7 +8,7 @@ use parry3d_f64::query::PointQuery;
 use parry3d_f64::shape::{TriMesh, TriMeshFlags};
 
 fn index<V: BoundingVolume>(body: &Body) -> BodyIndex<V> {
-    BodyIndex::new(body, &Context::quiet()).unwrap()
+    BodyIndex::new(body, Distances::Asked, &Context::quiet()).unwrap()
 }
 
 /// Signed distance to the cube from -h to h.

@@ -9,15 +9,40 @@ fn to_ball(p: &Point3, bound: f64) -> Option<f64> {
     Some(p.coords.norm() - 0.5).filter(|d| d.abs() <= bound)
 }
 
+fn filled(points: &[Point3], distance: impl Fn(&Point3, f64) -> Option<f64> + Sync) -> Lattice {
+    let lattice = Lattice::around(points);
+    lattice.fill(&Context::quiet(), distance).unwrap();
+    lattice
+}
+
+/// Cells that have a distance.
+fn known(lattice: &Lattice) -> usize {
+    let distance = |d: &AtomicU64| f64::from_bits(d.load(Ordering::Relaxed));
+    lattice.distances.iter().filter(|d| distance(d).is_finite()).count()
+}
+
+#[test]
+fn cells_are_filled_where_they_are_asked_for_and_bound_alike() {
+    let ball = sphere(0.5, 16, 16);
+    let (ahead, asked) = (filled(&ball.positions, to_ball), Lattice::around(&ball.positions));
+    let mut next = numbers(2);
+    for count in 1..=50 {
+        let p = Point3::new(next(), 0.1 * next(), 0.1 * next()) - nalgebra::Vector3::new(0.5, 0.0, 0.0);
+        assert_eq!(asked.bounds(&p, to_ball), ahead.bounds(&p, to_ball));
+        assert!(known(&asked) <= count);
+    }
+    assert!(known(&asked) > 0);
+}
+
 #[test]
 fn its_bounds_hold_and_are_not_loose() {
     let ball = sphere(0.5, 16, 16);
-    let lattice = Lattice::build(&ball.positions, &Context::quiet(), to_ball).unwrap();
-    assert!(lattice.distances.iter().all(|d| d.is_finite()));
+    let lattice = filled(&ball.positions, to_ball);
+    assert_eq!(known(&lattice), lattice.distances.len());
     let mut next = numbers(1);
     for _ in 0..2000 {
         let p = Point3::new(next() - 0.5, next() - 0.5, next() - 0.5) * 1.2;
-        let (least, most) = lattice.bounds(&p).unwrap();
+        let (least, most) = lattice.bounds(&p, |_, _| None).unwrap();
         let exact = p.coords.norm() - 0.5;
         assert!(least <= exact && exact <= most, "{p} {least} {exact} {most}");
         assert!(most == f64::INFINITY || most - least < 4.0 * lattice.cell);
@@ -27,15 +52,15 @@ fn its_bounds_hold_and_are_not_loose() {
 #[test]
 fn a_flat_or_thin_body_does_not_ask_for_endless_cells() {
     let thin = [Point3::origin(), Point3::new(1000.0, 1e-9, 0.0)];
-    let lattice = Lattice::build(&thin, &Context::quiet(), |_, _| Some(1.0)).unwrap();
+    let lattice = Lattice::around(&thin);
     assert!(lattice.distances.len() <= MOST_ALONG_AXIS);
 }
 
 #[test]
 fn points_that_are_no_number_have_no_bounds() {
-    let lattice = Lattice::build(&sphere(0.5, 8, 8).positions, &Context::quiet(), to_ball).unwrap();
-    assert_eq!(lattice.bounds(&Point3::new(f64::NAN, 0.0, 0.0)), None);
-    assert_eq!(lattice.bounds(&Point3::new(0.0, f64::INFINITY, 0.0)), None);
+    let lattice = Lattice::around(&sphere(0.5, 8, 8).positions);
+    assert_eq!(lattice.bounds(&Point3::new(f64::NAN, 0.0, 0.0), to_ball), None);
+    assert_eq!(lattice.bounds(&Point3::new(0.0, f64::INFINITY, 0.0), to_ball), None);
 }
 
 #[test]
@@ -43,6 +68,6 @@ fn stops_when_asked() {
     let cancel = Cancel::new();
     cancel.cancel();
     let cx = Context::new("test", std::path::Path::new("."), cancel, std::sync::Arc::new(()));
-    let error = Lattice::build(&sphere(0.5, 8, 8).positions, &cx, to_ball).unwrap_err();
+    let error = Lattice::around(&sphere(0.5, 8, 8).positions).fill(&cx, to_ball).unwrap_err();
     assert_eq!(error.message, "stopped on request");
 }

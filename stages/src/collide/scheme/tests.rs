@@ -13,7 +13,7 @@ const CARD: ColliderCard =
     ColliderCard { thickness: 1e-3, friction: 0.3, restitution: 0.0, self_collision: true, penalty: None };
 
 fn scheme<V: BoundingVolume>() -> BvhScheme<V> {
-    BvhScheme::new(CARD, None, &Context::quiet()).unwrap()
+    BvhScheme::new(CARD, None, Distances::Asked, &Context::quiet()).unwrap()
 }
 
 fn contacts(scheme: &dyn Collide, (positions, triangles): &Cloth, reach: f64) -> Vec<SelfContact> {

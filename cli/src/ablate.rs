@@ -1,0 +1,44 @@
+//! `toile trade PIPELINE --ablate`: each decision of a pipeline turned round.
+
+use crate::args::TradeArgs;
+use crate::trade::{bench, default_folder, failed, with_progress};
+use crate::{Streams, exit, interrupt};
+use std::path::Path;
+use toile_core::pipeline::Pipeline;
+use toile_core::{StageError, write_files};
+use toile_trade::ablate::{Ablation, Options, ablate, files, lines};
+use toile_trade::slot::Source;
+
+/// Measures, writes the files and prints the table.
+pub(crate) fn run(
+    args: &TradeArgs,
+    source: &Source<'_>,
+    pipeline: &Pipeline,
+    streams: &mut Streams<'_>,
+) -> u8 {
+    let options =
+        Options { repeats: args.study.repeats, limit: args.study.limit, bench: bench(args.until.clone()) };
+    let out = args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "ablation"));
+    let measured = with_progress(&args.study, streams, |tell| ablate(source, pipeline, &options, tell));
+    match measured.and_then(|ablation| written(&ablation, &out).map(|()| ablation)) {
+        Err(e) => failed(&e, streams),
+        Ok(ablation) => {
+            match args.json {
+                true => streams.say(serde_json::to_string_pretty(&ablation).unwrap_or_default()),
+                false => {
+                    lines(&ablation).iter().for_each(|l| streams.say(l));
+                    streams.say(format!("table in {}", out.display()));
+                }
+            }
+            exit::DONE
+        }
+    }
+}
+
+fn written(ablation: &Ablation, out: &Path) -> Result<(), StageError> {
+    let files = files(ablation)?;
+    interrupt::begin_writing();
+    let written = write_files(out, &files);
+    interrupt::end_writing();
+    written.map(drop)
+}

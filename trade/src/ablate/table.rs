@@ -1,0 +1,125 @@
+//! An ablation as lines of text: a table for people, comma-separated values for programs.
+
+use super::record::{Ablation, Change, Row};
+use crate::record::median;
+use std::fmt::Write;
+
+/// The table: a line a decision, and below it how it is turned round and what the rule comes to.
+pub fn lines(ablation: &Ablation) -> Vec<String> {
+    let runs = ablation.cpu_s.len();
+    let mut lines = vec![
+        format!(
+            "{}: as decided {:.2} s of processor time (from {:.2} to {:.2} s in {runs} runs)",
+            ablation.pipeline,
+            median(&ablation.cpu_s),
+            ablation.cpu_s.iter().copied().fold(f64::INFINITY, f64::min),
+            ablation.cpu_s.iter().copied().fold(0.0, f64::max),
+        ),
+        format!(
+            "{:<20} {:<18} {:>9} {:>8} {:>8} | {:>7} {:>7} {:>5} | {:>7} {:>7} | {:>7} | {:>9}  within",
+            "stage",
+            "rule",
+            "turned, s",
+            "saved, s",
+            "+-",
+            "95 %",
+            "worst",
+            "bits",
+            "outl 95",
+            "worst",
+            "texture",
+            "crossings"
+        ),
+    ];
+    for row in &ablation.rows {
+        lines.push(line(row));
+        lines.push(format!("    turned round by {}", row.turned));
+        let why = row.failed.as_ref().map_or_else(String::new, |why| format!(": {why}"));
+        lines.push(format!("    {}{why}", row.verdict.as_str()));
+    }
+    lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved".into());
+    lines
+}
+
+fn line(row: &Row) -> String {
+    let seconds = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |s| format!("{s:.2}"));
+    let saved = row.saved();
+    let time = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
+    let mut text = format!(
+        "{:<20} {:<18} {:>9} {:>8} {:>8} | ",
+        row.decided.stage,
+        row.decided.decision.rule,
+        seconds(time),
+        seconds(saved.map(|s| s.mean)),
+        seconds(saved.map(|s| s.noise))
+    );
+    let _ = match &row.change {
+        Some(c) => write!(
+            text,
+            "{:>7.2} {:>7.2} {:>5} | {:>7.3} {:>7.3} | {:>7} | {:>9}",
+            c.distance_mm.p95,
+            c.distance_mm.max,
+            if c.same_bits { "same" } else { "other" },
+            c.outline_mm.p95,
+            c.outline_mm.max,
+            c.texture_levels.map_or_else(|| "-".to_owned(), |t| format!("{t:.2}")),
+            crossings(c),
+        ),
+        None => {
+            write!(text, "{:>7} {:>7} {:>5} | {:>7} {:>7} | {:>7} | {:>9}", "-", "-", "-", "-", "-", "-", "-")
+        }
+    };
+    format!("{text}  {}", row.decided.decision.tolerance)
+}
+
+fn crossings(c: &Change) -> String {
+    let [a, b] = c.crossings.map(|n| n.map_or_else(|| "-".to_owned(), |n| n.to_string()));
+    format!("{a}, {b}")
+}
+
+/// The columns of the file.
+const HEAD: &str = "stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,saved_s,saved_noise_s,same_bits,\
+    distance_mean_mm,distance_p95_mm,distance_max_mm,outline_p95_mm,outline_max_mm,texture_levels,crossings,\
+    crossings_turned,verdict\n";
+
+/// All rows as comma-separated values, a head line first; empty where a figure is not known.
+pub fn csv(ablation: &Ablation) -> String {
+    let mut text = HEAD.to_owned();
+    let own = median(&ablation.cpu_s);
+    for row in &ablation.rows {
+        let d = &row.decided.decision;
+        let turned = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
+        let c = row.change.as_ref();
+        let same = c.map_or("", |c| if c.same_bits { "true" } else { "false" });
+        let numbers = [
+            c.map(|c| c.distance_mm.mean),
+            c.map(|c| c.distance_mm.p95),
+            c.map(|c| c.distance_mm.max),
+            c.map(|c| c.outline_mm.p95),
+            c.map(|c| c.outline_mm.max),
+            c.and_then(|c| c.texture_levels),
+            c.and_then(|c| c.crossings[0]).map(|n| n as f64),
+            c.and_then(|c| c.crossings[1]).map(|n| n as f64),
+        ];
+        let noise = row.saved().map(|s| s.noise).filter(|n| n.is_finite());
+        let times = [Some(own), turned, row.saved().map(|s| s.mean), noise];
+        let _ = writeln!(
+            text,
+            "{},{},{},{},\"{}\",{},{same},{},{}",
+            row.decided.stage,
+            d.rule,
+            d.state.as_str(),
+            d.tolerance,
+            row.turned.replace('"', "\"\""),
+            listed(&times),
+            listed(&numbers),
+            row.verdict.as_str().replace(',', ";")
+        );
+    }
+    text
+}
+
+fn listed(numbers: &[Option<f64>]) -> String {
+    let one = |x: &Option<f64>| x.map_or_else(String::new, |x| format!("{}", (x * 1e6).round() / 1e6));
+    numbers.iter().map(one).collect::<Vec<_>>().join(",")
+}
