@@ -12,6 +12,7 @@ mod divide;
 pub(crate) mod fixtures;
 mod grid;
 mod lattice;
+mod layout;
 mod polyline;
 mod predicates;
 mod refine;
