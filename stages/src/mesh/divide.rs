@@ -13,7 +13,7 @@
 use super::check::show;
 use super::crossing::first_crossing;
 use super::layout::{Layout, Line, SNAP, Stretch};
-use super::polyline::{even, finer, fine_enough, place};
+use super::polyline::{even, fine_enough, finer, place};
 use toile_core::StageError;
 use toile_core::prelude::*;
 
@@ -76,7 +76,10 @@ impl Cuts {
         // The two legs of a dart end on one point and are sewn to each other, so they get the count of the longer.
         let count = |i: usize| layout.legs(i).into_iter().map(|j| own[j]).fold(own[i], usize::max);
         Ok(Cuts {
-            stretches: layout.stretches().map(|s| Ok(even(parts(s, h)?))).collect::<Result<_, StageError>>()?,
+            stretches: layout
+                .stretches()
+                .map(|s| Ok(even(parts(s, h)?)))
+                .collect::<Result<_, StageError>>()?,
             lines: (0..own.len()).map(|i| even(count(i))).collect(),
         })
     }

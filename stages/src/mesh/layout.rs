@@ -78,9 +78,8 @@ impl<'a> Layout<'a> {
             let points = &self.lines[i].path.points;
             [points[0], points[points.len() - 1]]
         };
-        let touch = |j: usize| {
-            ends(i).iter().any(|p| ends(j).iter().any(|q| (p - q).norm() <= SNAP * self.h))
-        };
+        let touch =
+            |j: usize| ends(i).iter().any(|p| ends(j).iter().any(|q| (p - q).norm() <= SNAP * self.h));
         (0..self.lines.len()).filter(|&j| dart(i) && dart(j) && touch(j)).collect()
     }
 }

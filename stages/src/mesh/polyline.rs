@@ -61,19 +61,15 @@ impl Polyline {
 
     /// The farthest that it leaves the chords between the given arc lengths.
     pub(crate) fn deviation(&self, arcs: &[f64]) -> f64 {
-        let mut k = 0;
-        let mut worst: f64 = 0.0;
-        for w in arcs.windows(2) {
-            let (a, b) = (self.at(w[0]), self.at(w[1]));
-            while k < self.arc.len() && self.arc[k] <= w[0] {
-                k += 1;
-            }
-            while k < self.arc.len() && self.arc[k] < w[1] {
-                worst = worst.max(distance_to_segment(self.points[k], a, b).0);
-                k += 1;
-            }
-        }
-        worst
+        arcs.windows(2).map(|w| self.sag(w[0], w[1])).fold(0.0, f64::max)
+    }
+
+    /// The farthest that it leaves the chord between two arc lengths.
+    pub(crate) fn sag(&self, from: f64, to: f64) -> f64 {
+        let (a, b) = (self.at(from), self.at(to));
+        let first = self.arc.partition_point(|s| *s <= from);
+        let last = self.arc.partition_point(|s| *s < to).max(first);
+        self.points[first..last].iter().map(|p| distance_to_segment(*p, a, b).0).fold(0.0, f64::max)
     }
 }
 
@@ -112,7 +108,8 @@ pub(crate) fn even(n: usize) -> Vec<f64> {
 
 /// The shares with each part cut into `times` equal ones.
 pub(crate) fn finer(shares: &[f64], times: usize) -> Vec<f64> {
-    let part = |w: &[f64]| (0..times).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / times as f64)).collect::<Vec<_>>();
+    let part =
+        |w: &[f64]| (0..times).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / times as f64)).collect::<Vec<_>>();
     shares.windows(2).flat_map(part).chain(shares.last().copied()).collect()
 }
 
