@@ -11,6 +11,7 @@ use super::super::polyline::Polyline;
 use super::field::{Range, SizeField};
 use std::collections::BTreeMap;
 use toile_core::artifact::{CHORD_TOLERANCE, Point2, Vector2};
+use toile_core::{Context, StageError};
 
 /// From a chord to the next shorter one.
 const RATIO: f64 = 1.15;
@@ -22,23 +23,33 @@ const SAMPLES_AN_EDGE: f64 = 2.0;
 const ACROSS: f64 = 3.0;
 /// Cosine between "straight across" and the way to the other side.
 const FACING: f64 = 0.7;
+/// Samples between two looks at the stop flag.
+const CHECK_EVERY: usize = 200;
 /// Sides meet nearby where the way along the outline is no longer than so many times the way across.
 const MEETS: f64 = 4.0;
 
 /// Lowers the field along everything that a mesh must follow; [`SizeField::spread`] is for the caller.
-pub(crate) fn lower_along(field: &mut SizeField, layout: &Layout<'_>) {
+pub(crate) fn lower_along(
+    field: &mut SizeField,
+    layout: &Layout<'_>,
+    cx: &Context,
+) -> Result<(), StageError> {
     let range = field.range();
     let stretches = layout.stretches().map(|s| (&s.line, &s.marks));
     for (line, marks) in stretches.chain(layout.lines.iter().map(|l| (&l.path, &l.marks))) {
-        for arc in samples(line, range.fine) {
+        for (k, arc) in samples(line, range.fine).enumerate() {
+            if k % CHECK_EVERY == 0 {
+                cx.check()?;
+            }
             field.lower(line.at(arc), chord_at(line, marks, arc, range));
         }
     }
     let border: Vec<Vec<Sample>> =
         layout.loops.iter().map(|stretches| rim(stretches.iter().map(|s| &s.line), range.fine)).collect();
-    for (p, size) in narrow(&border, range) {
+    for (p, size) in narrow(&border, range, cx)? {
         field.lower(p, size);
     }
+    Ok(())
 }
 
 /// Arc lengths at most half of the shortest edge apart, both ends included.
@@ -91,7 +102,7 @@ fn rim<'a>(lines: impl Iterator<Item = &'a Polyline>, fine: f64) -> Vec<Sample> 
 }
 
 /// Where the cloth is narrow, and how long edges should be there, metres.
-fn narrow(border: &[Vec<Sample>], range: Range) -> Vec<(Point2, f64)> {
+fn narrow(border: &[Vec<Sample>], range: Range, cx: &Context) -> Result<Vec<(Point2, f64)>, StageError> {
     let reach = ACROSS * range.edge;
     let cell = |p: Point2| ((p.x / reach).floor() as i64, (p.y / reach).floor() as i64);
     let mut cells: BTreeMap<(i64, i64), Vec<(usize, &Sample)>> = BTreeMap::new();
@@ -107,8 +118,15 @@ fn narrow(border: &[Vec<Sample>], range: Range) -> Vec<(Point2, f64)> {
         ways.fold(reach, f64::min)
     };
     let all = border.iter().enumerate().flat_map(|(l, rim)| rim.iter().map(move |s| (l, s)));
-    let sized = all.map(|(l, s)| (s.at, across(l, s) / ACROSS));
-    sized.filter(|(_, size)| *size < range.edge).collect()
+    let mut sized = Vec::new();
+    for (k, (l, s)) in all.enumerate() {
+        if k % CHECK_EVERY == 0 {
+            cx.check()?;
+        }
+        sized.push((s.at, across(l, s) / ACROSS));
+    }
+    sized.retain(|(_, size)| *size < range.edge);
+    Ok(sized)
 }
 
 /// The way through the cloth from one sample to another that faces it; `round` is the length of the loop that both are on.
@@ -125,6 +143,7 @@ fn way_across(from: &Sample, to: &Sample, round: Option<f64>) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::super::super::fixtures::{disc, p, rectangle, vest};
     use super::*;
     use toile_core::artifact::Outline;
@@ -133,7 +152,7 @@ mod tests {
 
     fn sized(outline: &Outline) -> SizeField {
         let mut field = SizeField::new(outline.bounds(), RANGE);
-        lower_along(&mut field, &Layout::of(outline, RANGE.fine));
+        lower_along(&mut field, &Layout::of(outline, RANGE.fine), &Context::quiet()).unwrap();
         field.spread();
         field
     }

@@ -70,8 +70,15 @@ pub(crate) fn agree(
     let ties = ties(panels, plan);
     for _ in 0..ROUNDS {
         cx.check()?;
-        let changed = ties.iter().filter(|t| t.len() > 1).map(|t| lower_both(panels, t)).fold(0.0, f64::max);
-        panels.iter_mut().for_each(|p| p.field.spread());
+        let mut changed: f64 = 0.0;
+        for tie in ties.iter().filter(|t| t.len() > 1) {
+            cx.check()?;
+            changed = changed.max(lower_both(panels, tie));
+        }
+        for panel in panels.iter_mut() {
+            cx.check()?;
+            panel.field.spread();
+        }
         if changed < SAME {
             break;
         }

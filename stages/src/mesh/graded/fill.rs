@@ -31,7 +31,7 @@ pub(crate) fn fill(
     let tree = Quadtree::new(outline.bounds(), field);
     cx.check()?;
     let mut points = division.points.clone();
-    points.extend(tree.seeds(division, field));
+    points.extend(tree.seeds(division, field, cx)?);
     let free = (0..points.len()).map(|v| v >= division.points.len()).collect();
     cx.check()?;
     let mut mesh = triangulate(points, free, &division.loop_segments(), &division.chain_segments())?;

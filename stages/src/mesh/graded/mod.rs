@@ -74,7 +74,7 @@ impl GradedMesher {
         let mut panels = each(cx, &named, |(name, outline), cx| {
             let fault = |e| within(name, e);
             check_outline(outline, range.edge, cx).map_err(fault)?;
-            let sized = self.sized(name, outline, range, bent);
+            let sized = self.sized(name, outline, range, bent, cx)?;
             check_count(outline, &sized.field).map_err(fault)?;
             Ok(sized)
         })?;
@@ -113,17 +113,19 @@ impl GradedMesher {
         outline: &'a Outline,
         range: Range,
         bent: Option<(&Garment, &[f64])>,
-    ) -> Sized<'a> {
+        cx: &Context,
+    ) -> Result<Sized<'a>, StageError> {
         let layout = Layout::of(outline, range.fine);
         let mut field = SizeField::new(outline.bounds(), range);
-        curves::lower_along(&mut field, &layout);
+        curves::lower_along(&mut field, &layout, cx)?;
         if let Some((garment, curvatures)) = bent {
             for panel in garment.panels.iter().filter(|p| p.name == name) {
                 folds::lower_at_folds(&mut field, garment, panel, curvatures, self.tolerance.metres());
             }
         }
+        cx.check()?;
         field.spread();
-        Sized { name, layout, field }
+        Ok(Sized { name, layout, field })
     }
 }
 

@@ -11,6 +11,7 @@ use super::super::predicates::distance_to_segment;
 use super::field::SizeField;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{Point2, Vector2};
+use toile_core::{Context, StageError};
 
 /// A cell is cut where the size in it is below this share of its side: half-way, by ratio, to its half.
 const CUT: f64 = std::f64::consts::FRAC_1_SQRT_2;
@@ -105,13 +106,19 @@ impl Quadtree {
     }
 
     /// The corners inside a divided outline and clear of its segments, row by row.
-    pub(crate) fn seeds(&self, division: &Division, field: &SizeField) -> Vec<Point2> {
+    pub(crate) fn seeds(
+        &self,
+        division: &Division,
+        field: &SizeField,
+        cx: &Context,
+    ) -> Result<Vec<Point2>, StageError> {
         let mut rows: BTreeMap<i64, Vec<i64>> = BTreeMap::new();
         self.corners().into_iter().for_each(|(j, i)| rows.entry(j).or_default().push(i));
         let at = |j: i64, i: i64| self.point(self.deepest(), i as f64, j as f64);
         let mut seeds: BTreeMap<(i64, i64), Point2> = BTreeMap::new();
         let loops = division.loop_segments();
         for (&j, row) in &rows {
+            cx.check()?;
             let crossings = crossings(division, &loops, at(j, 0).y);
             let inside = |p: &Point2| crossings.partition_point(|x| *x <= p.x) % 2 == 1;
             seeds.extend(row.iter().map(|&i| ((j, i), at(j, i))).filter(|(_, p)| inside(p)));
@@ -120,7 +127,8 @@ impl Quadtree {
             let [a, b] = s.map(|v| division.points[v as usize]);
             self.drop_near(&mut seeds, &rows, (a, b), field);
         }
-        seeds.into_values().collect()
+        cx.check()?;
+        Ok(seeds.into_values().collect())
     }
 
     /// Takes out the corners near a segment.
