@@ -259,7 +259,7 @@ impl Context {
     }
 
     /// Takes over what one entry of a set noted, under the entry's name.
-    pub(crate) fn absorb(&self, entry: &str, figures: Vec<Measure>, warnings: Vec<String>) {
+    pub fn absorb(&self, entry: &str, figures: Vec<Measure>, warnings: Vec<String>) {
         let named = figures.into_iter().map(|m| Measure { name: format!("{entry}.{}", m.name), ..m });
         self.figures.lock().unwrap_or_else(PoisonError::into_inner).extend(named);
         let named = warnings.into_iter().map(|w| format!("{entry}: {w}"));

@@ -226,10 +226,11 @@ fn boundary_preserving(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String
     for case in cases {
         let outcome = run(trial, case)?;
         let made = outcome.values().unwrap_or(&[]);
-        for panel in made.iter().flat_map(PortValue::entries).filter_map(|(_, a)| typed::<Panel>(a.as_ref()))
-        {
+        let panel = |(name, a)| Some((name, typed::<Panel>(a)?));
+        let entries = made.iter().flat_map(PortValue::entries).map(|(name, a)| (name, a.as_ref()));
+        for (name, panel) in entries.filter_map(panel) {
             let of = case.inputs.0.iter().flatten().flat_map(PortValue::entries);
-            for (_, input) in of {
+            for (_, input) in of.filter(|(of, _)| *of == name) {
                 let kept = match (typed::<Outline>(input.as_ref()), typed::<Panel>(input.as_ref())) {
                     (Some(outline), _) => on_outline(outline, panel),
                     (_, Some(before)) => same_boundary(before, panel),

@@ -5,7 +5,8 @@
 //! the panel is meshed anew; counts of named edges are agreed with other panels and stay.
 
 use super::check::{check_outline, show};
-use super::divide::{Division, divide};
+use super::divide::{Cuts, Division, divide};
+use super::layout::Layout;
 use super::predicates::least_angle;
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
@@ -36,17 +37,32 @@ pub(crate) fn mesh_outline(
     mesh: impl Fn(&Division) -> Result<Meshed, StageError>,
 ) -> Result<Panel, StageError> {
     check_outline(outline, h, cx)?;
-    let mut division = divide(outline, h, &[])?;
-    let mut finer = vec![1; division.stretches.len()];
+    let layout = Layout::of(outline, h);
+    let cuts = Cuts::even(&layout, h)?;
+    mesh_cut(outline, &layout, cuts, h, cx, mesh)
+}
+
+/// Meshes an outline that has been checked, cut as `cuts` say; `h` is the greatest edge length, metres.
+pub(crate) fn mesh_cut(
+    outline: &Outline,
+    layout: &Layout<'_>,
+    mut cuts: Cuts,
+    h: f64,
+    cx: &Context,
+    mesh: impl Fn(&Division) -> Result<Meshed, StageError>,
+) -> Result<Panel, StageError> {
+    let mut division = divide(layout, &cuts, h)?;
     let mut meshed = mesh(&division)?;
     for _ in 0..FINER {
         let thin = thin_stretches(&division, &meshed);
         if thin.is_empty() {
             break;
         }
-        thin.iter().for_each(|&k| finer[k] *= 2);
+        let mut times = vec![1; division.stretches.len()];
+        thin.iter().for_each(|&k| times[k] = 2);
         cx.check()?;
-        division = divide(outline, h, &finer)?;
+        cuts = cuts.finer(layout, &times);
+        division = divide(layout, &cuts, h)?;
         meshed = mesh(&division)?;
     }
     assemble(outline, &division, meshed, h, cx)

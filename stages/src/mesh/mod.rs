@@ -1,6 +1,6 @@
 //! Meshers: outline to panel.
 //!
-//! Both share all but the inside: [`check`](self) of the outline, its division into segments that
+//! All share all but the inside: [`check`](self) of the outline, its division into segments that
 //! no mesher may change, constrained triangulation, mending of angles, assembly.
 
 mod assemble;
@@ -10,8 +10,10 @@ mod delaunay;
 mod divide;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod graded;
 mod grid;
 mod lattice;
+mod layout;
 mod polyline;
 mod predicates;
 mod refine;
@@ -21,6 +23,7 @@ mod triangulate;
 mod trimesh;
 
 pub use delaunay::DelaunayMesher;
+pub use graded::GradedMesher;
 pub use grid::GridMesher;
 pub(crate) use predicates::least_angle;
 
@@ -30,4 +33,5 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<GridMesher>();
     registry.add::<DelaunayMesher>();
+    registry.add::<GradedMesher>();
 }

@@ -1,7 +1,7 @@
 //! Open polylines measured by arc length.
 
 use super::predicates::distance_to_segment;
-use toile_core::artifact::Point2;
+use toile_core::artifact::{CHORD_TOLERANCE, Point2};
 
 /// A polyline with the arc length of each of its points.
 #[derive(Debug, Clone)]
@@ -61,40 +61,67 @@ impl Polyline {
 
     /// The farthest that it leaves the chords between the given arc lengths.
     pub(crate) fn deviation(&self, arcs: &[f64]) -> f64 {
-        let mut k = 0;
-        let mut worst: f64 = 0.0;
-        for w in arcs.windows(2) {
-            let (a, b) = (self.at(w[0]), self.at(w[1]));
-            while k < self.arc.len() && self.arc[k] <= w[0] {
-                k += 1;
-            }
-            while k < self.arc.len() && self.arc[k] < w[1] {
-                worst = worst.max(distance_to_segment(self.points[k], a, b).0);
-                k += 1;
-            }
-        }
-        worst
+        arcs.windows(2).map(|w| self.sag(w[0], w[1])).fold(0.0, f64::max)
+    }
+
+    /// The farthest that it leaves the chord between two arc lengths.
+    pub(crate) fn sag(&self, from: f64, to: f64) -> f64 {
+        let (a, b) = (self.at(from), self.at(to));
+        let first = self.arc.partition_point(|s| *s <= from);
+        let last = self.arc.partition_point(|s| *s < to).max(first);
+        self.points[first..last].iter().map(|p| distance_to_segment(*p, a, b).0).fold(0.0, f64::max)
     }
 }
 
-/// Arc lengths that cut `length` into `n` parts, both ends included: equal parts, but that the
-/// division nearest to each mark slides onto it and its neighbours follow evenly.
+/// Arc lengths that cut `length` by `shares` (ascending, in any unit, both ends included), but that the division nearest to
+/// each mark slides onto it and its neighbours follow evenly.
 ///
-/// `n` must exceed the number of marks, which are ascending and inside.
-pub(crate) fn place(length: f64, n: usize, marks: &[f64]) -> Vec<f64> {
+/// There must be more parts than marks, which are ascending and inside.
+pub(crate) fn place(length: f64, shares: &[f64], marks: &[f64]) -> Vec<f64> {
+    let n = shares.len() - 1;
     let mut stops = vec![(0, 0.0)];
     for (k, &mark) in marks.iter().enumerate() {
         let (least, most) = (stops[k].0 + 1, n - (marks.len() - k));
-        let nearest = (mark / length * n as f64).round() as usize;
-        stops.push((nearest.clamp(least, most), mark));
+        stops.push((nearest(shares, mark / length * shares[n]).clamp(least, most), mark));
     }
     stops.push((n, length));
     let mut arcs = vec![0.0];
     for w in stops.windows(2) {
         let ((i, a), (j, b)) = (w[0], w[1]);
-        let parts = (j - i) as f64;
-        arcs.extend((1..j - i).map(|k| a + (b - a) * (k as f64 / parts)));
+        let part = shares[j] - shares[i];
+        arcs.extend((i + 1..j).map(|k| a + (b - a) * ((shares[k] - shares[i]) / part)));
         arcs.push(b);
     }
     arcs
+}
+
+/// The share nearest to `x`; of two as near the greater.
+fn nearest(shares: &[f64], x: f64) -> usize {
+    let k = shares.partition_point(|s| *s <= x).clamp(1, shares.len() - 1);
+    if x - shares[k - 1] < shares[k] - x { k - 1 } else { k }
+}
+
+/// The shares of `n` equal parts.
+pub(crate) fn even(n: usize) -> Vec<f64> {
+    (0..=n).map(|k| k as f64).collect()
+}
+
+/// The shares with each part cut into `times` equal ones.
+pub(crate) fn finer(shares: &[f64], times: usize) -> Vec<f64> {
+    let part =
+        |w: &[f64]| (0..times).map(|k| w[0] + (w[1] - w[0]) * (k as f64 / times as f64)).collect::<Vec<_>>();
+    shares.windows(2).flat_map(part).chain(shares.last().copied()).collect()
+}
+
+/// The least count, no less than `least`, whose parts are at most `h` long and whose chords stay
+/// within half of the tolerance.
+pub(crate) fn fine_enough(line: &Polyline, marks: &[f64], least: usize, h: f64) -> usize {
+    let length = line.length();
+    // Parts shorter than an eighth are no longer a matter of curvature but of a missed corner.
+    let most = ((8.0 * length / h).ceil() as usize).max(least);
+    let mut n = ((length / h - 1e-9).ceil() as usize).clamp(least, most);
+    while n < most && line.deviation(&place(length, &even(n), marks)) > 0.5 * CHORD_TOLERANCE * h {
+        n = (n + n.div_ceil(10)).min(most);
+    }
+    n
 }

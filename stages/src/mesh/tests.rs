@@ -4,7 +4,7 @@
 use super::crossing::first_crossing;
 use super::fixtures::*;
 use super::predicates::{distance_to_segment, segments_meet};
-use super::{DelaunayMesher, GridMesher};
+use super::{DelaunayMesher, GradedMesher, GridMesher};
 use proptest::prelude::*;
 use toile_core::prelude::*;
 use toile_core::{Cancel, Context, StageError};
@@ -19,7 +19,18 @@ fn delaunay(outline: &Outline, h: f64) -> Result<Panel, StageError> {
     DelaunayMesher { edge: Length::m(h), ..DelaunayMesher::default() }.run(outline, &Context::quiet())
 }
 
-const MESHERS: [Mesher; 2] = [grid, delaunay];
+/// Edges from `h` down to a third of it.
+pub(super) fn graded(outline: &Outline, h: f64) -> Result<Panel, StageError> {
+    let mesher = GradedMesher { edge: Length::m(h), ..GradedMesher::default() };
+    let outlines = [("panel".to_owned(), outline.clone())].into_iter().collect();
+    let panels = mesher.run(outlines, None, None, &Context::quiet())?;
+    Ok(panels.get("panel").unwrap().clone())
+}
+
+/// Those that cut a named edge evenly.
+const EVEN: [Mesher; 2] = [grid, delaunay];
+
+const MESHERS: [Mesher; 3] = [grid, delaunay, graded];
 
 /// Outlines, each with the least angle that its own corners leave to a mesh (degrees).
 fn fixtures() -> Vec<(&'static str, Outline, f64)> {
@@ -38,7 +49,7 @@ fn fixtures() -> Vec<(&'static str, Outline, f64)> {
 }
 
 /// All that makes a mesh a panel.
-fn check_sound(panel: &Panel) {
+pub(super) fn check_sound(panel: &Panel) {
     let mut sides: Vec<[u32; 2]> =
         panel.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]).collect();
     sides.sort_unstable();
@@ -109,7 +120,7 @@ fn every_fixture_at_every_resolution() {
 #[test]
 fn named_edges_are_cut_into_equal_parts_as_their_gauge_says() {
     let outline = vest();
-    for mesher in MESHERS {
+    for mesher in EVEN {
         let panel = mesher(&outline, 0.012).unwrap();
         assert_eq!(panel.edges.len(), 8);
         for (edge, chain) in outline.edges.iter().zip(&panel.edges) {
@@ -255,7 +266,7 @@ fn a_rough_outline_is_told() {
 }
 
 fn refused(outline: &Outline, h: f64) -> (ErrorCode, String) {
-    let [a, b] = MESHERS.map(|m| m(outline, h).expect_err("refused"));
+    let [a, b] = EVEN.map(|m| m(outline, h).expect_err("refused"));
     assert_eq!(a, b);
     (a.code, a.message)
 }

@@ -271,9 +271,21 @@ impl TriMesh {
         }
     }
 
+    /// The corners of the quadrilateral about the side opposite corner `k` of `t`, from that corner on, so that the side runs
+    /// from the second to the fourth; none for a wall or a border.
+    pub(crate) fn quad(&self, t: u32, k: usize) -> Option<[Point2; 4]> {
+        let n = self.adj[t as usize][k];
+        if n == NONE || self.wall[t as usize][k] {
+            return None;
+        }
+        let far = self.tris[n as usize][self.side_to(n, t)];
+        let tri = self.tris[t as usize];
+        Some([tri[k], tri[(k + 1) % 3], far, tri[(k + 2) % 3]].map(|v| self.points[v as usize]))
+    }
+
     /// Turns the side opposite corner `k` of `t` in its quadrilateral; false where that is not
     /// convex.
-    fn flip(&mut self, t: u32, k: usize) -> bool {
+    pub(crate) fn flip(&mut self, t: u32, k: usize) -> bool {
         let n = self.adj[t as usize][k];
         let m = self.side_to(n, t);
         let tri = self.tris[t as usize];

@@ -1,11 +1,15 @@
 //! Placement: flat panels into space around the body.
 
+mod carry;
 mod depth;
 mod fit;
 mod lift;
+mod locate;
 mod panels;
 mod sew;
+mod whole;
 
+pub use carry::Carry;
 pub use lift::Lift;
 pub use panels::Place;
 
@@ -14,6 +18,7 @@ use toile_core::Registry;
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Place>();
+    registry.add::<Carry>();
 }
 
 #[cfg(test)]

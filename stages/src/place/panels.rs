@@ -9,8 +9,8 @@ use super::depth::DepthMap;
 use super::fit::{Cut, check_girths};
 use super::lift::{Board, Lift, depth_inside, lift, profile};
 use super::sew::{Offsets, seams, unknown_panel};
+use super::whole::{offsets, whole};
 use std::collections::BTreeSet;
-use std::sync::Arc;
 use toile_core::prelude::*;
 
 /// Seam pairs that start farther apart than this are not sewn but dragged across the room, metres.
@@ -94,18 +94,7 @@ impl<'a> Scene<'a> {
         plan: &'a SewingPlan,
         body: &'a Body,
     ) -> Result<Self, StageError> {
-        let mut offsets = Offsets::new();
-        let mut offset = 0;
-        for (name, panel) in panels.iter() {
-            if panel.triangles.is_empty() {
-                return Err(StageError::invalid(format!("the panel \"{name}\" has no triangles")));
-            }
-            offsets.insert(name, (offset, panel));
-            offset += panel.positions.len();
-        }
-        if offsets.is_empty() {
-            return Err(StageError::invalid("there are no panels to place"));
-        }
+        let offsets = offsets(panels)?;
         if let Some(name) = plan.placements.keys().find(|n| !offsets.contains_key(n.as_str())) {
             return Err(unknown_panel(name, &offsets));
         }
@@ -228,40 +217,9 @@ impl<'a> Scene<'a> {
     }
 
     fn garment(&self, raise: f64, fabric: &Fabric) -> Result<Garment, StageError> {
-        let fabric = Arc::new(fabric.clone());
-        let mut g = Garment {
-            positions: Vec::new(),
-            velocities: Vec::new(),
-            rest: Vec::new(),
-            triangles: Vec::new(),
-            panels: Vec::new(),
-            seams: self.seams.clone(),
-            weld: Vec::new(),
-            pinned: Vec::new(),
-            status: SolveStatus::default(),
-        };
-        self.placed(raise)?.into_iter().for_each(|p| append(&mut g, p, &fabric));
-        g.velocities = vec![Vector3::zeros(); g.positions.len()];
-        g.weld = (0..g.positions.len() as u32).collect();
-        Ok(g)
+        let points = self.placed(raise)?.into_iter().flat_map(|p| p.points).collect();
+        Ok(whole(&self.offsets, self.seams.clone(), fabric, points))
     }
-}
-
-/// Adds a panel's vertices and triangles at the garment's end.
-fn append(g: &mut Garment, placed: Placed, fabric: &Arc<Fabric>) {
-    let (first, first_triangle) = (placed.first, g.triangles.len());
-    let shift = |v: &u32| v + first as u32;
-    g.positions.extend(placed.points);
-    g.rest.extend(&placed.panel.positions);
-    g.triangles.extend(placed.panel.triangles.iter().map(|t| t.map(|v| shift(&v))));
-    g.panels.push(GarmentPanel {
-        name: placed.name.to_owned(),
-        vertices: first..g.positions.len(),
-        triangles: first_triangle..g.triangles.len(),
-        boundary: placed.panel.boundary.iter().map(shift).collect(),
-        photo_px: placed.panel.photo_px.clone(),
-        fabric: fabric.clone(),
-    });
 }
 
 fn too_deep(panel: &str, depth: f64) -> StageError {

@@ -260,3 +260,88 @@ fn a_garment_that_is_too_small_is_named() {
     scene.fabric.weft = Curve::linear(500.0);
     assert!(scene.place(&place("()")).is_ok(), "a cloth that stretches by a third fits");
 }
+
+/// The vest's panels, placed, then sheared and lifted as a drape might be.
+fn draped(scene: &Scene) -> Garment {
+    let mut g = scene.place(&place("()")).unwrap();
+    let flat = g.rest.clone();
+    for panel in g.panels.clone() {
+        let lift = if panel.name == "front" { 0.3 } else { -0.3 };
+        for v in panel.vertices {
+            g.positions[v] =
+                Point3::new(1.1 * flat[v].x, 0.9 * flat[v].y + 0.2 * flat[v].x, lift + flat[v].y);
+        }
+    }
+    g
+}
+
+fn carry(panels: &Set<Panel>, scene: &Scene, drape: &Garment) -> Result<Garment, StageError> {
+    Carry::default().run(panels.clone(), &scene.plan, &scene.fabric, drape, &Context::quiet())
+}
+
+#[test]
+fn a_drape_carried_onto_its_own_mesh_is_itself() {
+    let scene = vest();
+    let drape = draped(&scene);
+    let carried = carry(&scene.panels, &scene, &drape).unwrap();
+    assert_eq!(carried.triangles, drape.triangles);
+    assert_eq!(carried.seams.len(), 4);
+    assert!(carried.seams.iter().all(|s| s.state == SeamState::Open));
+    let apart = carried.positions.iter().zip(&drape.positions).map(|(a, b)| (a - b).norm());
+    assert!(apart.fold(0.0, f64::max) < 1e-12);
+}
+
+#[test]
+fn another_mesh_of_the_same_panel_lies_where_its_flat_points_lay() {
+    let scene = vest();
+    let drape = draped(&scene);
+    // Every vertex a little aside, and the border a millimetre out: beyond the old mesh.
+    let moved = |panel: &Panel| {
+        let mut panel = panel.clone();
+        let shift = |p: &Point2| p + Vector2::new(1e-3 * (40.0 * p.y).sin(), 1e-3 * (50.0 * p.x).cos());
+        panel.positions = panel.positions.iter().map(shift).collect();
+        panel
+    };
+    let panels: Set<Panel> = scene.panels.iter().map(|(name, p)| (name.to_owned(), moved(p))).collect();
+    let carried = carry(&panels, &scene, &drape).unwrap();
+    for (v, (p, at)) in carried.rest.iter().zip(&carried.positions).enumerate() {
+        // The drape is linear in the flat point, so its pieces carry it exactly, beyond the border as well.
+        let (x, y) = (1.1 * p.x, 0.9 * p.y + 0.2 * p.x);
+        assert!((at.x - x).abs() < 1e-9 && (at.y - y).abs() < 1e-9, "vertex {v}: {at}");
+    }
+}
+
+#[test]
+fn what_cannot_be_carried_is_refused_in_words() {
+    let scene = vest();
+    let mut drape = draped(&scene);
+    let wide = |p: &Panel| {
+        let mut panel = p.clone();
+        panel.positions.iter_mut().for_each(|q| q.x *= 1.5);
+        panel
+    };
+    let panels: Set<Panel> = scene.panels.iter().map(|(name, p)| (name.to_owned(), wide(p))).collect();
+    let error = carry(&panels, &scene, &drape).unwrap_err();
+    assert!(
+        error
+            .message
+            .starts_with("panel \"back\" reaches more than 20 mm beyond the earlier garment's near ("),
+        "{}",
+        error.message
+    );
+    assert_eq!(error.hint.unwrap(), "both must be meshes of the same outlines");
+    drape.panels[0].name = "rear".into();
+    let error = carry(&scene.panels, &scene, &drape).unwrap_err();
+    assert_eq!(error.message, "the earlier garment has no panel \"back\"");
+    assert_eq!(error.hint.unwrap(), "its panels are \"rear\", \"front\"");
+    drape.panels[0].name = "back".into();
+    drape.positions.iter_mut().for_each(|p| p.y = 1e8);
+    let error = carry(&scene.panels, &scene, &drape).unwrap_err();
+    assert!(
+        error.message.contains("of the earlier garment lies farther away than 1000 km near ("),
+        "{error}"
+    );
+    drape.rest.iter_mut().for_each(|p| p.y = 0.0);
+    let error = carry(&scene.panels, &scene, &drape).unwrap_err();
+    assert_eq!(error.message, "panel \"back\" of the earlier garment has no area");
+}
