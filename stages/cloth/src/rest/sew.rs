@@ -1,6 +1,7 @@
 //! Panels are sewn, on the coarsest level.
 
 use super::assemble::{assemble, spacing, strongest};
+use super::graded::stages;
 use super::newton::Pace;
 use super::solve::{Progress, RestError, Work};
 use super::system::{System, Thread};
@@ -38,7 +39,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Pulls until the seams are closed, harder and harder.
+    /// Closes the seams of cloth as stiff as its first state is to be, or as they close.
     fn close(
         &mut self,
         sheet: &Sheet,
@@ -46,6 +47,32 @@ impl Work<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
+        let first = self.grade(size(sheet)).map_or(1.0, |g| g.first());
+        let mut force = 0.0;
+        for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
+            force = self.pull(sheet, pairs, x, stiff, progress)?;
+            if widest(x, pairs) <= self.rest.join_gap {
+                break;
+            }
+        }
+        let gap = widest(x, pairs);
+        self.joined_at = Some(gap);
+        if gap > self.rest.join_gap {
+            let seam = self.widest_seam(self.pieces.len() - 1, x);
+            return Err(RestError::SeamNotClosed { seam, gap, force });
+        }
+        Ok(())
+    }
+
+    /// Pulls harder and harder until the seams are closed; the force a metre that it took.
+    fn pull(
+        &mut self,
+        sheet: &Sheet,
+        pairs: &[[u32; 2]],
+        x: &mut [Vec3],
+        stiff: f64,
+        progress: &mut Progress<'_>,
+    ) -> Result<f64, RestError> {
         let coarsest = self.pieces.len() - 1;
         let spacing = spacing(&self.pieces[coarsest], pairs);
         let mut pull = SEAM_PULL * strongest(&self.cloths);
@@ -59,7 +86,7 @@ impl Work<'_> {
                 force: pull * spacing,
                 soft: 2.0 * self.rest.join_gap,
             };
-            let mut system = self.open(sheet)?;
+            let mut system = self.open(sheet, stiff)?;
             system.threads = pairs.iter().map(thread).collect();
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
@@ -69,33 +96,26 @@ impl Work<'_> {
             self.reports.push(report);
             pull *= HARDER.0;
         }
-        let gap = widest(x, pairs);
-        self.joined_at = Some(gap);
-        if gap > self.rest.join_gap {
-            let seam = self.widest_seam(coarsest, x);
-            return Err(RestError::SeamNotClosed { seam, gap, force: pull / HARDER.0 });
-        }
-        Ok(())
+        Ok(pull / HARDER.0)
     }
 
     /// Lets stiff cloth without seams forget its unevenness before it has weight.
     fn press(&mut self, sheet: &Sheet, x: &mut [Vec3], progress: &mut Progress<'_>) -> Result<(), RestError> {
-        if self.grade(size(sheet)).is_none() {
-            return Ok(());
-        }
+        let Some(grade) = self.grade(size(sheet)) else { return Ok(()) };
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, prove: false };
         let layout = x.to_vec();
-        let report = self.run(&mut self.open(sheet)?, sheet, &layout, x, &pace, &|_| false, progress)?;
+        let report =
+            self.run(&mut self.open(sheet, grade.first())?, sheet, &layout, x, &pace, &|_| false, progress)?;
         self.reports.push(report);
         Ok(())
     }
 
-    /// Weightless cloth before it is sewn: stiff, if bending is to be let go later, so that seams close without a chance fold.
-    fn open<'b>(&'b self, sheet: &Sheet) -> Result<System<'b>, RestError> {
+    /// Weightless cloth before it is sewn, so many times stiffer.
+    fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
         let mut system = assemble(self.scene, self.body, &self.pieces[self.pieces.len() - 1], sheet, true)?;
-        if let Some(grade) = self.grade(size(sheet)) {
-            system.elastic.stiffen(grade.first());
+        if self.rest.graded {
+            system.elastic.stiffen(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);
         }
         Ok(system)
