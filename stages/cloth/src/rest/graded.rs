@@ -42,7 +42,7 @@ impl Grade {
     pub(super) fn of(cloths: &[&Fabric], gravity: f64, size: f64) -> Option<Self> {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
-        length.is_finite().then(|| Self { length, first: FIRST_LENGTH * size })
+        length.is_finite().then_some(Self { length, first: FIRST_LENGTH * size })
     }
 
     /// The factor of the first state.
