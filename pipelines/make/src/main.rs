@@ -2,7 +2,7 @@
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the first argument, and as the second a factor for the photos' resolution:
-//! `toile-samples /tmp/large 2.4` makes photos of 12.9 and 16.6 megapixels.
+//! `toile-samples out/large 2.4` makes photos of 12.9 and 16.6 megapixels.
 
 mod cloth;
 mod colour;

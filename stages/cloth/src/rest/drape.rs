@@ -3,6 +3,7 @@
 use super::assemble::{assemble, gravity, kept_threads};
 use super::graded::{Grade, stages};
 use super::newton::Pace;
+use super::sew::size;
 use super::solve::{Draped, Progress, RestError, Work};
 use super::system::System;
 use crate::error::ClothError;
@@ -63,9 +64,8 @@ impl Level<'_> {
         lengths.sum::<f64>() / self.sheet.edges().len().max(1) as f64
     }
 
-    /// The root of its area, m.
     fn size(&self) -> f64 {
-        self.sheet.areas().iter().sum::<f64>().sqrt()
+        size(&self.sheet)
     }
 
     fn middle(&self) -> Vec3 {

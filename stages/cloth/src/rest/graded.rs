@@ -10,8 +10,8 @@
 //! Friction remembers, too. Where a garment stays in its place without it, as on shoulders, it is left out on the way and
 //! comes back at the end of each level. A skirt that slides down without it, or a cloth on a ball, keeps it all the way.
 //!
-//! Cost: some ten short runs on a level of about [`COARSEST`] nodes; the finest needs fewer steps, since it starts near. Limit:
-//! where friction is kept, where the cloth began is felt a little.
+//! Cost: a few short runs on the coarse levels and four or five on the finest, of some twenty factorizations each. Limit: where
+//! friction is kept, where the cloth began is felt a little.
 
 use crate::fabric::Fabric;
 
@@ -42,7 +42,9 @@ impl Grade {
     pub(super) fn of(cloths: &[&Fabric], gravity: f64, size: f64) -> Option<Self> {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
-        length.is_finite().then_some(Self { length, first: FIRST_LENGTH * size })
+        // Bending so small that its stiffest state is no finite number counts as none: it would be let go for ever.
+        Some(Self { length, first: FIRST_LENGTH * size })
+            .filter(|g| g.first().is_finite() && length.is_finite())
     }
 
     /// The factor of the first state.
@@ -103,5 +105,6 @@ mod tests {
             Fabric { bending_warp: 0.0, bending_weft: 0.0, ..Fabric::isotropic(0.1, 1000.0, 0.0, 0.0) };
         assert!(Grade::of(&[&limp], 10.0, 1.0).is_none());
         assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-6)], 0.0, 1.0).is_none());
+        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-320)], 10.0, 1.0).is_none());
     }
 }

@@ -134,7 +134,7 @@ impl Work<'_> {
 }
 
 /// The root of a sheet's area, m.
-fn size(sheet: &Sheet) -> f64 {
+pub(super) fn size(sheet: &Sheet) -> f64 {
     sheet.areas().iter().sum::<f64>().sqrt()
 }
 
