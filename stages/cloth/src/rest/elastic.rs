@@ -9,6 +9,7 @@
 
 mod border;
 mod law;
+mod part;
 mod spring;
 
 pub use spring::Spring;

@@ -35,6 +35,11 @@ impl Linear {
         Self { layout, pattern, symbolic, values: Vec::new(), factor: Factor::default() }
     }
 
+    /// What orders the elimination.
+    pub(super) fn layout(&self) -> &[Vec3] {
+        &self.layout
+    }
+
     /// Follows the contacts: new pairs need new places in the matrix. Whether any did.
     pub(super) fn follow(&mut self, system: &mut System<'_>) -> bool {
         let known = system.layers.iter().flat_map(|l| l.groups()).all(|nodes| self.pattern.couples(nodes));

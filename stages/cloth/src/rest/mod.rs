@@ -14,6 +14,7 @@ pub mod live;
 pub mod multifrontal;
 mod nearby;
 pub mod newton;
+mod part;
 pub mod pattern;
 pub mod pieces;
 mod sew;

@@ -18,11 +18,40 @@ const SLACK: f64 = 1.5;
 pub(super) struct Nearby {
     tree: Option<ClothTree>,
     at: Vec<Vec3>,
+    /// Whether the pairs are those of a part: they hold while its nodes stay near where they were.
+    held: bool,
 }
 
 impl Nearby {
     pub(super) fn new(tree: Option<ClothTree>) -> Self {
-        Self { tree, at: vec![] }
+        Self { tree, at: vec![], held: false }
+    }
+
+    /// Seeks the pairs about `x`, so that they hold for a part.
+    pub(super) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3]) {
+        self.at.clear();
+        self.seek(system, x, &vec![Vec3::zeros(); x.len()]);
+    }
+
+    /// Where the nodes were when the pairs were sought.
+    pub(super) fn at(&self) -> &[Vec3] {
+        &self.at
+    }
+
+    /// For a part whose pairs were sought where its nodes were `at`.
+    pub(super) fn of_part(at: Vec<Vec3>) -> Self {
+        Self { tree: None, at, held: true }
+    }
+
+    /// The share of `moves` from `x` for which the pairs of a part hold.
+    pub(super) fn within_reach(&self, system: &System<'_>, x: &[Vec3], moves: &[Vec3]) -> f64 {
+        let Some(layers) = system.layers.as_ref().filter(|_| self.held) else { return 1.0 };
+        let slack = SLACK * layers.thickness;
+        let share = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| {
+            let left = slack - (p - a).norm();
+            if m.norm() < left { 1.0 } else { (left / m.norm()).max(0.0) * 0.99 }
+        };
+        self.at.iter().zip(x).zip(moves).map(share).fold(1.0, f64::min)
     }
 
     /// Sees to it that the pairs of the layers hold for `moves` from `x`.
@@ -48,7 +77,9 @@ impl Nearby {
 
     /// Shortens moves that would lead cloth through cloth.
     pub(super) fn limit(&self, system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let (Some(_), Some(layers)) = (&self.tree, &system.layers) else { return };
+        let Some(layers) = system.layers.as_ref().filter(|_| self.tree.is_some() || self.held) else {
+            return;
+        };
         if layers.tangled.is_empty() {
             limit(x, moves, &layers.pairs);
         } else {

@@ -10,6 +10,9 @@
 //! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
 //! be many times longer. It leaves the answer alone, for the forces are those of the places.
 //!
+//! Where a step moved few nodes, these and those around them are brought to rest by themselves before the next one (see
+//! `part`); a state of rest is proved with all.
+//!
 //! Cost of a step: one factorization, O(n^1.5), and O(n) for all else. Of the short steps that prove rest only the first of a
 //! row has its own; the cloth moves so little in them that it serves the others. What the search along a step has looked
 //! up at its end is not looked up again where the next step starts.
@@ -17,6 +20,7 @@
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
+use super::part::{Part, widen};
 use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
@@ -50,6 +54,18 @@ const CALM: usize = 3;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
+
+/// Share of the greatest move from which on a node is awake.
+const AWAKE: f64 = 0.3;
+
+/// Rings of elements around the awake nodes that move with them.
+const RINGS: usize = 2;
+
+/// Greatest share of the nodes that is worth a system of its own.
+const FEW: f64 = 0.15;
+
+/// Steps of such a part at most, before the whole looks again.
+const PART_STEPS: usize = 20;
 
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
@@ -110,6 +126,10 @@ pub struct Descent {
     last: f64,
     /// What the last step found where it ended.
     before: Option<Before>,
+    /// The last step.
+    moves: Vec<Vec3>,
+    /// Whether a step was cut short where the pairs of a part end.
+    left: bool,
 }
 
 /// What a step found where it ended.
@@ -131,6 +151,11 @@ impl Descent {
         let mut nearby = Nearby::new(tree);
         nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
         nearby.untangle(system, x);
+        Self::among(nearby, system, layout, x, first)
+    }
+
+    /// The same where the neighbours are known.
+    fn among(nearby: Nearby, system: &mut System<'_>, layout: &[Vec3], x: &[Vec3], first: f64) -> Self {
         system.touch(x);
         let linear = Linear::new(system, layout.to_vec());
         let outcome = Outcome { dt: first, ..Outcome::default() };
@@ -147,6 +172,8 @@ impl Descent {
             dt: first,
             last: f64::INFINITY,
             before: None,
+            moves: Vec::new(),
+            left: false,
         }
     }
 
@@ -221,6 +248,9 @@ impl Descent {
         shorten(&mut moves, pace.farthest / longest);
         let pulled = system.pull(x, &mut moves, pace.farthest);
         system.clear_of_body(x, &mut moves);
+        let reach = self.nearby.within_reach(system, x, &moves);
+        self.left = reach < 1.0;
+        shorten(&mut moves, reach);
         self.nearby.seek(system, x, &moves);
         self.nearby.limit(system, x, &mut moves);
         let start = (!pulled).then(|| match lasting {
@@ -232,6 +262,7 @@ impl Descent {
         system.elastic.foretell(x, &moves);
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let end = way.and_then(|w| w.end);
+        self.moves = moves;
         self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
         self.plan(system, x, pulled, pace);
         Ok(self.outcome)
@@ -256,6 +287,50 @@ impl Descent {
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
         self.calm = if calm { self.calm + 1 } else { 0 };
         self.proves = pace.prove && self.calm >= if self.failed { CALM } else { 1 };
+    }
+
+    /// Brings the nodes that the last step moved most to rest by themselves, where they are few. Near rest a few nodes buckle
+    /// one after the other while the others sleep.
+    ///
+    /// # Errors
+    /// [`Halt`], as [`Self::step`].
+    fn settle_awake(
+        &mut self,
+        system: &mut System<'_>,
+        x: &mut [Vec3],
+        pace: &Pace,
+        stop: &Stop,
+    ) -> Result<(), Halt> {
+        let Some(awake) = self.awake(system) else { return Ok(()) };
+        self.nearby.seek_about(system, x);
+        let mut part = Part::of(system, awake);
+        let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
+        let nearby = Nearby::of_part(part.pick(self.nearby.at()));
+        rayon::scope(|_| {
+            let mut inner = Self::among(nearby, &mut part.system, &layout, &own, self.dt);
+            for _ in 0..PART_STEPS {
+                let outcome = inner.step_here(&mut part.system, &mut own, pace, stop)?;
+                if outcome.at_rest || inner.left {
+                    break;
+                }
+            }
+            Ok::<(), Halt>(())
+        })?;
+        part.put_back(&own, system, x);
+        (self.before, self.serves) = (None, false);
+        Ok(())
+    }
+
+    /// The nodes that the last step moved most and those around them, if they are few.
+    fn awake(&self, system: &System<'_>) -> Option<Vec<bool>> {
+        let most = greatest(&self.moves);
+        if system.is_tangled() || !system.pulls.is_empty() || most < ROUNDING {
+            return None;
+        }
+        let mut awake = self.moves.iter().map(|m| m.norm() > AWAKE * most).collect();
+        widen(system, &mut awake, RINGS);
+        let count = awake.iter().filter(|a| **a).count();
+        (count as f64 <= FEW * awake.len() as f64).then_some(awake)
     }
 
     /// How it stands after the last step.
@@ -298,6 +373,7 @@ pub fn relax(
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
+        descent.settle_awake(system, x, pace, stop)?;
     }
     descent.finish(system, x);
     Ok(descent.outcome)

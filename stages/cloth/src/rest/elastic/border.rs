@@ -7,6 +7,7 @@
 //! Alone it is indefinite; with the hinges it is the bending energy of a plate of Poisson's ratio 0.
 
 use crate::mesh::Sheet;
+use crate::rest::part::Cut;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -51,6 +52,11 @@ impl Border {
     pub(super) fn stiffen(&mut self, by: f64) {
         self.own *= by;
         self.mixed *= by;
+    }
+
+    /// It among the nodes of a part, if an awake one is among its own.
+    pub(super) fn part(&self, cut: &Cut) -> Option<Self> {
+        cut.wakes(&self.nodes).then(|| Self { nodes: cut.renamed(self.nodes), ..self.clone() })
     }
 
     fn slopes(&self, x: &[Vec3]) -> [Vec3; 2] {

@@ -1,0 +1,43 @@
+//! The elements about some of a sheet's nodes.
+
+use super::border::Border;
+use super::{Elastic, Hinge, Spring, Triangle};
+use crate::rest::part::Cut;
+
+impl Elastic {
+    /// The corners of its triangles.
+    pub(in crate::rest) fn faces(&self) -> impl Iterator<Item = &[u32; 3]> {
+        self.triangles.iter().map(|t| &t.nodes)
+    }
+
+    /// The elements that an awake node is in.
+    pub(in crate::rest) fn part(&self, cut: &Cut) -> Self {
+        let awake = |t: &usize| cut.wakes(&self.triangles[*t].nodes);
+        let kept: Vec<usize> = (0..self.triangles.len()).filter(awake).collect();
+        let triangle = |&t: &usize| {
+            let whole = &self.triangles[t];
+            Triangle { nodes: cut.renamed(whole.nodes), ..whole.clone() }
+        };
+        let hinge = |h: &Hinge| Hinge { nodes: cut.renamed(h.nodes), ..h.clone() };
+        let spring = |s: &Spring| Spring { nodes: cut.renamed(s.nodes), ..s.clone() };
+        Self {
+            laws: self.laws.clone(),
+            triangles: kept.iter().map(triangle).collect(),
+            hinges: self.hinges.iter().filter(|h| cut.wakes(&h.nodes)).map(hinge).collect(),
+            borders: self.borders.iter().filter_map(|b| Border::part(b, cut)).collect(),
+            springs: self.springs.iter().filter(|s| cut.wakes(&s.nodes)).map(spring).collect(),
+            slots: Vec::new(),
+            bending: Vec::new(),
+            foretold: kept.iter().filter_map(|&t| self.foretold.get(t)).copied().collect(),
+        }
+    }
+
+    /// Takes over what a part has foretold of its triangles.
+    pub(in crate::rest) fn learn(&mut self, cut: &Cut, part: &Self) {
+        if self.foretold.len() != self.triangles.len() {
+            return;
+        }
+        let kept = self.triangles.iter().zip(&mut self.foretold).filter(|(t, _)| cut.wakes(&t.nodes));
+        kept.zip(&part.foretold).for_each(|((_, whole), new)| *whole = *new);
+    }
+}

@@ -1,0 +1,150 @@
+//! The part of a system that still moves, by itself: sleeping nodes hold still.
+//!
+//! Near rest most of a garment sleeps while a few nodes buckle one after the other. A step that moves only these, and the
+//! elements about them, costs what they cost (nonlinear elimination: Lanzkron, Rose, Wilkes 1996).
+//! The whole system looks again afterwards, so the state of rest is that of the whole.
+
+use super::layers::Layers;
+use super::system::{Support, System, Thread};
+use crate::contact::pair::Pair;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Marks a node that has no part.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Some nodes of a system as a system of their own.
+pub(super) struct Part<'a> {
+    /// The awake nodes and those around them, which are pinned.
+    pub(super) system: System<'a>,
+    /// Which nodes these are of the whole, ascending.
+    nodes: Vec<u32>,
+    cut: Cut,
+}
+
+/// Which nodes are awake, and where each node of the part comes in it.
+pub(super) struct Cut {
+    awake: Vec<bool>,
+    index: Vec<u32>,
+}
+
+impl Cut {
+    /// Whether an element has an awake node.
+    pub(super) fn wakes(&self, nodes: &[u32]) -> bool {
+        nodes.iter().any(|&i| self.awake[i as usize])
+    }
+
+    /// The element's nodes in the part.
+    pub(super) fn renamed<const N: usize>(&self, nodes: [u32; N]) -> [u32; N] {
+        nodes.map(|i| self.index[i as usize])
+    }
+}
+
+/// Widens a set of nodes by the elements they are in, so many times.
+pub(super) fn widen(system: &System<'_>, awake: &mut Vec<bool>, rings: usize) {
+    for _ in 0..rings {
+        let was = awake.clone();
+        for nodes in system.elastic.faces().filter(|t| t.iter().any(|&i| was[i as usize])) {
+            nodes.iter().for_each(|&i| awake[i as usize] = true);
+        }
+    }
+}
+
+impl<'a> Part<'a> {
+    /// The `awake` nodes of a system, and what holds them.
+    pub(super) fn of(system: &System<'a>, awake: Vec<bool>) -> Self {
+        let mut cut = Cut { index: vec![NONE; awake.len()], awake };
+        let mut seen = cut.awake.clone();
+        let threads = system.threads.iter().map(|t| &t.nodes[..]);
+        let pairs = system.layers.iter().flat_map(|l| l.pairs.iter().map(|p| &p.nodes[..]));
+        for nodes in system.elastic.couplings().chain(threads).chain(pairs).filter(|n| cut.wakes(n)) {
+            nodes.iter().for_each(|&i| seen[i as usize] = true);
+        }
+        let nodes: Vec<u32> = (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect();
+        nodes.iter().enumerate().for_each(|(k, &i)| cut.index[i as usize] = k as u32);
+        Self { system: cut_out(system, &cut, &nodes), nodes, cut }
+    }
+
+    /// Values of the whole at the part's nodes.
+    pub(super) fn pick<T: Clone>(&self, of: &[T]) -> Vec<T> {
+        pick(&self.nodes, of)
+    }
+
+    /// Puts places and what the part has learnt of contacts back into the whole.
+    pub(super) fn put_back(self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
+        put(&self.nodes, x, whole);
+        put(&self.nodes, &self.system.anchors, &mut system.anchors);
+        put(&self.nodes, &self.system.loads, &mut system.loads);
+        put(&self.nodes, &self.system.slides, &mut system.slides);
+        if !system.seen.is_empty() && !self.system.seen.is_empty() {
+            put(&self.nodes, &self.system.seen, &mut system.seen);
+        }
+        if let (Some(from), Some(to)) = (&self.system.support, &mut system.support) {
+            put(&self.nodes, &from.offsets, &mut to.offsets);
+        }
+        system.elastic.learn(&self.cut, &self.system.elastic);
+    }
+}
+
+fn pick<T: Clone>(nodes: &[u32], of: &[T]) -> Vec<T> {
+    nodes.iter().filter_map(|&i| of.get(i as usize)).cloned().collect()
+}
+
+fn put<T: Clone>(nodes: &[u32], from: &[T], to: &mut [T]) {
+    nodes.iter().zip(from).for_each(|(&i, v)| to[i as usize] = v.clone());
+}
+
+fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
+    let asleep = |&i: &u32| system.pinned[i as usize] || !cut.awake[i as usize];
+    let thread = |t: &Thread| Thread { nodes: cut.renamed(t.nodes), ..*t };
+    System {
+        elastic: system.elastic.part(cut),
+        masses: pick(nodes, &system.masses),
+        gravity: system.gravity,
+        pinned: nodes.iter().map(asleep).collect(),
+        threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
+        support: system.support.as_ref().map(|s| support(s, cut, nodes)),
+        layers: system.layers.as_ref().map(|l| layers(l, cut, nodes)),
+        touches: Vec::new(),
+        anchors: pick(nodes, &system.anchors),
+        slides: pick(nodes, &system.slides),
+        loads: pick(nodes, &system.loads),
+        pulls: Vec::new(),
+        seen: pick(nodes, &system.seen),
+    }
+}
+
+fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
+    let known = |e: &[u32; 2]| e.iter().all(|&i| cut.index[i as usize] != NONE);
+    let edges = whole.edges.iter().filter(|(e, _)| cut.wakes(e) && known(e));
+    Support {
+        body: whole.body,
+        friction: pick(nodes, &whole.friction),
+        offsets: pick(nodes, &whole.offsets),
+        offset: whole.offset,
+        depth: whole.depth,
+        edges: edges.map(|(e, l)| (cut.renamed(*e), *l)).collect(),
+        clear: whole.clear,
+        grows: whole.grows,
+        stiffness: pick(nodes, &whole.stiffness),
+        #[cfg(toile_without = "body")]
+        never: whole.never,
+    }
+}
+
+fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
+    let pair = |p: &Pair| Pair { nodes: cut.renamed(p.nodes), ..*p };
+    Layers {
+        #[cfg(toile_without = "self_contact")]
+        never: whole.never,
+        thickness: whole.thickness,
+        stiffness: pick(nodes, &whole.stiffness),
+        order: pick(nodes, &whole.order),
+        corners: pick(nodes, &whole.corners),
+        pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
+        contacts: Vec::new(),
+        tangles: Vec::new(),
+        tangled: Vec::new(),
+    }
+}
