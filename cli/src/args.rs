@@ -6,6 +6,7 @@ use std::time::Duration;
 use toile_core::Length;
 use toile_core::cache::Bytes;
 use toile_core::pipeline::Override;
+use toile_trade::qualities::Asked;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.
 #[derive(Debug, Parser)]
@@ -217,8 +218,11 @@ pub(crate) enum Verb {
 }
 
 /// Arguments that change a pipeline before it is loaded.
-#[derive(Debug, Args, Default)]
+#[derive(Debug, Args, Default, Clone)]
 pub(crate) struct Overrides {
+    /// Take the settings of a named quality of the pipeline, like Draft, before those of --set
+    #[arg(long, value_name = "NAME")]
+    pub(crate) quality: Option<String>,
     /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
     pub(crate) set: Vec<Override>,
@@ -366,11 +370,14 @@ pub(crate) struct TuneArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
     /// Keep 95 % of the surface this near to the reference, like "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = crate::trade::length, required_unless_present = "max_time")]
+    #[arg(long, value_name = "LENGTH", value_parser = crate::trade::length, required_unless_present_any = ["max_time", "qualities"])]
     pub(crate) max_error: Option<Length>,
     /// Keep a run this short, like 800ms or 1s
     #[arg(long, value_name = "TIME", value_parser = crate::trade::duration)]
     pub(crate) max_time: Option<Duration>,
+    /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the pipeline's named qualities; may be given again
+    #[arg(long = "quality", value_name = "NAME=LENGTH", conflicts_with_all = ["max_error", "max_time"])]
+    pub(crate) qualities: Vec<Asked>,
     /// Folder of `toile trade` to pick from [default: measure now, in out/NAME-trade]
     #[arg(long, value_name = "DIR")]
     pub(crate) from: Option<PathBuf>,
@@ -388,8 +395,9 @@ pub(crate) struct TuneArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    #[command(flatten)]
-    pub(crate) overrides: Overrides,
+    /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
+    pub(crate) set: Vec<Override>,
 }
 
 #[derive(Debug, Args)]

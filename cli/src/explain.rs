@@ -5,14 +5,14 @@ use crate::costs::Known;
 use crate::trade::opened;
 use crate::{Streams, exit};
 use toile_core::decide::decisions;
-use toile_core::pipeline::{Feed, Node, Pipeline};
+use toile_core::pipeline::{Feed, Node, Pipeline, Quality};
 use toile_core::{Registry, RunOptions, plan};
 use toile_trade::cost::{Forecast, forecast_lines, predict};
 use toile_trade::decided::{self, told};
 
 /// Prints one line a stage: what feeds it, and whether it runs.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides, registry, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -25,7 +25,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
                 return exit::INVALID;
             }
         };
-    streams.say(format!("{}: {} stages", pipeline.name, pipeline.nodes.len()));
+    streams.say(title(&pipeline));
     for (node, skipped) in pipeline.nodes.iter().zip(&plan) {
         streams.say(line(&pipeline, node, skipped.as_deref()));
     }
@@ -33,6 +33,14 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
     let told = told(&source, &pipeline, decided, &known.costs);
     decided::lines(&told).iter().for_each(|line| streams.say(line));
     exit::DONE
+}
+
+/// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
+fn title(pipeline: &Pipeline) -> String {
+    let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
+    let words: Vec<String> = pipeline.qualities.iter().map(Quality::words).collect();
+    let known = if words.is_empty() { String::new() } else { format!("; qualities: {}", words.join(", ")) };
+    format!("{}: {} stages{chosen}{known}", pipeline.name, pipeline.nodes.len())
 }
 
 /// What the stages that run are expected to take.

@@ -20,6 +20,7 @@ mod lock;
 mod migrate;
 mod new_stage;
 mod progress;
+mod qualities;
 mod run;
 mod schema;
 mod stability_map;

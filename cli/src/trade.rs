@@ -1,6 +1,6 @@
 //! `toile trade`: how a pipeline trades accuracy for time.
 
-use crate::args::{StudyArgs, TradeArgs};
+use crate::args::{Overrides, StudyArgs, TradeArgs};
 use crate::run::on_threads;
 use crate::validate::open;
 use crate::{Streams, ablate, at_hand, exit, interrupt};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::channel;
 use std::time::Duration;
-use toile_core::pipeline::{Override, Pipeline};
+use toile_core::pipeline::Pipeline;
 use toile_core::{Length, Registry, StageError, write_files};
 use toile_trade::default_knobs::default_knobs;
 use toile_trade::knob::KnobSpec;
@@ -21,7 +21,7 @@ use toile_trade::table;
 
 /// Measures, writes the files of the measurement and prints its table.
 pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides, registry, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -125,11 +125,11 @@ pub(crate) fn with_progress<T: Send>(
 /// The pipeline with its source, checked.
 pub(crate) fn opened<'a>(
     path: &Path,
-    set: &[Override],
+    overrides: &Overrides,
     registry: &'a Registry,
     streams: &mut Streams<'_>,
 ) -> Result<(Source<'a>, Pipeline), u8> {
-    let pipeline = open(path, set, registry).map_err(|faults| {
+    let pipeline = open(path, overrides, registry).map_err(|faults| {
         streams.fault(&faults);
         exit::INVALID
     })?;
@@ -141,7 +141,8 @@ pub(crate) fn opened<'a>(
         text,
         file: path.display().to_string(),
         base: path.parent().unwrap_or(Path::new(".")).to_owned(),
-        set: at_hand::found(set),
+        quality: overrides.quality.clone(),
+        set: at_hand::found(&overrides.set),
         registry,
     };
     Ok((source, pipeline))

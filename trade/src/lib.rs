@@ -10,7 +10,7 @@
 //! - `measure`: one run with its clocks; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
 //! - `decided`, `ablate`: what a pipeline leaves out by facts of its scene, and what turning each decision round changes;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
-//! - `tune`; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
+//! - `tune`, `qualities`: settings for an error or a time, proved; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
 //!
 //! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
 
@@ -28,6 +28,7 @@ pub mod ladder;
 pub mod measure;
 mod page;
 mod plot;
+pub mod qualities;
 pub mod record;
 pub mod richardson;
 pub mod sample;

@@ -10,7 +10,7 @@ use crate::knob::{KnobSpec, Values, fault};
 use crate::split::field;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use toile_core::pipeline::{Faults, Node, Override, Pipeline, load, nearest};
+use toile_core::pipeline::{Changes, Faults, Node, Override, Pipeline, load_with, nearest};
 use toile_core::{Card, ParamDoc, Registry, Role, SectionValue, StageError, add_implicit};
 
 /// A pipeline file with what the user has set, ready to be loaded with other settings.
@@ -22,6 +22,8 @@ pub struct Source<'a> {
     pub file: String,
     /// The folder that its paths are relative to.
     pub base: PathBuf,
+    /// The named quality, before `set`.
+    pub quality: Option<String>,
     /// `--set`, before all knobs.
     pub set: Vec<Override>,
     /// The stages there are.
@@ -34,7 +36,9 @@ impl Source<'_> {
     /// Errors: every fault of the file.
     pub fn load(&self, more: &[Override]) -> Result<Pipeline, Box<Faults>> {
         let all: Vec<Override> = self.set.iter().chain(more).cloned().collect();
-        let mut pipeline = load(&self.text, &self.file, &self.base, self.registry, &all).map_err(Box::new)?;
+        let changes = Changes { quality: self.quality.as_deref(), set: &all, ..Changes::default() };
+        let loaded = load_with(&self.text, &self.file, &self.base, self.registry, &changes);
+        let mut pipeline = loaded.map_err(Box::new)?;
         add_implicit(&mut pipeline, self.registry);
         Ok(pipeline)
     }

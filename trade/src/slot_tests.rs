@@ -30,7 +30,14 @@ fn registry() -> Registry {
 }
 
 fn source<'a>(text: &str, registry: &'a Registry) -> Source<'a> {
-    Source { text: text.into(), file: "my.ron".into(), base: PathBuf::from("."), set: Vec::new(), registry }
+    Source {
+        text: text.into(),
+        file: "my.ron".into(),
+        base: PathBuf::from("."),
+        quality: None,
+        set: Vec::new(),
+        registry,
+    }
 }
 
 /// The overrides at a place of the cube, as one line.
