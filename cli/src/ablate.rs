@@ -16,8 +16,8 @@ pub(crate) fn run(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let options =
-        Options { repeats: args.study.repeats, limit: args.study.limit, bench: bench(args.until.clone()) };
+    let bench = bench(args.until.clone(), streams);
+    let options = Options { repeats: args.study.repeats, limit: args.study.limit, bench };
     let out = args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "ablation"));
     let measured = with_progress(&args.study, streams, |tell| ablate(source, pipeline, &options, tell));
     match measured.and_then(|ablation| written(&ablation, &out).map(|()| ablation)) {

@@ -64,6 +64,9 @@ pub(crate) enum Command {
     Trade(TradeArgs),
     /// Pick a setting for an error or a time from the measured front, and prove it by fresh runs
     Tune(TuneArgs),
+    /// One run of a measurement in a process of its own: its task on standard input, its answer on standard output
+    #[command(hide = true)]
+    RunApart,
     /// Keep goldens: text sheets of measures for every edge of a pipeline
     Golden {
         #[command(subcommand)]

@@ -44,7 +44,7 @@ fn tuned(
 ) -> Result<u8, StageError> {
     let file = target(args)?;
     let (trade, folder) = front(args, source, pipeline, streams)?;
-    let (bench, jitter) = (bench(trade.until.clone()), args.study.jitter);
+    let (bench, jitter) = (bench(trade.until.clone(), streams), args.study.jitter);
     let (trade, folder) = (&trade, folder.as_path());
     let prover = Prover { source, trade, bench: &bench, folder, starts: args.starts, jitter };
     let proved = with_progress(&args.study, streams, |tell| prove(&prover, &args.qualities, tell))?;

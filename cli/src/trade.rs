@@ -85,7 +85,7 @@ pub(crate) fn measured(
         starts: asked.starts,
         jitter: asked.study.jitter,
         clock: clock(asked.study),
-        bench: bench(asked.until.clone()),
+        bench: bench(asked.until.clone(), streams),
     };
     let trade = with_progress(asked.study, streams, |tell| study(source, pipeline, &knobs, &options, tell))?;
     let files = toile_trade::files(&trade, &asked.out)?;
@@ -149,8 +149,8 @@ pub(crate) fn opened<'a>(
 }
 
 /// How runs are made.
-pub(crate) fn bench(until: Option<String>) -> Bench {
-    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()) }
+pub(crate) fn bench(until: Option<String>, streams: &Streams<'_>) -> Bench {
+    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()), apart: streams.apart.clone() }
 }
 
 /// The clock of the front.

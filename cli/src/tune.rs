@@ -42,7 +42,7 @@ fn tuned(
         max_error_mm: args.max_error.map(|e| e.metres() * 1e3),
         max_time_s: args.max_time.map(|t| t.as_secs_f64()),
     };
-    let bench = bench(trade.until.clone());
+    let bench = bench(trade.until.clone(), streams);
     let prover = Prover {
         source,
         trade: &trade,

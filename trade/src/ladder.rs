@@ -12,7 +12,6 @@
 //! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
 
 use crate::errors::{compare, ease};
-use crate::jitter;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::{Level, Order, OwnSpread, Reference};
 use crate::richardson::convergence;
@@ -214,14 +213,12 @@ pub(crate) fn moved_start(
     source: &Source<'_>,
     overrides: &[toile_core::pipeline::Override],
     bench: &Bench,
-    (amount, seed): (Length, u64),
+    moved: (Length, u64),
     limit: Option<Duration>,
     cache: Option<Arc<Cache>>,
 ) -> Result<Ran, Missed> {
-    let mut pipeline =
-        source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
-    jitter::insert(&mut pipeline, amount, seed).map_err(Missed::Failed)?;
-    bench.run(&pipeline, limit, cache)
+    let pipeline = source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
+    bench.run_moved(pipeline, moved, limit, cache)
 }
 
 pub(crate) fn error(missed: Missed) -> StageError {
@@ -236,7 +233,7 @@ pub(crate) fn error(missed: Missed) -> StageError {
 
 fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
     let moved = before.map(|b| compare(ran, b)).transpose()?;
-    let strain = ran.metrics.garment.as_ref().map_or(0.0, |g| g.figures.edge_strain.p99);
+    let strain = ran.figures.as_ref().map_or(0.0, |f| f.garment.edge_strain.p99);
     let overrides = board.overrides(&setting).into_iter().map(|o| (o.path, o.value)).collect();
     Ok(Level {
         setting,

@@ -118,7 +118,7 @@ fn one_turn(t: &mut Turned, own: &Ran, options: &Options) -> Result<(), StageErr
 
 fn changed(own: &Ran, turned: &Ran) -> Result<Change, StageError> {
     let errors = compare(turned, own)?;
-    let crossings = |ran: &Ran| ran.metrics.garment.as_ref().and_then(|g| g.figures.self_crossings);
+    let crossings = |ran: &Ran| ran.figures.as_ref().and_then(|f| f.garment.self_crossings);
     Ok(Change {
         same_bits: garment_digest(&own.garment) == garment_digest(&turned.garment),
         distance_mm: errors.distance_mm,
