@@ -33,7 +33,8 @@ fn entry(card: &Card) -> String {
         let cell = |s: &str| s.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
         let range = p.range().map_or(String::new(), |r| format!(", {r}"));
         let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
-        let trades = if p.trades { " Trades accuracy for time." } else { "" };
+        let finer = p.finer.map_or_else(String::new, |way| format!("; {} is finer", way.as_str()));
+        let trades = if p.trades { format!(" Trades accuracy for time{finer}.") } else { String::new() };
         let is = format!("{}{unit}{range}", cell(&p.kind));
         text += &format!("| `{}` | {is} | `{}` | {}{trades} |\n", p.name, cell(&p.default), cell(p.doc));
     }

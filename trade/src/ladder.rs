@@ -1,7 +1,7 @@
 //! The reference: the pipeline refined level by level until its garment stops moving.
 //!
-//! Level k divides every knob that is a resolution (edge length, time step, tolerance) by sqrt(2)^k and multiplies counts
-//! of iterations by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
+//! Level k divides every knob whose card says that less is finer (edge length, time step, tolerance) by sqrt(2)^k and multiplies
+//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
 //! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
 //! surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than any setting to be judged by it; or with the
 //! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
@@ -32,17 +32,6 @@ pub const FINER: f64 = 1.3;
 const MOST_LEVELS: usize = 10;
 /// Time of a level in times of the level before it, where only one is known.
 const GROWTH: f64 = 3.0;
-
-/// Parameters that are resolutions: less is finer.
-const LESS_IS_FINER: [&str; 5] = ["edge", "dt", "speed", "tolerance", "conjugate_gradients"];
-/// Parameters that are counts of work: more is finer.
-const MORE_IS_FINER: [&str; 3] = ["substeps", "iterations", "rounds"];
-
-/// Which way a parameter is refined: 1 where less is finer, -1 where more is; none where it is no resolution.
-pub fn finer(param: &str) -> Option<f64> {
-    let less = LESS_IS_FINER.contains(&param).then_some(1.0);
-    less.or(MORE_IS_FINER.contains(&param).then_some(-1.0))
-}
 
 /// How the reference is looked for.
 pub struct Search<'a> {

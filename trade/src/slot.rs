@@ -5,7 +5,7 @@
 //! name (`GridMesher.edge`) on that stage alone. Where it has nothing to act on it is left out of the setting, so that
 //! settings that differ in nothing are one.
 
-use crate::dial::{Dial, Form, dial, is_finer, numeric, rounded};
+use crate::dial::{Dial, Form, dial, is_finer, is_spatial, numeric, rounded, way};
 use crate::knob::{KnobSpec, Values, fault};
 use crate::split::field;
 use std::collections::BTreeMap;
@@ -283,17 +283,12 @@ impl Board {
             let (own, other) = (numeric(setting.get(&k.key)?)?, numeric(reference.get(&k.key)?)?);
             Some(!is_finer(way, other, own, factor))
         };
-        // Steps and tolerances may be equal: an edge length may not.
-        self.knobs
-            .iter()
-            .filter(|k| k.param.as_deref() == Some("edge"))
-            .filter_map(pair)
-            .any(|too_fine| too_fine)
+        self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(pair).any(|too_fine| too_fine)
     }
 
-    /// Direction, finest value of the dial and value in a setting, of every knob that is an edge length.
+    /// Direction, finest value of the dial and value in a setting, of every knob that is a resolution in space.
     fn resolutions<'b>(&'b self, setting: &'b Setting) -> impl Iterator<Item = (f64, f64, f64)> + 'b {
-        self.knobs.iter().filter(|k| k.param.as_deref() == Some("edge")).filter_map(|k| {
+        self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(|k| {
             let (way, _) = self.resolution(k)?;
             Some((way, k.dial.finest(way)?, numeric(setting.get(&k.key)?)?))
         })
@@ -303,7 +298,11 @@ impl Board {
     fn resolution(&self, knob: &Knob) -> Option<(f64, &ParamDoc)> {
         let param = knob.param.as_deref()?;
         let doc = self.slots[knob.slot].own.params.iter().find(|p| p.name == param)?;
-        Some((crate::ladder::finer(param)?, doc))
+        Some((way(doc)?, doc))
+    }
+
+    fn is_spatial(&self, knob: &Knob) -> bool {
+        self.resolution(knob).is_some_and(|(_, doc)| is_spatial(doc))
     }
 
     /// The place of a setting in the unit cube; knobs that do not act are at their middle.
