@@ -456,6 +456,12 @@ pub(crate) struct ExplainArgs {
     /// Explain a run that stops after this stage
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
+    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation, where it is of the pipeline as it is]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) ablation: Option<PathBuf>,
+    /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/costs.md)
+    #[arg(long)]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     /// Number of threads that the run would have [default: one for each core]

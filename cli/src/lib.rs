@@ -15,6 +15,7 @@ mod costs;
 mod doctor;
 mod drivers;
 mod explain;
+mod explain_json;
 mod golden;
 mod interrupt;
 mod lock;

@@ -1,7 +1,8 @@
 //! `toile tune PIPELINE --quality NAME=LENGTH ...`: the named qualities of a pipeline, measured and written into its file.
 
 use crate::args::TuneArgs;
-use crate::trade::{bench, failed, with_progress};
+use crate::progress::with_budget;
+use crate::trade::{bench, failed};
 use crate::tune::{front, target, write};
 use crate::{Streams, bench as bench_words, exit};
 use serde_json::{Value, json};
@@ -47,7 +48,7 @@ fn tuned(
     let (bench, jitter) = (bench(trade.until.clone(), streams), args.study.jitter);
     let (trade, folder) = (&trade, folder.as_path());
     let prover = Prover { source, trade, bench: &bench, folder, starts: args.starts, jitter };
-    let proved = with_progress(&args.study, streams, |tell| prove(&prover, &args.qualities, tell))?;
+    let proved = with_budget(&args.study, streams, |tell| prove(&prover, &args.qualities, tell))?;
     if !proved.kept.is_empty() {
         write(&file, written(&prover, &proved.kept, &today())?)?;
     }

@@ -141,7 +141,8 @@ fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], strea
     streams.say(format!("{:.2} s ({stages}), {} files in {}", metrics.wall_s, files.len(), dir.display()));
 }
 
-fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
+/// Shows what is wrong with a pipeline file.
+pub(crate) fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
     match json {
         true => streams.say(json!({ "valid": false, "faults": faults.records() })),
         false => streams.fault(faults),

@@ -1,7 +1,8 @@
 //! `toile tune`: a setting for an error or a time, proved and written into the pipeline file.
 
 use crate::args::{Overrides, TuneArgs};
-use crate::trade::{Asked, bench, default_folder, failed, measured, opened, with_progress};
+use crate::progress::with_budget;
+use crate::trade::{Asked, bench, default_folder, failed, measured, opened};
 use crate::{Streams, exit, interrupt, qualities};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,7 @@ use toile_trade::tune::{Proof, Prover, Wish, check, picks};
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let overrides = Overrides { set: args.set.clone(), ..Overrides::default() };
-    let (source, pipeline) = match opened(&args.pipeline, &overrides, registry, streams) {
+    let (source, pipeline) = match opened(&args.pipeline, &overrides, registry, false, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -54,7 +55,7 @@ fn tuned(
     let proof = match picks(&trade, &wish).is_empty() {
         // Nothing has to be run to refuse.
         true => prover.prove(&wish, &mut |_| ()),
-        false => with_progress(&args.study, streams, |tell| prover.prove(&wish, tell)),
+        false => with_budget(&args.study, streams, |tell| prover.prove(&wish, tell)),
     };
     let proof = proof.inspect_err(|_| table::lines(&trade, true).iter().for_each(|l| streams.tell(l)))?;
     let text = prover.tuned(&wish, &proof, &today())?;

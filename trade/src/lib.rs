@@ -8,7 +8,8 @@
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
 //! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
 //! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
-//! - `decided`, `ablate`: what a pipeline leaves out by facts of its scene, and what turning each decision round changes;
+//! - `decided`, `saving`, `ablate`: what a pipeline leaves out by facts of its scene, what that saves, and what turning each
+//!   decision round changes;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
 //! - `tune`, `qualities`: settings for an error or a time, proved; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
 //!
@@ -33,6 +34,7 @@ pub mod qualities;
 pub mod record;
 pub mod richardson;
 pub mod sample;
+pub mod saving;
 mod silhouette;
 pub mod slot;
 mod split;
