@@ -155,6 +155,32 @@ fn the_schema_refuses_what_the_loader_refuses() {
 }
 
 #[test]
+fn the_schema_takes_the_qualities_that_the_loader_takes() {
+    let (schemas, index) = validator();
+    let text = std::fs::read_to_string(root().join("pipelines/vest.ron")).unwrap();
+    let change = "stages.GridMesher.edge=\"24 mm\"".parse().unwrap();
+    let (error, words) = (toile_core::Length::mm(10.0), Some("2026-11-22: so".to_owned()));
+    let quality = toile_core::pipeline::Quality::new("Very rough-2".into(), error, vec![change], words);
+    let filled = toile_core::pipeline::fill_qualities(&text, &[quality]).unwrap();
+    let valid = |text: &str| {
+        let value = toile_core::pipeline::to_json(text, "").unwrap();
+        schemas.validate(&value, index).is_ok()
+    };
+    assert!(valid(&filled));
+    for (right, wrong) in [
+        ("\"Very rough-2\"", "\"Very=rough\""),
+        ("\"10 mm\"", "\"10\""),
+        ("set: [", "sets: ["),
+        ("Quality(", "Setting("),
+        ("\"stages.GridMesher.edge=", "\"="),
+    ] {
+        let (before, field) = filled.split_once("qualities:").unwrap();
+        assert!(field.contains(right), "{right}");
+        assert!(!valid(&format!("{before}qualities:{}", field.replacen(right, wrong, 1))), "{wrong}");
+    }
+}
+
+#[test]
 fn drift_shows_the_first_lines_that_differ() {
     assert_eq!(drift("a\nb\nc\n", "a\nx\nc\n"), "line 2:\n- b\n- c\n+ x\n+ c\n");
     assert_eq!(drift("a\n", "a\n"), "");

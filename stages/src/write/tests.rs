@@ -416,11 +416,11 @@ fn assert_balanced(html: &str) {
 #[test]
 fn the_report_names_the_quality_of_the_run_where_there_is_one() {
     let plain = report(&run_log(), "(pictures: 80)");
-    assert!(!plain.contains("quality Draft"), "{plain}");
+    assert!(plain.contains(" s</p>\n</header>"), "a report without one is as it was");
     let draft = RunLog { quality: Some("Draft, <changed>".into()), ..run_log() };
     let named = report(&draft, "(pictures: 80)");
     let line = "<p class=\"soft\">quality Draft, &lt;changed&gt;</p>\n";
-    assert_eq!(named.replacen(line, "", 1), plain, "one line more and nothing else");
+    assert!(named.replacen(line, "", 1) == plain && named != plain, "one line more and nothing else");
 }
 
 #[test]

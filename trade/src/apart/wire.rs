@@ -131,8 +131,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Ran, Missed> {
             Err(Missed::Failed(StageError { hint, ..e }))
         }
         Head::Ran { figures, parts } => {
-            let artifacts = Artifacts::read(&parts, &bytes[end + 1..]).map_err(|why| broken(&why))?;
-            artifacts.ran(figures).ok_or_else(|| broken("no garment"))
+            let artifacts = Artifacts::read(&parts, &bytes[end + 1..]);
+            artifacts.and_then(|artifacts| artifacts.ran(figures)).map_err(|why| broken(&why))
         }
     }
 }
@@ -151,16 +151,18 @@ impl<'a> Artifacts<'a> {
         Ok(Artifacts(found))
     }
 
-    fn one<T: ArtifactType + Clone>(&self) -> Option<T> {
-        let artifact = decode(T::KIND, self.0.get(T::KIND.0)?).ok()?;
+    /// The artifact of a type; none where the run made none.
+    fn one<T: ArtifactType + Clone>(&self) -> Result<Option<T>, String> {
+        let Some(bytes) = self.0.get(T::KIND.0) else { return Ok(None) };
+        let artifact = decode(T::KIND, bytes).map_err(|why| format!("a {} that is unsound: {why}", T::KIND))?;
         let any: &dyn Any = artifact.as_ref();
-        any.downcast_ref::<T>().cloned()
+        Ok(any.downcast_ref::<T>().cloned())
     }
 
-    fn ran(&self, figures: Figures) -> Option<Ran> {
+    fn ran(&self, figures: Figures) -> Result<Ran, String> {
         let Figures { stages_s, wall_s, cpu_s, peak_memory_bytes, reads } = figures;
-        let garment = self.one()?;
-        let (body, model, figures) = (self.one(), self.one(), self.one());
-        Some(Ran { garment, body, model, figures, stages_s, wall_s, cpu_s, peak_memory_bytes, reads })
+        let garment = self.one()?.ok_or("no garment")?;
+        let (body, model, figures) = (self.one()?, self.one()?, self.one()?);
+        Ok(Ran { garment, body, model, figures, stages_s, wall_s, cpu_s, peak_memory_bytes, reads })
     }
 }

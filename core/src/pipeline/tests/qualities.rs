@@ -127,7 +127,7 @@ fn the_form_of_an_entry_word_for_word() {
          vest.ron:11:100: `max_error`: \"3\" is not a length; write a number and a unit, like \"12 mm\" (mm, cm, m, in)"
     );
     let twice = "[Quality(name: \"A\", max_error: \"1 mm\", set: []), Quality(name: \"A\", max_error: \"2 mm\", set: [])]";
-    assert_eq!(shown(twice), "vest.ron:11:80: two qualities are called `A`");
+    assert_eq!(shown(twice), "vest.ron:11:79: two qualities are called `A`");
     assert_eq!(places(&with(twice)), [[("\"A\"".into(), "second".into()), ("\"A\"".into(), "first".into())]]);
 }
 
