@@ -154,7 +154,8 @@ impl<'a> Artifacts<'a> {
     /// The artifact of a type; none where the run made none.
     fn one<T: ArtifactType + Clone>(&self) -> Result<Option<T>, String> {
         let Some(bytes) = self.0.get(T::KIND.0) else { return Ok(None) };
-        let artifact = decode(T::KIND, bytes).map_err(|why| format!("a {} that is unsound: {why}", T::KIND))?;
+        let artifact =
+            decode(T::KIND, bytes).map_err(|why| format!("a {} that is unsound: {why}", T::KIND))?;
         let any: &dyn Any = artifact.as_ref();
         Ok(any.downcast_ref::<T>().cloned())
     }
