@@ -1,7 +1,8 @@
 //! `toile trade PIPELINE --ablate`: each decision of a pipeline turned round.
 
 use crate::args::TradeArgs;
-use crate::trade::{bench, default_folder, failed, with_progress};
+use crate::progress::with_runs;
+use crate::trade::{bench, default_folder, failed};
 use crate::{Streams, exit, interrupt};
 use std::path::Path;
 use toile_core::pipeline::Pipeline;
@@ -16,10 +17,10 @@ pub(crate) fn run(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let options =
-        Options { repeats: args.study.repeats, limit: args.study.limit, bench: bench(args.until.clone()) };
+    let bench = bench(args.until.clone(), streams);
+    let options = Options { repeats: args.study.repeats, limit: args.study.limit, bench };
     let out = args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "ablation"));
-    let measured = with_progress(&args.study, streams, |tell| ablate(source, pipeline, &options, tell));
+    let measured = with_runs(args.study.threads, streams, |tell| ablate(source, pipeline, &options, tell));
     match measured.and_then(|ablation| written(&ablation, &out).map(|()| ablation)) {
         Err(e) => failed(&e, streams),
         Ok(ablation) => {

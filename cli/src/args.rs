@@ -6,6 +6,7 @@ use std::time::Duration;
 use toile_core::Length;
 use toile_core::cache::Bytes;
 use toile_core::pipeline::Override;
+use toile_trade::qualities::Asked;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.
 #[derive(Debug, Parser)]
@@ -63,6 +64,9 @@ pub(crate) enum Command {
     Trade(TradeArgs),
     /// Pick a setting for an error or a time from the measured front, and prove it by fresh runs
     Tune(TuneArgs),
+    /// One run of a measurement in a process of its own: its task on standard input, its answer on standard output
+    #[command(hide = true)]
+    RunApart,
     /// Keep goldens: text sheets of measures for every edge of a pipeline
     Golden {
         #[command(subcommand)]
@@ -217,8 +221,11 @@ pub(crate) enum Verb {
 }
 
 /// Arguments that change a pipeline before it is loaded.
-#[derive(Debug, Args, Default)]
+#[derive(Debug, Args, Default, Clone)]
 pub(crate) struct Overrides {
+    /// Take the settings of a named quality of the pipeline, like Draft, before those of --set
+    #[arg(long, value_name = "NAME")]
+    pub(crate) quality: Option<String>,
     /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
     pub(crate) set: Vec<Override>,
@@ -366,11 +373,14 @@ pub(crate) struct TuneArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
     /// Keep 95 % of the surface this near to the reference, like "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = crate::trade::length, required_unless_present = "max_time")]
+    #[arg(long, value_name = "LENGTH", value_parser = crate::trade::length, required_unless_present_any = ["max_time", "qualities"])]
     pub(crate) max_error: Option<Length>,
     /// Keep a run this short, like 800ms or 1s
     #[arg(long, value_name = "TIME", value_parser = crate::trade::duration)]
     pub(crate) max_time: Option<Duration>,
+    /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the pipeline's named qualities; may be given again
+    #[arg(long = "quality", value_name = "NAME=LENGTH", conflicts_with_all = ["max_error", "max_time"])]
+    pub(crate) qualities: Vec<Asked>,
     /// Folder of `toile trade` to pick from [default: measure now, in out/NAME-trade]
     #[arg(long, value_name = "DIR")]
     pub(crate) from: Option<PathBuf>,
@@ -388,8 +398,9 @@ pub(crate) struct TuneArgs {
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    #[command(flatten)]
-    pub(crate) overrides: Overrides,
+    /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
+    pub(crate) set: Vec<Override>,
 }
 
 #[derive(Debug, Args)]
@@ -445,6 +456,12 @@ pub(crate) struct ExplainArgs {
     /// Explain a run that stops after this stage
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
+    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation, where it is of the pipeline as it is]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) ablation: Option<PathBuf>,
+    /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/costs.md)
+    #[arg(long)]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
     /// Number of threads that the run would have [default: one for each core]

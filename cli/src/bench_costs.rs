@@ -1,6 +1,6 @@
 //! `toile bench costs`: what stages take over edge lengths and photo sizes, and how well that is predicted.
 
-use crate::args::CostsArgs;
+use crate::args::{CostsArgs, Overrides};
 use crate::run::fail_run;
 use crate::validate::open;
 use crate::{Streams, costs, exit, interrupt};
@@ -49,7 +49,8 @@ fn measure(
     streams: &mut Streams<'_>,
 ) -> Result<Vec<CostRecord>, u8> {
     let load = |overrides: &[toile_core::pipeline::Override], streams: &mut Streams<'_>| {
-        let all: Vec<_> = args.overrides.set.iter().chain(overrides).cloned().collect();
+        let set = args.overrides.set.iter().chain(overrides).cloned().collect();
+        let all = Overrides { set, ..args.overrides.clone() };
         open(file, &all, registry).map_err(|faults| {
             streams.fault(&faults);
             exit::INVALID

@@ -4,7 +4,7 @@ use crate::{Streams, exit};
 use serde_json::{Value, json};
 use toile_core::plugin::{Plugin, Refused};
 use toile_core::testkit::{checked, is_checked};
-use toile_core::{Arity, Card, Contract, InPort, ParamDoc, Registry, Role};
+use toile_core::{Arity, Card, Contract, Finer, InPort, ParamDoc, Registry, Role};
 
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -131,7 +131,14 @@ fn port_words(port: &InPort) -> String {
 fn param_text(p: &ParamDoc) -> String {
     let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
     let doc = p.doc.replace('\n', "\n      ");
-    format!("  {}: {}{unit}{}, default {}\n      {doc}\n", p.name, p.kind, range(p), p.default)
+    let trades = trades(p).map_or_else(String::new, |words| format!("      {words}\n"));
+    format!("  {}: {}{unit}{}, default {}\n      {doc}\n{trades}", p.name, p.kind, range(p), p.default)
+}
+
+/// What turning it does: `Trades accuracy for time; less is finer.`
+fn trades(p: &ParamDoc) -> Option<String> {
+    let finer = p.finer.map_or_else(String::new, |way| format!("; {} is finer", way.as_str()));
+    p.trades.then(|| format!("Trades accuracy for time{finer}."))
 }
 
 fn range(p: &ParamDoc) -> String {
@@ -144,7 +151,7 @@ fn card_json(card: &Card) -> Value {
         .iter()
         .map(|p| {
             json!({ "name": p.name, "doc": p.doc, "type": p.kind, "unit": p.unit, "min": p.min, "max": p.max,
-                "default": p.default, "trades": p.trades })
+                "default": p.default, "trades": p.trades, "finer": p.finer.map(Finer::as_str) })
         })
         .collect();
     let inputs: Vec<Value> = card

@@ -2,55 +2,115 @@
 
 use crate::args::ExplainArgs;
 use crate::costs::Known;
-use crate::trade::opened;
+use crate::explain_json::json;
+use crate::run::fail_run;
+use crate::trade::{default_folder, failed, opened};
 use crate::{Streams, exit};
-use toile_core::decide::decisions;
-use toile_core::pipeline::{Feed, Node, Pipeline};
-use toile_core::{Registry, RunOptions, plan};
+use std::path::Path;
+use toile_core::decide::{Decided, decisions};
+use toile_core::pipeline::{Feed, Node, Pipeline, Quality};
+use toile_core::{Registry, RunError, RunOptions, StageError, plan};
+use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
-use toile_trade::decided::{self, told};
+use toile_trade::decided::{self, Told, told};
+use toile_trade::saving::Evidence;
 
-/// Prints one line a stage: what feeds it, and whether it runs.
+/// What is said of a pipeline.
+pub(crate) struct Explained<'a> {
+    pub(crate) pipeline: &'a Pipeline,
+    /// For each stage `None` where it runs, or why it is left out.
+    pub(crate) plan: Vec<Option<String>>,
+    /// What each stage is expected to take.
+    pub(crate) forecasts: Vec<Forecast>,
+    /// What the forecasts rest on.
+    pub(crate) source: String,
+    pub(crate) told: Vec<Told>,
+}
+
+/// Prints one line a stage: what feeds it, and whether it runs; then what is expected, and the decisions.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides, registry, args.json, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
-    let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };
-    let (plan, decided) =
-        match plan(&pipeline, &options).and_then(|p| Ok((p, decisions(&pipeline, &options)?))) {
-            Ok(both) => both,
-            Err(e) => {
-                streams.tell(format!("error: {e}"));
-                return exit::INVALID;
-            }
-        };
-    streams.say(format!("{}: {} stages", pipeline.name, pipeline.nodes.len()));
-    for (node, skipped) in pipeline.nodes.iter().zip(&plan) {
-        streams.say(line(&pipeline, node, skipped.as_deref()));
+    let (plan, decided) = match planned(args, &pipeline) {
+        Ok(both) => both,
+        Err(e) if args.json => return fail_run(&pipeline, &e, true, streams),
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            return exit::INVALID;
+        }
+    };
+    let ablation = match ablation(args, &pipeline, streams) {
+        Ok(ablation) => ablation,
+        Err(e) => return failed(&e, streams),
+    };
+    let known = Known::open(&args.cache, args.threads);
+    known.warning.iter().for_each(|warning| streams.tell(format!("warning: {warning}")));
+    let (costs, ablation) = (&known.costs, ablation.as_ref());
+    let told = told(&Evidence { source: &source, pipeline: &pipeline, costs, ablation }, decided);
+    let (forecasts, source) = (predict(&pipeline, costs), known.source());
+    let explained = Explained { pipeline: &pipeline, plan, forecasts, source, told };
+    match args.json {
+        true => streams.say(json(&explained)),
+        false => lines(&explained).iter().for_each(|line| streams.say(line)),
     }
-    let known = expected(args, &pipeline, &plan, streams);
-    let told = told(&source, &pipeline, decided, &known.costs);
-    decided::lines(&told).iter().for_each(|line| streams.say(line));
     exit::DONE
 }
 
-/// What the stages that run are expected to take.
-fn expected(
+type Planned = (Vec<Option<String>>, Vec<Decided>);
+
+fn planned(args: &ExplainArgs, pipeline: &Pipeline) -> Result<Planned, RunError> {
+    let options = RunOptions { until: args.until.clone(), ..RunOptions::default() };
+    Ok((plan(pipeline, &options)?, decisions(pipeline, &options)?))
+}
+
+/// The ablation that is named; else that of the usual place, where it is of the pipeline as it is.
+fn ablation(
     args: &ExplainArgs,
     pipeline: &Pipeline,
-    plan: &[Option<String>],
     streams: &mut Streams<'_>,
-) -> Known {
-    let known = Known::open(&args.cache, args.threads);
-    if let Some(warning) = &known.warning {
-        streams.tell(format!("warning: {warning}"));
+) -> Result<Option<Ablation>, StageError> {
+    let usual = default_folder(&args.pipeline, "ablation");
+    match &args.ablation {
+        Some(folder) => read(folder, pipeline).map(Some),
+        None if !usual.join("ablation.json").is_file() => Ok(None),
+        None => {
+            let read = read(&usual, pipeline);
+            Ok(read.map_err(|e| streams.tell(format!("note: {}", e.message))).ok())
+        }
     }
-    let forecasts = predict(pipeline, &known.costs);
+}
+
+fn read(folder: &Path, pipeline: &Pipeline) -> Result<Ablation, StageError> {
+    let path = folder.join("ablation.json");
+    let refuse = |why: String| {
+        StageError::invalid(format!("\"{}\" is not taken: {why}", path.display()))
+            .hint("`toile trade PIPELINE --ablate` measures again")
+    };
+    let text = std::fs::read_to_string(&path).map_err(|e| refuse(e.to_string()))?;
+    let ablation: Ablation = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;
+    match ablation.is_of(pipeline) {
+        true => Ok(ablation),
+        false => Err(refuse("it is of another state of the pipeline".into())),
+    }
+}
+
+fn lines(explained: &Explained<'_>) -> Vec<String> {
+    let Explained { pipeline, plan, forecasts, source, told } = explained;
+    let stages = pipeline.nodes.iter().zip(plan).map(|(n, skipped)| line(pipeline, n, skipped.as_deref()));
     let runs: Vec<&Forecast> =
         forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
-    forecast_lines(&runs, &known.source()).iter().for_each(|line| streams.say(line));
-    known
+    let expected = forecast_lines(&runs, source);
+    std::iter::once(title(pipeline)).chain(stages).chain(expected).chain(decided::lines(told)).collect()
+}
+
+/// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
+fn title(pipeline: &Pipeline) -> String {
+    let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
+    let words: Vec<String> = pipeline.qualities.iter().map(Quality::words).collect();
+    let known = if words.is_empty() { String::new() } else { format!("; qualities: {}", words.join(", ")) };
+    format!("{}: {} stages{chosen}{known}", pipeline.name, pipeline.nodes.len())
 }
 
 fn line(pipeline: &Pipeline, node: &Node, skipped: Option<&str>) -> String {

@@ -3,7 +3,7 @@
 //! The golden of `pipelines/vest.ron` is `pipelines/goldens/vest.txt` with its pictures in
 //! `pipelines/goldens/vest/`.
 
-use crate::args::GoldenArgs;
+use crate::args::{GoldenArgs, Overrides};
 use crate::run::{fail_run, run_quietly};
 use crate::validate::open;
 use crate::{Streams, exit};
@@ -99,7 +99,7 @@ fn each(
 ) -> u8 {
     let mut worst = exit::DONE;
     for path in &args.pipelines {
-        let code = match open(path, &[], registry) {
+        let code = match open(path, &Overrides::default(), registry) {
             Ok(pipeline) => match work(args, &pipeline, path, streams) {
                 Ok(code) => code,
                 Err(e) => fail_run(&pipeline, &e, false, streams),

@@ -4,6 +4,7 @@
 //! of time or stopped; 70 a bug.
 
 mod ablate;
+mod apart;
 mod args;
 mod at_hand;
 mod bench;
@@ -14,12 +15,14 @@ mod costs;
 mod doctor;
 mod drivers;
 mod explain;
+mod explain_json;
 mod golden;
 mod interrupt;
 mod lock;
 mod migrate;
 mod new_stage;
 mod progress;
+mod qualities;
 mod run;
 mod schema;
 mod stability_map;
@@ -36,6 +39,7 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 use toile_core::Registry;
 use toile_core::pipeline::Faults;
+use toile_trade::apart::Apart;
 
 /// Exit codes of the command.
 pub mod exit {
@@ -53,8 +57,10 @@ pub mod exit {
     pub const BUG: u8 = 70;
 }
 
-/// Where a command writes: `out` for its answer, `err` for progress and messages.
+/// Where a command writes: `out` for its answer, `err` for progress and messages; and how the program starts itself.
 pub(crate) struct Streams<'a> {
+    /// Starts a process for a run that is measured; none where the command is called as a function.
+    pub(crate) apart: Option<Apart>,
     pub(crate) out: &'a mut dyn Write,
     pub(crate) err: &'a mut dyn Write,
 }
@@ -93,7 +99,24 @@ where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    let mut streams = Streams { out, err };
+    started(registry, arguments, Streams { apart: None, out, err })
+}
+
+/// As [`command_with`], for a program whose `main` does nothing else: it starts itself for each run that it measures, so that
+/// memory is the run's own, and a run that the system ends is one lost setting.
+pub fn program<A, T>(registry: &Registry, arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
+    started(registry, arguments, Streams { apart: Apart::this_program(Vec::new()), out, err })
+}
+
+fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>) -> u8
+where
+    A: IntoIterator<Item = T>,
+    T: Into<OsString> + Clone,
+{
     match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command: Command::Run(args), plugins }) if args.watch => {
             watch::watch(&args, &plugins, registry, &mut streams)
@@ -101,6 +124,7 @@ where
         Ok(Arguments { command, plugins }) => {
             // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
             let (registry, all) = with_plugins(registry, &plugins);
+            streams.apart = streams.apart.map(|program| apart::with_plugins(program, &plugins));
             match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
                 true => dispatch(command, &registry, &mut streams),
                 false => refused(&registry, &mut streams),
@@ -162,6 +186,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Migrate(args) => migrate::run(&args, registry, streams),
         Command::Trade(args) => trade::run(&args, registry, streams),
         Command::Tune(args) => tune::run(&args, registry, streams),
+        Command::RunApart => apart::run(registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
         Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
         Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),

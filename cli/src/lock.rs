@@ -1,6 +1,6 @@
 //! `toile lock` and `toile run --locked`: what a pipeline was made of, kept beside it as `PIPELINE.lock`.
 
-use crate::args::LockArgs;
+use crate::args::{LockArgs, Overrides};
 use crate::run::{fail_run, on_threads};
 use crate::validate::open;
 use crate::{Streams, cache, exit, interrupt};
@@ -19,7 +19,7 @@ pub(crate) fn lock(args: &LockArgs, registry: &Registry, streams: &mut Streams<'
 }
 
 fn one(path: &Path, args: &LockArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let pipeline = match open(path, &[], registry) {
+    let pipeline = match open(path, &Overrides::default(), registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => {
             streams.fault(&faults);

@@ -8,5 +8,5 @@ use std::process::ExitCode;
 static MEMORY: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
 
 fn main() -> ExitCode {
-    ExitCode::from(toile::command(std::env::args_os(), &mut stdout(), &mut stderr()))
+    ExitCode::from(toile::program(&toile::registry(), std::env::args_os(), &mut stdout(), &mut stderr()))
 }

@@ -1,11 +1,16 @@
-//! The progress line: which stage is at work, how far it is and what it says.
+//! The progress line: which stage is at work, how far it is and what it says; how far a measurement is.
 
+use crate::Streams;
+use crate::args::StudyArgs;
+use crate::run::on_threads;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::Mutex;
 use std::sync::PoisonError;
+use std::sync::mpsc::channel;
 use std::time::Duration;
 use toile_core::pipeline::Pipeline;
-use toile_core::{Event, Listener};
+use toile_core::{Event, Listener, StageError};
+use toile_trade::ablate::Step;
 
 /// Steps of the bar a stage.
 const STEPS: u64 = 100;
@@ -51,5 +56,80 @@ impl Listener for Bar {
                 self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(format!("{who}: {text}"));
             }
         }
+    }
+}
+
+/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the budget.
+pub(crate) fn with_budget<T: Send>(
+    study: &StudyArgs,
+    streams: &mut Streams<'_>,
+    work: impl FnOnce(&mut dyn FnMut(String)) -> Result<T, StageError> + Send,
+) -> Result<T, StageError> {
+    let length = study.budget.as_secs().max(1);
+    let bar = measuring(length, "{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}");
+    let told = |bar: &ProgressBar, line: String| {
+        bar.set_position(bar.elapsed().as_secs());
+        line
+    };
+    shown(&bar, study.threads, streams, told, work)
+}
+
+/// The same above a bar of the runs that are done, of those that are to do.
+pub(crate) fn with_runs<T: Send>(
+    threads: Option<u16>,
+    streams: &mut Streams<'_>,
+    work: impl FnOnce(&mut dyn FnMut(Step)) -> Result<T, StageError> + Send,
+) -> Result<T, StageError> {
+    let bar = measuring(1, "{spinner} {elapsed:>4} {pos} of {len} runs [{bar:28}] {wide_msg}");
+    shown(&bar, threads, streams, at, work)
+}
+
+/// Puts the bar where a measurement is; gives the line to show.
+fn at(bar: &ProgressBar, step: Step) -> String {
+    bar.set_length(step.all as u64);
+    bar.set_position(step.done as u64);
+    step.to_string()
+}
+
+fn measuring(length: u64, template: &str) -> ProgressBar {
+    let bar = ProgressBar::new(length);
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    bar.enable_steady_tick(Duration::from_millis(200));
+    bar
+}
+
+/// Works on a thread of its own, and shows what it tells.
+fn shown<T: Send, M: Send>(
+    bar: &ProgressBar,
+    threads: Option<u16>,
+    streams: &mut Streams<'_>,
+    told: impl Fn(&ProgressBar, M) -> String,
+    work: impl FnOnce(&mut dyn FnMut(M)) -> Result<T, StageError> + Send,
+) -> Result<T, StageError> {
+    let (send, receive) = channel::<M>();
+    let result = std::thread::scope(|scope| {
+        let worker = scope.spawn(move || on_threads(threads, || work(&mut |m| drop(send.send(m)))));
+        for message in receive {
+            let line = told(bar, message);
+            bar.suspend(|| streams.tell(&line));
+        }
+        worker.join()
+    });
+    bar.finish_and_clear();
+    result.unwrap_or_else(|_| Err(StageError::internal("the measurement broke off")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ablation_shows_runs_done_of_runs_to_do() {
+        let bar = ProgressBar::hidden();
+        let line = at(&bar, Step { done: 3, all: 12, what: "as decided".into() });
+        assert_eq!((bar.position(), bar.length()), (3, Some(12)));
+        assert_eq!(line, "run 4 of 12: as decided");
     }
 }

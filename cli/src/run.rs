@@ -23,7 +23,7 @@ pub(crate) fn once(
     reads: Option<&Reads>,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let pipeline = match open(&args.pipeline, &args.overrides.set, registry) {
+    let pipeline = match open(&args.pipeline, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams),
     };
@@ -134,11 +134,15 @@ fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], strea
             f.steps
         ));
     }
+    if let Some(quality) = &metrics.quality {
+        streams.say(format!("quality {quality}"));
+    }
     let stages = watch::counts(metrics);
     streams.say(format!("{:.2} s ({stages}), {} files in {}", metrics.wall_s, files.len(), dir.display()));
 }
 
-fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
+/// Shows what is wrong with a pipeline file.
+pub(crate) fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
     match json {
         true => streams.say(json!({ "valid": false, "faults": faults.records() })),
         false => streams.fault(faults),

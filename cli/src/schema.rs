@@ -18,6 +18,7 @@
 //! Types are read from the words by which cards describe them, so that a schema cannot say other than the card.
 
 use serde_json::{Map, Value, json};
+use toile_core::pipeline::{MAX_QUALITIES, MAX_SETTINGS};
 use toile_core::{Card, ParamDoc, Registry, SectionValue};
 
 /// A number and a unit.
@@ -35,6 +36,7 @@ pub(crate) fn schema(registry: &Registry) -> Value {
     fields
         .insert("stages".into(), json!({ "type": "array", "minItems": 1, "items": { "anyOf": any_stage } }));
     fields.insert("plugins".into(), plugins());
+    fields.insert("qualities".into(), qualities());
     for section in registry.sections() {
         fields.insert(section.field.into(), section_schema(registry, section.holds));
     }
@@ -68,6 +70,22 @@ fn plugins() -> Value {
         "additionalProperties": false });
     json!({ "type": "array", "items": { "anyOf": [{ "type": "string" }, pinned] },
         "description": "Plugins to load, relative to the file." })
+}
+
+fn qualities() -> Value {
+    let fields = json!({
+        "name": { "type": "string", "pattern": "^[\\p{L}\\p{N}_-]([\\p{L}\\p{N} _-]{0,62}[\\p{L}\\p{N}_-])?$" },
+        "max_error": { "type": "string", "pattern": LENGTH, "description": "95 % of the surface lie this near to the reference." },
+        "set": { "type": "array", "maxItems": MAX_SETTINGS, "items": { "type": "string", "pattern": "^[^=]+=" },
+            "description": "What it sets, each PATH=VALUE as for --set." },
+        "measured": { "type": "string", "description": "The measurement that it rests on." },
+    });
+    let quality = json!({ "type": "object", "properties": fields, "required": ["name", "max_error", "set"],
+        "additionalProperties": false });
+    let named = json!({ "type": "object", "properties": { "Quality": quality }, "required": ["Quality"],
+        "additionalProperties": false });
+    json!({ "type": "array", "items": named, "maxItems": MAX_QUALITIES,
+        "description": "Named settings by the error that they keep; `toile tune --quality` measures them." })
 }
 
 fn section_schema(registry: &Registry, holds: SectionValue) -> Value {

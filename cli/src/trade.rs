@@ -1,15 +1,14 @@
 //! `toile trade`: how a pipeline trades accuracy for time.
 
-use crate::args::{StudyArgs, TradeArgs};
-use crate::run::on_threads;
+use crate::args::{Overrides, StudyArgs, TradeArgs};
+use crate::progress::with_budget;
+use crate::run::fail_load;
 use crate::validate::open;
 use crate::{Streams, ablate, at_hand, exit, interrupt};
-use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::channel;
 use std::time::Duration;
-use toile_core::pipeline::{Override, Pipeline};
+use toile_core::pipeline::Pipeline;
 use toile_core::{Length, Registry, StageError, write_files};
 use toile_trade::default_knobs::default_knobs;
 use toile_trade::knob::KnobSpec;
@@ -21,7 +20,7 @@ use toile_trade::table;
 
 /// Measures, writes the files of the measurement and prints its table.
 pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+    let (source, pipeline) = match opened(&args.pipeline, &args.overrides, registry, false, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
@@ -85,9 +84,9 @@ pub(crate) fn measured(
         starts: asked.starts,
         jitter: asked.study.jitter,
         clock: clock(asked.study),
-        bench: bench(asked.until.clone()),
+        bench: bench(asked.until.clone(), streams),
     };
-    let trade = with_progress(asked.study, streams, |tell| study(source, pipeline, &knobs, &options, tell))?;
+    let trade = with_budget(asked.study, streams, |tell| study(source, pipeline, &knobs, &options, tell))?;
     let files = toile_trade::files(&trade, &asked.out)?;
     interrupt::begin_writing();
     let written = write_files(&asked.out, &files);
@@ -95,44 +94,16 @@ pub(crate) fn measured(
     written.map(|_| trade)
 }
 
-/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the budget.
-pub(crate) fn with_progress<T: Send>(
-    study: &StudyArgs,
-    streams: &mut Streams<'_>,
-    work: impl FnOnce(&mut dyn FnMut(String)) -> Result<T, StageError> + Send,
-) -> Result<T, StageError> {
-    let bar = ProgressBar::new(study.budget.as_secs().max(1));
-    if let Ok(style) =
-        ProgressStyle::with_template("{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}")
-    {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar.enable_steady_tick(Duration::from_millis(200));
-    let (send, receive) = channel::<String>();
-    let result = std::thread::scope(|scope| {
-        let worker =
-            scope.spawn(move || on_threads(study.threads, || work(&mut |line| drop(send.send(line)))));
-        for line in receive {
-            bar.set_position(bar.elapsed().as_secs());
-            bar.suspend(|| streams.tell(&line));
-        }
-        worker.join()
-    });
-    bar.finish_and_clear();
-    result.unwrap_or_else(|_| Err(StageError::internal("the measurement broke off")))
-}
-
-/// The pipeline with its source, checked.
+/// The pipeline with its source, checked; faults are shown, as JSON where asked for.
 pub(crate) fn opened<'a>(
     path: &Path,
-    set: &[Override],
+    overrides: &Overrides,
     registry: &'a Registry,
+    json: bool,
     streams: &mut Streams<'_>,
 ) -> Result<(Source<'a>, Pipeline), u8> {
-    let pipeline = open(path, set, registry).map_err(|faults| {
-        streams.fault(&faults);
-        exit::INVALID
-    })?;
+    let opened = open(path, overrides, registry);
+    let pipeline = opened.map_err(|faults| fail_load(&faults, json, streams))?;
     let text = std::fs::read_to_string(path).map_err(|e| {
         streams.tell(format!("error: cannot read the pipeline \"{}\": {e}", path.display()));
         exit::INVALID
@@ -141,15 +112,16 @@ pub(crate) fn opened<'a>(
         text,
         file: path.display().to_string(),
         base: path.parent().unwrap_or(Path::new(".")).to_owned(),
-        set: at_hand::found(set),
+        quality: overrides.quality.clone(),
+        set: at_hand::found(&overrides.set),
         registry,
     };
     Ok((source, pipeline))
 }
 
 /// How runs are made.
-pub(crate) fn bench(until: Option<String>) -> Bench {
-    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()) }
+pub(crate) fn bench(until: Option<String>, streams: &Streams<'_>) -> Bench {
+    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()), apart: streams.apart.clone() }
 }
 
 /// The clock of the front.

@@ -1,8 +1,9 @@
 //! `toile tune`: a setting for an error or a time, proved and written into the pipeline file.
 
-use crate::args::TuneArgs;
-use crate::trade::{Asked, bench, default_folder, failed, measured, opened, with_progress};
-use crate::{Streams, exit, interrupt};
+use crate::args::{Overrides, TuneArgs};
+use crate::progress::with_budget;
+use crate::trade::{Asked, bench, default_folder, failed, measured, opened};
+use crate::{Streams, exit, interrupt, qualities};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
@@ -16,10 +17,14 @@ use toile_trade::tune::{Proof, Prover, Wish, check, picks};
 
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let (source, pipeline) = match opened(&args.pipeline, &args.overrides.set, registry, streams) {
+    let overrides = Overrides { set: args.set.clone(), ..Overrides::default() };
+    let (source, pipeline) = match opened(&args.pipeline, &overrides, registry, false, streams) {
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if !args.qualities.is_empty() {
+        return qualities::run(args, &source, &pipeline, streams);
+    }
     match tuned(args, &source, &pipeline, streams) {
         Ok(()) => exit::DONE,
         Err(e) => failed(&e, streams),
@@ -38,7 +43,7 @@ fn tuned(
         max_error_mm: args.max_error.map(|e| e.metres() * 1e3),
         max_time_s: args.max_time.map(|t| t.as_secs_f64()),
     };
-    let bench = bench(trade.until.clone());
+    let bench = bench(trade.until.clone(), streams);
     let prover = Prover {
         source,
         trade: &trade,
@@ -50,7 +55,7 @@ fn tuned(
     let proof = match picks(&trade, &wish).is_empty() {
         // Nothing has to be run to refuse.
         true => prover.prove(&wish, &mut |_| ()),
-        false => with_progress(&args.study, streams, |tell| prover.prove(&wish, tell)),
+        false => with_budget(&args.study, streams, |tell| prover.prove(&wish, tell)),
     };
     let proof = proof.inspect_err(|_| table::lines(&trade, true).iter().for_each(|l| streams.tell(l)))?;
     let text = prover.tuned(&wish, &proof, &today())?;
@@ -60,7 +65,7 @@ fn tuned(
 }
 
 /// The measured front: read where a folder is named, else measured now.
-fn front(
+pub(crate) fn front(
     args: &TuneArgs,
     source: &Source<'_>,
     pipeline: &Pipeline,
@@ -90,7 +95,7 @@ fn front(
 }
 
 /// The file to write, which must lie beside the pipeline: its paths are relative to its folder.
-fn target(args: &TuneArgs) -> Result<PathBuf, StageError> {
+pub(crate) fn target(args: &TuneArgs) -> Result<PathBuf, StageError> {
     let stem = args.pipeline.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let file = args.out.clone().unwrap_or_else(|| args.pipeline.with_file_name(format!("{stem}-tuned.ron")));
     let folder = |path: &Path| match path.parent() {
@@ -105,7 +110,7 @@ fn target(args: &TuneArgs) -> Result<PathBuf, StageError> {
     }
 }
 
-fn write(file: &Path, text: String) -> Result<(), StageError> {
+pub(crate) fn write(file: &Path, text: String) -> Result<(), StageError> {
     let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let path = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     interrupt::begin_writing();

@@ -1,24 +1,21 @@
 //! `toile validate`, and the loading that all commands share.
 
-use crate::args::ValidateArgs;
+use crate::args::{Overrides, ValidateArgs};
 use crate::{Streams, exit};
 use serde_json::json;
 use std::path::Path;
-use toile_core::pipeline::{Fault, Faults, Override, Pipeline, load};
+use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, load_with};
 use toile_core::{Registry, add_implicit};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
-pub(crate) fn open(
-    path: &Path,
-    overrides: &[Override],
-    registry: &Registry,
-) -> Result<Pipeline, Box<Faults>> {
+pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> Result<Pipeline, Box<Faults>> {
     let file = path.display().to_string();
     let text = std::fs::read(path).map_err(|e| unreadable(&file, &e.to_string()))?;
     let text = String::from_utf8(text).map_err(|_| unreadable(&file, "it is not UTF-8 text"))?;
     let base = path.parent().unwrap_or(Path::new("."));
-    let overrides = crate::at_hand::found(overrides);
-    let mut pipeline = load(&text, &file, base, registry, &overrides).map_err(Box::new)?;
+    let set = crate::at_hand::found(&overrides.set);
+    let changes = Changes { quality: overrides.quality.as_deref(), set: &set, ..Changes::default() };
+    let mut pipeline = load_with(&text, &file, base, registry, &changes).map_err(Box::new)?;
     add_implicit(&mut pipeline, registry);
     Ok(pipeline)
 }
@@ -32,9 +29,12 @@ fn unreadable(file: &str, why: &str) -> Box<Faults> {
 pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let mut faults = Vec::new();
     for path in &args.pipelines {
-        match open(path, &args.overrides.set, registry) {
+        match open(path, &args.overrides, registry) {
             Ok(_) if args.json => {}
-            Ok(p) => streams.say(format!("{}: valid, {} stages", path.display(), p.nodes.len())),
+            Ok(p) => {
+                let line = format!("{}: valid, {} stages", path.display(), p.nodes.len());
+                streams.say(format!("{line}{}", qualities(&p)));
+            }
             Err(e) => faults.push(e),
         }
     }
@@ -46,4 +46,10 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
         false => faults.iter().for_each(|f| streams.fault(f)),
     }
     if faults.is_empty() { exit::DONE } else { exit::INVALID }
+}
+
+/// The named qualities of a pipeline: `, qualities Draft (10 mm), Fine (2 mm)`; empty where it has none.
+fn qualities(pipeline: &Pipeline) -> String {
+    let words: Vec<String> = pipeline.qualities.iter().map(Quality::words).collect();
+    if words.is_empty() { String::new() } else { format!(", qualities {}", words.join(", ")) }
 }

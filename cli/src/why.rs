@@ -67,7 +67,7 @@ fn face_lines(face: usize, t: &Trace) -> Vec<String> {
 }
 
 fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let pipeline = match open(&args.target, &args.overrides.set, registry) {
+    let pipeline = match open(&args.target, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => {
             streams.fault(&faults);

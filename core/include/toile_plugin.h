@@ -80,6 +80,8 @@ typedef struct toile_port {
 } toile_port;
 
 #define TOILE_PARAM_TRADES 1 /* trades accuracy for time */
+#define TOILE_PARAM_FINER_LESS 2 /* a resolution, less is finer: an edge length, a time step */
+#define TOILE_PARAM_FINER_MORE 4 /* a resolution, more is finer: a count of iterations */
 
 typedef struct toile_param {
     toile_text name;

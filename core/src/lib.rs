@@ -61,7 +61,7 @@ pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
 pub use metrics::{Metrics, StageMetrics};
 pub use output::write_files;
-pub use param::{Length, ParamDoc, ParamFault, ParamType};
+pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
 pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
 pub use stage::{

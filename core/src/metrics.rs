@@ -56,6 +56,9 @@ pub struct GarmentMetrics {
 pub struct Metrics {
     /// The pipeline's name.
     pub pipeline: String,
+    /// The named quality that it was run at: `Draft`, `Draft, changed by --set`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quality: Option<String>,
     /// Wall time of all stages together, seconds.
     pub wall_s: f64,
     /// Stage by stage, in order.

@@ -200,6 +200,25 @@ impl<T: ParamType> ParamType for BTreeMap<String, T> {
     }
 }
 
+/// Which way a resolution is refined: the results of ever finer values come nearer to one limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finer {
+    /// Less is finer: an edge length, a time step, a tolerance.
+    Less,
+    /// More is finer: a count of iterations.
+    More,
+}
+
+impl Finer {
+    /// In one word.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Finer::Less => "less",
+            Finer::More => "more",
+        }
+    }
+}
+
 /// One parameter of a stage: the single source of its RON form, checks, card and schema.
 #[derive(Debug, Clone)]
 pub struct ParamDoc {
@@ -219,6 +238,8 @@ pub struct ParamDoc {
     pub default: String,
     /// True where it trades accuracy for time.
     pub trades: bool,
+    /// Which way it is refined where it is a resolution; none where it is none.
+    pub finer: Option<Finer>,
     /// Parses a RON text as this parameter's type and checks its numbers' range.
     pub check: Check,
 }

@@ -66,7 +66,7 @@ fn read(file: &str, text: &str, set: &[Override]) -> Pipeline {
 /// The garment that a stage gives, and the processor seconds up to it.
 fn run(pipeline: &Pipeline, until: &str) -> (Garment, f64) {
     let listener: Arc<dyn Listener> = Arc::new(());
-    let bench = Bench { until: Some(until.to_owned()), cancel: Cancel::new(), listener };
+    let bench = Bench { until: Some(until.to_owned()), cancel: Cancel::new(), listener, apart: None };
     let ran = bench.run(pipeline, Some(Duration::from_secs(900)), None).unwrap();
     (ran.garment, ran.cpu_s)
 }

@@ -51,7 +51,7 @@ fn solve(file: &str, set: &[Override], until: &str, moved: Option<(f64, u64)>) -
         jitter::insert(&mut pipeline, Length::mm(mm), seed).unwrap();
     }
     let listener: Arc<dyn Listener> = Arc::new(());
-    let bench = Bench { until: Some(until.to_owned()), cancel: Cancel::new(), listener };
+    let bench = Bench { until: Some(until.to_owned()), cancel: Cancel::new(), listener, apart: None };
     let ran = bench.run(&pipeline, Some(Duration::from_secs(600)), None).unwrap();
     println!("{:.2} s of processor time", ran.cpu_s);
     ran.garment

@@ -59,6 +59,11 @@ static const toile_port outputs[] = {{NONE,
 #endif
                                       TOILE_ARITY_ONE, 0}};
 
+#ifdef CASE_FINER_BOTH_WAYS
+static const toile_param params[] = {{TEXT("cell"), TEXT("A cell."), TEXT("number"), NONE, TEXT("1.0"), 0.0, 9.0,
+                                      TOILE_PARAM_TRADES | TOILE_PARAM_FINER_LESS | TOILE_PARAM_FINER_MORE, 0}};
+#endif
+
 static const toile_stage_table table = {
     .version = 1,
 #if defined(CASE_TAKEN_NAME)
@@ -80,6 +85,10 @@ static const toile_stage_table table = {
     .input_count = 1,
     .outputs = outputs,
     .output_count = 1,
+#ifdef CASE_FINER_BOTH_WAYS
+    .params = params,
+    .param_count = 1,
+#endif
     .create = create,
 #ifndef CASE_NULL_RUN
     .run = run,

@@ -1,5 +1,6 @@
 //! What the tests of whole pipelines share: calling the command, and the repository's folders.
 
+pub mod napkin;
 pub mod plugins;
 
 use std::path::{Path, PathBuf};

@@ -33,7 +33,8 @@ fn entry(card: &Card) -> String {
         let cell = |s: &str| s.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|");
         let range = p.range().map_or(String::new(), |r| format!(", {r}"));
         let unit = if p.unit.is_empty() { String::new() } else { format!(" [{}]", p.unit) };
-        let trades = if p.trades { " Trades accuracy for time." } else { "" };
+        let finer = p.finer.map_or_else(String::new, |way| format!("; {} is finer", way.as_str()));
+        let trades = if p.trades { format!(" Trades accuracy for time{finer}.") } else { String::new() };
         let is = format!("{}{unit}{range}", cell(&p.kind));
         text += &format!("| `{}` | {is} | `{}` | {}{trades} |\n", p.name, cell(&p.default), cell(p.doc));
     }
@@ -150,6 +151,32 @@ fn the_schema_refuses_what_the_loader_refuses() {
         assert!(text.contains(right), "{right}");
         let value = toile_core::pipeline::to_json(&text.replace(right, wrong), "").unwrap();
         assert!(schemas.validate(&value, index).is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn the_schema_takes_the_qualities_that_the_loader_takes() {
+    let (schemas, index) = validator();
+    let text = std::fs::read_to_string(root().join("pipelines/vest.ron")).unwrap();
+    let change = "stages.GridMesher.edge=\"24 mm\"".parse().unwrap();
+    let (error, words) = (toile_core::Length::mm(10.0), Some("2026-11-22: so".to_owned()));
+    let quality = toile_core::pipeline::Quality::new("Very rough-2".into(), error, vec![change], words);
+    let filled = toile_core::pipeline::fill_qualities(&text, &[quality]).unwrap();
+    let valid = |text: &str| {
+        let value = toile_core::pipeline::to_json(text, "").unwrap();
+        schemas.validate(&value, index).is_ok()
+    };
+    assert!(valid(&filled));
+    for (right, wrong) in [
+        ("\"Very rough-2\"", "\"Very=rough\""),
+        ("\"10 mm\"", "\"10\""),
+        ("set: [", "sets: ["),
+        ("Quality(", "Setting("),
+        ("\"stages.GridMesher.edge=", "\"="),
+    ] {
+        let (before, field) = filled.split_once("qualities:").unwrap();
+        assert!(field.contains(right), "{right}");
+        assert!(!valid(&format!("{before}qualities:{}", field.replacen(right, wrong, 1))), "{wrong}");
     }
 }
 

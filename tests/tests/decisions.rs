@@ -143,10 +143,111 @@ fn each_decision_is_turned_round_and_held_to_its_tolerance() {
         assert_ne!(row["verdict"], "changes_more", "{row}");
         assert_eq!(row["cpu_s"].as_array().unwrap().len(), 1);
     }
+    for run in
+        ["run 1 of 3: as decided", "run 2 of 3: --set 'scene.distances=Ahead'", "run 3 of 3: --also Preset"]
+    {
+        assert!(answer.err.contains(run), "{}", answer.err);
+    }
+    assert!(!answer.err.contains("budget"), "{}", answer.err);
+    explained_by(&file, &out);
     let csv = std::fs::read_to_string(out.join("ablation.csv")).unwrap();
     assert_eq!(csv.lines().count(), 3, "{csv}");
     let both = toile(&["trade", &file, "--ablate", "--knob", "Rest.speed=1e-3..1e-2"]);
     assert!(both.err.contains("'--ablate' cannot be used with '--knob <KEY=VALUES>'"), "{}", both.err);
+}
+
+/// What each decision of a pipeline saves, as `explain --json` tells it.
+fn savings(arguments: &[&str]) -> Vec<Value> {
+    let answer = toile(&[&["explain", "--json"], arguments].concat());
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    let all: Value = serde_json::from_str(&answer.out).unwrap();
+    all["decisions"].as_array().unwrap().iter().map(|d| d["saves"].clone()).collect()
+}
+
+/// Measured figures stand in the place of estimates, where they are of the pipeline as it is.
+fn explained_by(file: &str, ablation: &Path) {
+    let plain = savings(&[file]);
+    assert_eq!(
+        (plain[0]["basis"].as_str(), plain[1]["basis"].as_str()),
+        (Some("estimated"), Some("modelled"))
+    );
+    let folder = ablation.display().to_string();
+    let told = savings(&[file, "--ablation", &folder]);
+    let record: Value =
+        serde_json::from_str(&std::fs::read_to_string(ablation.join("ablation.json")).unwrap()).unwrap();
+    for (saved, row) in told.iter().zip(record["rows"].as_array().unwrap()) {
+        assert_eq!((saved["basis"].as_str(), saved["clock"].as_str()), (Some("measured"), Some("cpu")));
+        assert_eq!((&saved["seconds"], &saved["date"]), (&row["saved_s"][0], &record["date"]));
+        assert!(saved["noise_s"].is_null(), "one round tells of no noise");
+    }
+    let table = toile(&["explain", file, "--ablation", &folder]);
+    assert!(table.out.contains(" s of processor time in one round, measured on 20"), "{}", table.out);
+    let other = toile(&["explain", file, "--ablation", &folder, "--set", "stages.Rest.speed=0.01"]);
+    let words = "ablation.json\" is not taken: it is of another state of the pipeline\n  help: `toile trade PIPELINE --ablate` measures again\n";
+    assert!(other.code == 3 && other.err.ends_with(words), "{}", other.err);
+    let gone = toile(&["explain", file, "--ablation", "no/such/folder"]);
+    assert!(gone.code == 3 && gone.err.contains("ablation.json\" is not taken: "), "{}", gone.err);
+}
+
+#[test]
+fn a_share_that_nobody_measured_here_is_called_estimated() {
+    let answer = toile(&["explain", &pipeline("vest.ron")]);
+    let words = "      saves   estimated: 40 % of what the stage takes without it, about ";
+    assert!(answer.out.contains(words), "{}", answer.out);
+}
+
+#[test]
+fn explain_gives_one_json_object() {
+    let answer = toile(&["explain", "--json", &pipeline("vest.ron"), "--until", "GridMesher"]);
+    assert_eq!((answer.code, answer.err.as_str()), (0, ""));
+    let all: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(
+        (all["pipeline"].as_str(), &all["quality"], &all["qualities"]),
+        (Some("vest"), &Value::Null, &Value::Array(Vec::new()))
+    );
+    let stages = all["stages"].as_array().unwrap();
+    let stage = |id: &str| stages.iter().find(|s| s["id"] == id).unwrap();
+    let (mesher, drape) = (stage("GridMesher"), stage("Rest"));
+    assert_eq!((&mesher["runs"], mesher["role"].as_str()), (&Value::Bool(true), Some("mesher")));
+    assert_eq!(
+        (mesher["takes"][0]["kind"].as_str(), mesher["takes"][0]["from"].as_str()),
+        (Some("outline"), Some("Vest"))
+    );
+    for figure in ["wall_s", "peak_bytes"] {
+        let e = &mesher["predicted"][figure];
+        let [low, value, high] = ["low", "value", "high"].map(|k| e[k].as_f64().unwrap());
+        assert!(0.0 <= low && low <= value && value <= high && value > 0.0, "{e}");
+    }
+    assert_eq!(drape["skipped"], "not needed until GridMesher");
+    assert!(drape["predicted"].is_null() && !drape["runs"].as_bool().unwrap());
+    // The whole is the sum of what runs.
+    let sum: f64 = stages.iter().filter_map(|s| s["predicted"]["wall_s"]["value"].as_f64()).sum();
+    assert!((all["predicted"]["wall_s"]["value"].as_f64().unwrap() / sum - 1.0).abs() < 1e-9);
+    assert!(all["predicted_from"].as_str().unwrap().starts_with("from the shipped figures of "));
+
+    let whole = toile(&["explain", "--json", &pipeline("vest.ron")]);
+    let whole: Value = serde_json::from_str(&whole.out).unwrap();
+    let views =
+        whole["decisions"].as_array().unwrap().iter().find(|d| d["rule"] == "report-views").unwrap().clone();
+    assert_eq!(
+        (views["stage"].as_str(), views["state"].as_str(), views["within"].as_str()),
+        (Some("Report"), Some("off"), Some("same bits"))
+    );
+    assert_eq!(views["turned_round_by"], "--set 'stages.Report.views=Drawn'");
+    assert_eq!(
+        (views["saves"]["basis"].as_str(), views["saves"]["share"].as_f64()),
+        (Some("estimated"), Some(0.4))
+    );
+
+    let wrong = toile(&["explain", "--json", &pipeline("vest.ron"), "--set", "stages.Otsu.bia=1"]);
+    let faults: Value = serde_json::from_str(&wrong.out).unwrap();
+    assert_eq!((wrong.code, faults["faults"][0]["code"].as_str()), (3, Some("bad_override")));
+    let unknown = toile(&["explain", "--json", &pipeline("vest.ron"), "--until", "Otzu"]);
+    let error: Value = serde_json::from_str(&unknown.out).unwrap();
+    assert!(
+        unknown.code != 0 && error["message"].as_str().unwrap().starts_with("there is no stage `Otzu`"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -1,42 +1,11 @@
 //! `toile trade` and `toile tune` on a small sheet: measured, gone on with, picked, proved, written.
 #![allow(clippy::unwrap_used)]
 
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use toile_tests::napkin::{self, PIPELINE};
 use toile_tests::{Answer, toile};
-
-const PIPELINE: &str = r#"// A napkin held at two corners.
-(
-    name: "napkin",
-    scene: Scene(file: "napkin.json"),
-    stages: [
-        Rest(speed: 0.01),  // mine
-    ],
-)
-"#;
-
-/// A square of 5 x 5 vertices, held at two corners, bent a little so that it knows which way to fall.
-fn napkin() -> Value {
-    let (n, step) = (5, 0.05);
-    let at = |i: usize| ((i % n) as f64 * step, (i / n) as f64 * step);
-    let rest: Vec<[f64; 2]> = (0..n * n).map(|i| [at(i).0, at(i).1]).collect();
-    let positions: Vec<[f64; 3]> = (0..n * n).map(|i| [at(i).0, at(i).1, 0.02 * at(i).1]).collect();
-    let cell = |k: usize| {
-        let a = k / (n - 1) * n + k % (n - 1);
-        [[a, a + 1, a + n + 1], [a, a + n + 1, a + n]]
-    };
-    let triangles: Vec<[usize; 3]> = (0..(n - 1) * (n - 1)).flat_map(cell).collect();
-    json!({
-        "format": "garment-scene-1", "name": "napkin",
-        "rest_uv": rest, "positions": positions, "triangles": triangles,
-        "panels": [{ "name": "napkin", "vertices": [0, n * n], "triangles": [0, triangles.len()] }],
-        "seams": [], "pinned": [n * (n - 1), n * n - 1], "body": null, "self_collision": true,
-        "material": { "area_density": 0.15, "stretch": 500.0, "shear": 50.0, "bend": 1e-5, "damping": 0.0,
-                      "friction": 0.4, "thickness": 0.001 },
-        "phases": [{ "name": "hang", "seconds": 1.0, "gravity": [0.0, -9.81, 0.0] }],
-    })
-}
 
 fn trade(dir: &Path, more: &[&str]) -> Answer {
     let (file, out) = (dir.join("napkin.ron").display().to_string(), dir.join("out").display().to_string());
@@ -53,8 +22,7 @@ fn record(dir: &Path) -> Value {
 fn a_front_is_measured_gone_on_with_and_tuned_from() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
-    fs::write(dir.join("napkin.ron"), PIPELINE).unwrap();
-    fs::write(dir.join("napkin.json"), napkin().to_string()).unwrap();
+    napkin::write(dir).unwrap();
 
     let first = trade(dir, &["--points", "3", "--budget", "2m"]);
     assert_eq!(first.code, 0, "{}{}", first.out, first.err);

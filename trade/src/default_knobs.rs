@@ -3,9 +3,8 @@
 //! The stages decide most of a garment's time and error in this order: edge length of the mesh, solver, when it stops,
 //! mesher. Their ranges are factors around the pipeline's own values.
 
-use crate::dial::{Form, numeric};
+use crate::dial::{Form, is_spatial, numeric};
 use crate::knob::{KnobSpec, Number, Values};
-use crate::ladder::finer;
 use crate::split::field;
 use toile_core::pipeline::{Node, Pipeline};
 use toile_core::{Registry, Role};
@@ -19,12 +18,13 @@ const OTHERS: [f64; 2] = [0.1, 10.0];
 pub fn default_knobs(pipeline: &Pipeline, registry: &Registry) -> Vec<KnobSpec> {
     let mut knobs = Vec::new();
     if let Some(mesher) = only(pipeline, Role::Mesher) {
-        knobs.extend(range(mesher, "mesher", "edge", EDGES));
+        let edge = mesher.card.params.iter().find(|p| p.trades && is_spatial(p));
+        knobs.extend(edge.and_then(|p| range(mesher, "mesher", p.name, EDGES)));
         knobs.extend(choice(mesher, "mesher", registry));
     }
     if let Some(solver) = only(pipeline, Role::Draper) {
         knobs.extend(choice(solver, "solver", registry));
-        let ends = solver.card.params.iter().filter(|p| p.trades && finer(p.name).is_some());
+        let ends = solver.card.params.iter().filter(|p| p.trades && p.finer.is_some());
         knobs.extend(ends.filter_map(|p| range(solver, &solver.id, p.name, OTHERS)));
     }
     knobs

@@ -1,7 +1,7 @@
 //! What a knob may be set to, as a dial from 0 to 1, and how its values stand in a pipeline file.
 
 use crate::knob::{Number, Values, fault};
-use toile_core::{Length, ParamDoc, StageError};
+use toile_core::{Finer, Length, ParamDoc, StageError};
 
 /// What a knob may be.
 #[derive(Debug, Clone, PartialEq)]
@@ -117,6 +117,20 @@ impl Form {
 pub fn numeric(text: &str) -> Option<f64> {
     let bare = text.trim().trim_matches('"');
     bare.parse::<f64>().ok().or_else(|| bare.parse::<Length>().ok().map(Length::metres))
+}
+
+/// Which way a parameter is refined, by its card: 1 where less is finer, -1 where more is; none where it is no resolution.
+pub(crate) fn way(doc: &ParamDoc) -> Option<f64> {
+    doc.finer.map(|finer| match finer {
+        Finer::Less => 1.0,
+        Finer::More => -1.0,
+    })
+}
+
+/// True of a resolution in space, such as an edge length: the reference must have a finer one than what it judges. Steps and
+/// tolerances may be equal.
+pub(crate) fn is_spatial(doc: &ParamDoc) -> bool {
+    doc.finer.is_some() && Form::of(doc) == Some(Form::Length)
 }
 
 /// To three digits: nobody reads more, and settings that are alike become equal.

@@ -62,11 +62,12 @@ pub fn compare(found: &Ran, reference: &Ran) -> Result<Errors, StageError> {
         _ => None,
     };
     let panel = |figure: fn(&PanelFigures) -> f64| {
-        let (p, q) = (&found.metrics.panels, &reference.metrics.panels);
+        let panels = |ran: &Ran| ran.figures.as_ref().map(|f| f.panels.clone()).unwrap_or_default();
+        let (p, q) = (panels(found), panels(reference));
         let both = p.iter().filter_map(|(name, p)| Some((figure(p) - figure(q.get(name)?)).abs()));
         both.fold(0.0, f64::max) * 1e2
     };
-    let strain = |ran: &Ran| ran.metrics.garment.as_ref().map_or(0.0, |g| g.figures.edge_strain.p99);
+    let strain = |ran: &Ran| ran.figures.as_ref().map_or(0.0, |f| f.garment.edge_strain.p99);
     Ok(Errors {
         distance_mm: distance(&a, &b).into(),
         displacement_mm: displacement(&a, &b).into(),

@@ -1,7 +1,7 @@
 //! The reference: the pipeline refined level by level until its garment stops moving.
 //!
-//! Level k divides every knob that is a resolution (edge length, time step, tolerance) by sqrt(2)^k and multiplies counts
-//! of iterations by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
+//! Level k divides every knob whose card says that less is finer (edge length, time step, tolerance) by sqrt(2)^k and multiplies
+//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
 //! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
 //! surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than any setting to be judged by it; or with the
 //! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
@@ -12,7 +12,6 @@
 //! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
 
 use crate::errors::{compare, ease};
-use crate::jitter;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::{Level, Order, OwnSpread, Reference};
 use crate::richardson::convergence;
@@ -33,17 +32,6 @@ pub const FINER: f64 = 1.3;
 const MOST_LEVELS: usize = 10;
 /// Time of a level in times of the level before it, where only one is known.
 const GROWTH: f64 = 3.0;
-
-/// Parameters that are resolutions: less is finer.
-const LESS_IS_FINER: [&str; 5] = ["edge", "dt", "speed", "tolerance", "conjugate_gradients"];
-/// Parameters that are counts of work: more is finer.
-const MORE_IS_FINER: [&str; 3] = ["substeps", "iterations", "rounds"];
-
-/// Which way a parameter is refined: 1 where less is finer, -1 where more is; none where it is no resolution.
-pub fn finer(param: &str) -> Option<f64> {
-    let less = LESS_IS_FINER.contains(&param).then_some(1.0);
-    less.or(MORE_IS_FINER.contains(&param).then_some(-1.0))
-}
 
 /// How the reference is looked for.
 pub struct Search<'a> {
@@ -214,14 +202,12 @@ pub(crate) fn moved_start(
     source: &Source<'_>,
     overrides: &[toile_core::pipeline::Override],
     bench: &Bench,
-    (amount, seed): (Length, u64),
+    moved: (Length, u64),
     limit: Option<Duration>,
     cache: Option<Arc<Cache>>,
 ) -> Result<Ran, Missed> {
-    let mut pipeline =
-        source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
-    jitter::insert(&mut pipeline, amount, seed).map_err(Missed::Failed)?;
-    bench.run(&pipeline, limit, cache)
+    let pipeline = source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
+    bench.run_moved(pipeline, moved, limit, cache)
 }
 
 pub(crate) fn error(missed: Missed) -> StageError {
@@ -236,7 +222,7 @@ pub(crate) fn error(missed: Missed) -> StageError {
 
 fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
     let moved = before.map(|b| compare(ran, b)).transpose()?;
-    let strain = ran.metrics.garment.as_ref().map_or(0.0, |g| g.figures.edge_strain.p99);
+    let strain = ran.figures.as_ref().map_or(0.0, |f| f.garment.edge_strain.p99);
     let overrides = board.overrides(&setting).into_iter().map(|o| (o.path, o.value)).collect();
     Ok(Level {
         setting,

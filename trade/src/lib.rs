@@ -7,14 +7,16 @@
 //! - `sample`, `front`: which settings are tried, and which of them nothing beats;
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
 //! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
-//! - `measure`: one run with its clocks; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
-//! - `decided`, `ablate`: what a pipeline leaves out by facts of its scene, and what turning each decision round changes;
+//! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
+//! - `decided`, `saving`, `ablate`: what a pipeline leaves out by facts of its scene, what that saves, and what turning each
+//!   decision round changes;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
-//! - `tune`; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
+//! - `tune`, `qualities`: settings for an error or a time, proved; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
 //!
 //! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
 
 pub mod ablate;
+pub mod apart;
 pub mod cost;
 pub mod decided;
 pub mod default_knobs;
@@ -28,9 +30,11 @@ pub mod ladder;
 pub mod measure;
 mod page;
 mod plot;
+pub mod qualities;
 pub mod record;
 pub mod richardson;
 pub mod sample;
+pub mod saving;
 mod silhouette;
 pub mod slot;
 mod split;

@@ -3,7 +3,7 @@
 use crate::measure::Ran;
 use crate::plot::{marks, png, svg};
 use crate::record::{Clock, Measured, Outcome, Trade};
-use crate::table::{csv, reference, setting_of};
+use crate::table::{csv, reference, setting_of, whose_memory};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
@@ -107,8 +107,12 @@ fn page(trade: &Trade, drawing: &str, folder: &Path) -> Page {
         pipeline: trade.pipeline.clone(),
         file: trade.file.clone(),
         about: format!(
-            "toile {}, {}, {}, {} threads{load}",
-            trade.toile, trade.date, machine.system, machine.threads
+            "toile {}, {}, {}, {} threads{load}; memory is {}",
+            trade.toile,
+            trade.date,
+            machine.system,
+            machine.threads,
+            whose_memory(trade)
         ),
         drawing: drawing.to_owned(),
         reference: reference(trade),

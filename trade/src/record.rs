@@ -270,6 +270,9 @@ pub struct Trade {
     pub clock: Clock,
     /// The stage that runs ended at; none for the whole pipeline.
     pub until: Option<String>,
+    /// Whether each run had a process of its own, so that memory is that of the run.
+    #[serde(default)]
+    pub apart: bool,
     /// What was turned.
     pub knobs: Vec<KnobRecord>,
     /// What the errors are against.

@@ -5,12 +5,12 @@
 //! name (`GridMesher.edge`) on that stage alone. Where it has nothing to act on it is left out of the setting, so that
 //! settings that differ in nothing are one.
 
-use crate::dial::{Dial, Form, dial, is_finer, numeric, rounded};
+use crate::dial::{Dial, Form, dial, is_finer, is_spatial, numeric, rounded, way};
 use crate::knob::{KnobSpec, Values, fault};
 use crate::split::field;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use toile_core::pipeline::{Faults, Node, Override, Pipeline, load, nearest};
+use toile_core::pipeline::{Changes, Faults, Node, Override, Pipeline, load_with, nearest};
 use toile_core::{Card, ParamDoc, Registry, Role, SectionValue, StageError, add_implicit};
 
 /// A pipeline file with what the user has set, ready to be loaded with other settings.
@@ -22,6 +22,8 @@ pub struct Source<'a> {
     pub file: String,
     /// The folder that its paths are relative to.
     pub base: PathBuf,
+    /// The named quality, before `set`.
+    pub quality: Option<String>,
     /// `--set`, before all knobs.
     pub set: Vec<Override>,
     /// The stages there are.
@@ -34,7 +36,9 @@ impl Source<'_> {
     /// Errors: every fault of the file.
     pub fn load(&self, more: &[Override]) -> Result<Pipeline, Box<Faults>> {
         let all: Vec<Override> = self.set.iter().chain(more).cloned().collect();
-        let mut pipeline = load(&self.text, &self.file, &self.base, self.registry, &all).map_err(Box::new)?;
+        let changes = Changes { quality: self.quality.as_deref(), set: &all, ..Changes::default() };
+        let loaded = load_with(&self.text, &self.file, &self.base, self.registry, &changes);
+        let mut pipeline = loaded.map_err(Box::new)?;
         add_implicit(&mut pipeline, self.registry);
         Ok(pipeline)
     }
@@ -279,17 +283,12 @@ impl Board {
             let (own, other) = (numeric(setting.get(&k.key)?)?, numeric(reference.get(&k.key)?)?);
             Some(!is_finer(way, other, own, factor))
         };
-        // Steps and tolerances may be equal: an edge length may not.
-        self.knobs
-            .iter()
-            .filter(|k| k.param.as_deref() == Some("edge"))
-            .filter_map(pair)
-            .any(|too_fine| too_fine)
+        self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(pair).any(|too_fine| too_fine)
     }
 
-    /// Direction, finest value of the dial and value in a setting, of every knob that is an edge length.
+    /// Direction, finest value of the dial and value in a setting, of every knob that is a resolution in space.
     fn resolutions<'b>(&'b self, setting: &'b Setting) -> impl Iterator<Item = (f64, f64, f64)> + 'b {
-        self.knobs.iter().filter(|k| k.param.as_deref() == Some("edge")).filter_map(|k| {
+        self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(|k| {
             let (way, _) = self.resolution(k)?;
             Some((way, k.dial.finest(way)?, numeric(setting.get(&k.key)?)?))
         })
@@ -299,7 +298,11 @@ impl Board {
     fn resolution(&self, knob: &Knob) -> Option<(f64, &ParamDoc)> {
         let param = knob.param.as_deref()?;
         let doc = self.slots[knob.slot].own.params.iter().find(|p| p.name == param)?;
-        Some((crate::ladder::finer(param)?, doc))
+        Some((way(doc)?, doc))
+    }
+
+    fn is_spatial(&self, knob: &Knob) -> bool {
+        self.resolution(knob).is_some_and(|(_, doc)| is_spatial(doc))
     }
 
     /// The place of a setting in the unit cube; knobs that do not act are at their middle.

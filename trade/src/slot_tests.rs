@@ -3,6 +3,8 @@
 
 use super::*;
 use crate::default_knobs::default_knobs;
+use toile_core::artifact::Garment;
+use toile_core::{Context, Length, StageError, stage};
 
 const FILE: &str = r#"(
     name: "scene",
@@ -30,7 +32,14 @@ fn registry() -> Registry {
 }
 
 fn source<'a>(text: &str, registry: &'a Registry) -> Source<'a> {
-    Source { text: text.into(), file: "my.ron".into(), base: PathBuf::from("."), set: Vec::new(), registry }
+    Source {
+        text: text.into(),
+        file: "my.ron".into(),
+        base: PathBuf::from("."),
+        quality: None,
+        set: Vec::new(),
+        registry,
+    }
 }
 
 /// The overrides at a place of the cube, as one line.
@@ -103,6 +112,50 @@ fn the_own_setting_and_its_refinements() {
     // What stands at a place is found there again.
     let setting = board.setting(&[0.9, 0.3, 0.7]);
     assert_eq!(board.setting(&board.place(&setting)), setting);
+}
+
+/// A stage as third parties write it, with names of its own.
+#[stage(role = Draper, source = "none", example = "Turner()")]
+struct Turner {
+    /// Turns.
+    #[param(default = 40, min = 1, max = 1000, trades, finer = "more")]
+    turns: u32,
+    /// Cell of its lattice.
+    #[param(default = Length::mm(8.0), min = 1e-3, max = 0.1, trades, finer = "less")]
+    cell: Length,
+    /// No resolution.
+    #[param(default = 2.0, trades)]
+    edge: f64,
+}
+
+#[stage]
+impl Turner {
+    fn run(&self, garment: &Garment, _cx: &Context) -> Result<Garment, StageError> {
+        Ok(garment.clone())
+    }
+}
+
+#[test]
+fn a_stage_of_a_third_party_says_which_of_its_parameters_are_resolutions() {
+    let mut registry = registry();
+    registry.add::<Turner>();
+    let source = source(&FILE.replace("Rest(speed: 0.002)", "Turner(turns: 20)"), &registry);
+    let knobs = ["Turner.turns=10..100", "Turner.cell=4..20 mm", "Turner.edge=1..5"];
+    let board = board(&source, &knobs).unwrap();
+    let words = |s: &Setting| s.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
+    let (own, fine) = (board.own(), board.refined(4.0));
+    assert_eq!(words(&own), "Turner.cell \"8 mm\", Turner.edge 2.0, Turner.turns 20");
+    assert_eq!(words(&fine), "Turner.cell \"2 mm\", Turner.edge 2.0, Turner.turns 80");
+    // Cells must be finer than what is judged, turns need not.
+    assert!(board.is_finer(&fine, 1.3) && !board.is_finer(&own, 1.3));
+    let mut turned = own.clone();
+    turned.insert("Turner.turns".into(), "1000".into());
+    assert!(!board.is_too_fine(&turned, &fine, 1.3));
+    turned.insert("Turner.cell".into(), "\"2 mm\"".into());
+    assert!(board.is_too_fine(&turned, &fine, 1.3));
+    let found = default_knobs(&source.load(&[]).unwrap(), &registry);
+    let found: Vec<String> = found.iter().map(KnobSpec::key).collect();
+    assert_eq!(found, ["solver", "Turner.turns", "Turner.cell"]);
 }
 
 #[test]

@@ -100,6 +100,12 @@ impl<'a> Study<'a> {
     ) -> Result<Study<'a>, StageError> {
         let started = Instant::now();
         let board = Board::new(source, pipeline, knobs)?;
+        if options.bench.apart.is_none() {
+            tell(
+                "runs share this process: memory is the process's own, and a run that breaks off ends all"
+                    .into(),
+            );
+        }
         // Knobs that are not refined may change from session to session.
         let own = board.own();
         let finer =
@@ -325,6 +331,7 @@ impl<'a> Study<'a> {
             knobs: self.board.knobs.iter().map(knob).collect(),
             reference: self.found.reference.clone(),
             front: front_of(&points, self.options.clock),
+            apart: self.options.bench.apart.is_some(),
             points,
         }
     }
@@ -334,23 +341,18 @@ impl<'a> Study<'a> {
 ///
 /// Errors: garments that cannot be compared.
 pub(crate) fn measured(ran: &Ran, reference: &Ran) -> Result<Measured, StageError> {
-    let known: Vec<&String> = reference.metrics.shortfalls.iter().map(|(code, _)| code).collect();
+    let missed = |ran: &Ran| ran.figures.as_ref().map(|f| f.shortfalls.clone()).unwrap_or_default();
+    let (known, shortfalls) = (missed(reference), missed(ran));
     Ok(Measured {
         wall_s: vec![ran.wall_s],
         cpu_s: vec![ran.cpu_s],
-        peak_memory_bytes: ran.metrics.garment.as_ref().and_then(|g| g.peak_memory_bytes),
-        stages_s: ran
-            .metrics
-            .stages
-            .iter()
-            .filter(|s| s.skipped.is_none())
-            .map(|s| (s.id.clone(), s.wall_s))
-            .collect(),
+        peak_memory_bytes: ran.peak_memory_bytes,
+        stages_s: ran.stages_s.clone(),
         triangles: ran.garment.triangles.len(),
         errors: compare(ran, reference)?,
         ease_mm: ease(ran),
-        sound: ran.metrics.shortfalls.iter().all(|(code, _)| known.contains(&code)),
-        shortfalls: ran.metrics.shortfalls.clone(),
+        sound: shortfalls.iter().all(|s| known.iter().any(|k| k.code == s.code)),
+        shortfalls: shortfalls.into_iter().map(|s| (s.code.to_string(), s.message)).collect(),
         repeatable: true,
     })
 }

@@ -94,7 +94,16 @@ pub fn lines(trade: &Trade, only_front: bool) -> Vec<String> {
         "mm but for seconds, MB, area, outline and strain (percentage points), silhouettes (shared part), texture (grey levels); * on the front, ! misses a quality limit"
             .into(),
     );
+    lines.push(format!("MB: {}", whose_memory(trade)));
     lines
+}
+
+/// What the figure of memory is of.
+pub(crate) fn whose_memory(trade: &Trade) -> &'static str {
+    match trade.apart {
+        true => "the most that each run's own process held, the program itself included",
+        false => "the most that the one process of all runs held during each",
+    }
 }
 
 /// Indices by time; those without one last.

@@ -15,7 +15,7 @@ use crate::study::measured;
 use std::path::Path;
 use std::sync::Arc;
 use toile_core::cache::Cache;
-use toile_core::pipeline::{Override, Pipeline};
+use toile_core::pipeline::{Override, Pipeline, without_qualities};
 use toile_core::{ErrorCode, Length, StageError};
 
 /// Begins each line that tuning puts on top of a pipeline file.
@@ -61,6 +61,11 @@ impl Proof {
     /// Moved starts that keep an error.
     pub fn kept(&self, max_error_mm: f64) -> usize {
         self.starts.iter().filter(|m| m.p95 <= max_error_mm).count()
+    }
+
+    /// The worst of the fresh run and of the moved starts: 95 % of the surface, mm.
+    pub fn worst_mm(&self) -> f64 {
+        self.starts.iter().map(|m| m.p95).fold(self.fresh.errors.distance_mm.p95, f64::max)
     }
 
     fn is_good(&self, wish: &Wish, clock: Clock) -> bool {
@@ -148,14 +153,27 @@ impl Prover<'_> {
     ///
     /// Errors: none is, or the reference does not run.
     pub fn prove(&self, wish: &Wish, tell: &mut dyn FnMut(String)) -> Result<Proof, StageError> {
-        let picks = picks(self.trade, wish);
-        if picks.is_empty() {
-            return Err(refusal(self.trade, wish));
+        match picks(self.trade, wish).is_empty() {
+            true => Err(refusal(self.trade, wish)),
+            false => self.prove_against(wish, &self.reference()?, &mut Vec::new(), tell),
         }
-        let reference = self.reference()?;
-        for &point in &picks {
+    }
+
+    /// As [`Prover::prove`], against a reference that was run already; settings in `known`, proved before from every start,
+    /// are not run again, and those that are proved now are added.
+    ///
+    /// Errors: no setting is proved.
+    pub fn prove_against(
+        &self,
+        wish: &Wish,
+        reference: &Ran,
+        known: &mut Vec<Proof>,
+        tell: &mut dyn FnMut(String),
+    ) -> Result<Proof, StageError> {
+        for point in picks(self.trade, wish) {
             let setting = setting_words(&self.trade.points[point].setting);
-            let proof = match self.one(point, wish, &reference) {
+            let before = known.iter().find(|p| p.point == point).cloned();
+            let proof = match before.map_or_else(|| self.one(point, wish, reference), Ok) {
                 Ok(proof) => proof,
                 Err(Missed::Failed(e)) => {
                     tell(format!("{setting}: {}", e.message));
@@ -164,21 +182,31 @@ impl Prover<'_> {
                 Err(missed) => return Err(crate::ladder::error(missed)),
             };
             tell(format!("{setting}: {}", proof.words(wish, self.trade.clock)));
+            let is_whole = proof.starts.len() + proof.failed.len() == self.starts;
+            if is_whole && known.iter().all(|p| p.point != point) {
+                known.push(proof.clone());
+            }
             if proof.is_good(wish, self.trade.clock) {
                 return Ok(proof);
             }
         }
+        Err(self.unproved(wish))
+    }
+
+    fn unproved(&self, wish: &Wish) -> StageError {
         let message = format!("no setting that kept {} when it was measured keeps it again", wish.words());
         let spread = self.trade.reference.spread.as_ref().and_then(|s| s.p95());
         let rest = spread.map_or_else(String::new, |p| {
             format!("; the garment has several states of rest, and moved starts of the reference differ by up to {p:.2} mm")
         });
-        Err(StageError::new(ErrorCode::StaticEquilibrium, message)
-            .hint(format!("ask for a little more than is needed, or give `toile trade` more time{rest}")))
+        StageError::new(ErrorCode::StaticEquilibrium, message)
+            .hint(format!("ask for a little more than is needed, or give `toile trade` more time{rest}"))
     }
 
     /// The garment of the reference, from the cache of the measurement where it is still there.
-    fn reference(&self) -> Result<Ran, StageError> {
+    ///
+    /// Errors: the record holds none, or it does not run any more.
+    pub fn reference(&self) -> Result<Ran, StageError> {
         let none =
             || StageError::invalid("the record holds no reference").hint("measure again with `toile trade`");
         let finest = self.trade.reference.levels.last().ok_or_else(none)?;
@@ -212,13 +240,15 @@ impl Prover<'_> {
         Ok(proof)
     }
 
-    /// The pipeline file with the proved setting in its place, comments and order kept, and the figures on top.
+    /// The pipeline file with the proved setting in its place, comments and order kept, and the figures on top. Its named
+    /// qualities are left out: they were measured on the file as it was.
     ///
     /// Errors: the setting does not fit the file any more.
     pub fn tuned(&self, wish: &Wish, proof: &Proof, date: &str) -> Result<String, StageError> {
         let point = &self.trade.points[proof.point];
         let pipeline = self.load(&overrides(&point.overrides))?;
-        Ok(commented(&pipeline.text, &self.comments(wish, proof, point, date)))
+        let text = without_qualities(&pipeline.text).map_err(|f| StageError::invalid(f.message))?;
+        Ok(commented(&text, &self.comments(wish, proof, point, date)))
     }
 
     fn comments(&self, wish: &Wish, proof: &Proof, point: &Point, date: &str) -> Vec<String> {
@@ -268,7 +298,7 @@ pub fn check(trade: &Trade, pipeline: &Pipeline) -> Result<(), StageError> {
     }
 }
 
-fn overrides(pairs: &[(String, String)]) -> Vec<Override> {
+pub(crate) fn overrides(pairs: &[(String, String)]) -> Vec<Override> {
     pairs.iter().map(|(path, value)| Override { path: path.clone(), value: value.clone() }).collect()
 }
 

@@ -51,6 +51,7 @@ fn trade(floor: Option<f64>) -> Trade {
         machine: Machine::here(),
         clock: Clock::Wall,
         until: None,
+        apart: true,
         knobs: Vec::new(),
         reference,
         front: front_of(&points, Clock::Wall),

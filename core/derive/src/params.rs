@@ -25,6 +25,7 @@ struct ParamArgs {
     max: Option<Expr>,
     unit: Option<LitStr>,
     trades: bool,
+    finer: Option<Ident>,
 }
 
 pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<TokenStream> {
@@ -129,6 +130,10 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
             )
         };
         let (min, max, trades) = (bound(args.min), bound(args.max), args.trades);
+        let finer = args.finer.map_or(
+            quote!(::std::option::Option::None),
+            |way| quote!(::std::option::Option::Some(::toile_core::Finer::#way)),
+        );
         let unit = args.unit.map_or_else(String::new, |u| u.value());
         defaults.push(quote!(#name: #value));
         docs.push(quote! {
@@ -141,6 +146,7 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
                 max: #max,
                 default: ::toile_core::param::ron_text(&default.#name),
                 trades: #trades,
+                finer: #finer,
                 check: ::toile_core::param::Check::of::<#ty>(),
             }
         });
@@ -160,11 +166,21 @@ fn param_args(field: &mut syn::Field) -> syn::Result<ParamArgs> {
                 Meta::NameValue(nv) if nv.path.is_ident("min") => args.min = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("max") => args.max = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("unit") => args.unit = Some(expr_str(&nv.value)?),
-                _ => return Err(syn::Error::new_spanned(meta, "expected default, min, max, unit or trades")),
+                Meta::NameValue(nv) if nv.path.is_ident("finer") => args.finer = Some(way(&nv.value)?),
+                _ => {
+                    let known = "expected default, min, max, unit, trades or finer";
+                    return Err(syn::Error::new_spanned(meta, known));
+                }
             }
         }
     }
-    Ok(args)
+    match (&args.finer, args.trades) {
+        (Some(_), false) => {
+            let message = "a resolution trades accuracy for time: write `trades` as well";
+            Err(syn::Error::new_spanned(&field.ident, message))
+        }
+        _ => Ok(args),
+    }
 }
 
 fn expr_ident(e: &Expr) -> syn::Result<Ident> {
@@ -181,9 +197,48 @@ fn expr_str(e: &Expr) -> syn::Result<LitStr> {
     }
 }
 
+/// `"less"` or `"more"` as the variant of `Finer`.
+fn way(e: &Expr) -> syn::Result<Ident> {
+    let text = expr_str(e)?;
+    match text.value().as_str() {
+        "less" => Ok(Ident::new("Less", text.span())),
+        "more" => Ok(Ident::new("More", text.span())),
+        _ => Err(syn::Error::new_spanned(text, "expected \"less\" or \"more\"")),
+    }
+}
+
 fn expr_int(e: &Expr) -> syn::Result<LitInt> {
     match e {
         Expr::Lit(syn::ExprLit { lit: Lit::Int(i), .. }) => Ok(i.clone()),
         _ => Err(syn::Error::new_spanned(e, "expected a whole number")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn refused(param: TokenStream) -> String {
+        let item = syn::parse_quote! {
+            /// A stage.
+            struct A {
+                /// A cell.
+                #[param(#param)]
+                cell: f64,
+            }
+        };
+        expand(quote!(role = Mesher), item).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_resolution_says_which_way_it_is_refined_and_that_it_trades() {
+        let (way, trades) = (
+            "expected \"less\" or \"more\"",
+            "a resolution trades accuracy for time: write `trades` as well",
+        );
+        assert_eq!(refused(quote!(default = 1.0, trades, finer = "both")), way);
+        assert_eq!(refused(quote!(default = 1.0, finer = "less")), trades);
+        assert_eq!(refused(quote!(coarser = "less")), "expected default, min, max, unit, trades or finer");
     }
 }

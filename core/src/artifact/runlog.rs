@@ -34,6 +34,8 @@ pub struct StageRecord {
 pub struct RunLog {
     /// The pipeline's name.
     pub pipeline: String,
+    /// The named quality that it was run at, for people; none where nobody asked for one.
+    pub quality: Option<String>,
     /// Stages in the order in which they ran.
     pub stages: Vec<StageRecord>,
     /// Names of stages that were not needed, with the reason.
@@ -53,6 +55,9 @@ impl Artifact for RunLog {
     fn digest(&self, d: &mut Digester) {
         // Times differ from run to run, so only what was run counts.
         d.text("run log").text(&self.pipeline);
+        if let Some(quality) = &self.quality {
+            d.text("quality").text(quality);
+        }
         for s in &self.stages {
             d.text(&s.id).text(&s.params);
         }

@@ -9,7 +9,8 @@
 //! 3. `order`: stages get their ids, sections their place among the stages;
 //! 4. `graph`: each input port finds the stage that feeds it.
 //!
-//! `--set` overrides are spliced into the text before step 1, so that they pass the same checks.
+//! The settings of a quality that is asked for and `--set` overrides are spliced into the text before step 1, so that they
+//! pass the same checks; `qualities` are checked beside the file.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!
@@ -27,6 +28,7 @@ mod overrides;
 mod parser;
 mod pick;
 mod plugins;
+mod qualities;
 mod read;
 mod tree;
 pub(crate) mod typed;
@@ -39,8 +41,12 @@ pub use fault::{Fault, FaultRecord, Faults, Label};
 pub use json::to_json;
 pub use migrate::{Change, Migrated, Migration, migrate};
 pub use near::nearest;
+use overrides::Given;
 pub use overrides::Override;
 pub use plugins::{PluginUse, asked as plugins_asked};
+pub use qualities::{
+    MAX_QUALITIES, MAX_SETTINGS, Quality, fill as fill_qualities, without as without_qualities,
+};
 
 use crate::{Card, Registry, Stage, StageError};
 use std::collections::BTreeMap;
@@ -71,6 +77,10 @@ pub struct Pipeline {
     pub nodes: Vec<Node>,
     /// Plugins that the file asks for.
     pub plugins: Vec<PluginUse>,
+    /// Its named qualities.
+    pub qualities: Vec<Quality>,
+    /// The quality that it is loaded with, for people: `Draft`, `Draft, changed by --set`.
+    pub quality: Option<String>,
 }
 
 /// A stage in its place.
@@ -108,6 +118,18 @@ pub enum Feed {
     },
 }
 
+/// What a load changes in the file.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Changes<'a> {
+    /// The quality whose settings are applied first.
+    pub quality: Option<&'a str>,
+    /// `--set`, applied after it.
+    pub set: &'a [Override],
+    /// True of the text of a [`Pipeline`] that was loaded before: settings of qualities were checked then, against the file
+    /// as it was.
+    pub again: bool,
+}
+
 /// Loads a pipeline file: `text` is its content, `file` the name to show, `base` the folder that
 /// its paths are relative to.
 ///
@@ -119,6 +141,19 @@ pub fn load(
     registry: &Registry,
     overrides: &[Override],
 ) -> Result<Pipeline, Faults> {
+    load_with(text, file, base, registry, &Changes { set: overrides, ..Changes::default() })
+}
+
+/// Loads a pipeline file with one of its qualities.
+///
+/// Errs as [`load`], and where the file has no quality of that name.
+pub fn load_with(
+    text: &str,
+    file: &str,
+    base: &Path,
+    registry: &Registry,
+    changes: &Changes<'_>,
+) -> Result<Pipeline, Faults> {
     if text.len() > MAX_BYTES {
         let message = format!("the file has {} bytes, the limit is {MAX_BYTES}", text.len());
         return Err(Faults::new(file, text, vec![Fault::new("too_large", message).at(&(0..0), "")]));
@@ -126,11 +161,12 @@ pub fn load(
     // Overrides may name a plugin, and may name stages of plugins.
     let mut registry = registry.clone();
     let mut refused = plugins::load(text, base, &mut registry);
-    let mut applied = overrides::apply(text, &registry, overrides);
+    let mut applied = applied(text, &registry, changes);
     if plugins::asked(&applied.text) != plugins::asked(text) || !refused.is_empty() {
         refused = plugins::load(&applied.text, base, &mut registry);
     }
-    let mut faults = std::mem::take(&mut applied.faults);
+    let mut faults = std::mem::take(&mut applied.known);
+    faults.extend(std::mem::take(&mut applied.refused).into_iter().map(|(_, fault)| fault));
     faults.append(&mut refused);
     let checked = check(&applied.text, &registry, &mut faults);
     match checked {
@@ -139,20 +175,34 @@ pub fn load(
             let stem =
                 || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
             let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
-            Ok(Pipeline {
-                name,
-                file: file.to_owned(),
-                text: applied.text,
-                base: base.to_owned(),
-                nodes,
-                plugins,
-            })
+            let (qualities, quality) = (read.qualities, changes.words());
+            let (text, base, file) = (applied.text, base.to_owned(), file.to_owned());
+            Ok(Pipeline { name, file, text, base, nodes, plugins, qualities, quality })
         }
         _ => {
             applied.name_origin(&mut faults);
             Err(Faults::new(file, &applied.text, faults))
         }
     }
+}
+
+impl Changes<'_> {
+    /// The quality in words.
+    fn words(&self) -> Option<String> {
+        let changed = if self.set.is_empty() { "" } else { ", changed by --set" };
+        self.quality.map(|name| format!("{name}{changed}"))
+    }
+}
+
+/// The text with the changes; a quality with a fault is not applied, since its fault says it all.
+fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> overrides::Applied {
+    let mut faults = if changes.again { Vec::new() } else { qualities::settings(text, registry) };
+    let chosen =
+        changes.quality.map(|name| qualities::choose(text, qualities::named(text), name)).transpose();
+    let chosen = chosen.map_err(|fault| faults.push(*fault)).ok().flatten().filter(|_| faults.is_empty());
+    let of_quality = chosen.iter().flat_map(Given::of_quality);
+    let given: Vec<Given<'_>> = of_quality.chain(changes.set.iter().map(Given::set)).collect();
+    overrides::apply(text, registry, &given, faults)
 }
 
 /// Reads and connects the stages; none where the text is no RON.

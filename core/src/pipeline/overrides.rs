@@ -6,6 +6,7 @@
 
 use super::draft::Draft;
 use super::fault::Fault;
+use super::qualities::Quality;
 use super::read::{self, GENERIC};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::{near, parse};
@@ -35,25 +36,67 @@ impl std::str::FromStr for Override {
     }
 }
 
+/// An override with where it comes from.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Given<'a> {
+    o: &'a Override,
+    /// The quality that it is of; none where it is a `--set`.
+    quality: Option<&'a str>,
+}
+
+impl<'a> Given<'a> {
+    /// `--set` of the command line.
+    pub(super) fn set(o: &'a Override) -> Self {
+        Given { o, quality: None }
+    }
+
+    /// The settings of a quality.
+    pub(super) fn of_quality(quality: &'a Quality) -> impl Iterator<Item = Given<'a>> {
+        quality.set.iter().map(|o| Given { o, quality: Some(&quality.name) })
+    }
+
+    /// A path as the user writes it: `--set a.b`, in a quality `a.b`.
+    fn named(&self) -> String {
+        if self.quality.is_some() { self.o.path.clone() } else { format!("--set {}", self.o.path) }
+    }
+
+    /// A path with a value as the user writes it: `--set 'a.b=...'`, in a quality `a.b=...`.
+    fn written(&self, path: &str, value: &str) -> String {
+        match self.quality {
+            Some(_) => format!("{path}={value}"),
+            None => format!("--set '{path}={value}'"),
+        }
+    }
+
+    fn origin(&self) -> String {
+        match self.quality {
+            Some(name) => format!("the quality `{name}`"),
+            None => format!("`{}`", self.named()),
+        }
+    }
+}
+
 /// A text with overrides applied.
 #[derive(Debug, Default)]
 pub(super) struct Applied {
     pub(super) text: String,
-    /// Where each override's value stands now, with its path.
-    regions: Vec<(Range<usize>, String)>,
-    /// Overrides that could not be applied; places refer to `text`.
-    pub(super) faults: Vec<Fault>,
+    /// Where each override's value stands now, with its number and where it comes from.
+    regions: Vec<(Range<usize>, usize, String)>,
+    /// Overrides that could not be applied, by number; places refer to `text`.
+    pub(super) refused: Vec<(usize, Fault)>,
+    /// Faults that were known before, at their places in `text`.
+    pub(super) known: Vec<Fault>,
 }
 
-/// Applies overrides in their order.
-pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Override]) -> Applied {
-    let mut applied = Applied { text: text.to_owned(), ..Applied::default() };
-    for o in overrides {
+/// Applies overrides in their order; `known` are faults of the text, whose places move with it.
+pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Given<'_>], known: Vec<Fault>) -> Applied {
+    let mut applied = Applied { text: text.to_owned(), known, ..Applied::default() };
+    for (i, given) in overrides.iter().enumerate() {
         // A text that is no RON is reported by the load itself.
         let Ok(tree) = parse(&applied.text) else { break };
-        match edit(&applied.text, &tree, registry, o) {
-            Ok(edit) => applied.splice(&edit, &o.path),
-            Err(fault) => applied.faults.push(fault),
+        match edit(&applied.text, &tree, registry, *given) {
+            Ok(edit) => applied.splice(&edit, i, given.origin()),
+            Err(fault) => applied.refused.push((i, fault)),
         }
     }
     applied
@@ -63,14 +106,23 @@ impl Applied {
     /// Says of faults that lie in an override's value where that value comes from.
     pub(super) fn name_origin(&self, faults: &mut [Fault]) {
         for fault in faults {
-            let start = fault.start();
-            if let Some((_, path)) = self.regions.iter().find(|(r, _)| r.contains(&start)) {
-                fault.message.push_str(&format!(" (from `--set {path}`)"));
+            if let Some((_, _, origin)) = self.region(fault) {
+                fault.message.push_str(&format!(" (from {origin})"));
             }
         }
     }
 
-    fn splice(&mut self, edit: &Edit, path: &str) {
+    /// The number of the override in whose value a fault lies.
+    pub(super) fn origin(&self, fault: &Fault) -> Option<usize> {
+        self.region(fault).map(|(_, i, _)| *i)
+    }
+
+    fn region(&self, fault: &Fault) -> Option<&(Range<usize>, usize, String)> {
+        let start = fault.start();
+        self.regions.iter().find(|(r, _, _)| r.contains(&start))
+    }
+
+    fn splice(&mut self, edit: &Edit, number: usize, origin: String) {
         let Edit { at, before, value, after } = edit;
         self.text.replace_range(at.clone(), &format!("{before}{value}{after}"));
         let added = before.len() + value.len() + after.len();
@@ -78,11 +130,12 @@ impl Applied {
             let moved = |x: usize| if x >= at.end { x + added - at.len() } else { x.min(at.start) };
             *span = moved(span.start)..moved(span.end);
         };
-        self.regions.iter_mut().for_each(|(span, _)| shift(span));
-        self.faults.iter_mut().flat_map(|f| &mut f.labels).for_each(|l| shift(&mut l.span));
+        self.regions.iter_mut().for_each(|(span, _, _)| shift(span));
+        let faults = self.refused.iter_mut().map(|(_, f)| f).chain(&mut self.known);
+        faults.flat_map(|f| &mut f.labels).for_each(|l| shift(&mut l.span));
         let start = at.start + before.len();
-        self.regions.retain(|(span, _)| !span.is_empty());
-        self.regions.push((at.start..start + value.len(), path.to_owned()));
+        self.regions.retain(|(span, _, _)| !span.is_empty());
+        self.regions.push((at.start..start + value.len(), number, origin));
     }
 }
 
@@ -112,18 +165,20 @@ impl Edit {
 }
 
 /// What one override does to the text.
-fn edit(text: &str, tree: &Tree, registry: &Registry, o: &Override) -> Result<Edit, Fault> {
-    let value = parse(&o.value).map_err(|e| bad_value(tree, o, &e))?;
+fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Result<Edit, Fault> {
+    let o = given.o;
+    let value = parse(&o.value).map_err(|e| bad_value(tree, given, &e))?;
     let read = read::file(text, tree, registry, &mut Vec::new());
     let segments: Vec<&str> = o.path.split('.').collect();
-    let walk = Walk { text, registry, o, value: &o.value[value.span], segments: &segments };
+    let walk = Walk { text, registry, given, value: &o.value[value.span], segments: &segments };
     walk.top(tree, &read.sections, &read.stages)
 }
 
-fn bad_value(tree: &Tree, o: &Override, e: &Fault) -> Fault {
-    let message = format!("`--set {}`: `{}` is no RON value: {}", o.path, o.value, e.message);
-    let hint =
-        format!("text stands in quotes: `--set '{}=\"{}\"'`", o.path, o.value.trim_matches(['"', '\'']));
+fn bad_value(tree: &Tree, given: Given<'_>, e: &Fault) -> Fault {
+    let o = given.o;
+    let message = format!("`{}`: `{}` is no RON value: {}", given.named(), o.value, e.message);
+    let quoted = format!("\"{}\"", o.value.trim_matches(['"', '\'']));
+    let hint = format!("text stands in quotes: `{}`", given.written(&o.path, &quoted));
     Fault::new("bad_override", message).at(&tree.head(), "").hint(hint)
 }
 
@@ -131,7 +186,7 @@ fn bad_value(tree: &Tree, o: &Override, e: &Fault) -> Fault {
 struct Walk<'a> {
     text: &'a str,
     registry: &'a Registry,
-    o: &'a Override,
+    given: Given<'a>,
     value: &'a str,
     segments: &'a [&'a str],
 }
@@ -152,7 +207,7 @@ impl Walk<'_> {
                 1 => Ok(Edit::insert(*inside, entries, field, self.value)),
                 _ => {
                     let fault = self.fault(format!("the file has no `{field}`"), &tree.head());
-                    Err(fault.hint(format!("set all of it: `--set '{field}=...'`")))
+                    Err(fault.hint(format!("set all of it: `{}`", self.given.written(field, "..."))))
                 }
             };
         };
@@ -208,7 +263,7 @@ impl Walk<'_> {
                 let whole = self.segments[..=i].join(".");
                 let fault =
                     self.fault(format!("the file gives no `{field}` to change a part of"), &draft.place);
-                Err(fault.hint(format!("set all of it: `--set '{whole}=...'`")))
+                Err(fault.hint(format!("set all of it: `{}`", self.given.written(&whole, "..."))))
             }
         }
     }
@@ -248,7 +303,7 @@ impl Walk<'_> {
     }
 
     fn fault(&self, message: impl AsRef<str>, at: &Range<usize>) -> Fault {
-        Fault::new("bad_override", format!("`--set {}`: {}", self.o.path, message.as_ref())).at(at, "")
+        Fault::new("bad_override", format!("`{}`: {}", self.given.named(), message.as_ref())).at(at, "")
     }
 
     /// Segment `i` names nothing: proposes the path with the nearest name in its place.

@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::pick::{Before, pick};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
-use super::{MAX_FAULTS, MAX_STAGES, PluginUse, migrate, near, plugins};
+use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, migrate, near, plugins, qualities};
 use crate::param::ron_options;
 use crate::{Card, ParamDoc, Registry, Role, Section, SectionValue};
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ use std::ops::Range;
 pub(super) const GENERIC: [&str; 2] = ["id", "from"];
 
 /// Top-level fields that are no sections.
-pub(super) const PLAIN: [&str; 3] = ["name", "stages", "plugins"];
+pub(super) const PLAIN: [&str; 4] = ["name", "stages", "plugins", "qualities"];
 
 /// The longest id: it becomes a folder's name.
 const MAX_ID: usize = 64;
@@ -25,6 +25,7 @@ const MAX_ID: usize = 64;
 pub(super) struct Read {
     pub(super) name: Option<String>,
     pub(super) plugins: Vec<PluginUse>,
+    pub(super) qualities: Vec<Quality>,
     /// In the order of the registry.
     pub(super) sections: Vec<Draft>,
     /// In the order of the file.
@@ -43,6 +44,10 @@ pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Ve
     let mut read = Read {
         name: fields.get("name").and_then(|(_, v)| r.text_value("name", v)),
         plugins: fields.get("plugins").map(|(_, v)| plugins::read(text, v, r.faults)).unwrap_or_default(),
+        qualities: fields
+            .get("qualities")
+            .map(|(_, v)| qualities::read(text, v, r.faults))
+            .unwrap_or_default(),
         ..Read::default()
     };
     let registered = registry.sections().iter().filter_map(|s| Some((s, fields.get(s.field)?)));

@@ -5,6 +5,7 @@ mod faults;
 mod graph;
 pub(crate) mod kit;
 mod overrides;
+mod qualities;
 mod syntax;
 mod wild;
 

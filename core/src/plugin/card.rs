@@ -4,7 +4,7 @@ use super::abi::{self, Text};
 use super::view::{list, text};
 use crate::artifact::stored::kind_named;
 use crate::artifact::{ArtifactType, RunLog};
-use crate::param::{Check, check_number};
+use crate::param::{Check, Finer, check_number};
 use crate::text::intern;
 use crate::{Arity, Card, Contract, InPort, Kind, OutPort, ParamDoc, ParamFault, PluginId, Role};
 
@@ -61,8 +61,29 @@ fn param(p: &'static ParamDoc) -> abi::Param {
         default: Text::of(&p.default),
         min: p.min.unwrap_or(f64::NAN),
         max: p.max.unwrap_or(f64::NAN),
-        flags: if p.trades { abi::PARAM_TRADES } else { 0 },
+        flags: flags(p),
         reserved: 0,
+    }
+}
+
+fn flags(p: &ParamDoc) -> u32 {
+    let finer = match p.finer {
+        Some(Finer::Less) => abi::PARAM_FINER_LESS,
+        Some(Finer::More) => abi::PARAM_FINER_MORE,
+        None => 0,
+    };
+    finer | if p.trades { abi::PARAM_TRADES } else { 0 }
+}
+
+/// Which way a parameter is refined, by its flags.
+fn finer(name: &str, flags: u32) -> Result<Option<Finer>, String> {
+    match (flags & abi::PARAM_FINER_LESS != 0, flags & abi::PARAM_FINER_MORE != 0) {
+        (true, true) => {
+            Err(format!("the parameter `{name}` is finer both where it is less and where it is more"))
+        }
+        (true, false) => Ok(Some(Finer::Less)),
+        (false, true) => Ok(Some(Finer::More)),
+        (false, false) => Ok(None),
     }
 }
 
@@ -183,6 +204,7 @@ unsafe fn read_param(p: &abi::Param, check: Option<Check>) -> Result<ParamDoc, S
         max: (!p.max.is_nan()).then_some(p.max),
         default: unsafe { text(p.default)? }.to_owned(),
         trades: p.flags & abi::PARAM_TRADES != 0,
+        finer: finer(name, p.flags)?,
         check: check.unwrap_or_else(|| Check::by(by_kind)),
     })
 }

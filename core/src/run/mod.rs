@@ -226,6 +226,7 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
     });
     let mut metrics = Metrics {
         pipeline: run.pipeline.name.clone(),
+        quality: run.pipeline.quality.clone(),
         wall_s,
         stages: ran.chain(skipped).collect(),
         panels: Default::default(),

@@ -30,6 +30,9 @@ impl Run<'_> {
     pub(super) fn log_hash(&self, index: usize) -> Option<Hash> {
         let mut d = Digester::new();
         d.text("toile run").text(&self.pipeline.name).count(index);
+        if let Some(quality) = &self.pipeline.quality {
+            d.text("quality").text(quality);
+        }
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             d.text(&node.id);
             let ran = match step {
@@ -49,7 +52,7 @@ impl Run<'_> {
 
     /// The record that a report is given: without services, which would have to be set up to be shown.
     pub(super) fn report(&self, index: usize) -> RunLog {
-        let mut log = RunLog { pipeline: self.pipeline.name.clone(), ..RunLog::default() };
+        let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
                 Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
@@ -65,7 +68,7 @@ impl Run<'_> {
 
     /// The record of the stages before `index`. A stage of whose artifacts one is not in memory has none.
     pub(super) fn log(&self, index: usize) -> RunLog {
-        let mut log = RunLog { pipeline: self.pipeline.name.clone(), ..RunLog::default() };
+        let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
             match step {
                 Step::Skipped(reason) => log.skipped.push((node.id.clone(), reason.clone())),
@@ -73,6 +76,11 @@ impl Run<'_> {
             }
         }
         log
+    }
+
+    fn new_log(&self) -> RunLog {
+        let (pipeline, quality) = (self.pipeline.name.clone(), self.pipeline.quality.clone());
+        RunLog { pipeline, quality, ..RunLog::default() }
     }
 
     fn record<'h>(&self, node: &Node, ran: &Ran, held: impl Iterator<Item = &'h Held>) -> StageRecord {

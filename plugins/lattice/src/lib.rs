@@ -33,7 +33,7 @@ use triangulate::Meshed;
 )]
 pub struct LatticeMesher {
     /// Length of the triangles' edges; a smaller one gives finer folds and takes longer.
-    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades)]
+    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades, finer = "less")]
     pub edge: Length,
 }
 

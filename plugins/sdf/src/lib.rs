@@ -39,7 +39,7 @@ use toile_core::prelude::*;
 )]
 pub struct SdfCollider {
     /// Distance of the grid's nodes: half of it costs eight times the memory.
-    #[param(default = Length::mm(8.0), min = 1e-4, max = 0.1, trades)]
+    #[param(default = Length::mm(8.0), min = 1e-4, max = 0.1, trades, finer = "less")]
     pub cell: Length,
     /// Distance at which cloth is held off the body and off itself.
     #[param(default = Length::mm(1.5), min = 1e-5, max = 0.05, trades)]

@@ -40,7 +40,7 @@ pub struct GraphCut {
     #[param(default = 6, min = 1, max = 16)]
     pub modes: u32,
     /// Rounds of fitting and cutting.
-    #[param(default = 4, min = 1, max = 20, trades)]
+    #[param(default = 4, min = 1, max = 20, trades, finer = "more")]
     pub rounds: u32,
     /// What a step of boundary costs, against the colours of a pixel: more gives a smoother outline.
     #[param(default = 50.0, min = 0.0, max = 1000.0)]

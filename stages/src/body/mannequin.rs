@@ -62,7 +62,7 @@ pub struct Mannequin {
     #[param(default = 60.0, min = 30.0, max = 75.0, unit = "degrees")]
     arm_angle: f64,
     /// Length of the mesh's edges; small bodies get shorter ones.
-    #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades)]
+    #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
     edge: Length,
 }
 

@@ -21,19 +21,19 @@ use toile_core::prelude::*;
 )]
 pub struct Projective {
     /// Turns in each step.
-    #[param(default = 10, min = 1, max = 10_000, unit = "turns", trades)]
+    #[param(default = 10, min = 1, max = 10_000, unit = "turns", trades, finer = "more")]
     pub iterations: usize,
     /// Downward acceleration; a scene's own phases come before it.
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
     /// Time between two looks at contacts.
-    #[param(default = 0.004, min = 1e-6, max = 0.1, unit = "s", trades)]
+    #[param(default = 0.004, min = 1e-6, max = 0.1, unit = "s", trades, finer = "less")]
     pub dt: f64,
     /// Drag in proportion to mass, so that swinging dies out; 0 for a true fall.
     #[param(default = 4.0, min = 0.0, max = 1000.0, unit = "1/s")]
     pub drag: f64,
     /// At rest, no vertex is faster, by its way in a sixtieth of a second.
-    #[param(default = 0.02, min = 1e-9, max = 10.0, unit = "m/s", trades)]
+    #[param(default = 0.02, min = 1e-9, max = 10.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// Longest motion for sewing, and again for draping.
     #[param(default = 6.0, min = 0.001, max = 1000.0, unit = "s", trades)]

@@ -37,7 +37,7 @@ pub struct Rest {
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
     /// At rest, no vertex gains more than this in a sixtieth of a second.
-    #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades)]
+    #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
     #[param(default = 500, min = 20, max = 100_000, unit = "vertices", trades)]

@@ -45,10 +45,10 @@ pub struct SpringDraper {
     #[param(default = 0.3, min = 0.0, max = 100.0, unit = "s")]
     pub slip_time: f64,
     /// At rest, the energy changes by less than this in 20 ms.
-    #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades)]
+    #[param(default = 2e-5, min = 0.0, max = 1.0, unit = "J", trades, finer = "less")]
     pub tolerance: f64,
     /// At rest, no vertex is faster, by its way in 20 ms.
-    #[param(default = 0.02, min = 0.0, max = 10.0, unit = "m/s", trades)]
+    #[param(default = 0.02, min = 0.0, max = 10.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// Simulated time after which the drape stops as it is.
     #[param(default = 3.0, min = 0.01, max = 100.0, unit = "s", trades)]

@@ -39,7 +39,7 @@ const RELAX_ROUNDS: usize = 6;
 )]
 pub struct DelaunayMesher {
     /// Target length of the triangles' edges; a smaller one gives finer folds and takes longer.
-    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades)]
+    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) edge: Length,
     /// Triangles with a smaller angle are mended where the outline allows.
     #[param(default = 28.0, min = 0.0, max = 33.0, unit = "deg", trades)]

@@ -45,7 +45,7 @@ const BAND_ANGLE: f64 = 27.0;
 )]
 pub struct GridMesher {
     /// Target length of the triangles' edges; a smaller one gives finer folds and takes longer.
-    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades)]
+    #[param(default = Length::mm(12.0), min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) edge: Length,
 }
 

@@ -25,7 +25,7 @@ pub struct Laplacian {
     #[param(default = 0.5, min = 0.0, max = 1.0)]
     pub(crate) lambda: f64,
     /// Number of rounds.
-    #[param(default = 5, min = 0, max = 1000, trades)]
+    #[param(default = 5, min = 0, max = 1000, trades, finer = "more")]
     pub(crate) iterations: u32,
 }
 

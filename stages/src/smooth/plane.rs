@@ -43,7 +43,7 @@ pub struct PlaneSmoother {
     #[param(default = 0.5, min = 0.0, max = 0.8)]
     pub(crate) lambda: f64,
     /// Number of rounds.
-    #[param(default = 3, min = 0, max = 1000, trades)]
+    #[param(default = 3, min = 0, max = 1000, trades, finer = "more")]
     pub(crate) iterations: u32,
 }
 

@@ -29,7 +29,7 @@ pub struct Taubin {
     #[param(default = -0.53, min = -1.1, max = 0.0)]
     pub(crate) mu: f64,
     /// Number of rounds.
-    #[param(default = 5, min = 0, max = 1000, trades)]
+    #[param(default = 5, min = 0, max = 1000, trades, finer = "more")]
     pub(crate) iterations: u32,
 }
 

@@ -45,7 +45,7 @@ pub struct SpringStitcher {
     #[param(default = 500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
     pub stiffest: f64,
     /// The sewn garment is at rest when its energy changes by less than this in 20 ms.
-    #[param(default = 1e-4, min = 0.0, max = 1.0, unit = "J", trades)]
+    #[param(default = 1e-4, min = 0.0, max = 1.0, unit = "J", trades, finer = "less")]
     pub tolerance: f64,
     /// Simulated time after which sewing stops as it is, in seconds.
     #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]

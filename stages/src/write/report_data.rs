@@ -25,6 +25,8 @@ const MOST_NOTES: usize = 24;
 #[derive(Debug, Serialize)]
 pub(super) struct Page {
     title: String,
+    /// The named quality; empty where nobody asked for one.
+    quality: String,
     version: &'static str,
     total: String,
     views: Vec<Shown>,
@@ -92,6 +94,7 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     let skipped = run.skipped.iter().map(|(name, why)| Figure { name: name.clone(), value: why.clone() });
     Ok(Page {
         title: if run.pipeline.is_empty() { "A garment".to_owned() } else { run.pipeline.clone() },
+        quality: run.quality.clone().unwrap_or_default(),
         version: env!("CARGO_PKG_VERSION"),
         total: seconds(total),
         views,

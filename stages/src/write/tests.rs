@@ -378,6 +378,7 @@ fn run_log() -> RunLog {
     }];
     RunLog {
         pipeline: "vest <script>".to_owned(),
+        quality: None,
         stages: vec![
             record("Photos", Role::Reader, vec![photos()]),
             record("Mannequin", Role::Body, vec![one(fixture::body())]),
@@ -410,6 +411,16 @@ fn assert_balanced(html: &str) {
         }
     }
     assert!(open.is_empty(), "{open:?}");
+}
+
+#[test]
+fn the_report_names_the_quality_of_the_run_where_there_is_one() {
+    let plain = report(&run_log(), "(pictures: 80)");
+    assert!(plain.contains(" s</p>\n</header>"), "a report without one is as it was");
+    let draft = RunLog { quality: Some("Draft, <changed>".into()), ..run_log() };
+    let named = report(&draft, "(pictures: 80)");
+    let line = "<p class=\"soft\">quality Draft, &lt;changed&gt;</p>\n";
+    assert!(named.replacen(line, "", 1) == plain && named != plain, "one line more and nothing else");
 }
 
 #[test]
@@ -534,7 +545,8 @@ proptest! {
             used: None,
             predicted: None,
         };
-        let run = RunLog { pipeline: text.clone(), stages: vec![record], skipped: vec![(text.clone(), text)] };
+        let (pipeline, quality) = (text.clone(), Some(text.clone()));
+        let run = RunLog { pipeline, quality, stages: vec![record], skipped: vec![(text.clone(), text)] };
         assert_balanced(&report(&run, "()"));
     }
 }

@@ -28,6 +28,8 @@ fn wrong_stage_tables_are_refused() {
     assert_eq!(refused("NO_NAME"), "\"no name\" is no name for a stage");
     assert_eq!(refused("NOT_UTF8"), "a text is not UTF-8");
     assert_eq!(refused("UNKNOWN_ROLE"), "its stage `Passes`: there is no role `ironer`");
+    let both = "its stage `Passes`: the parameter `cell` is finer both where it is less and where it is more";
+    assert_eq!(refused("FINER_BOTH_WAYS"), both);
     assert_eq!(refused("UNKNOWN_KIND"), "its stage `Passes`: there is no kind `hologram`");
 }
 

@@ -1,8 +1,8 @@
 //! The crates of plugins/ through the border: what they give is what they give linked in, bit for bit.
 
 use std::ffi::OsString;
-use toile_core::Registry;
 use toile_core::testkit::{Trial, cases, folder, from_example};
+use toile_core::{Card, Registry};
 use toile_tests::plugins::library;
 
 type Register = fn(&mut Registry);
@@ -28,6 +28,8 @@ fn every_stage_gives_the_same_bits_loaded_and_linked_in() {
         for card in linked.cards() {
             let [own, foreign] = [&linked, &loaded].map(|r| from_example(r, card, &dir).unwrap());
             assert_eq!(own.params(), foreign.params());
+            let turned = |c: &Card| c.params.iter().map(|p| (p.name, p.trades, p.finer)).collect::<Vec<_>>();
+            assert_eq!(turned(card), turned(loaded.card(card.name).unwrap()));
             let mut answers = 0;
             for case in cases(card).iter().take(CASES) {
                 let [a, b] =

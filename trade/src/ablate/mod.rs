@@ -12,7 +12,7 @@ mod tests;
 
 pub use record::{Ablation, Change, Row, SCHEME, Saved, Verdict};
 pub(crate) use run::path_to;
-pub use run::{Options, ablate};
+pub use run::{Options, Step, ablate};
 pub use table::{csv, lines};
 
 use toile_core::StageError;

@@ -2,8 +2,10 @@
 
 use crate::errors::Millimetres;
 use crate::record::Machine;
+use crate::store::digest;
 use serde::{Deserialize, Serialize};
 use toile_core::decide::{Decided, Tolerance};
+use toile_core::pipeline::Pipeline;
 
 /// The version of this form.
 pub const SCHEME: u32 = 1;
@@ -19,6 +21,9 @@ pub struct Ablation {
     pub pipeline: String,
     /// Its file.
     pub file: String,
+    /// Digest of its stages, versions and parameters: by it an old measurement is told from one of the pipeline as it is.
+    #[serde(default)]
+    pub base: String,
     /// Day of the measurement.
     pub date: String,
     /// Where.
@@ -29,6 +34,13 @@ pub struct Ablation {
     pub cpu_s: Vec<f64>,
     /// A row a decision.
     pub rows: Vec<Row>,
+}
+
+impl Ablation {
+    /// Whether it is of that very pipeline: the same stages, versions and parameters.
+    pub fn is_of(&self, pipeline: &Pipeline) -> bool {
+        self.scheme == SCHEME && self.base == digest(pipeline, &[])
+    }
 }
 
 /// One decision turned round.

@@ -7,7 +7,7 @@ use crate::ladder::error;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::{Machine, today};
 use crate::slot::{Source, path_of};
-use crate::store::garment_digest;
+use crate::store::{digest, garment_digest};
 use std::time::Duration;
 use toile_core::decide::{Decided, Turn, decisions};
 use toile_core::pipeline::{Override, Pipeline};
@@ -22,6 +22,29 @@ pub struct Options {
     pub limit: Option<Duration>,
     /// How runs are made.
     pub bench: Bench,
+}
+
+/// How far an ablation is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Step {
+    /// Runs that are done.
+    pub done: usize,
+    /// Runs in all.
+    pub all: usize,
+    /// The run that begins, in words.
+    pub what: String,
+}
+
+impl Step {
+    fn before(&self, what: &str) -> Step {
+        Step { what: what.to_owned(), ..self.clone() }
+    }
+}
+
+impl std::fmt::Display for Step {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "run {} of {}: {}", self.done + 1, self.all, self.what)
+    }
 }
 
 /// A decision with the pipeline that it is turned round in, and what came of it so far.
@@ -39,7 +62,7 @@ pub fn ablate(
     source: &Source<'_>,
     pipeline: &Pipeline,
     options: &Options,
-    tell: &mut dyn FnMut(String),
+    tell: &mut dyn FnMut(Step),
 ) -> Result<Ablation, StageError> {
     let run = RunOptions { until: options.bench.until.clone(), ..RunOptions::default() };
     let decided = decisions(pipeline, &run).map_err(|e| e.error)?;
@@ -50,13 +73,19 @@ pub fn ablate(
     let mut turned =
         decided.into_iter().map(|d| turned(source, pipeline, d)).collect::<Result<Vec<_>, StageError>>()?;
     let mut cpu_s = Vec::new();
-    for round in 0..options.repeats {
-        tell(format!("round {} of {}: as decided", round + 1, options.repeats));
+    let mut step = Step { done: 0, all: options.repeats * (1 + turned.len()), what: String::new() };
+    for _ in 0..options.repeats {
+        tell(step.before("as decided"));
         let own = options.bench.run(pipeline, None, None).map_err(error)?;
         cpu_s.push(own.cpu_s);
-        for t in turned.iter_mut().filter(|t| t.row.failed.is_none()) {
-            tell(format!("round {} of {}: {}", round + 1, options.repeats, t.row.turned));
-            one_turn(t, &own, options)?;
+        step.done += 1;
+        for t in &mut turned {
+            // What failed once is not run again, and counts as done.
+            if t.row.failed.is_none() {
+                tell(step.before(&t.row.turned));
+                one_turn(t, &own, options)?;
+            }
+            step.done += 1;
         }
     }
     Ok(Ablation {
@@ -64,6 +93,7 @@ pub fn ablate(
         toile: env!("CARGO_PKG_VERSION").to_owned(),
         pipeline: pipeline.name.clone(),
         file: pipeline.file.clone(),
+        base: digest(pipeline, &[]),
         date: today(),
         machine: Machine::here(),
         until: options.bench.until.clone(),
@@ -118,7 +148,7 @@ fn one_turn(t: &mut Turned, own: &Ran, options: &Options) -> Result<(), StageErr
 
 fn changed(own: &Ran, turned: &Ran) -> Result<Change, StageError> {
     let errors = compare(turned, own)?;
-    let crossings = |ran: &Ran| ran.metrics.garment.as_ref().and_then(|g| g.figures.self_crossings);
+    let crossings = |ran: &Ran| ran.figures.as_ref().and_then(|f| f.garment.self_crossings);
     Ok(Change {
         same_bits: garment_digest(&own.garment) == garment_digest(&turned.garment),
         distance_mm: errors.distance_mm,

@@ -72,6 +72,7 @@ fn ablation() -> Ablation {
         toile: "0.1.0".into(),
         pipeline: "vest".into(),
         file: "vest.ron".into(),
+        base: String::new(),
         date: "2026-11-22".into(),
         machine: Machine::here(),
         until: None,

@@ -21,8 +21,7 @@ fn unknown_names_come_with_the_nearest_one() {
     );
     check("radius", "quux", &["vest.ron:12:27: unknown parameter `quux`; `Mean` has `mask`, `radius`"]);
     check("Vest()", "Vest(x: 1)", &["vest.ron:8:17: unknown parameter `x`; `Vest` has no parameters"]);
-    let fields =
-        "a pipeline has the fields `name`, `photos`, `style`, `body`, `fabric`, `seams`, `stages`, `plugins`";
+    let fields = "a pipeline has the fields `name`, `photos`, `style`, `body`, `fabric`, `seams`, `stages`, `plugins`, `qualities`";
     let style = format!("vest.ron:8:5: unknown field `stile`; did you mean `style`? {fields}");
     check("style", "stile", &[&style]);
     let colour = format!("vest.ron:3:16: unknown field `colour`; {fields}");

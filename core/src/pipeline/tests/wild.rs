@@ -66,6 +66,8 @@ fn piece() -> impl Strategy<Value = String> {
         "Vest()",
         "stages",
         "photos: {}",
+        "qualities: [",
+        "Quality(name: \"a\", max_error: \"1 mm\", set: [\"stages.Otsu=",
         "NaN",
         "-inf",
         "1e999",

@@ -41,17 +41,17 @@ const FINE_SHARE: f64 = 1.0 / 3.0;
 )]
 pub struct GradedMesher {
     /// Length of the triangles' edges where nothing curves.
-    #[param(default = Length::mm(24.0), min = 0.0001, max = 1.0, trades)]
+    #[param(default = Length::mm(24.0), min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) edge: Length,
     /// Shortest length, where outline or cloth curve most; a third of `edge` where it is not given. An outline that asks
     /// for less is still followed.
-    #[param(default = None, min = 0.0001, max = 1.0, trades)]
+    #[param(default = None, min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) fine: Option<Length>,
     /// How fast edges grow away from where they are short, length by length.
     #[param(default = 0.3, min = 0.05, max = 1.0, trades)]
     pub(crate) grading: f64,
     /// Edges at folds of a first drape are so short that they leave its surface by no more than this.
-    #[param(default = Length::mm(1.0), min = 1e-6, max = 1.0, trades)]
+    #[param(default = Length::mm(1.0), min = 1e-6, max = 1.0, trades, finer = "less")]
     pub(crate) tolerance: Length,
 }
 

@@ -1,0 +1,188 @@
+//! The program as it starts itself for each run that it measures: memory of each run, equal results, lost runs.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used)]
+
+use serde_json::{Value, json};
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+use std::sync::Arc;
+use std::time::Duration;
+use toile_core::{Cancel, Length};
+use toile_trade::apart::Apart;
+use toile_trade::measure::Bench;
+use toile_trade::record::{Clock, Outcome, Trade};
+use toile_trade::slot::Source;
+use toile_trade::study::{Options, study};
+
+const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
+
+/// A strip of two triangles held at one side.
+fn sheet() -> Value {
+    json!({
+        "format": "garment-scene-1", "name": "sheet",
+        "rest_uv": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.1, 0.1]],
+        "positions": [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.01], [0.1, 0.1, 0.01]],
+        "triangles": [[0, 1, 3], [0, 3, 2]],
+        "panels": [{ "name": "sheet", "vertices": [0, 4], "triangles": [0, 2] }],
+        "seams": [], "pinned": [2, 3], "body": null, "self_collision": true,
+        "material": { "area_density": 0.15, "stretch": 500.0, "shear": 50.0, "bend": 1e-5, "damping": 0.0,
+                      "friction": 0.4, "thickness": 0.001 },
+        "phases": [{ "name": "hang", "seconds": 1.0, "gravity": [0.0, -9.81, 0.0] }],
+    })
+}
+
+fn folder() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    fs::write(dir.path().join("sheet.ron"), PIPELINE).unwrap();
+    fs::write(dir.path().join("sheet.json"), sheet().to_string()).unwrap();
+    dir
+}
+
+fn program(dir: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_toile")).current_dir(dir).args(arguments).output().unwrap()
+}
+
+const TRADE: [&str; 10] = [
+    "trade",
+    "sheet.ron",
+    "--knob",
+    "Rest.speed=0.001..0.1",
+    "--repeats",
+    "2",
+    "--starts",
+    "1",
+    "--budget",
+    "2m",
+];
+
+fn record(dir: &Path, out: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(dir.join(out).join("trade.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn every_run_has_its_own_memory_and_a_study_in_one_process_gives_the_same_garments() {
+    let dir = folder();
+    let answer = program(dir.path(), &[&TRADE[..], &["--points", "3", "--out", "apart"]].concat());
+    let said =
+        String::from_utf8_lossy(&answer.stderr).into_owned() + &String::from_utf8_lossy(&answer.stdout);
+    assert!(answer.status.success(), "{said}");
+    assert!(
+        said.contains("MB: the most that each run's own process held")
+            && !said.contains("share this process"),
+        "{said}"
+    );
+    let apart = record(dir.path(), "apart");
+    assert_eq!(apart["apart"], true);
+
+    // The same as a function, in the process of this test.
+    let file = dir.path().join("sheet.ron").display().to_string();
+    let out = dir.path().join("here").display().to_string();
+    let (mut print, mut tell) = (Vec::new(), Vec::new());
+    let arguments =
+        [&["toile", "trade", file.as_str()], &TRADE[2..], &["--points", "3", "--out", &out]].concat();
+    assert_eq!(toile::command(arguments, &mut print, &mut tell), 0);
+    let told = String::from_utf8_lossy(&tell).into_owned();
+    assert!(told.contains("runs share this process: memory is the process's own"), "{told}");
+    let here = record(dir.path(), "here");
+    assert_eq!(here["apart"], false);
+    let figures = |trade: &Value| {
+        let points = trade["points"].as_array().unwrap().clone();
+        let one = |p: &Value| {
+            let m = &p["outcome"]["measured"];
+            assert_eq!(m["repeatable"], true);
+            assert!(!cfg!(target_os = "linux") || m["peak_memory_bytes"].as_u64().unwrap() > 1_000_000);
+            (p["setting"].clone(), m["errors"].clone(), m["triangles"].clone())
+        };
+        points.iter().map(one).collect::<Vec<_>>()
+    };
+    assert_eq!(figures(&apart), figures(&here));
+    assert_eq!(apart["reference"]["levels"][1]["moved_mm"], here["reference"]["levels"][1]["moved_mm"]);
+    assert_eq!(apart["reference"]["spread"], here["reference"]["spread"]);
+}
+
+#[test]
+fn a_study_goes_on_from_what_runs_apart_left() {
+    let dir = folder();
+    let with =
+        |points: &str| program(dir.path(), &[&TRADE[..], &["--out", "out", "--points", points]].concat());
+    assert!(with("2").status.success());
+    let before = record(dir.path(), "out");
+    let answer = with("3");
+    assert!(String::from_utf8_lossy(&answer.stderr).contains("goes on from 2 settings"));
+    let after = record(dir.path(), "out");
+    assert_eq!(after["points"].as_array().unwrap()[..2], before["points"].as_array().unwrap()[..]);
+}
+
+/// A study of three settings whose runs go through a shell, which counts them and kills the one of that number.
+fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
+    let counter = dir.join(format!("{out}.count")).display().to_string();
+    let script = format!(
+        "n=$(($(cat {counter} 2>/dev/null || echo 0)+1)); echo $n > {counter}; [ $n -eq {kills} ] && kill -9 $$; exec {} run-apart",
+        env!("CARGO_BIN_EXE_toile")
+    );
+    let apart = Some(Apart { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] });
+    let registry = toile::registry();
+    let (text, file, base) = (PIPELINE.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
+    let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
+    let options = Options {
+        out: dir.join(out),
+        budget: Duration::from_secs(120),
+        limit: None,
+        points: Some(3),
+        repeats: 1,
+        starts: 1,
+        jitter: Length::mm(1.0),
+        clock: Clock::Cpu,
+        bench: Bench { until: None, cancel: Cancel::new(), listener: Arc::new(()), apart },
+    };
+    let knobs = ["Rest.speed=0.001..0.1".parse().unwrap()];
+    let trade = study(&source, &source.load(&[]).unwrap(), &knobs, &options, &mut |_| ()).unwrap();
+    (trade, fs::read_to_string(counter).unwrap().trim().parse().unwrap())
+}
+
+#[test]
+fn a_run_that_the_system_ends_is_a_failed_setting_and_the_study_goes_on() {
+    let dir = folder();
+    let (whole, runs) = through_a_shell(dir.path(), "whole", 0);
+    assert!(whole.points.iter().all(|p| p.measured().is_some()));
+    let (trade, again) = through_a_shell(dir.path(), "killed", runs - 1);
+    assert_eq!((again, trade.points.len()), (runs, 3), "each setting is run once");
+    let message = "the run's own process was ended by signal 9".to_owned();
+    assert_eq!(trade.points[1].outcome, Outcome::Failed { code: "internal".into(), message });
+    for i in [0, 2] {
+        let errors = |t: &Trade| t.points[i].measured().unwrap().errors.clone();
+        assert_eq!(errors(&trade), errors(&whole));
+    }
+}
+
+#[test]
+fn a_process_without_a_parent_ends_by_itself() {
+    let dir = folder();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_toile"))
+        .current_dir(dir.path())
+        .arg("run-apart")
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let vest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../pipelines/vest.ron");
+    let task = json!({ "text": fs::read_to_string(&vest).unwrap(), "file": "vest.ron", "base": vest.parent().unwrap(),
+        "until": null, "also": [], "moved": null, "cache": null, "threads": 1 });
+    let mut input = child.stdin.take().unwrap();
+    writeln!(input, "{task}").unwrap();
+    drop(input);
+    assert_eq!(child.wait().unwrap().code(), Some(5));
+}
+
+#[test]
+fn the_command_is_hidden_and_refuses_what_is_no_task() {
+    let dir = folder();
+    let help = program(dir.path(), &["--help"]);
+    assert!(!String::from_utf8_lossy(&help.stdout).contains("run-apart"));
+    let answer = program(dir.path(), &["run-apart"]);
+    // The input is at its end: either is right.
+    assert!(matches!(answer.status.code(), Some(3 | 5)), "{answer:?}");
+}

@@ -1,0 +1,163 @@
+//! Named qualities, from the measurement to a run: measured once, proved, written, checked, run.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use toile_tests::napkin::{self, PIPELINE};
+use toile_tests::{Answer, toile};
+
+fn on(dir: &Path, command: &str, file: &str, more: &[&str]) -> Answer {
+    let file = dir.join(file).display().to_string();
+    toile(&[&[command, &file], more].concat())
+}
+
+/// Measures three settings of the napkin in `DIR/out`.
+fn measured(dir: &Path) -> String {
+    napkin::write(dir).unwrap();
+    let out = dir.join("out").display().to_string();
+    let fixed = ["--knob", "Rest.speed=0.001..0.1", "--repeats", "1", "--starts", "1", "--points", "3"];
+    let answer = on(dir, "trade", "napkin.ron", &[&["--out", &out, "--budget", "2m"], &fixed[..]].concat());
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    out
+}
+
+#[test]
+fn qualities_are_measured_once_proved_written_checked_and_run() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    let from = measured(dir);
+    let asked = [
+        "--from",
+        &from,
+        "--starts",
+        "2",
+        "--quality",
+        "Rough=20 cm",
+        "--quality",
+        "Very fine=0.000001 mm",
+        "--quality",
+        "Mid=10 cm",
+    ];
+    let answer = on(dir, "tune", "napkin.ron", &asked);
+    assert_eq!(answer.code, 4, "one is not kept: {}{}", answer.out, answer.err);
+    let refused = "error: quality `Very fine`: no setting of the measured front keeps an error of at most 0.000001 mm\n  help: ";
+    assert!(answer.err.contains(refused), "{}", answer.err);
+    assert!(
+        answer.out.contains("Rough (20 cm): Rest.speed ") && answer.out.contains("Mid (10 cm): "),
+        "{}",
+        answer.out
+    );
+    assert_eq!(answer.out.matches("    2 of 2 moved starts within ").count(), 2, "{}", answer.out);
+
+    let text = fs::read_to_string(dir.join("napkin-tuned.ron")).unwrap();
+    assert!(text.starts_with(PIPELINE.trim_end().trim_end_matches(')')), "all else stays as it was: {text}");
+    assert!(
+        text.contains(
+            "Quality(name: \"Rough\", max_error: \"20 cm\",\n            set: [\"stages.Rest.speed="
+        ),
+        "{text}"
+    );
+    assert!(
+        text.contains(": 95 % of the surface within ") && text.contains(" s of processor time (toile "),
+        "{text}"
+    );
+
+    let valid = on(dir, "validate", "napkin-tuned.ron", &[]);
+    assert!(valid.out.ends_with("valid, 4 stages, qualities Rough (20 cm), Mid (10 cm)\n"), "{}", valid.out);
+    run(dir);
+    explained(dir);
+    again(dir, &from);
+}
+
+/// The metrics of a run of the tuned file.
+fn metrics(dir: &Path, more: &[&str]) -> Value {
+    let out = dir.join("run").display().to_string();
+    let answer = on(dir, "run", "napkin-tuned.ron", &[&["--out", &out, "--json"], more].concat());
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    serde_json::from_str(&answer.out).unwrap()
+}
+
+fn run(dir: &Path) {
+    assert_eq!(metrics(dir, &["--quality", "Rough"])["quality"], "Rough");
+    let changed = metrics(dir, &["--quality", "Rough", "--set", "stages.Rest.speed=0.02"]);
+    assert_eq!(changed["quality"], "Rough, changed by --set");
+    assert!(metrics(dir, &[]).get("quality").is_none());
+    let shown = on(
+        dir,
+        "run",
+        "napkin-tuned.ron",
+        &["--quality", "Rough", "--out", &dir.join("x").display().to_string()],
+    );
+    assert!(shown.out.contains("\nquality Rough\n"), "{}", shown.out);
+    let wrong = on(dir, "run", "napkin-tuned.ron", &["--quality", "Ruogh", "--json"]);
+    let faults: Value = serde_json::from_str(&wrong.out).unwrap();
+    assert_eq!((wrong.code, faults["faults"][0]["code"].as_str()), (3, Some("unknown_quality")));
+    assert_eq!(faults["faults"][0]["hint"], "did you mean `Rough`? there is `Rough`, `Mid`");
+}
+
+fn explained(dir: &Path) {
+    let explained = on(dir, "explain", "napkin-tuned.ron", &["--quality", "Mid"]);
+    let title = "napkin: 4 stages, quality Mid; qualities: Rough (20 cm), Mid (10 cm)\n";
+    assert!(explained.out.starts_with(title), "{}", explained.out);
+}
+
+/// Measured anew, one takes its own place; a tuned file, which is another, has none.
+fn again(dir: &Path, from: &str) {
+    let own = dir.join("napkin-tuned.ron").display().to_string();
+    let same = ["--from", from, "--starts", "1"];
+    let one = ["--quality", "Mid=12 cm", "--out", &own];
+    let answer = on(dir, "tune", "napkin-tuned.ron", &[&same[..], &one].concat());
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    let valid = on(dir, "validate", "napkin-tuned.ron", &[]);
+    assert!(valid.out.ends_with("qualities Rough (20 cm), Mid (12 cm)\n"), "{}", valid.out);
+    let tuned = dir.join("other.ron").display().to_string();
+    let answer = on(
+        dir,
+        "tune",
+        "napkin-tuned.ron",
+        &[&same[..], &["--max-error", "20 cm", "--out", &tuned]].concat(),
+    );
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    assert!(!fs::read_to_string(&tuned).unwrap().contains("qualities"));
+}
+
+#[test]
+fn what_is_asked_for_is_checked_before_anything_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    napkin::write(dir).unwrap();
+    let tune = |more: &[&str]| on(dir, "tune", "napkin.ron", more);
+    let twice = tune(&["--quality", "A=1 mm", "--quality", "A=2 mm"]);
+    assert_eq!((twice.code, twice.err.as_str()), (2, "error: the quality `A` is given twice\n"));
+    let form = tune(&["--quality", "Draft"]);
+    assert!(
+        form.err.contains("`Draft` is no quality; write NAME=LENGTH, like `Draft=10 mm`"),
+        "{}",
+        form.err
+    );
+    assert_eq!(tune(&["--quality", "A=1 mm", "--max-error", "1 mm"]).code, 2);
+    let none = on(dir, "run", "napkin.ron", &["--quality", "Draft"]);
+    assert_eq!(none.code, 3);
+    assert!(
+        none.err.contains("the pipeline has no quality `Draft`")
+            && none.err.contains("it has none; `toile tune"),
+        "{}",
+        none.err
+    );
+}
+
+#[test]
+fn a_setting_that_does_not_fit_is_a_fault_of_the_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    napkin::write(dir).unwrap();
+    let wrong = "    qualities: [Quality(name: \"A\", max_error: \"1 mm\", set: [\"stages.Rest.sped=1\"])],\n    stages";
+    fs::write(dir.join("napkin.ron"), PIPELINE.replacen("    stages", wrong, 1)).unwrap();
+    let answer = on(dir, "validate", "napkin.ron", &["--json"]);
+    let faults: Value = serde_json::from_str(&answer.out).unwrap();
+    let fault = &faults["faults"][0];
+    assert_eq!((answer.code, &fault["line"], &fault["column"]), (3, &5.into(), &61.into()));
+    assert_eq!(fault["message"], "quality `A`: `stages.Rest.sped`: `Rest` has no parameter `sped`");
+    assert_eq!(fault["hint"], "did you mean `stages.Rest.speed`?");
+}
