@@ -2,8 +2,9 @@
 //!
 //! Each vertex is pressed away from the points of the sheet where its distance is a local minimum, and edges from edges
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
-//! that nothing is counted twice.
+//! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
+use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, Slot, add_at};
 use crate::contact::closest::Feature;
 use crate::contact::pair::{Closest, Kind, Pair};
@@ -22,6 +23,10 @@ pub struct Layers {
     pub thickness: f64,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
+    /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
+    pub friction: Vec<f64>,
+    /// The friction that is taken away for a while.
+    pub away: Vec<f64>,
     /// Layer that each node is worn in, the outer ones higher; empty where all are one.
     pub order: Vec<u32>,
     /// Triangles at each node, for corners that are local minima.
@@ -30,6 +35,8 @@ pub struct Layers {
     pub pairs: Vec<Pair>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,
+    /// Their friction, one by one; empty where there is none.
+    pub grips: Vec<Grip>,
     /// Edges that pass through triangles, as a coarser level's state can have it: pulled back out.
     pub tangles: Vec<Contact>,
     /// Nodes of the tangles: among themselves they may pass through each other to get free.
@@ -59,6 +66,33 @@ pub struct Contact {
 }
 
 impl Layers {
+    /// Finds the contacts at `x`, and what friction holds of them.
+    pub fn touch(&mut self, x: &[Vec3]) {
+        self.contacts = self.touching(x);
+        if self.friction.is_empty() {
+            return;
+        }
+        let mut memory = Memory::of(&self.grips, x);
+        let grip = |c: &Contact| {
+            let force = c.stiffness * (self.thickness - c.distance);
+            // The weights of either side have the sum 1.
+            let sides = c.nodes.iter().zip(&c.weights).map(|(i, w)| w.abs() * self.friction[*i as usize]);
+            memory.grip(c, x, force, 0.5 * sides.sum::<f64>())
+        };
+        self.grips = self.contacts.iter().map(grip).collect();
+    }
+
+    /// Takes friction away, and gives it back.
+    pub fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.away);
+        self.grips.clear();
+    }
+
+    /// Drags the anchors of friction along behind cloth that slides.
+    pub fn drag(&mut self, x: &[Vec3]) {
+        self.grips.iter_mut().for_each(|g| g.drag(x));
+    }
+
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
@@ -173,13 +207,18 @@ impl Layers {
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        self.pressure(&self.touching(x)) + self.pull(x)
+        self.pressure(&self.touching(x)) + self.pull(x) + self.held(x)
     }
 
     /// The same at the step's start, whose contacts are known, J.
     #[must_use]
     pub fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        self.pressure(&self.contacts) + self.pull(x)
+        self.pressure(&self.contacts) + self.pull(x) + self.held(x)
+    }
+
+    /// Energy of friction.
+    fn held(&self, x: &[Vec3]) -> f64 {
+        self.grips.iter().map(|g| g.rub().value(&g.at(x))).sum()
     }
 
     fn pressed(&self, c: &Contact, distance: f64) -> f64 {
@@ -193,26 +232,32 @@ impl Layers {
     /// Energy of what pulls crossings apart.
     fn pull(&self, x: &[Vec3]) -> f64 {
         let one = |c: &Contact| {
-            let between: Vec3 = c.nodes.iter().zip(&c.weights).map(|(i, w)| x[*i as usize] * *w).sum();
-            self.pressed(c, c.normal.dot(&between).min(self.thickness))
+            let way = between(&c.nodes, &c.weights, x);
+            self.pressed(c, c.normal.dot(&way).min(self.thickness))
         };
         self.tangles.iter().map(one).sum()
     }
 
-    /// Adds the derivative at the step's start, N.
-    pub fn add_gradient(&self, g: &mut [Vec3]) {
-        for c in self.contacts.iter().chain(&self.tangles) {
-            let push = c.normal * (c.stiffness * (self.thickness - c.distance));
+    /// Adds the derivative at the step's start `x`, N.
+    pub fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
+            let mut push = c.normal * (c.stiffness * (c.distance - self.thickness));
+            if let Some(grip) = self.grips.get(k) {
+                push += grip.rub().gradient(&grip.at(x));
+            }
             for (i, w) in c.nodes.iter().zip(&c.weights) {
-                g[*i as usize] -= push * *w;
+                g[*i as usize] += push * *w;
             }
         }
     }
 
-    /// Adds the matrix at the step's start, N/m.
-    pub fn add_matrix(&self, pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-        for c in self.contacts.iter().chain(&self.tangles) {
-            let block = c.normal * c.normal.transpose() * c.stiffness;
+    /// Adds the matrix at the step's start `x`, N/m.
+    pub fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
+            let mut block = c.normal * c.normal.transpose() * c.stiffness;
+            if let Some(grip) = self.grips.get(k) {
+                block += grip.rub().matrix(&grip.at(x));
+            }
             for a in 0..4 {
                 for b in 0..=a {
                     let w = c.weights[a] * c.weights[b];

@@ -111,7 +111,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 /// A plate in the x-z plane whose top passes through the origin, turned by `slope` about z, half as wide as `half`.
-fn plate(slope: f64, half: f64) -> SceneBody {
+pub(super) fn plate(slope: f64, half: f64) -> SceneBody {
     let corner = |k: usize| {
         let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
         let p = Vector3::new(sign(0) * half, sign(1).min(0.0) * 0.1, sign(2) * half);
