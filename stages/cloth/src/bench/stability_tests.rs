@@ -43,6 +43,14 @@ fn every_axis_ends_as_required() {
 }
 
 #[test]
+fn stacks_of_three_and_five_sheets_come_to_rest() {
+    let options = Options { axes: vec!["contact_stack".into()], ..Options::default() };
+    let report = stability(&options, &mut |_, _| ControlFlow::Continue(()));
+    assert_eq!(report.rows.len(), 2);
+    assert!(report.rows.iter().all(|r| r.pass && matches!(r.verdict, Verdict::Converged(_))), "{report}");
+}
+
+#[test]
 fn a_caller_can_stop_and_choose() {
     let options = Options { axes: vec!["empty".into()], ..Options::default() };
     let all = stability(&options, &mut |_, _| ControlFlow::Continue(()));

@@ -17,6 +17,7 @@ mod nearby;
 pub mod newton;
 pub mod pattern;
 pub mod pieces;
+pub mod press;
 mod rub;
 mod sew;
 pub mod solve;

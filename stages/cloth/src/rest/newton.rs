@@ -2,9 +2,9 @@
 //!
 //! Each step minimises the potential plus the inertia of a step of pseudo-time (a sheet at rest that is let go), which
 //! grows as long as steps succeed: far from rest the cloth falls without overshooting, near rest the steps are Newton's
-//! own. A step is first kept out of the body, then cut back where cloth would meet cloth, then shortened until the
-//! potential lies below the highest of the last few (Grippo, Lampariello, Lucidi 1986): cloth hardly stretches but bends
-//! freely, so a good step may first raise the potential.
+//! own. A step is first kept out of the body, then cut back where cloth would meet cloth (and tried again in less pseudo-time
+//! where most of it is cut), then shortened until the potential lies below the highest of the last few (Grippo, Lampariello,
+//! Lucidi 1986): cloth hardly stretches but bends freely, so a good step may first raise the potential.
 //!
 //! For the same reason the matrix takes the stress that the last step foretold, not that of the new places, whose strain
 //! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
@@ -50,6 +50,19 @@ const CALM: usize = 3;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
+
+/// Shortest step of pseudo-time, s.
+const SHORTEST: f64 = 1e-3;
+
+/// Share of a step (of its norm) that contacts of cloth with cloth must leave, or it is tried again with pseudo-time [`RETRY`] times
+/// as long. Else layers that come down on each other are pressed together at once, and jam.
+const LEAST_KEPT: f64 = 0.7;
+
+/// Share below which pseudo-time falls. What contacts leave between the two is taken, but not twice.
+const MOST_KEPT: f64 = 0.8;
+
+/// See [`LEAST_KEPT`].
+const RETRY: f64 = 0.3;
 
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
@@ -222,7 +235,14 @@ impl Descent {
         let pulled = system.pull(x, &mut moves, pace.farthest);
         system.clear_of_body(x, &mut moves);
         self.nearby.seek(system, x, &moves);
-        self.nearby.limit(system, x, &mut moves);
+        let left = self.nearby.limit(system, x, &mut moves);
+        // Seams pull over long ways, whatever is between.
+        let kept = if system.threads.is_empty() { left } else { 1.0 };
+        if kept < LEAST_KEPT && !pulled && !self.proves && self.dt > SHORTEST {
+            // The cloth stays: most of the step leads cloth through cloth, and what is left of it would tear the sheet about.
+            self.dt = (RETRY * self.dt).max(SHORTEST);
+            return Ok(self.outcome);
+        }
         let start = (!pulled).then(|| match lasting {
             Some(lasting) => system.value_at_start(x, lasting),
             None => system.value(x),
@@ -233,12 +253,12 @@ impl Descent {
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let end = way.and_then(|w| w.end);
         self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
-        self.plan(system, x, pulled, pace);
+        self.plan(system, x, pulled, kept, pace);
         Ok(self.outcome)
     }
 
     /// What comes after a step.
-    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, pace: &Pace) {
+    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, kept: f64, pace: &Pace) {
         let slow = self.outcome.speed < pace.speed && !pulled;
         self.outcome.at_rest = slow && (self.proves || !pace.prove);
         if self.proves {
@@ -249,7 +269,7 @@ impl Descent {
             return;
         }
         self.proofs = 0;
-        self.dt = next_dt(self.dt, self.outcome.share, pace);
+        self.dt = next_dt(self.dt, self.outcome.share, kept, pace);
         if !slow {
             system.drag(x);
         }
@@ -303,10 +323,11 @@ pub fn relax(
     Ok(descent.outcome)
 }
 
-fn next_dt(dt: f64, share: f64, pace: &Pace) -> f64 {
+/// The next step of pseudo-time after one of which the search took a `share` and contacts had left so much.
+fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
     match share {
+        s if s < 0.5 || kept < MOST_KEPT => (dt * 0.6).max(SHORTEST),
         1.0 => (dt * GROWTH).min(pace.longest),
-        s if s < 0.5 => (dt * 0.6).max(1e-3),
         _ => dt,
     }
 }

@@ -250,6 +250,8 @@ impl Rest {
                 Err(RestError::Falls) if self.graded => {
                     return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
                 }
+                // A sheet of a few vertices falls past a body that would catch it.
+                Err(RestError::Falls) if wearer.is_some() && coarsest < scene.rest.len() => coarsest *= FINER,
                 // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
                 Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
                 Err(e) => return Err(e),
