@@ -58,8 +58,9 @@ const SHORTEST: f64 = 1e-3;
 /// as long. Else layers that come down on each other are pressed together at once, and jam.
 const LEAST_KEPT: f64 = 0.7;
 
-/// Share below which pseudo-time falls. What contacts leave between the two is taken, but not twice.
-const MOST_KEPT: f64 = 0.8;
+/// Shares below which pseudo-time falls, and above which it may grow, where cloth lies in layers: on more than half of its nodes.
+const FEW_KEPT: f64 = 0.8;
+const MOST_KEPT: f64 = 0.9;
 
 /// See [`LEAST_KEPT`].
 const RETRY: f64 = 0.3;
@@ -269,7 +270,8 @@ impl Descent {
             return;
         }
         self.proofs = 0;
-        self.dt = next_dt(self.dt, self.outcome.share, kept, pace);
+        let is_layered = system.layers.as_ref().is_some_and(|l| 2 * l.contacts.len() > x.len());
+        self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
         if !slow {
             system.drag(x);
         }
@@ -326,8 +328,8 @@ pub fn relax(
 /// The next step of pseudo-time after one of which the search took a `share` and contacts had left so much.
 fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
     match share {
-        s if s < 0.5 || kept < MOST_KEPT => (dt * 0.6).max(SHORTEST),
-        1.0 => (dt * GROWTH).min(pace.longest),
+        s if s < 0.5 || kept < FEW_KEPT => (dt * 0.6).max(SHORTEST),
+        1.0 if kept >= MOST_KEPT => (dt * GROWTH).min(pace.longest),
         _ => dt,
     }
 }
