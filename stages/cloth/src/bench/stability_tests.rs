@@ -43,6 +43,15 @@ fn every_axis_ends_as_required() {
 }
 
 #[test]
+fn stacks_of_sheets_end_without_a_fault() {
+    let options = Options { axes: vec!["contact_stack".into()], ..Options::default() };
+    let report = stability(&options, &mut |_, _| ControlFlow::Continue(()));
+    assert!(report.rows.len() == 2 && report.pass(), "{report}");
+    // Of five nothing crosses and nothing is in the body; whether they prove their rest in 500 steps is chance.
+    assert!(matches!(report.rows[0].verdict, Verdict::Converged(_)), "{report}");
+}
+
+#[test]
 fn a_caller_can_stop_and_choose() {
     let options = Options { axes: vec!["empty".into()], ..Options::default() };
     let all = stability(&options, &mut |_, _| ControlFlow::Continue(()));

@@ -2,7 +2,8 @@
 //!
 //! Pairs that would meet hold back only their own nodes; since that changes the motion of their neighbours, all pairs of a
 //! node that was held back are tested again, until no pair meets. If that does not settle in a few rounds, the whole step
-//! is shortened. What is returned has been tested: every pair keeps a share of its distance.
+//! is shortened. What is returned has been tested: every pair keeps a share of its distance. Pairs that were found for longer moves
+//! do not answer for shorter ones: see [`hold_apart`].
 
 use super::ccd::impact;
 use super::pair::Pair;
@@ -13,6 +14,9 @@ type Vec3 = Vector3<f64>;
 
 /// Rounds before the whole step is shortened.
 const ROUNDS: usize = 8;
+
+/// Searches of pairs for moves that were shortened, before the whole step is.
+const SEARCHES: usize = 8;
 
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
@@ -39,12 +43,44 @@ pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
         suspects =
             pairs.iter().filter(|p| p.nodes.iter().any(|&i| share[i as usize] < 1.0)).copied().collect();
     }
+    stop(x, moves, pairs);
+    first
+}
+
+/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count; the pairs found last.
+///
+/// What falls together meets nowhere until one of it is held back; so pairs are sought again for the moves that are left,
+/// unless `seek` says that those known hold for all shorter moves.
+pub fn hold_apart(
+    x: &[Vec3],
+    moves: &mut [Vec3],
+    mut pairs: Vec<Pair>,
+    counts: impl Fn(&Pair) -> bool,
+    seek: impl Fn(&[Vec3]) -> Option<Vec<Pair>>,
+) -> Vec<Pair> {
+    for search in 0..=SEARCHES {
+        let strict: Vec<Pair> = pairs.iter().filter(|p| counts(p)).copied().collect();
+        let hits = if search < SEARCHES { limit(x, moves, &strict) } else { stop(x, moves, &strict) };
+        if hits == 0 {
+            break;
+        }
+        match seek(moves) {
+            Some(found) => pairs = found,
+            None => break,
+        }
+    }
+    pairs
+}
+
+/// Ends the whole step before the first of `pairs` meets; how many would have.
+fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
     // Scaled as a whole, a step that is safe until some time is safe when it ends there.
-    let least = hits(x, moves, pairs).iter().map(|(_, t)| *t).fold(1.0, f64::min);
+    let hits = hits(x, moves, pairs);
+    let least = hits.iter().map(|(_, t)| *t).fold(1.0, f64::min);
     if least < 1.0 {
         moves.iter_mut().for_each(|m| *m *= SAFETY * least);
     }
-    first
+    hits.len()
 }
 
 fn hits(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {

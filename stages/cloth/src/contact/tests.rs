@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::body::Body;
 use super::ccd::impact;
-use super::limit::limit;
+use super::limit::{hold_apart, limit};
 use super::pair::{Kind, Pair};
 use super::tree::ClothTree;
 use crate::mesh::Sheet;
@@ -159,4 +159,37 @@ fn crumpled(n: usize, seed: u64, size: f64) -> (Sheet, Vec<Vec3>, Vec<Vec3>) {
     let wild = |k: usize, c: u64| size * (((k as u64 * 3 + c) * 7919 + seed * 104_729) as f64).sin();
     let moves = (0..uv.len()).map(|k| Vec3::new(wild(k, 0), wild(k, 1), wild(k, 2))).collect();
     (sheet, uv.iter().map(roll).collect(), moves)
+}
+
+#[test]
+fn what_falls_together_does_not_pass_what_is_held_back() {
+    // Three sheets over each other: the upper two fall alike onto the lowest, which stays.
+    let one = generate::hang(4);
+    let n = one.rest.len();
+    let mut scene = one.clone();
+    let level = |y: f64| -> Vec<Vec3> { one.rest.iter().map(|p| Vec3::new(p.x, y, -p.y)).collect() };
+    scene.positions = level(0.0);
+    for y in [0.01, 0.014] {
+        scene.add_panel("sheet", &one.rest, &level(y), &one.triangles);
+    }
+    let sheet = Sheet::flat(&scene.rest, &scene.triangles, 0.1).unwrap();
+    let x = scene.positions.clone();
+    let tree = ClothTree::new(&sheet, &x);
+    let fall = |v: usize| if v < n { Vec3::zeros() } else { Vec3::new(0.0, -0.025, 0.0) };
+    let mut moves: Vec<Vec3> = (0..x.len()).map(fall).collect();
+    let seek = |moves: &[Vec3]| tree.pairs(&x, moves, 1e-3);
+    let first = seek(&moves);
+    // The upper two never near each other on their way: no pair of theirs is found at first.
+    assert!(first.iter().all(|p| p.nodes.iter().any(|&v| (v as usize) < n)));
+    hold_apart(&x, &mut moves, first, |_| true, |moves| Some(seek(moves)));
+    let height = |v: usize| x[v].y + moves[v].y;
+    for v in 0..n {
+        assert!(
+            height(v + n) > 0.0 && height(v + 2 * n) > height(v + n),
+            "{} {}",
+            height(v + n),
+            height(v + 2 * n)
+        );
+    }
+    assert!(moves[n].y < -0.005);
 }

@@ -1,7 +1,7 @@
 //! What cloth meets on its way: the body, and itself.
 
 use super::MotionError;
-use crate::contact::limit::limit;
+use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use crate::rest::solve::Wearer;
@@ -90,6 +90,7 @@ pub(super) fn off_itself(
 
 /// Cuts moves short where cloth would pass through cloth.
 pub(super) fn stop_short(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) {
-    let pairs = tree.pairs(x, moves, thickness);
-    limit(x, moves, &pairs);
+    let seek = |moves: &[Vec3]| tree.pairs(x, moves, thickness);
+    let pairs = seek(moves);
+    hold_apart(x, moves, pairs, |_| true, |moves| Some(seek(moves)));
 }

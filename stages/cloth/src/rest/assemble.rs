@@ -80,10 +80,17 @@ pub(super) fn assemble<'a>(
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
     let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
     let ordered = scene.panels.iter().any(|p| p.layer > 0);
     let layers = scene.self_collision.then(|| Layers {
         thickness,
         stiffness,
+        // Hands that sew let cloth slip over cloth, too.
+        friction: if open || no_friction {
+            vec![]
+        } else {
+            panel.iter().map(|&p| cloths[p].friction).collect()
+        },
         corners,
         order: if ordered { panel.iter().map(order).collect() } else { vec![] },
         ..Layers::default()

@@ -2,13 +2,17 @@
 //!
 //! Each vertex is pressed away from the points of the sheet where its distance is a local minimum, and edges from edges
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
-//! that nothing is counted twice.
+//! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
+use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, Slot, add_at};
+use super::press::Press;
 use crate::contact::closest::Feature;
 use crate::contact::pair::{Closest, Kind, Pair};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
+
+mod tangles;
 
 type Vec3 = Vector3<f64>;
 
@@ -22,6 +26,10 @@ pub struct Layers {
     pub thickness: f64,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
+    /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
+    pub friction: Vec<f64>,
+    /// The friction that is taken away for a while.
+    pub away: Vec<f64>,
     /// Layer that each node is worn in, the outer ones higher; empty where all are one.
     pub order: Vec<u32>,
     /// Triangles at each node, for corners that are local minima.
@@ -30,6 +38,8 @@ pub struct Layers {
     pub pairs: Vec<Pair>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,
+    /// Their friction, one by one; empty where there is none.
+    pub grips: Vec<Grip>,
     /// Edges that pass through triangles, as a coarser level's state can have it: pulled back out.
     pub tangles: Vec<Contact>,
     /// Nodes of the tangles: among themselves they may pass through each other to get free.
@@ -52,13 +62,46 @@ pub struct Contact {
     pub weights: [f64; 4],
     /// Unit direction from the second to the first.
     pub normal: Vec3,
-    /// Distance, m.
-    pub distance: f64,
-    /// N/m.
+    /// Stiffness where they begin to touch, N/m.
     pub stiffness: f64,
+    /// How hard they press.
+    pub press: Press,
 }
 
 impl Layers {
+    /// Finds the contacts at `x`, and what friction holds of them.
+    pub fn touch(&mut self, x: &[Vec3]) {
+        self.contacts = self.touching(x);
+        if self.friction.is_empty() {
+            return;
+        }
+        let mut memory = Memory::of(&self.grips, x);
+        let grip = |c: &Contact| {
+            // The weights of either side have the sum 1.
+            let sides = c.nodes.iter().zip(&c.weights).map(|(i, w)| w.abs() * self.friction[*i as usize]);
+            memory.grip(c, x, c.press.force, 0.5 * sides.sum::<f64>())
+        };
+        self.grips = self.contacts.iter().map(grip).collect();
+    }
+
+    /// Takes friction away, and gives it back.
+    pub fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.away);
+        self.grips.clear();
+    }
+
+    /// Has new friction in place of that which is `replaced`, in the order of the contacts.
+    pub(super) fn take_over(&mut self, replaced: impl Fn(&Grip) -> bool, new: impl Iterator<Item = Grip>) {
+        self.grips.retain(|g| !replaced(g));
+        self.grips.extend(new);
+        self.grips.sort_by_key(Grip::key);
+    }
+
+    /// Drags the anchors of friction along behind cloth that slides.
+    pub fn drag(&mut self, x: &[Vec3]) {
+        self.grips.iter_mut().for_each(|g| g.drag(x));
+    }
+
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
@@ -106,8 +149,8 @@ impl Layers {
             nodes: p.nodes,
             weights: c.weights,
             normal: c.between / c.distance,
-            distance: c.distance,
             stiffness,
+            press: Press::of(stiffness, self.thickness, c.distance),
         }
     }
 
@@ -116,103 +159,52 @@ impl Layers {
         self.contacts.iter().chain(&self.tangles).map(|c| &c.nodes[..])
     }
 
-    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side.
-    pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
-        self.tangled = vec![false; if crossings.is_empty() { 0 } else { x.len() }];
-        for (e, t) in crossings {
-            e.iter().chain(t).for_each(|&i| self.tangled[i as usize] = true);
-        }
-        self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
-    }
-
-    fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
-        let [a, b, c] = t.map(|v| x[v as usize]);
-        let up = (b - a).cross(&(c - a)).try_normalize(0.0)?;
-        let height = |v: u32| up.dot(&(x[v as usize] - a));
-        let (shallow, normal) = match self.side(&e, &t) {
-            // The order of the layers tells which end is on the wrong side.
-            Some(side) => (if side * height(e[0]) < side * height(e[1]) { e[0] } else { e[1] }, up * side),
-            None => {
-                let [shallow, deep] = if height(e[0]).abs() < height(e[1]).abs() { e } else { [e[1], e[0]] };
-                (shallow, if height(deep) > 0.0 { up } else { -up })
-            }
-        };
-        let on = crate::contact::closest::on_triangle(&x[shallow as usize], &[a, b, c]);
-        let nodes = [shallow, t[0], t[1], t[2]];
-        let weights = [1.0, -on.weights[0], -on.weights[1], -on.weights[2]];
-        let distance = normal.dot(&(x[shallow as usize] - on.point));
-        let stiffness = 0.5 * self.stiffness[shallow as usize];
-        Some(Contact { nodes, weights, normal, distance, stiffness })
-    }
-
-    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing where they are one layer.
-    fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
-        let of = |v: &u32| self.order.get(*v as usize).copied();
-        let one = |nodes: &[u32]| {
-            nodes.first().and_then(of).filter(|first| nodes.iter().all(|v| of(v) == Some(*first)))
-        };
-        match one(e)?.cmp(&one(t)?) {
-            std::cmp::Ordering::Greater => Some(1.0),
-            std::cmp::Ordering::Less => Some(-1.0),
-            std::cmp::Ordering::Equal => None,
-        }
-    }
-
-    /// Crossings of cloth of one layer, which no order resolves.
-    #[must_use]
-    pub fn unordered(&self, crossings: &[([u32; 2], [u32; 3])]) -> usize {
-        crossings.iter().filter(|(e, t)| self.side(e, t).is_none()).count()
-    }
-
-    /// Whether the pair lies among tangled nodes only.
-    #[must_use]
-    pub fn is_tangled(&self, pair: &Pair) -> bool {
-        !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
-    }
-
     /// Energy of the contacts at `x`, J.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
-        self.pressure(&self.touching(x)) + self.pull(x)
+        pressure(&self.touching(x)) + self.pull(x) + self.held(x)
     }
 
     /// The same at the step's start, whose contacts are known, J.
     #[must_use]
     pub fn value_at_start(&self, x: &[Vec3]) -> f64 {
-        self.pressure(&self.contacts) + self.pull(x)
+        pressure(&self.contacts) + self.pull(x) + self.held(x)
     }
 
-    fn pressed(&self, c: &Contact, distance: f64) -> f64 {
-        0.5 * c.stiffness * (self.thickness - distance).powi(2)
-    }
-
-    fn pressure(&self, contacts: &[Contact]) -> f64 {
-        contacts.iter().map(|c| self.pressed(c, c.distance)).sum()
+    /// Energy of friction.
+    fn held(&self, x: &[Vec3]) -> f64 {
+        self.grips.iter().map(|g| g.rub().value(&g.at(x))).sum()
     }
 
     /// Energy of what pulls crossings apart.
     fn pull(&self, x: &[Vec3]) -> f64 {
         let one = |c: &Contact| {
-            let between: Vec3 = c.nodes.iter().zip(&c.weights).map(|(i, w)| x[*i as usize] * *w).sum();
-            self.pressed(c, c.normal.dot(&between).min(self.thickness))
+            let way = between(&c.nodes, &c.weights, x);
+            Press::spring(c.stiffness, self.thickness, c.normal.dot(&way).min(self.thickness)).energy
         };
         self.tangles.iter().map(one).sum()
     }
 
-    /// Adds the derivative at the step's start, N.
-    pub fn add_gradient(&self, g: &mut [Vec3]) {
-        for c in self.contacts.iter().chain(&self.tangles) {
-            let push = c.normal * (c.stiffness * (self.thickness - c.distance));
+    /// Adds the derivative at the step's start `x`, N.
+    pub fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
+            let mut push = c.normal * -c.press.force;
+            if let Some(grip) = self.grips.get(k) {
+                push += grip.rub().gradient(&grip.at(x));
+            }
             for (i, w) in c.nodes.iter().zip(&c.weights) {
-                g[*i as usize] -= push * *w;
+                g[*i as usize] += push * *w;
             }
         }
     }
 
-    /// Adds the matrix at the step's start, N/m.
-    pub fn add_matrix(&self, pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-        for c in self.contacts.iter().chain(&self.tangles) {
-            let block = c.normal * c.normal.transpose() * c.stiffness;
+    /// Adds the matrix at the step's start `x`, N/m.
+    pub fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        for (k, c) in self.contacts.iter().chain(&self.tangles).enumerate() {
+            let mut block = c.normal * c.normal.transpose() * c.press.curvature;
+            if let Some(grip) = self.grips.get(k) {
+                block += grip.rub().matrix(&grip.at(x));
+            }
             for a in 0..4 {
                 for b in 0..=a {
                     let w = c.weights[a] * c.weights[b];
@@ -226,4 +218,8 @@ impl Layers {
             }
         }
     }
+}
+
+fn pressure(contacts: &[Contact]) -> f64 {
+    contacts.iter().map(|c| c.press.energy).sum()
 }

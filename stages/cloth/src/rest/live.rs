@@ -7,6 +7,7 @@
 
 use super::assemble::{Wearer, assemble, cloths, kept_threads};
 use super::clear::clearance;
+use super::grip::Grip;
 use super::multifrontal::Halt;
 use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
@@ -64,6 +65,10 @@ impl<'a> Live<'a> {
         }
         if let Some(s) = system.support.as_mut().filter(|_| state.offsets.len() == scene.rest.len()) {
             pieces.node.iter().zip(&state.offsets).for_each(|(&n, o)| s.offsets[n as usize] = *o);
+        }
+        if let Some(layers) = &mut system.layers {
+            let known = |g: &&Grip| g.nodes.iter().all(|&i| (i as usize) < x.len());
+            layers.grips = state.grips.iter().filter(known).copied().collect();
         }
         let layout = pieces.sew(&scene.positions, &even);
         let tree = scene.self_collision.then(|| ClothTree::new(&sheet, &layout));
@@ -140,6 +145,7 @@ impl<'a> Live<'a> {
         }
         if let (Some(new), Some(old)) = (&mut new.layers, &mut old.layers) {
             std::mem::swap(&mut new.pairs, &mut old.pairs);
+            std::mem::swap(&mut new.grips, &mut old.grips);
         }
         new.pulls = old.pulls.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
         self.system = new;
@@ -200,6 +206,7 @@ impl<'a> Live<'a> {
             outcome,
             residual: greatest(&self.system.gradient(&self.x)),
             slides: self.pieces.spread(&self.system.held_back(&self.x)),
+            grips: self.system.layers.as_ref().map_or_else(Vec::new, |l| l.grips.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
             dip: self.wearer.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),

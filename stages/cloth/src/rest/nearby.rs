@@ -3,7 +3,7 @@
 //! Pairs are sought a little farther out than contact reaches; they hold until some node has moved by that slack, which
 //! near rest is many steps. Long steps seek along the way of each node, for that step alone.
 
-use crate::contact::limit::limit;
+use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use crate::rest::system::System;
@@ -75,17 +75,20 @@ impl Nearby {
         self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
     }
 
-    /// Shortens moves that would lead cloth through cloth.
-    pub(super) fn limit(&self, system: &System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let Some(layers) = system.layers.as_ref().filter(|_| self.tree.is_some() || self.held) else {
-            return;
+    /// Shortens moves that would lead cloth through cloth; the share of them that is left. Of cloth that gets free of crossings,
+    /// which takes long ways, all counts as left.
+    pub(super) fn limit(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
+        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.held) else {
+            return 1.0;
         };
-        if layers.tangled.is_empty() {
-            limit(x, moves, &layers.pairs);
-        } else {
-            let strict: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
-            limit(x, moves, &strict);
-        }
+        let wanted = norm(moves);
+        let pairs = std::mem::take(&mut layers.pairs);
+        let counts = |p: &Pair| !layers.is_tangled(p);
+        // Pairs all round hold for every short move.
+        let tree = self.tree.as_ref().filter(|_| self.at.is_empty());
+        let seek = |moves: &[Vec3]| tree.map(|t| t.pairs(x, moves, layers.thickness));
+        layers.pairs = hold_apart(x, moves, pairs, counts, seek);
+        if wanted > 0.0 && layers.tangled.is_empty() { norm(moves) / wanted } else { 1.0 }
     }
 
     /// Takes up crossings that the start has, or that are left of them.
@@ -94,6 +97,10 @@ impl Nearby {
             layers.untangle(&tree.crossings(x), x);
         }
     }
+}
+
+fn norm(moves: &[Vec3]) -> f64 {
+    moves.iter().map(Vec3::norm_squared).sum::<f64>().sqrt()
 }
 
 /// Whether every node stays within `reach` of where it was.

@@ -2,9 +2,9 @@
 //!
 //! Each step minimises the potential plus the inertia of a step of pseudo-time (a sheet at rest that is let go), which
 //! grows as long as steps succeed: far from rest the cloth falls without overshooting, near rest the steps are Newton's
-//! own. A step is first kept out of the body, then cut back where cloth would meet cloth, then shortened until the
-//! potential lies below the highest of the last few (Grippo, Lampariello, Lucidi 1986): cloth hardly stretches but bends
-//! freely, so a good step may first raise the potential.
+//! own. A step is first kept out of the body, then cut back where cloth would meet cloth (and tried again in less pseudo-time
+//! where most of it is cut), then shortened until the potential lies below the highest of the last few (Grippo, Lampariello,
+//! Lucidi 1986): cloth hardly stretches but bends freely, so a good step may first raise the potential.
 //!
 //! For the same reason the matrix takes the stress that the last step foretold, not that of the new places, whose strain
 //! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
@@ -66,6 +66,20 @@ const FEW: f64 = 0.15;
 
 /// Steps of such a part at most, before the whole looks again.
 const PART_STEPS: usize = 20;
+
+/// Shortest step of pseudo-time, s.
+const SHORTEST: f64 = 1e-3;
+
+/// Share of a step (of its norm) that contacts of cloth with cloth must leave, or it is tried again with pseudo-time [`RETRY`] times
+/// as long. Else layers that come down on each other are pressed together at once, and jam.
+const LEAST_KEPT: f64 = 0.7;
+
+/// Shares below which pseudo-time falls, and above which it may grow, where cloth lies in layers: on more than half of its nodes.
+const FEW_KEPT: f64 = 0.8;
+const MOST_KEPT: f64 = 0.9;
+
+/// See [`LEAST_KEPT`].
+const RETRY: f64 = 0.3;
 
 /// When to stop, and how fast to go.
 #[derive(Debug, Clone, Copy)]
@@ -252,7 +266,15 @@ impl Descent {
         self.left = reach < 1.0;
         shorten(&mut moves, reach);
         self.nearby.seek(system, x, &moves);
-        self.nearby.limit(system, x, &mut moves);
+        let left = self.nearby.limit(system, x, &mut moves);
+        // Seams pull over long ways, whatever is between.
+        let kept = if system.threads.is_empty() { left } else { 1.0 };
+        if kept < LEAST_KEPT && !pulled && !self.proves && self.dt > SHORTEST {
+            // The cloth stays: most of the step leads cloth through cloth, and what is left of it would tear the sheet about.
+            self.dt = (RETRY * self.dt).max(SHORTEST);
+            self.moves.clear();
+            return Ok(self.outcome);
+        }
         let start = (!pulled).then(|| match lasting {
             Some(lasting) => system.value_at_start(x, lasting),
             None => system.value(x),
@@ -264,12 +286,12 @@ impl Descent {
         let end = way.and_then(|w| w.end);
         self.moves = moves;
         self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
-        self.plan(system, x, pulled, pace);
+        self.plan(system, x, pulled, kept, pace);
         Ok(self.outcome)
     }
 
     /// What comes after a step.
-    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, pace: &Pace) {
+    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, kept: f64, pace: &Pace) {
         let slow = self.outcome.speed < pace.speed && !pulled;
         self.outcome.at_rest = slow && (self.proves || !pace.prove);
         if self.proves {
@@ -280,7 +302,8 @@ impl Descent {
             return;
         }
         self.proofs = 0;
-        self.dt = next_dt(self.dt, self.outcome.share, pace);
+        let is_layered = system.layers.as_ref().is_some_and(|l| 2 * l.contacts.len() > x.len());
+        self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
         if !slow {
             system.drag(x);
         }
@@ -379,10 +402,11 @@ pub fn relax(
     Ok(descent.outcome)
 }
 
-fn next_dt(dt: f64, share: f64, pace: &Pace) -> f64 {
+/// The next step of pseudo-time after one of which the search took a `share` and contacts had left so much.
+fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
     match share {
-        1.0 => (dt * GROWTH).min(pace.longest),
-        s if s < 0.5 => (dt * 0.6).max(1e-3),
+        s if s < 0.5 || kept < FEW_KEPT => (dt * 0.6).max(SHORTEST),
+        1.0 if kept >= MOST_KEPT => (dt * GROWTH).min(pace.longest),
         _ => dt,
     }
 }

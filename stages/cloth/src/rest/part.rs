@@ -4,6 +4,7 @@
 //! elements about them, costs what they cost (nonlinear elimination: Lanzkron, Rose, Wilkes 1996).
 //! The whole system looks again afterwards, so the state of rest is that of the whole.
 
+use super::grip::Grip;
 use super::layers::Layers;
 use super::system::{Support, System, Thread};
 use crate::contact::pair::Pair;
@@ -83,6 +84,10 @@ impl<'a> Part<'a> {
         if let (Some(from), Some(to)) = (&self.system.support, &mut system.support) {
             put(&self.nodes, &from.offsets, &mut to.offsets);
         }
+        if let (Some(from), Some(to)) = (&self.system.layers, &mut system.layers) {
+            let grip = |g: &Grip| Grip { nodes: g.nodes.map(|i| self.nodes[i as usize]), ..*g };
+            to.take_over(|g| self.cut.wakes(&g.nodes), from.grips.iter().map(grip));
+        }
         system.elastic.learn(&self.cut, &self.system.elastic);
     }
 }
@@ -135,6 +140,7 @@ fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
 
 fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
     let pair = |p: &Pair| Pair { nodes: cut.renamed(p.nodes), ..*p };
+    let grip = |g: &Grip| Grip { nodes: cut.renamed(g.nodes), ..*g };
     Layers {
         #[cfg(toile_without = "self_contact")]
         never: whole.never,
@@ -142,6 +148,9 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),
+        friction: pick(nodes, &whole.friction),
+        away: pick(nodes, &whole.away),
+        grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes)).map(grip).collect(),
         pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
         contacts: Vec::new(),
         tangles: Vec::new(),

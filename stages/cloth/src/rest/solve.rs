@@ -15,6 +15,7 @@ use super::assemble::{KEPT_PULL, cloths, gravity, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
 use super::graded::COARSEST;
+use super::grip::Grip;
 use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
@@ -100,6 +101,8 @@ pub struct Rested {
     pub residual: f64,
     /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
     pub slides: Vec<Vec3>,
+    /// Friction of every contact of cloth with cloth, by sewn points: what `Live` goes on from.
+    pub grips: Vec<Grip>,
     /// Distance at which the body begins to press on each vertex, m; none without a body.
     pub offsets: Vec<f64>,
     /// Elastic and gravitational energy, J.
@@ -247,6 +250,8 @@ impl Rest {
                 Err(RestError::Falls) if self.graded => {
                     return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
                 }
+                // A sheet of a few vertices falls past a body that would catch it.
+                Err(RestError::Falls) if wearer.is_some() && coarsest < scene.rest.len() => coarsest *= FINER,
                 // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
                 Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
                 Err(e) => return Err(e),
@@ -392,7 +397,9 @@ impl<'a> Work<'a> {
         let slides = self.pieces[0].spread(&system.held_back(&x));
         let offsets = self.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let state = Rested { positions, outcome, residual, slides, offsets, energy, dip, joined_at, levels };
+        let grips = system.layers.take().map_or_else(Vec::new, |l| l.grips);
+        let state =
+            Rested { positions, outcome, residual, slides, grips, offsets, energy, dip, joined_at, levels };
         #[cfg(not(toile_without = "self_contact"))]
         if let Some(tree) = tree {
             let pairs = tree.crossings(&x).len();
@@ -536,6 +543,8 @@ fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, Res
 
 #[cfg(test)]
 mod graded_tests;
+#[cfg(test)]
+mod layer_friction_tests;
 #[cfg(test)]
 mod sewn_tests;
 #[cfg(test)]

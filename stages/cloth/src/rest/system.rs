@@ -3,11 +3,12 @@
 //! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its surface, so that
 //! vertices rest outside it), and friction as a potential about anchors: a force that grows with the way slid and nears
 //! Coulomb's limit without reaching it, so that every state of rest keeps the law. Anchors are dragged along while the
-//! cloth moves fast. Normals and limits of friction are those of the step's start.
+//! cloth moves fast. Cloth rubs on cloth in the same way (see `grip`). Normals and limits of friction are those of the step's start.
 
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pattern::{Pattern, Slot, add_at};
+use super::rub::Rub;
 use crate::contact::body::Nearest;
 use crate::contact::skin::Skin;
 use nalgebra::{Matrix3, Vector3};
@@ -209,7 +210,7 @@ impl System<'_> {
             }
             None => 0.0,
         };
-        let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
+        let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
         Visit { energy: lasting + body + rub + layers, lasting, sight }
     }
@@ -224,7 +225,7 @@ impl System<'_> {
             }
             None => 0.0,
         };
-        let rub: f64 = self.rubs().map(|r| r.value(x)).sum();
+        let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value_at_start(x));
         lasting + body + rub + layers
     }
@@ -253,6 +254,7 @@ impl System<'_> {
         if let Some(s) = &mut self.support {
             std::mem::swap(&mut s.friction, friction);
         }
+        self.layers.iter_mut().for_each(Layers::swap_friction);
         self.anchors.fill(None);
         self.loads.fill(0.0);
     }
@@ -264,9 +266,7 @@ impl System<'_> {
 
     /// The same, where what was seen at `x` is known.
     pub fn touch_in_sight(&mut self, x: &[Vec3], sight: Option<Vec<Sight>>) {
-        if let Some(l) = &mut self.layers {
-            l.contacts = l.touching(x);
-        }
+        self.layers.iter_mut().for_each(|l| l.touch(x));
         #[cfg(toile_without = "body")]
         return;
         let near = self.look(x, sight);
@@ -293,25 +293,27 @@ impl System<'_> {
 
     /// Drags anchors along behind nodes that slide: call it at the end of each step that moves far.
     pub fn drag(&mut self, x: &[Vec3]) {
-        let dragged: Vec<(u32, Vec3)> = self.rubs().map(|r| (r.node, r.dragged(x))).collect();
-        dragged.into_iter().for_each(|(i, anchor)| self.anchors[i as usize] = Some(anchor));
+        let dragged: Vec<(usize, Vec3)> = self.rubs().map(|(i, r)| (i, r.dragged(&x[i]))).collect();
+        dragged.into_iter().for_each(|(i, anchor)| self.anchors[i] = Some(anchor));
+        self.layers.iter_mut().for_each(|l| l.drag(x));
     }
 
     /// How far each node has slid from its anchor at `x`, m; the same on a finer mesh.
     #[must_use]
     pub fn held_back(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut slides = vec![Vec3::zeros(); x.len()];
-        self.rubs().for_each(|r| slides[r.node as usize] = r.slide(x).0 * r.soft);
+        self.rubs().for_each(|(i, r)| slides[i] = r.way(&x[i]));
         slides
     }
 
-    fn rubs(&self) -> impl Iterator<Item = Rub> + '_ {
+    /// Nodes that rub on the body.
+    fn rubs(&self) -> impl Iterator<Item = (usize, Rub)> + '_ {
         let s = self.support.as_ref();
         self.touches.iter().filter_map(move |t| {
-            let s = s.filter(|s| s.friction[t.node as usize] > 0.0)?;
-            let anchor = self.anchors[t.node as usize]?;
-            let limit = s.friction[t.node as usize] * t.load;
-            Some(Rub { node: t.node, normal: t.normal, anchor, limit, soft: SOFT })
+            let node = t.node as usize;
+            let s = s.filter(|s| s.friction[node] > 0.0)?;
+            let anchor = self.anchors[node]?;
+            Some((node, Rub { normal: t.normal, anchor, limit: s.friction[node] * t.load }))
         })
     }
 
@@ -322,8 +324,8 @@ impl System<'_> {
         self.elastic.add_gradient(x, &mut g);
         self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
-        self.rubs().for_each(|r| g[r.node as usize] += r.gradient(x));
-        self.layers.iter().for_each(|l| l.add_gradient(&mut g));
+        self.rubs().for_each(|(i, r)| g[i] += r.gradient(&x[i]));
+        self.layers.iter().for_each(|l| l.add_gradient(x, &mut g));
         g.iter_mut().zip(&self.pinned).filter(|(_, p)| **p).for_each(|(g, _)| *g = Vec3::zeros());
         g
     }
@@ -350,8 +352,8 @@ impl System<'_> {
                 values[t.node as usize] += t.normal * t.normal.transpose() * s.stiffness[t.node as usize];
             }
         }
-        self.rubs().for_each(|r| values[r.node as usize] += r.matrix(x));
-        self.layers.iter().for_each(|l| l.add_matrix(pattern, values));
+        self.rubs().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
+        self.layers.iter().for_each(|l| l.add_matrix(x, pattern, values));
         hold(&self.pinned, pattern, values);
     }
 }
@@ -458,51 +460,3 @@ const NUDGE: f64 = 1e-9;
 
 /// Share of the offset up to which a node that has touched keeps its place on the body.
 const NEAR: f64 = 1.5;
-
-/// Friction of one node: a potential of how far it has slid from its anchor, whose slope nears the limit.
-struct Rub {
-    node: u32,
-    normal: Vec3,
-    anchor: Vec3,
-    limit: f64,
-    soft: f64,
-}
-
-impl Rub {
-    /// The way from the anchor along the body, and the root of one plus its square in units of the soft way.
-    fn slide(&self, x: &[Vec3]) -> (Vec3, f64) {
-        let d = x[self.node as usize] - self.anchor;
-        let along = (d - self.normal * self.normal.dot(&d)) / self.soft;
-        (along, (1.0 + along.norm_squared()).sqrt())
-    }
-
-    fn value(&self, x: &[Vec3]) -> f64 {
-        self.limit * self.soft * (self.slide(x).1 - 1.0)
-    }
-
-    fn gradient(&self, x: &[Vec3]) -> Vec3 {
-        let (along, root) = self.slide(x);
-        along * (self.limit / root)
-    }
-
-    fn matrix(&self, x: &[Vec3]) -> Matrix3<f64> {
-        let (along, root) = self.slide(x);
-        let flat = Matrix3::identity() - self.normal * self.normal.transpose();
-        (flat - along * along.transpose() / (root * root)) * (self.limit / (self.soft * root))
-    }
-
-    /// Where the anchor is after it has been dragged along.
-    fn dragged(&self, x: &[Vec3]) -> Vec3 {
-        let (along, _) = self.slide(x);
-        let r = along.norm();
-        if r <= DRAG { self.anchor } else { x[self.node as usize] - along * (self.soft * DRAG / r) }
-    }
-}
-
-/// How far behind an anchor is dragged, in soft ways: friction is then half of its limit, so that what slides stops with
-/// some to spare.
-const DRAG: f64 = 0.577;
-
-/// The way that a node slides before friction comes near its limit, m: at this way it is 0.7 of it. Longer converges
-/// sooner; cloth creeps that far before it holds.
-const SOFT: f64 = 1e-4;

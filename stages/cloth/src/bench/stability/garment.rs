@@ -33,7 +33,7 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
         let scene = move || sunk(depth, size);
         checks.push(Check::new("body_penetration_at_start", name, must, move || freed(&scene())));
     }
-    for layers in if large { vec![5, 50] } else { vec![3] } {
+    for layers in if large { vec![3, 5, 50] } else { vec![3, 5] } {
         checks.push(Check::new("contact_stack", format!("{layers} layers"), must, move || {
             freed(&stack(layers))
         }));

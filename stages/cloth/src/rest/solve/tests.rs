@@ -111,7 +111,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 }
 
 /// A plate in the x-z plane whose top passes through the origin, turned by `slope` about z, half as wide as `half`.
-fn plate(slope: f64, half: f64) -> SceneBody {
+pub(super) fn plate(slope: f64, half: f64) -> SceneBody {
     let corner = |k: usize| {
         let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
         let p = Vector3::new(sign(0) * half, sign(1).min(0.0) * 0.1, sign(2) * half);
@@ -281,4 +281,23 @@ fn a_seam_that_is_not_joined_stays_two_rows_without_a_gap() {
         scene.seams[0].pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).collect();
     assert!(gaps.iter().all(|g| (1e-6..5e-4).contains(g)), "{gaps:?}");
     assert!((end - two_panel_strip(None, true).1).abs() < 6e-4);
+}
+
+#[test]
+fn sheets_too_coarse_for_the_ball_to_catch_are_tried_finer() {
+    // Fifty sheets share the coarsest mesh: four vertices each fall past the ball on all sides.
+    let mut scene = generate::drape(8);
+    scene.rest.iter_mut().for_each(|p| *p *= 0.5);
+    let (rest, triangles) = (scene.rest.clone(), scene.triangles.clone());
+    let level = |k: usize| -> Vec<Vec3> {
+        rest.iter().map(|p| Vec3::new(p.x, 0.31 + 0.004 * k as f64, -p.y)).collect()
+    };
+    scene.positions = level(0);
+    for k in 1..50 {
+        scene.add_panel(format!("layer {k}"), &rest, &level(k), &triangles);
+    }
+    let finer =
+        |l: &LevelReport| if l.nodes > 200 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let error = Rest::default().solve(&scene, &mut |l| finer(l)).unwrap_err();
+    assert_eq!(error, RestError::Stopped);
 }

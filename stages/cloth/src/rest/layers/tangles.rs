@@ -1,0 +1,66 @@
+//! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have it, is pulled back out.
+
+use super::{Contact, Layers};
+use crate::contact::closest::on_triangle;
+use crate::contact::pair::Pair;
+use crate::rest::press::Press;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+impl Layers {
+    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side.
+    pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
+        self.tangled = vec![false; if crossings.is_empty() { 0 } else { x.len() }];
+        for (e, t) in crossings {
+            e.iter().chain(t).for_each(|&i| self.tangled[i as usize] = true);
+        }
+        self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
+    }
+
+    fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
+        let [a, b, c] = t.map(|v| x[v as usize]);
+        let up = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        let height = |v: u32| up.dot(&(x[v as usize] - a));
+        let (shallow, normal) = match self.side(&e, &t) {
+            // The order of the layers tells which end is on the wrong side.
+            Some(side) => (if side * height(e[0]) < side * height(e[1]) { e[0] } else { e[1] }, up * side),
+            None => {
+                let [shallow, deep] = if height(e[0]).abs() < height(e[1]).abs() { e } else { [e[1], e[0]] };
+                (shallow, if height(deep) > 0.0 { up } else { -up })
+            }
+        };
+        let on = on_triangle(&x[shallow as usize], &[a, b, c]);
+        let nodes = [shallow, t[0], t[1], t[2]];
+        let weights = [1.0, -on.weights[0], -on.weights[1], -on.weights[2]];
+        let distance = normal.dot(&(x[shallow as usize] - on.point));
+        let stiffness = 0.5 * self.stiffness[shallow as usize];
+        let press = Press::spring(stiffness, self.thickness, distance);
+        Some(Contact { nodes, weights, normal, stiffness, press })
+    }
+
+    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing where they are one layer.
+    fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
+        let of = |v: &u32| self.order.get(*v as usize).copied();
+        let one = |nodes: &[u32]| {
+            nodes.first().and_then(of).filter(|first| nodes.iter().all(|v| of(v) == Some(*first)))
+        };
+        match one(e)?.cmp(&one(t)?) {
+            std::cmp::Ordering::Greater => Some(1.0),
+            std::cmp::Ordering::Less => Some(-1.0),
+            std::cmp::Ordering::Equal => None,
+        }
+    }
+
+    /// Crossings of cloth of one layer, which no order resolves.
+    #[must_use]
+    pub fn unordered(&self, crossings: &[([u32; 2], [u32; 3])]) -> usize {
+        crossings.iter().filter(|(e, t)| self.side(e, t).is_none()).count()
+    }
+
+    /// Whether the pair lies among tangled nodes only.
+    #[must_use]
+    pub fn is_tangled(&self, pair: &Pair) -> bool {
+        !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
+    }
+}
