@@ -1,6 +1,7 @@
 //! Straight to static equilibrium, coarse to fine.
 
 mod assemble;
+mod awake;
 pub mod clear;
 pub mod coarsen;
 pub mod dissect;

@@ -11,7 +11,7 @@
 //! be many times longer. It leaves the answer alone, for the forces are those of the places.
 //!
 //! Where a step moved few nodes, these and those around them are brought to rest by themselves before the next one (see
-//! `part`); a state of rest is proved with all.
+//! `awake`); a state of rest is proved with all.
 //!
 //! Cost of a step: one factorization, O(n^1.5), and O(n) for all else. Of the short steps that prove rest only the first of a
 //! row has its own; the cloth moves so little in them that it serves the others. What the search along a step has looked
@@ -20,7 +20,6 @@
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
-use super::part::{Part, widen};
 use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
@@ -35,7 +34,7 @@ pub const REST_STEP: f64 = 1.0 / 60.0;
 const MOST_HALVINGS: u32 = 6;
 
 /// Moves shorter than this change the potential by less than its rounding, m.
-const ROUNDING: f64 = 1e-10;
+pub(super) const ROUNDING: f64 = 1e-10;
 
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
@@ -54,18 +53,6 @@ const CALM: usize = 3;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
-
-/// Share of the greatest move from which on a node is awake.
-const AWAKE: f64 = 0.3;
-
-/// Rings of elements around the awake nodes that move with them.
-const RINGS: usize = 2;
-
-/// Greatest share of the nodes that is worth a system of its own.
-const FEW: f64 = 0.15;
-
-/// Steps of such a part at most, before the whole looks again.
-const PART_STEPS: usize = 20;
 
 /// Shortest step of pseudo-time, s.
 const SHORTEST: f64 = 1e-3;
@@ -120,8 +107,8 @@ pub type Watch<'w> = dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> ControlFlow<()
 
 /// Newton's method under way: what is kept from step to step.
 pub struct Descent {
-    nearby: Nearby,
-    linear: Linear,
+    pub(super) nearby: Nearby,
+    pub(super) linear: Linear,
     outcome: Outcome,
     /// The potentials of the last steps.
     heights: Vec<f64>,
@@ -135,15 +122,15 @@ pub struct Descent {
     calm: usize,
     /// Whether a proof has failed.
     failed: bool,
-    dt: f64,
+    pub(super) dt: f64,
     /// How far the last step wanted to go, m.
     last: f64,
     /// What the last step found where it ended.
     before: Option<Before>,
     /// The last step.
-    moves: Vec<Vec3>,
+    pub(super) moves: Vec<Vec3>,
     /// Whether a step was cut short where the pairs of a part end.
-    left: bool,
+    pub(super) left: bool,
 }
 
 /// What a step found where it ended.
@@ -169,7 +156,13 @@ impl Descent {
     }
 
     /// The same where the neighbours are known.
-    fn among(nearby: Nearby, system: &mut System<'_>, layout: &[Vec3], x: &[Vec3], first: f64) -> Self {
+    pub(super) fn among(
+        nearby: Nearby,
+        system: &mut System<'_>,
+        layout: &[Vec3],
+        x: &[Vec3],
+        first: f64,
+    ) -> Self {
         system.touch(x);
         let linear = Linear::new(system, layout.to_vec());
         let outcome = Outcome { dt: first, ..Outcome::default() };
@@ -225,7 +218,7 @@ impl Descent {
         rayon::scope(|_| self.step_here(system, x, pace, stop))
     }
 
-    fn step_here(
+    pub(super) fn step_here(
         &mut self,
         system: &mut System<'_>,
         x: &mut [Vec3],
@@ -312,48 +305,9 @@ impl Descent {
         self.proves = pace.prove && self.calm >= if self.failed { CALM } else { 1 };
     }
 
-    /// Brings the nodes that the last step moved most to rest by themselves, where they are few. Near rest a few nodes buckle
-    /// one after the other while the others sleep.
-    ///
-    /// # Errors
-    /// [`Halt`], as [`Self::step`].
-    fn settle_awake(
-        &mut self,
-        system: &mut System<'_>,
-        x: &mut [Vec3],
-        pace: &Pace,
-        stop: &Stop,
-    ) -> Result<(), Halt> {
-        let Some(awake) = self.awake(system) else { return Ok(()) };
-        self.nearby.seek_about(system, x);
-        let mut part = Part::of(system, awake);
-        let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
-        let nearby = Nearby::of_part(part.pick(self.nearby.at()));
-        rayon::scope(|_| {
-            let mut inner = Self::among(nearby, &mut part.system, &layout, &own, self.dt);
-            for _ in 0..PART_STEPS {
-                let outcome = inner.step_here(&mut part.system, &mut own, pace, stop)?;
-                if outcome.at_rest || inner.left {
-                    break;
-                }
-            }
-            Ok::<(), Halt>(())
-        })?;
-        part.put_back(&own, system, x);
+    /// The cloth has moved outside a step: nothing that was found where that ended holds.
+    pub(super) fn moved(&mut self) {
         (self.before, self.serves) = (None, false);
-        Ok(())
-    }
-
-    /// The nodes that the last step moved most and those around them, if they are few.
-    fn awake(&self, system: &System<'_>) -> Option<Vec<bool>> {
-        let most = greatest(&self.moves);
-        if system.is_tangled() || !system.pulls.is_empty() || most < ROUNDING {
-            return None;
-        }
-        let mut awake = self.moves.iter().map(|m| m.norm() > AWAKE * most).collect();
-        widen(system, &mut awake, RINGS);
-        let count = awake.iter().filter(|a| **a).count();
-        (count as f64 <= FEW * awake.len() as f64).then_some(awake)
     }
 
     /// How it stands after the last step.

@@ -157,3 +157,6 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         tangled: Vec::new(),
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,105 @@
+#![allow(clippy::unwrap_used)]
+use super::*;
+use crate::contact::body::Body;
+use crate::contact::tree::ClothTree;
+use crate::rest::assemble::{Wearer, assemble, cloths};
+use crate::rest::nearby::Nearby;
+use crate::rest::pattern::Pattern;
+use crate::rest::pieces::Pieces;
+use crate::scene::{Scene, generate};
+
+/// A square on a ball, creased, in contact with the ball and with itself; every third node is awake in the half of greater x.
+fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
+    let scene: Scene = generate::drape(14);
+    let ball = scene.body.as_ref().unwrap();
+    let body = Body::new(ball.vertices.clone(), &ball.triangles);
+    let wearer = Wearer { skin: &body, friction: ball.friction };
+    let pieces = Pieces::new(&scene);
+    let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
+    let mut system = assemble(&scene, Some(wearer), &pieces, &sheet, false).unwrap();
+    let flat = scene.positions.clone();
+    let top = ball.vertices.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    // Two halves of the square lie on each other, less than a thickness apart; the lower one touches the ball's top.
+    let fold = |p: &Vec3| {
+        let upper = f64::from(u8::from(p.x > 0.0));
+        let wave = 2e-4 * (40.0 * p.z).sin();
+        Vec3::new(-p.x.abs(), top + 5e-4 + upper * 4e-4 + wave, p.z)
+    };
+    let x: Vec<Vec3> = flat.iter().map(fold).collect();
+    let mut nearby = Nearby::new(Some(ClothTree::new(&sheet, &flat)));
+    nearby.seek_about(&mut system, &x);
+    system.touch(&x);
+    let awake = flat.iter().enumerate().map(|(i, p)| p.x > 0.05 && i % 3 == 0).collect();
+    check(system, x, awake);
+}
+
+#[test]
+fn awake_nodes_feel_what_they_feel_in_the_whole() {
+    with_part(|system, x, awake| {
+        let whole = system.gradient(&x);
+        assert!(system.layers.as_ref().is_some_and(|l| l.contacts.len() > 20));
+        assert!(system.touches.iter().any(|t| t.force > 0.0));
+        let mut part = Part::of(&system, awake.clone());
+        let own = part.pick(&x);
+        part.system.touch(&own);
+        let scale = whole.iter().map(Vec3::norm).fold(0.0, f64::max);
+        for ((g, i), pinned) in part.system.gradient(&own).iter().zip(&part.nodes).zip(&part.system.pinned) {
+            let i = *i as usize;
+            assert_eq!(*pinned, !awake[i]);
+            assert!((g - if awake[i] { whole[i] } else { Vec3::zeros() }).norm() < 1e-9 * scale, "{i}");
+        }
+    });
+}
+
+/// The matrix at `x` times `way`.
+fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
+    let pattern: Pattern = system.pattern();
+    system.elastic.bind(&pattern);
+    let mut values = Vec::new();
+    system.matrix(x, &pattern, 1.0, 0.0, &mut values);
+    let mut out = vec![Vec3::zeros(); x.len()];
+    pattern.multiply_add(&values, way, &mut out);
+    out
+}
+
+#[test]
+fn awake_nodes_are_as_stiff_as_in_the_whole() {
+    with_part(|mut system, x, awake| {
+        let way = |i: usize| Vec3::new((3 * i) as f64, (5 * i) as f64, (7 * i) as f64).map(f64::sin);
+        let ways: Vec<Vec3> = (0..x.len()).map(|i| if awake[i] { way(i) } else { Vec3::zeros() }).collect();
+        system.elastic.foretell(&x, &ways.iter().map(|w| w * 1e-4).collect::<Vec<_>>());
+        let mut part = Part::of(&system, awake.clone());
+        let (own, own_ways) = (part.pick(&x), part.pick(&ways));
+        part.system.touch(&own);
+        let whole = stiffness(&mut system, &x, &ways);
+        let found = stiffness(&mut part.system, &own, &own_ways);
+        let scale = whole.iter().map(Vec3::norm).fold(0.0, f64::max);
+        for (f, &i) in found.iter().zip(&part.nodes).filter(|(_, i)| awake[**i as usize]) {
+            assert!((f - whole[i as usize]).norm() < 1e-9 * scale, "{i}");
+        }
+    });
+}
+
+#[test]
+fn what_a_part_found_comes_back_to_its_nodes_alone() {
+    with_part(|mut system, x, awake| {
+        let mut whole = x.clone();
+        system.elastic.foretell(&x, &vec![Vec3::zeros(); x.len()]);
+        let before = (system.loads.clone(), system.layers.as_ref().unwrap().grips.clone());
+        let mut part = Part::of(&system, awake.clone());
+        let mut own = part.pick(&x);
+        let moved = |i: u32| if awake[i as usize] { Vec3::new(0.0, -1e-4, 0.0) } else { Vec3::zeros() };
+        own.iter_mut().zip(&part.nodes).for_each(|(p, &i)| *p += moved(i));
+        part.system.touch(&own);
+        let among: Vec<bool> = (0..x.len() as u32).map(|i| part.nodes.contains(&i)).collect();
+        part.put_back(&own, &mut system, &mut whole);
+        for i in 0..x.len() {
+            assert_eq!(whole[i], x[i] + moved(i as u32));
+            assert!(among[i] || system.loads[i] == before.0[i]);
+        }
+        let grips = &system.layers.as_ref().unwrap().grips;
+        assert!(grips.is_sorted_by_key(Grip::key) && *grips != before.1);
+        let asleep = |g: &&Grip| g.nodes.iter().all(|&i| !awake[i as usize]);
+        assert!(grips.iter().filter(asleep).eq(before.1.iter().filter(asleep)));
+    });
+}
