@@ -60,7 +60,7 @@ impl Descent {
         if system.is_tangled() || !system.pulls.is_empty() || most < ROUNDING {
             return None;
         }
-        let mut awake = self.moves.iter().map(|m| m.norm() > AWAKE * most).collect();
+        let mut awake: Vec<bool> = self.moves.iter().map(|m| m.norm() > AWAKE * most).collect();
         widen(system, &mut awake, RINGS);
         let count = awake.iter().filter(|a| **a).count();
         (count as f64 <= FEW * awake.len() as f64).then_some(awake)

@@ -43,9 +43,9 @@ impl Cut {
 }
 
 /// Widens a set of nodes by the elements they are in, so many times.
-pub(super) fn widen(system: &System<'_>, awake: &mut Vec<bool>, rings: usize) {
+pub(super) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
     for _ in 0..rings {
-        let was = awake.clone();
+        let was = awake.to_vec();
         for nodes in system.elastic.faces().filter(|t| t.iter().any(|&i| was[i as usize])) {
             nodes.iter().for_each(|&i| awake[i as usize] = true);
         }
