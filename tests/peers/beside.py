@@ -4,7 +4,7 @@
     TOILE_SHARED=FOLDER tests/peers/beside.py --python PYTHON_WITH_BPY [--scenes tube_2k2,tube_20k,...] [--runs 3]
 
 FOLDER/bench holds make_scenes.py, metrics.py and peer_blender.py; PYTHON has numpy, libigl and bpy. Scenes are made in
-out/scenes. Our time is that of the stage `Rest` in `toile run pipelines/scene.ron`, the best of the runs; a peer's is that of
+out/scenes. Our time is that of the stage `Rest` in `toile run pipelines/scene.ron`, without a cache, the best of the runs; a peer's is that of
 its simulation alone. Without the folder it says "skipped".
 """
 import argparse, json, os, pathlib, subprocess, sys
@@ -27,7 +27,7 @@ def ours(scene, runs):
     for _ in range(runs):
         out = OUT / f"{scene}_toile"
         text = call(ROOT / "target/release/toile", "run", ROOT / "pipelines/scene.ron",
-                    "--set", f"scene.file={OUT / scene}.json", "--out", out, "--json")
+                    "--set", f"scene.file={OUT / scene}.json", "--out", out, "--json", "--no-cache")
         metrics = json.loads(text)
         wall = next(s["wall_s"] for s in metrics["stages"] if s["id"] == "Rest")
         if best is None or wall < best[0]:
