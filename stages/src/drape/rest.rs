@@ -1,7 +1,7 @@
 //! `Rest`: sews and drapes at once, straight to static equilibrium.
 //!
 //! Method: the engine's `Rest` (coarse to fine, Newton's method on the potential of sheet, seams, weight, contacts and
-//! friction). Cost: about a dozen factorizations of the finest mesh, O(triangles^1.5) each with a small factor. Limits:
+//! friction). Cost: some 35 to 150 factorizations of the finest mesh, O(triangles^1.5) each with a small factor. Limits:
 //! the way there is no motion: nothing of it may be shown as an animation; folds and friction have many states of rest, of
 //! which one is found.
 

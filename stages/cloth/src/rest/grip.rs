@@ -62,21 +62,21 @@ impl Grip {
     }
 
     /// Every pair of a node of the first feature and one of the second.
-    fn crossings(&self) -> impl Iterator<Item = Crossing> + '_ {
+    fn opposites(&self) -> impl Iterator<Item = Opposite> + '_ {
         let (a, b) = self.nodes.split_at(self.first());
-        a.iter().flat_map(move |&i| b.iter().map(move |&j| Crossing::of(i, j)))
+        a.iter().flat_map(move |&i| b.iter().map(move |&j| Opposite::of(i, j)))
     }
 }
 
 /// Two nodes on the two sides of a contact.
 #[derive(Debug, Clone, Copy)]
-struct Crossing {
+struct Opposite {
     nodes: [u32; 2],
     /// From the larger node's side to the smaller's, or the other way round: -1.
     sign: f64,
 }
 
-impl Crossing {
+impl Opposite {
     fn of(i: u32, j: u32) -> Self {
         if i < j { Self { nodes: [i, j], sign: 1.0 } } else { Self { nodes: [j, i], sign: -1.0 } }
     }
@@ -125,7 +125,7 @@ impl<'a> Memory<'a> {
     fn taken_over(&mut self, grip: &Grip) -> Vec3 {
         let slid = self.slid.get_or_insert_with(|| all_slid(self.grips, &self.ways));
         let (mut way, mut load) = (Vec3::zeros(), 0.0);
-        for c in grip.crossings() {
+        for c in grip.opposites() {
             let start = slid.partition_point(|s| s.nodes < c.nodes);
             for s in slid[start..].iter().take_while(|s| s.nodes == c.nodes) {
                 way += s.way * (c.sign * s.load);
@@ -138,7 +138,7 @@ impl<'a> Memory<'a> {
 
 fn all_slid(grips: &[Grip], ways: &[Vec3]) -> Vec<Slid> {
     let one = |(g, way): (&Grip, &Vec3)| -> Vec<Slid> {
-        g.crossings().map(|c| Slid { nodes: c.nodes, way: way * c.sign, load: g.load }).collect()
+        g.opposites().map(|c| Slid { nodes: c.nodes, way: way * c.sign, load: g.load }).collect()
     };
     let mut slid: Vec<Slid> = grips.iter().zip(ways).flat_map(one).collect();
     // Stable, so that sums are the same every time.
