@@ -101,20 +101,25 @@ impl Body {
     pub fn nearest(&self, p: &Vec3, within: f64) -> Option<Nearest> {
         let mut best = within * within;
         let mut found = None;
-        let mut stack = [0u32; 64];
+        // Nodes to come and how far away they are.
+        let mut stack = [(0u32, 0.0f64); 64];
         let mut depth = usize::from(!self.boxes.is_empty());
         while depth > 0 {
             depth -= 1;
-            let node = &self.boxes[stack[depth] as usize];
-            if gap_squared(node, p) >= best {
+            let (k, gap) = stack[depth];
+            if gap >= best {
                 continue;
             }
+            let node = &self.boxes[k as usize];
             if node.count == 0 {
-                let (a, b) = (node.first, node.first + 1);
-                let (ga, gb) =
-                    (gap_squared(&self.boxes[a as usize], p), gap_squared(&self.boxes[b as usize], p));
-                (stack[depth], stack[depth + 1]) = if ga < gb { (b, a) } else { (a, b) };
-                depth += 2;
+                let gaps = [0, 1].map(|c| gap_squared(&self.boxes[(node.first + c) as usize], p));
+                let nearer = u32::from(gaps[1] <= gaps[0]);
+                for c in [1 - nearer, nearer] {
+                    if gaps[c as usize] < best {
+                        stack[depth] = (node.first + c, gaps[c as usize]);
+                        depth += 1;
+                    }
+                }
                 continue;
             }
             for t in node.first as usize..(node.first + node.count) as usize {

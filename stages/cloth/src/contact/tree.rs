@@ -4,6 +4,8 @@
 //! vertex and edge belongs to one triangle, so that every pair is found once (Curtis, Tamstorf, Manocha 2008). Cost
 //! O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
 
+mod meet;
+
 use super::ccd::approach;
 use super::pair::{Kind, Pair};
 use crate::mesh::Sheet;
@@ -48,9 +50,6 @@ pub struct ClothTree {
     /// Which corners and which sides (k to k + 1) each triangle answers for.
     owns: Vec<([bool; 3], [bool; 3])>,
     branches: Vec<Branch>,
-    /// One past the last triangle of each branch.
-    ends: Vec<u32>,
-    leaves: Vec<u32>,
     /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are neighbours.
     point: Vec<u32>,
 }
@@ -69,13 +68,8 @@ impl ClothTree {
         let mut place = vec![0u32; all.len()];
         order.iter().enumerate().for_each(|(k, &t)| place[t as usize] = k as u32);
         let owns = ownership(sheet, &triangles, &place);
-        let leaves = (0..branches.len() as u32).filter(|&b| branches[b as usize].count > 0).collect();
-        let mut ends = vec![0u32; branches.len()];
-        for (k, b) in branches.iter().enumerate().rev() {
-            ends[k] = if b.count == 0 { ends[b.first as usize + 1] } else { b.first + b.count };
-        }
         let point = (0..layout.len() as u32).collect();
-        Self { triangles, owns, branches, ends, leaves, point }
+        Self { triangles, owns, branches, point }
     }
 
     /// The same, where nodes with equal numbers are about to be sewn: features that share one are no pair.
@@ -104,13 +98,8 @@ impl ClothTree {
         let boxes: Vec<Bounds> = self.triangles.par_iter().with_min_len(256).map(swept).collect();
         let fitted = self.fit(&boxes);
         let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
-        let of_leaf = |&leaf: &u32| {
-            let mut found = Vec::new();
-            let search = Search { x, moves, ways: &ways, reach };
-            self.meet(leaf, &boxes, &fitted, |s, t| self.narrow(s, t, &search, &mut found));
-            found
-        };
-        let mut pairs: Vec<Pair> = self.leaves.par_iter().with_min_len(16).flat_map_iter(of_leaf).collect();
+        let search = Search { x, moves, ways: &ways, reach };
+        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
         pairs.par_sort_unstable();
         pairs
     }
@@ -124,23 +113,18 @@ impl ClothTree {
         };
         let boxes: Vec<Bounds> = self.triangles.iter().map(still).collect();
         let fitted = self.fit(&boxes);
-        let of_leaf = |&leaf: &u32| {
-            let mut found = Vec::new();
-            self.meet(leaf, &boxes, &fitted, |s, t| {
-                for (a, b) in
-                    [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
-                {
-                    found.extend(
-                        (0..3)
-                            .map(|k| [a[k], a[(k + 1) % 3]])
-                            .filter(|e| !e.iter().any(|&v| self.is_one_of(v, b)) && crosses(*e, b, x))
-                            .map(|e| (e, *b)),
-                    );
-                }
-            });
-            found
+        let crossing = |s: usize, t: usize, out: &mut Vec<_>| {
+            for (a, b) in [(&self.triangles[s], &self.triangles[t]), (&self.triangles[t], &self.triangles[s])]
+            {
+                out.extend(
+                    (0..3)
+                        .map(|k| [a[k], a[(k + 1) % 3]])
+                        .filter(|e| !e.iter().any(|&v| self.is_one_of(v, b)) && crosses(*e, b, x))
+                        .map(|e| (e, *b)),
+                );
+            }
         };
-        let mut all: Vec<_> = self.leaves.par_iter().with_min_len(16).flat_map_iter(of_leaf).collect();
+        let mut all = self.meetings(&boxes, &fitted, &crossing);
         all.iter_mut().for_each(|(e, _)| e.sort_unstable());
         all.sort_unstable();
         all.dedup();
@@ -157,34 +141,6 @@ impl ClothTree {
             };
         }
         fitted
-    }
-
-    /// Visits every pair of triangles whose boxes meet, the first of which lies in `leaf` and comes first.
-    fn meet(&self, leaf: u32, boxes: &[Bounds], fitted: &[Bounds], mut visit: impl FnMut(usize, usize)) {
-        let own = self.branches[leaf as usize];
-        let mine = &fitted[leaf as usize];
-        let mut stack = vec![0u32];
-        while let Some(k) = stack.pop() {
-            if !fitted[k as usize].meets(mine) {
-                continue;
-            }
-            let b = self.branches[k as usize];
-            // What lies wholly before the leaf has met it already.
-            if self.ends[k as usize] <= own.first {
-                continue;
-            }
-            if b.count == 0 {
-                stack.extend([b.first, b.first + 1]);
-                continue;
-            }
-            for s in own.first..own.first + own.count {
-                for t in b.first.max(s + 1)..b.first + b.count {
-                    if boxes[s as usize].meets(&boxes[t as usize]) {
-                        visit(s as usize, t as usize);
-                    }
-                }
-            }
-        }
     }
 
     /// Adds the pairs of features that two triangles answer for and that may come within reach.

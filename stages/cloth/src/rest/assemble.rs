@@ -79,11 +79,13 @@ pub(super) fn assemble<'a>(
     sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
+    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
     let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
     let no_friction = cloths.iter().all(|c| c.friction == 0.0);
     let ordered = scene.panels.iter().any(|p| p.layer > 0);
     let layers = scene.self_collision.then(|| Layers {
         thickness,
+        edge,
         stiffness,
         // Hands that sew let cloth slip over cloth, too.
         friction: if open || no_friction {

@@ -7,8 +7,8 @@
 use super::pattern::Pattern;
 use nalgebra::Vector3;
 
-/// Parts of at most this many nodes are not cut further: a dense block of about 100 unknowns is cheaper than more fronts.
-const LEAF_NODES: usize = 24;
+/// Parts of at most this many nodes are not cut further: a dense block of some 50 unknowns is cheaper than more fronts.
+const LEAF_NODES: usize = 16;
 
 /// One part of the tree: the nodes eliminated there, after those of its children.
 #[derive(Debug, Clone, Default)]

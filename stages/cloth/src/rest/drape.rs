@@ -29,6 +29,9 @@ const MOST_FALL: f64 = 0.1;
 /// First and longest step of pseudo-time, s, and the farthest way in a step, m.
 const SPAN: (f64, f64, f64) = (0.05, 1.0, 0.1);
 
+/// First step of pseudo-time on the finest mesh, s: what a coarser one leaves has little speed.
+const FIRST_AT_END: f64 = 0.15;
+
 /// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
 const LONGEST: f64 = 10.0;
 
@@ -261,7 +264,8 @@ impl<'a> Work<'a> {
 
     /// Brings the finest level to rest, and proves it.
     fn end(&mut self, level: &mut Level<'a>, progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let pace = Pace { steps: self.rest.finest_steps, speed: self.rest.speed, prove: true, ..self.pace() };
+        let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
+        let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, ..self.pace() };
         let Level { system, sheet, layout, x, .. } = level;
         let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
         self.reports.push(report);

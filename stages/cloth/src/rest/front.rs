@@ -1,16 +1,13 @@
 //! Dense elimination of one front of a sparse factor.
 //!
 //! A front of `m` unknowns, the first `own` of which are eliminated, is kept in two column-major parts: its own columns,
-//! `m` rows each, which become the factor's, and the border's lower triangle, which becomes what the parent adds. The
-//! products are those of the `faer` library, which picks its instructions at run time; each front is one thread's work.
+//! `m` rows each, which become the factor's, and the border's lower triangle, which becomes what the parent adds.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
-use faer::linalg::matmul::triangular::{BlockStructure, matmul};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use super::dense::{factor_columns, take_product};
 use faer::reborrow::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, Par};
+use faer::{Accum, MatMut};
 use nalgebra::Matrix3;
+use std::ops::Range;
 
 /// Nodes of a child's border that follow one another in the parent, too.
 #[derive(Debug, Clone, Copy)]
@@ -21,6 +18,14 @@ pub(super) struct Run {
     pub(super) parent: u32,
     /// How many.
     pub(super) nodes: u32,
+}
+
+impl Run {
+    /// Its unknowns in the child's border, and among the parent's rows.
+    pub(super) fn rows(&self) -> (Range<usize>, Range<usize>) {
+        let rows = |first: u32| 3 * first as usize..3 * (first + self.nodes) as usize;
+        (rows(self.child), rows(self.parent))
+    }
 }
 
 /// Adds a run of a child's column to the parent's, without its first rows.
@@ -36,7 +41,7 @@ fn add(from: &[f64], to: &mut [f64], first: usize, run: &Run, skip: usize) {
 pub(super) struct Dense<'a> {
     /// Own columns, `m` rows each.
     pub(super) columns: &'a mut Vec<f64>,
-    /// The border's part, `m - own` rows and columns; only its lower triangle is used.
+    /// The border's part, `m - own` rows and columns; only its lower triangle is used. Elimination writes it first.
     pub(super) border: Vec<f64>,
     m: usize,
     own: usize,
@@ -50,7 +55,9 @@ impl<'a> Dense<'a> {
         border.truncate(n * n);
         border.resize(n * n, 0.0);
         (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(0.0));
-        (0..n).for_each(|c| border[c * n + c..(c + 1) * n].fill(0.0));
+        if own == 0 {
+            border.fill(0.0);
+        }
         Self { columns, border, m, own }
     }
 
@@ -74,10 +81,22 @@ impl<'a> Dense<'a> {
         }
     }
 
-    /// Adds what a child leaves, a lower triangle over its border, whose nodes are the rows of these runs here.
-    pub(super) fn extend_add(&mut self, update: &[f64], runs: &[Run]) {
+    /// Adds what a child leaves in the own columns: a lower triangle over its border, whose nodes are the rows of these runs.
+    pub(super) fn add_to_own(&mut self, update: &[f64], runs: &[Run]) {
+        let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
+        self.extend_add(update, runs, 0..own);
+    }
+
+    /// The same in the border's columns, once the own ones are eliminated.
+    pub(super) fn add_to_border(&mut self, update: &[f64], runs: &[Run]) {
+        let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
+        self.extend_add(update, runs, own..runs.len());
+    }
+
+    fn extend_add(&mut self, update: &[f64], runs: &[Run], of: Range<usize>) {
         let n: usize = runs.iter().map(|r| 3 * r.nodes as usize).sum();
-        for (k, own) in runs.iter().enumerate() {
+        for k in of {
+            let own = &runs[k];
             for c in 0..3 * own.nodes as usize {
                 let from = &update[(3 * own.child as usize + c) * n..][..n];
                 let (to, first) = self.column(3 * own.parent as usize + c);
@@ -88,7 +107,7 @@ impl<'a> Dense<'a> {
         }
     }
 
-    /// Eliminates the own columns: they become the factor's, the border what is left to the parent.
+    /// Eliminates the own columns, which become the factor's, and writes what that leaves of the border.
     ///
     /// # Errors
     /// The column whose pivot is not positive.
@@ -97,28 +116,11 @@ impl<'a> Dense<'a> {
         if own == 0 {
             return Ok(());
         }
-        let all = MatMut::from_column_major_slice_mut(&mut self.columns[..], m, own);
-        let (mut top, mut below) = all.split_at_row_mut(own);
-        let mut memory = MemBuffer::new(cholesky_in_place_scratch::<f64>(own, Par::Seq, Default::default()));
-        let stack = MemStack::new(&mut memory);
-        cholesky_in_place(top.rb_mut(), Default::default(), Par::Seq, stack, Default::default())
-            .map_err(|LltError::NonPositivePivot { index }| index)?;
-        if let Some(c) = (0..own).find(|&c| !(top[(c, c)] > 0.0 && top[(c, c)].is_finite())) {
-            return Err(c);
-        }
-        solve_lower_triangular_in_place(top.rb(), below.rb_mut().transpose_mut(), Par::Seq);
+        let mut all = MatMut::from_column_major_slice_mut(&mut self.columns[..], m, own);
+        factor_columns(all.rb_mut())?;
+        let below = all.rb().subrows(own, n);
         let border = MatMut::from_column_major_slice_mut(&mut self.border[..], n, n);
-        matmul(
-            border,
-            BlockStructure::TriangularLower,
-            Accum::Add,
-            below.rb(),
-            BlockStructure::Rectangular,
-            below.rb().transpose(),
-            BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
+        take_product(border, Accum::Replace, below);
         Ok(())
     }
 }

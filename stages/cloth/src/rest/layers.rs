@@ -16,6 +16,12 @@ mod tangles;
 
 type Vec3 = Vector3<f64>;
 
+/// Least way that a node may move before pairs are sought anew, in thicknesses.
+const SLACK: f64 = 1.5;
+
+/// The same in edges.
+const EDGE_SLACK: f64 = 0.2;
+
 /// Pairs that may touch, and how stiffly.
 #[derive(Debug, Clone)]
 #[cfg_attr(not(toile_without = "self_contact"), derive(Default))]
@@ -24,6 +30,8 @@ pub struct Layers {
     pub(super) never: std::convert::Infallible,
     /// Distance at which contact begins, m.
     pub thickness: f64,
+    /// Mean length of the edges, m.
+    pub edge: f64,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
     /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
@@ -69,6 +77,13 @@ pub struct Contact {
 }
 
 impl Layers {
+    /// How far a node may move before pairs are sought anew, m. Longer serves more steps, but beyond a part of an edge every
+    /// triangle is near its neighbours' neighbours.
+    #[must_use]
+    pub fn slack(&self) -> f64 {
+        (SLACK * self.thickness).max(EDGE_SLACK * self.edge)
+    }
+
     /// Finds the contacts at `x`, and what friction holds of them.
     pub fn touch(&mut self, x: &[Vec3]) {
         self.contacts = self.touching(x);

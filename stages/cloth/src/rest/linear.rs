@@ -66,17 +66,17 @@ impl Linear {
     ) -> Result<Vec<Vec3>, Halt> {
         let mut shift = 1.0 / (dt * dt);
         let mut compression = if last < NEAR_REST { COMPRESSION } else { 0.0 };
+        let mut moves: Vec<Vec3> = g.iter().map(|g| -g).collect();
         loop {
             system.matrix(x, &self.pattern, shift, compression, &mut self.values);
-            match self.symbolic.factor(&self.values, &mut self.factor, stop) {
-                Ok(()) => break,
+            match self.symbolic.factor_and_solve(&self.values, &mut self.factor, &mut moves, stop) {
+                Ok(()) => return Ok(moves),
                 Err(Halt::NotPositive(_)) if compression > 0.0 => compression = 0.0,
                 // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
                 Err(Halt::NotPositive(_)) if shift <= MOST_INERTIA => shift *= 100.0,
                 Err(halt) => return Err(halt),
             }
         }
-        Ok(self.again(g))
     }
 
     /// The step from a place so near that of the last one that its factor will do.

@@ -2,11 +2,14 @@
 //!
 //! Method: the multifrontal method (Duff, Reid 1983) over a nested dissection. Each front is a small dense matrix: its own
 //! nodes, eliminated, and the border, which passes to the parent. All heavy work is dense products, so it runs near the
-//! speed of the machine. Fronts of different branches run side by side and are summed in the order of the children, so
-//! the bits do not depend on threads.
+//! speed of the machine. Fronts of different branches run side by side, large ones in strips of fixed size, and are summed in
+//! the order of the children, so the bits do not depend on threads. The first half of the solution (`substitute`) is made while
+//! a front is at hand.
 //!
 //! Cost for a sheet of n nodes: about 40 n log2 n numbers in the factor, O(n^1.5) multiplications. Limit: memory of the
 //! factor, about 0.5 GB at 50,000 nodes.
+
+mod substitute;
 
 use super::dissect::{Part, dissect};
 use super::front::{Dense, Run};
@@ -42,7 +45,8 @@ pub type Stop<'s> = dyn Fn() -> bool + Sync + 's;
 /// What of the factor does not depend on the values.
 #[derive(Debug, Clone)]
 pub struct Symbolic {
-    nodes: usize,
+    /// The nodes in the order of elimination.
+    order: Vec<u32>,
     fronts: Vec<Front>,
 }
 
@@ -62,6 +66,11 @@ struct Front {
 impl Front {
     fn unknowns(&self) -> usize {
         3 * (self.nodes.len() + self.border.len())
+    }
+
+    /// Unknowns that are eliminated here.
+    fn own(&self) -> usize {
+        3 * self.nodes.len()
     }
 }
 
@@ -116,7 +125,7 @@ impl Symbolic {
             let front = build_front(part, later, &order, &fronts);
             fronts.push(front);
         }
-        Self { nodes: pattern.nodes(), fronts }
+        Self { order: fronts.iter().flat_map(|f| f.nodes.iter().copied()).collect(), fronts }
     }
 
     /// Numbers that the factor holds.
@@ -133,91 +142,117 @@ impl Symbolic {
         self.fronts.iter().map(front).sum()
     }
 
-    /// Factors the matrix of these block values into the memory of `factor`. `stop` is asked before every front.
+    /// Factors the matrix of these block values into the memory of `factor` and solves for `x`, which is the right side, then
+    /// the solution; where it fails, `x` is as it was. `stop` is asked before every front.
     ///
     /// # Errors
     /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
-    pub fn factor(&self, values: &[Matrix3<f64>], factor: &mut Factor, stop: &Stop) -> Result<(), Halt> {
+    pub fn factor_and_solve(
+        &self,
+        values: &[Matrix3<f64>],
+        factor: &mut Factor,
+        x: &mut [Vector3<f64>],
+        stop: &Stop,
+    ) -> Result<(), Halt> {
+        let Some(root) = self.fronts.len().checked_sub(1) else { return Ok(()) };
         factor.columns.resize(self.fronts.len(), Vec::new());
-        match self.fronts.len().checked_sub(1) {
-            Some(root) => {
-                let border = self.eliminate(root, values, &mut factor.columns, &factor.spare, stop)?;
-                factor.spare.give(border);
-                Ok(())
-            }
-            None => Ok(()),
-        }
+        let mut y = self.ordered(x);
+        let work = Work { symbolic: self, values, spare: &factor.spare, stop };
+        let left = work.eliminate(root, &mut factor.columns, &mut y)?;
+        factor.spare.give(left.border);
+        self.backward(root, &factor.columns, &mut y, &[]);
+        self.restore(&y, x);
+        Ok(())
     }
 
-    /// Factors the front `k` and all below it, whose columns are the last of `columns`: what it leaves to its parent.
-    fn eliminate(
-        &self,
-        k: usize,
-        values: &[Matrix3<f64>],
-        columns: &mut [Vec<f64>],
-        spare: &Spare,
-        stop: &Stop,
-    ) -> Result<Vec<f64>, Halt> {
-        let front = &self.fronts[k];
-        let Some((mine, below)) = columns.split_last_mut() else { return Ok(Vec::new()) };
-        let below = self.eliminate_children(front, values, below, spare, stop)?;
-        if stop() {
+    /// Solves in place: `x` is the right side, then the solution.
+    pub fn solve(&self, factor: &Factor, x: &mut [Vector3<f64>]) {
+        let Some(root) = self.fronts.len().checked_sub(1) else { return };
+        let mut y = self.ordered(x);
+        self.forward(root, &factor.columns, &mut y);
+        self.backward(root, &factor.columns, &mut y, &[]);
+        self.restore(&y, x);
+    }
+}
+
+/// A factorization under way.
+struct Work<'w> {
+    symbolic: &'w Symbolic,
+    values: &'w [Matrix3<f64>],
+    spare: &'w Spare,
+    stop: &'w Stop<'w>,
+}
+
+/// What a front leaves to its parent.
+struct Left {
+    /// The matrix over its border, lower triangle by columns.
+    border: Vec<f64>,
+    /// The right side over its border.
+    right: Vec<f64>,
+}
+
+impl Work<'_> {
+    /// Factors the front `k` and all below it, whose columns are the last of `columns` and whose right sides are `y`, which
+    /// becomes the solution's first half.
+    fn eliminate(&self, k: usize, columns: &mut [Vec<f64>], y: &mut [f64]) -> Result<Left, Halt> {
+        let front = &self.symbolic.fronts[k];
+        let Some((mine, below)) = columns.split_last_mut() else { return Err(Halt::Stopped) };
+        let (below_y, y) = y.split_at_mut(y.len() - front.own());
+        let below = self.eliminate_children(front, below, below_y)?;
+        if (self.stop)() {
             return Err(Halt::Stopped);
         }
-        let border = spare.take(9 * front.border.len() * front.border.len());
-        let mut dense = Dense::zeros(mine, border, front.unknowns(), 3 * front.nodes.len());
+        let border = self.spare.take(9 * front.border.len() * front.border.len());
+        let mut dense = Dense::zeros(mine, border, front.unknowns(), front.own());
         for &(slot, row, column, flipped) in &front.entries {
-            dense.put(row as usize, column as usize, &values[slot as usize], flipped);
+            dense.put(row as usize, column as usize, &self.values[slot as usize], flipped);
         }
-        for (update, runs) in below.into_iter().zip(&front.child_runs) {
-            dense.extend_add(&update, runs);
-            spare.give(update);
-        }
+        below.iter().zip(&front.child_runs).for_each(|(b, runs)| dense.add_to_own(&b.border, runs));
         dense.eliminate().map_err(|c| NotPositive { node: front.nodes[c / 3] })?;
-        Ok(dense.border)
+        below.iter().zip(&front.child_runs).for_each(|(b, runs)| dense.add_to_border(&b.border, runs));
+        let border = dense.border;
+        let rights: Vec<Vec<f64>> = below.into_iter().map(|b| self.recycle(b)).collect();
+        Ok(Left { border, right: front.forward(mine, y, &rights) })
+    }
+
+    /// Gives the memory of a border back: the right side is left.
+    fn recycle(&self, left: Left) -> Vec<f64> {
+        self.spare.give(left.border);
+        left.right
     }
 
     fn eliminate_children(
         &self,
         front: &Front,
-        values: &[Matrix3<f64>],
         columns: &mut [Vec<f64>],
-        spare: &Spare,
-        stop: &Stop,
-    ) -> Result<Vec<Vec<f64>>, Halt> {
+        y: &mut [f64],
+    ) -> Result<Vec<Left>, Halt> {
         match front.children[..] {
             [] => Ok(vec![]),
-            [a] => Ok(vec![self.eliminate(a, values, columns, spare, stop)?]),
+            [a] => Ok(vec![self.eliminate(a, columns, y)?]),
             [a, b, ..] => {
+                let fronts = &self.symbolic.fronts;
                 // Children come one after the other, each after all below it.
                 let (left, right) = columns.split_at_mut(columns.len() - (b - a));
-                let mut left = || self.eliminate(a, values, left, spare, stop);
-                let mut right = || self.eliminate(b, values, right, spare, stop);
-                let (a, b) = if self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS {
-                    rayon::join(left, right)
-                } else {
-                    (left(), right())
-                };
+                let (left_y, right_y) = y.split_at_mut(fronts[a].weight);
+                let (a, b) = join_if(
+                    fronts[a].weight.min(fronts[b].weight) > TASK_UNKNOWNS,
+                    || self.eliminate(a, left, left_y),
+                    || self.eliminate(b, right, right_y),
+                );
                 Ok(vec![a?, b?])
             }
         }
     }
+}
 
-    /// Solves in place: `x` is the right side, then the solution.
-    pub fn solve(&self, factor: &Factor, x: &mut [Vector3<f64>]) {
-        debug_assert_eq!(x.len(), self.nodes);
-        let mut local = Vec::new();
-        for (front, columns) in self.fronts.iter().zip(&factor.columns) {
-            gather(front, x, &mut local);
-            forward(columns, &mut local, 3 * front.nodes.len());
-            scatter(front.nodes.iter().chain(&front.border), x, &local);
-        }
-        for (front, columns) in self.fronts.iter().zip(&factor.columns).rev() {
-            gather(front, x, &mut local);
-            backward(columns, &mut local, 3 * front.nodes.len());
-            scatter(front.nodes.iter(), x, &local);
-        }
-    }
+/// Both, side by side where it is worth it.
+fn join_if<A: Send, B: Send>(
+    worth: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if worth { rayon::join(a, b) } else { (a(), b()) }
 }
 
 fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fronts: &[Front]) -> Front {
@@ -238,7 +273,8 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
         }
         own + border.binary_search_by_key(&at, |&b| order[b as usize]).unwrap_or(0) as u32
     };
-    let child_runs = part.children.iter().map(|&c| runs(fronts[c].border.iter().map(|&i| row(i)))).collect();
+    let child_runs =
+        part.children.iter().map(|&c| runs(fronts[c].border.iter().map(|&i| row(i)), own)).collect();
     let mut entries: Vec<_> = part.nodes.iter().map(|&i| (i, row(i), row(i), false)).collect();
     // Kept are blocks of row i and column j with i < j; the front wants the later node as the row.
     entries.extend(
@@ -248,58 +284,16 @@ fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fro
     Front { nodes: part.nodes, border, children: part.children, child_runs, entries, weight }
 }
 
-/// Rows that follow one another, taken together.
-fn runs(rows: impl Iterator<Item = u32>) -> Vec<Run> {
+/// Rows that follow one another, taken together; the `own` first ones and the others apart.
+fn runs(rows: impl Iterator<Item = u32>, own: u32) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     for (child, parent) in rows.enumerate() {
         match runs.last_mut() {
-            Some(run) if run.parent + run.nodes == parent => run.nodes += 1,
+            Some(run) if run.parent + run.nodes == parent && parent != own => run.nodes += 1,
             _ => runs.push(Run { child: child as u32, parent, nodes: 1 }),
         }
     }
     runs
-}
-
-fn gather(front: &Front, x: &[Vector3<f64>], local: &mut Vec<f64>) {
-    local.clear();
-    local.extend(front.nodes.iter().chain(&front.border).flat_map(|&i| x[i as usize].iter().copied()));
-}
-
-fn scatter<'a>(nodes: impl Iterator<Item = &'a u32>, x: &mut [Vector3<f64>], local: &[f64]) {
-    for (&i, v) in nodes.zip(local.as_chunks::<3>().0) {
-        x[i as usize] = Vector3::from(*v);
-    }
-}
-
-fn forward(columns: &[f64], local: &mut [f64], own: usize) {
-    let m = local.len();
-    for c in 0..own {
-        let column = &columns[c * m..(c + 1) * m];
-        let v = local[c] / column[c];
-        local[c] = v;
-        local[c + 1..].iter_mut().zip(&column[c + 1..]).for_each(|(x, l)| *x -= v * l);
-    }
-}
-
-fn backward(columns: &[f64], local: &mut [f64], own: usize) {
-    let m = local.len();
-    for c in (0..own).rev() {
-        let column = &columns[c * m..(c + 1) * m];
-        let sum = dot(&column[c + 1..], &local[c + 1..]);
-        local[c] = (local[c] - sum) / column[c];
-    }
-}
-
-/// A dot product in eight running sums, which the compiler can keep side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let ((a8, a1), (b8, b1)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-    let mut sums = [0.0; 8];
-    for (a, b) in a8.iter().zip(b8) {
-        for k in 0..8 {
-            sums[k] += a[k] * b[k];
-        }
-    }
-    sums.iter().sum::<f64>() + a1.iter().zip(b1).map(|(a, b)| a * b).sum::<f64>()
 }
 
 #[cfg(test)]

@@ -6,13 +6,14 @@
 use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
+use crate::rest::layers::Layers;
 use crate::rest::system::System;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// How far a node may move before pairs are sought anew, in thicknesses of the layer.
-const SLACK: f64 = 1.5;
+/// Share of the slack that may be used up where a part begins: it goes on with the pairs that are known.
+const KEPT: f64 = 0.3;
 
 /// What is near what, and where the nodes were when it was sought.
 pub(super) struct Nearby {
@@ -29,8 +30,13 @@ impl Nearby {
 
     /// Seeks the pairs about `x`, so that they hold for a part.
     pub(super) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        self.at.clear();
-        self.seek(system, x, &vec![Vec3::zeros(); x.len()]);
+        let still = vec![Vec3::zeros(); x.len()];
+        let holds = |l: &Layers| within(&self.at, x, &still, KEPT * l.slack());
+        let holds = self.at.len() == x.len() && system.layers.as_ref().is_none_or(holds);
+        if !holds {
+            self.at.clear();
+            self.seek(system, x, &still);
+        }
     }
 
     /// Where the nodes were when the pairs were sought.
@@ -46,7 +52,7 @@ impl Nearby {
     /// The share of `moves` from `x` for which the pairs of a part hold.
     pub(super) fn within_reach(&self, system: &System<'_>, x: &[Vec3], moves: &[Vec3]) -> f64 {
         let Some(layers) = system.layers.as_ref().filter(|_| self.held) else { return 1.0 };
-        let slack = SLACK * layers.thickness;
+        let slack = layers.slack();
         let share = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| {
             let left = slack - (p - a).norm();
             if m.norm() < left { 1.0 } else { (left / m.norm()).max(0.0) * 0.99 }
@@ -57,7 +63,7 @@ impl Nearby {
     /// Sees to it that the pairs of the layers hold for `moves` from `x`.
     pub(super) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
         let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
-        let slack = SLACK * layers.thickness;
+        let slack = layers.slack();
         if self.at.len() == x.len() && within(&self.at, x, moves, slack) {
             return;
         }

@@ -36,6 +36,11 @@ impl Cut {
         nodes.iter().any(|&i| self.awake[i as usize])
     }
 
+    /// Whether the part has all of an element's nodes.
+    fn knows(&self, nodes: &[u32]) -> bool {
+        nodes.iter().all(|&i| self.index[i as usize] != NONE)
+    }
+
     /// The element's nodes in the part.
     pub(super) fn renamed<const N: usize>(&self, nodes: [u32; N]) -> [u32; N] {
         nodes.map(|i| self.index[i as usize])
@@ -121,8 +126,7 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
 }
 
 fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
-    let known = |e: &[u32; 2]| e.iter().all(|&i| cut.index[i as usize] != NONE);
-    let edges = whole.edges.iter().filter(|(e, _)| cut.wakes(e) && known(e));
+    let edges = whole.edges.iter().filter(|(e, _)| cut.wakes(e) && cut.knows(e));
     Support {
         body: whole.body,
         friction: pick(nodes, &whole.friction),
@@ -145,12 +149,14 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         #[cfg(toile_without = "self_contact")]
         never: whole.never,
         thickness: whole.thickness,
+        edge: whole.edge,
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),
         friction: pick(nodes, &whole.friction),
         away: pick(nodes, &whole.away),
-        grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes)).map(grip).collect(),
+        // A grip outlives its pair by the step that parts them.
+        grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes) && cut.knows(&g.nodes)).map(grip).collect(),
         pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
         contacts: Vec::new(),
         tangles: Vec::new(),

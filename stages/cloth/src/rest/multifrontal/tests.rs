@@ -30,7 +30,8 @@ fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
 
 fn factored(symbolic: &Symbolic, values: &[Matrix3<f64>]) -> Result<Factor, Halt> {
     let mut factor = Factor::default();
-    symbolic.factor(values, &mut factor, &|| false).map(|()| factor)
+    let mut zeros = vec![Vector3::zeros(); symbolic.order.len()];
+    symbolic.factor_and_solve(values, &mut factor, &mut zeros, &|| false).map(|()| factor)
 }
 
 #[test]
@@ -109,6 +110,8 @@ fn speed() {
 fn a_factorization_can_be_stopped() {
     let (pattern, values, layout) = sheet(20);
     let mut factor = Factor::default();
-    let stopped = Symbolic::new(&pattern, &layout).factor(&values, &mut factor, &|| true);
+    let mut x = vec![Vector3::x(); 400];
+    let stopped = Symbolic::new(&pattern, &layout).factor_and_solve(&values, &mut factor, &mut x, &|| true);
+    assert!(x.iter().all(|v| *v == Vector3::x()), "the right side is lost");
     assert_eq!(stopped, Err(Halt::Stopped));
 }

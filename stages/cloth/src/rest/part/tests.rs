@@ -103,3 +103,20 @@ fn what_a_part_found_comes_back_to_its_nodes_alone() {
         assert!(grips.iter().filter(asleep).eq(before.1.iter().filter(asleep)));
     });
 }
+
+#[test]
+fn a_grip_whose_pair_has_gone_is_left_out() {
+    with_part(|mut system, x, awake| {
+        let layers = system.layers.as_mut().unwrap();
+        layers.friction = vec![0.3; x.len()];
+        system.touch(&x);
+        let layers = system.layers.as_mut().unwrap();
+        let gripped = layers.grips.iter().filter(|g| g.nodes.iter().any(|&i| awake[i as usize])).count();
+        assert!(gripped > 0);
+        layers.pairs.clear();
+        let part = Part::of(&system, awake);
+        let layers = part.system.layers.as_ref().unwrap();
+        assert!(layers.grips.len() < gripped);
+        assert!(layers.grips.iter().flat_map(|g| &g.nodes).all(|&i| (i as usize) < part.nodes.len()));
+    });
+}
