@@ -27,7 +27,7 @@ const MOST_DIP: f64 = 1e-4;
 /// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`.
 #[stage(
     role = Draper,
-    version = 4,
+    version = 5,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
