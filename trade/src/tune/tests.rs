@@ -1,10 +1,9 @@
 //! Picks and refusals of made-up fronts.
 #![allow(clippy::unwrap_used)]
 
-use super::proof::Proof;
 use super::written::commented;
 use super::*;
-use crate::errors::Errors;
+use crate::errors::{Errors, Millimetres};
 use crate::record::*;
 use std::collections::BTreeMap;
 
