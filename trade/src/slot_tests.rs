@@ -142,7 +142,7 @@ fn the_reference_may_have_values_of_its_own() {
             "--reference `Rest.steps`: there is no such knob",
             "add `--knob \"Rest.steps=...\"`, or give it by --set",
         ),
-        ("Rest.graded=yes", "`Rest.graded`: expected true or false", ""),
+        ("Rest.graded=yes", "`Rest.graded`: `graded` wants true | false, found `yes`", ""),
     ] {
         assert_eq!(refused(reference), (message.to_owned(), hint.to_owned()));
     }
