@@ -452,7 +452,7 @@ mod tests {
         let expected = r#": [
         Quality(name: "Draft", max_error: "9 mm", set: [
             "stages.Otsu.bias=3.0",   // darker
-            "stages.fine.edge=\"12 mm\"",
+            "stages.fine.edge=\"12 mm\"", 
             "stages.Taubin=GridMesher(edge: \"4 mm\")",
             "stages.Canny.low=3",
         ]),
