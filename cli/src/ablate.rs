@@ -2,7 +2,7 @@
 
 use crate::args::TradeArgs;
 use crate::progress::with_runs;
-use crate::trade::{bench, default_folder, failed};
+use crate::trade::{bench, default_folder, failed, quality};
 use crate::{Streams, exit, interrupt};
 use std::path::Path;
 use toile_core::pipeline::Pipeline;
@@ -19,7 +19,10 @@ pub(crate) fn run(
 ) -> u8 {
     let bench = bench(args.until.clone(), streams);
     let options = Options { repeats: args.study.repeats, limit: args.study.limit, bench };
-    let out = args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "ablation"));
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| default_folder(&args.pipeline, quality(&args.overrides), "ablation"));
     let measured = with_runs(args.study.threads, streams, |tell| ablate(source, pipeline, &options, tell));
     match measured.and_then(|ablation| written(&ablation, &out).map(|()| ablation)) {
         Err(e) => failed(&e, streams),

@@ -7,6 +7,7 @@ use toile_core::Length;
 use toile_core::cache::Bytes;
 use toile_core::pipeline::Override;
 use toile_trade::qualities::Asked;
+use toile_trade::slot::ReferenceValue;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.
 #[derive(Debug, Parser)]
@@ -321,7 +322,7 @@ pub(crate) struct TradeArgs {
     /// What to turn, like `mesher.edge=6..24 mm` or `solver=Rest,Xpbd`; may be given again [default: edge length, mesher and solver]
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
-    /// Folder for the results, and for going on with them [default: out/NAME-trade, with --ablate out/NAME-ablation]
+    /// Folder for the results, and for going on with them [default: out/NAME-trade or, with --quality, out/NAME-QUALITY-trade; with --ablate -ablation]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Measure runs that stop after this stage
@@ -334,7 +335,7 @@ pub(crate) struct TradeArgs {
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
     /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what it saves and changes
-    #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "budget", "jitter", "clock"])]
+    #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "budget", "jitter", "reference", "clock"])]
     pub(crate) ablate: bool,
     /// Print the record as one JSON object on standard output and nothing else
     #[arg(long)]
@@ -360,6 +361,9 @@ pub(crate) struct StudyArgs {
     /// Root mean square move of a moved start
     #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = crate::trade::length)]
     pub(crate) jitter: Length,
+    /// Value of a knob for the reference alone, like `Rest.graded=true`; may be given again [default: the pipeline's own]
+    #[arg(long, value_name = "KEY=VALUE")]
+    pub(crate) reference: Vec<ReferenceValue>,
     /// Clock of the front; on a busy machine the processors' own is steadier
     #[arg(long, value_parser = ["wall", "cpu"], default_value = "wall")]
     pub(crate) clock: String,
@@ -456,7 +460,7 @@ pub(crate) struct ExplainArgs {
     /// Explain a run that stops after this stage
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
-    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation, where it is of the pipeline as it is]
+    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation or, with --quality, out/NAME-QUALITY-ablation, where it is of the pipeline as it is]
     #[arg(long, value_name = "DIR")]
     pub(crate) ablation: Option<PathBuf>,
     /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/costs.md)

@@ -4,7 +4,7 @@ use crate::args::ExplainArgs;
 use crate::costs::Known;
 use crate::explain_json::json;
 use crate::run::fail_run;
-use crate::trade::{default_folder, failed, opened};
+use crate::trade::{default_folder, failed, opened, quality};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::decide::{Decided, decisions};
@@ -71,7 +71,7 @@ fn ablation(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
 ) -> Result<Option<Ablation>, StageError> {
-    let usual = default_folder(&args.pipeline, "ablation");
+    let usual = default_folder(&args.pipeline, quality(&args.overrides), "ablation");
     match &args.ablation {
         Some(folder) => read(folder, pipeline).map(Some),
         None if !usual.join("ablation.json").is_file() => Ok(None),

@@ -29,7 +29,10 @@ pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'
     }
     let asked = Asked {
         knobs: &args.knobs,
-        out: args.out.clone().unwrap_or_else(|| default_folder(&args.pipeline, "trade")),
+        out: args
+            .out
+            .clone()
+            .unwrap_or_else(|| default_folder(&args.pipeline, quality(&args.overrides), "trade")),
         until: args.until.clone(),
         points: args.points,
         starts: args.starts,
@@ -83,6 +86,7 @@ pub(crate) fn measured(
         repeats: asked.study.repeats,
         starts: asked.starts,
         jitter: asked.study.jitter,
+        reference: asked.study.reference.clone(),
         clock: clock(asked.study),
         bench: bench(asked.until.clone(), streams),
     };
@@ -138,10 +142,16 @@ pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
     e.code.exit_code()
 }
 
-/// Where a measurement of a pipeline lies.
-pub(crate) fn default_folder(pipeline: &Path, what: &str) -> PathBuf {
+/// The quality that is asked for.
+pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
+    overrides.quality.as_deref()
+}
+
+/// Where a measurement of a pipeline lies; each quality, which is another pipeline, has a folder of its own.
+pub(crate) fn default_folder(pipeline: &Path, quality: Option<&str>, what: &str) -> PathBuf {
     let stem = pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
-    PathBuf::from("out").join(format!("{stem}-{what}"))
+    let quality = quality.map_or_else(String::new, |q| format!("-{q}"));
+    PathBuf::from("out").join(format!("{stem}{quality}-{what}"))
 }
 
 /// `90s`, `800ms`, `5m`, `1h`.
@@ -172,6 +182,13 @@ pub(crate) fn length(text: &str) -> Result<Length, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn each_quality_has_a_folder_of_its_own() {
+        let folder = |quality| default_folder(Path::new("my/vest.ron"), quality, "trade");
+        assert_eq!(folder(None), Path::new("out/vest-trade"));
+        assert_eq!(folder(Some("Very fine")), Path::new("out/vest-Very fine-trade"));
+    }
 
     #[test]
     fn times_carry_their_unit() {

@@ -13,7 +13,7 @@ use toile_trade::ladder::setting_words;
 use toile_trade::record::{Clock, Trade, today};
 use toile_trade::slot::Source;
 use toile_trade::table;
-use toile_trade::tune::{Proof, Prover, Wish, check, picks};
+use toile_trade::tune::{Proof, Prover, Wish, check, refusal};
 
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -52,10 +52,10 @@ fn tuned(
         starts: args.starts,
         jitter: args.study.jitter,
     };
-    let proof = match picks(&trade, &wish).is_empty() {
+    let proof = match refusal(&trade, &wish) {
         // Nothing has to be run to refuse.
-        true => prover.prove(&wish, &mut |_| ()),
-        false => with_budget(&args.study, streams, |tell| prover.prove(&wish, tell)),
+        Some(refused) => Err(refused),
+        None => with_budget(&args.study, streams, |tell| prover.prove(&wish, tell)),
     };
     let proof = proof.inspect_err(|_| table::lines(&trade, true).iter().for_each(|l| streams.tell(l)))?;
     let text = prover.tuned(&wish, &proof, &today())?;
@@ -82,7 +82,7 @@ pub(crate) fn front(
         check(&trade, pipeline)?;
         return Ok((trade, folder.clone()));
     }
-    let out = default_folder(&args.pipeline, "trade");
+    let out = default_folder(&args.pipeline, None, "trade");
     let asked = Asked {
         knobs: &args.knobs,
         out: out.clone(),

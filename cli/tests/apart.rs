@@ -134,6 +134,7 @@ fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
         repeats: 1,
         starts: 1,
         jitter: Length::mm(1.0),
+        reference: Vec::new(),
         clock: Clock::Cpu,
         bench: Bench { until: None, cancel: Cancel::new(), listener: Arc::new(()), apart },
     };

@@ -41,7 +41,7 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
     ];
     let answer = on(dir, "tune", "napkin.ron", &asked);
     assert_eq!(answer.code, 4, "one is not kept: {}{}", answer.out, answer.err);
-    let refused = "error: quality `Very fine`: no setting of the measured front keeps an error of at most 0.000001 mm\n  help: ";
+    let refused = "error: quality `Very fine`: an error of at most 0.000001 mm cannot be proved: the reference is known to ";
     assert!(answer.err.contains(refused), "{}", answer.err);
     assert!(
         answer.out.contains("Rough (20 cm): Rest.speed ") && answer.out.contains("Mid (10 cm): "),
@@ -59,7 +59,9 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
         "{text}"
     );
     assert!(
-        text.contains(": 95 % of the surface within ") && text.contains(" s of processor time (toile "),
+        text.contains(": 95 % of the surface within ")
+            && text.contains(" mm of the reference (itself known to ")
+            && text.contains(" s of processor time (toile "),
         "{text}"
     );
 

@@ -6,7 +6,7 @@
 //! - `split`, `knob`, `dial`, `slot`, `default_knobs`: what may be turned, and how a setting becomes overrides of the pipeline file;
 //! - `sample`, `front`: which settings are tried, and which of them nothing beats;
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
-//! - `jitter`, `ladder`, `richardson`: the reference, the proof that it has stopped moving, and its own spread;
+//! - `jitter`, `ladder`, `richardson`, `floor`: the reference, the proof that it has stopped moving, its own spread, and how well it is known;
 //! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
 //! - `decided`, `saving`, `ablate`: what a pipeline leaves out by facts of its scene, what that saves, and what turning each
 //!   decision round changes;
@@ -22,6 +22,7 @@ pub mod decided;
 pub mod default_knobs;
 pub mod dial;
 pub mod errors;
+pub mod floor;
 pub mod front;
 mod girth;
 pub mod jitter;

@@ -65,10 +65,13 @@ pub fn prove(
     tell: &mut dyn FnMut(String),
 ) -> Result<Proved, StageError> {
     let mut proved = Proved::default();
-    let is_hopeless = |a: &&Asked| crate::tune::picks(prover.trade, &a.wish()).is_empty();
-    let (hopeless, open): (Vec<&Asked>, Vec<&Asked>) = asked.iter().partition(is_hopeless);
-    let refuse = |a: &Asked| (a.clone(), refusal(prover.trade, &a.wish()));
-    proved.refused = hopeless.into_iter().map(refuse).collect();
+    let mut open = Vec::new();
+    for asked in asked {
+        match refusal(prover.trade, &asked.wish()) {
+            Some(why) => proved.refused.push((asked.clone(), why)),
+            None => open.push(asked),
+        }
+    }
     if open.is_empty() {
         return Ok(proved);
     }
@@ -102,18 +105,20 @@ pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Resu
 
 fn quality(prover: &Prover<'_>, asked: &Asked, proof: &Proof, date: &str) -> Quality {
     let set = overrides(&prover.trade.points[proof.point].overrides);
-    let measured = words(proof, &prover.trade.toile, &prover.trade.machine, date);
+    let floor = prover.trade.reference.floor_mm();
+    let measured = words(proof, floor, &prover.trade.toile, &prover.trade.machine, date);
     Quality::new(asked.name.clone(), asked.max_error, set, Some(measured))
 }
 
 /// What a proof found, in a line.
-fn words(proof: &Proof, toile: &str, machine: &Machine, date: &str) -> String {
+fn words(proof: &Proof, floor: Option<f64>, toile: &str, machine: &Machine, date: &str) -> String {
     let starts = match proof.starts.len() {
         0 => "a fresh run".to_owned(),
         n => format!("the worst of a fresh run and {n} moved starts"),
     };
+    let known = floor.map_or_else(String::new, |f| format!(" (itself known to {f:.2} mm)"));
     format!(
-        "{date}: 95 % of the surface within {:.2} mm of the reference, {starts}; {:.2} s of processor time (toile {toile}, {}, {} cores)",
+        "{date}: 95 % of the surface within {:.2} mm of the reference{known}, {starts}; {:.2} s of processor time (toile {toile}, {}, {} cores)",
         proof.worst_mm(),
         proof.fresh.time(Clock::Cpu),
         machine.system,

@@ -39,13 +39,13 @@ fn what_is_kept_is_the_worst_of_the_fresh_run_and_the_starts() {
     let machine = Machine { system: "linux x86_64".into(), cores: 2, threads: 2, load: None };
     let mut proof = Proof { point: 0, fresh, starts: vec![far(2.0), far(3.917)], failed: Vec::new() };
     assert_eq!(
-        words(&proof, "0.1.0", &machine, "2026-11-22"),
-        "2026-11-22: 95 % of the surface within 3.92 mm of the reference, the worst of a fresh run and 2 moved \
+        words(&proof, Some(1.204), "0.1.0", &machine, "2026-11-22"),
+        "2026-11-22: 95 % of the surface within 3.92 mm of the reference (itself known to 1.20 mm), the worst of a fresh run and 2 moved \
          starts; 3.86 s of processor time (toile 0.1.0, linux x86_64, 2 cores)"
     );
     proof.starts.clear();
     assert!(
-        words(&proof, "0.1.0", &machine, "2026-11-22")
+        words(&proof, None, "0.1.0", &machine, "2026-11-22")
             .contains("within 3.10 mm of the reference, a fresh run; ")
     );
 }

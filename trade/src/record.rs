@@ -67,7 +67,7 @@ pub struct KnobRecord {
 }
 
 /// One refinement of the reference.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Level {
     /// What is refined, and how far.
     pub setting: Setting,
@@ -119,7 +119,7 @@ impl OwnSpread {
 }
 
 /// What the errors are measured against.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     /// Factor from level to level.
     pub ratio: f64,
@@ -137,15 +137,6 @@ pub struct Reference {
     pub spread: Option<OwnSpread>,
     /// Of the reference garment.
     pub ease_mm: BTreeMap<String, f64>,
-}
-
-impl Reference {
-    /// The error below which figures mean nothing: what the reference lacks or by how much it differs from itself, the greater;
-    /// none where neither is known.
-    pub fn floor_mm(&self) -> Option<f64> {
-        let spread = self.spread.as_ref().and_then(OwnSpread::p95);
-        self.p95.map(|o| o.missing_mm).into_iter().chain(spread).reduce(f64::max)
-    }
 }
 
 /// What came of a setting.

@@ -5,6 +5,10 @@
 //! name (`GridMesher.edge`) on that stage alone. Where it has nothing to act on it is left out of the setting, so that
 //! settings that differ in nothing are one.
 
+mod reference;
+
+pub use reference::ReferenceValue;
+
 use crate::dial::{Dial, Form, dial, is_finer, is_spatial, numeric, rounded, way};
 use crate::knob::{KnobSpec, Values, fault};
 use crate::split::field;
@@ -79,6 +83,8 @@ pub struct Board {
     pub knobs: Vec<Knob>,
     slots: Vec<Slot>,
     cards: Vec<Card>,
+    /// What the reference has in place of the pipeline's own values.
+    reference: Setting,
 }
 
 /// A setting: the value of every knob that acts, by its key.
@@ -89,8 +95,8 @@ impl Board {
     ///
     /// Errors: a name that is not there, a range or value that the parameter does not take; with the nearest name.
     pub fn new(source: &Source<'_>, pipeline: &Pipeline, specs: &[KnobSpec]) -> Result<Board, StageError> {
-        let mut board =
-            Board { knobs: Vec::new(), slots: Vec::new(), cards: source.registry.cards().cloned().collect() };
+        let cards = source.registry.cards().cloned().collect();
+        let mut board = Board { knobs: Vec::new(), slots: Vec::new(), cards, reference: Setting::new() };
         // Choices of stages first: others may name a stage that only a choice brings in.
         let (choices, others): (Vec<_>, Vec<_>) = specs.iter().partition(|s| s.param.is_none());
         for spec in choices.into_iter().chain(others) {
@@ -256,9 +262,10 @@ impl Board {
         self.knobs.iter().filter_map(own).collect()
     }
 
-    /// The pipeline's own setting with every resolution refined by a factor, as far as its parameters go.
+    /// The reference's setting, the pipeline's own where it was given none, with every resolution refined by a factor, as
+    /// far as its parameters go.
     pub fn refined(&self, factor: f64) -> Setting {
-        let mut setting = self.own();
+        let mut setting = self.unrefined();
         for knob in &self.knobs {
             let Some((way, doc)) = self.resolution(knob) else { continue };
             let Some(own) = setting.get(&knob.key).and_then(|v| numeric(v)) else { continue };

@@ -114,6 +114,42 @@ fn the_own_setting_and_its_refinements() {
     assert_eq!(board.setting(&board.place(&setting)), setting);
 }
 
+#[test]
+fn the_reference_may_have_values_of_its_own() {
+    let registry = registry();
+    let source = source(&FILE.replace("0.002", "0.002, graded: false"), &registry);
+    let knobs = ["Rest.speed=1e-4..1e-2", "Rest.graded=true,false", "solver=Rest,Xpbd"];
+    let given = |reference: &[&str]| {
+        let values: Vec<ReferenceValue> = reference.iter().map(|r| r.parse().unwrap()).collect();
+        board(&source, &knobs).unwrap().with_reference(&values)
+    };
+    let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
+    let board = given(&["Rest.graded=true"]).unwrap();
+    assert_eq!(words(board.own()), "Rest.graded false, Rest.speed 0.002, solver Rest");
+    assert_eq!(words(board.refined(2.0)), "Rest.graded true, Rest.speed 0.001, solver Rest");
+    let refused = |reference: &str| {
+        let e = given(&[reference]).unwrap_err();
+        (e.message, e.hint.unwrap_or_default())
+    };
+    for (reference, message, hint) in [
+        (
+            "solver=Xpbd",
+            "--reference `solver`: the reference keeps the pipeline's own stages",
+            "name a parameter, like `Rest.graded=true`",
+        ),
+        (
+            "Rest.steps=900",
+            "--reference `Rest.steps`: there is no such knob",
+            "add `--knob \"Rest.steps=...\"`, or give it by --set",
+        ),
+        ("Rest.graded=yes", "`Rest.graded`: `graded` wants true | false, found `yes`", ""),
+    ] {
+        assert_eq!(refused(reference), (message.to_owned(), hint.to_owned()));
+    }
+    let form = Err("write KEY=VALUE, like `Rest.graded=true`".to_owned());
+    assert_eq!("Rest.graded=".parse::<ReferenceValue>(), form);
+}
+
 /// A stage as third parties write it, with names of its own.
 #[stage(role = Draper, source = "none", example = "Turner()")]
 struct Turner {

@@ -12,7 +12,7 @@ use crate::measure::{Bench, Missed, Ran};
 use crate::page::pictures;
 use crate::record::*;
 use crate::sample::{candidates, halton};
-use crate::slot::{Board, Setting, Source};
+use crate::slot::{Board, ReferenceValue, Setting, Source};
 use crate::store::{Store, digest, garment_digest};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -54,6 +54,8 @@ pub struct Options {
     pub starts: usize,
     /// Root mean square move of a start.
     pub jitter: Length,
+    /// Values of knobs that the reference has in place of the pipeline's own.
+    pub reference: Vec<ReferenceValue>,
     /// Which clock the front is drawn by.
     pub clock: Clock,
     /// How runs are made.
@@ -100,6 +102,7 @@ impl<'a> Study<'a> {
     ) -> Result<Study<'a>, StageError> {
         let started = Instant::now();
         let board = Board::new(source, pipeline, knobs)?;
+        let board = board.with_reference(&options.reference)?;
         if options.bench.apart.is_none() {
             tell(
                 "runs share this process: memory is the process's own, and a run that breaks off ends all"

@@ -154,8 +154,8 @@ pub fn reference(trade: &Trade) -> Vec<String> {
             if s.failed.is_empty() { String::new() } else { format!(", {} failed", s.failed.len()) }
         ));
     }
-    if let Some(floor) = r.floor_mm() {
-        lines.push(format!("errors below {floor:.2} mm mean nothing"));
+    if let Some(floor) = r.floor() {
+        lines.push(format!("errors below {:.2} mm mean nothing: {}", floor.mm, floor.words()));
     }
     lines
 }

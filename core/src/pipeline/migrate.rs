@@ -5,10 +5,14 @@
 //! name, so that a file needs no version of its own: an old name says what it meant.
 //!
 //! A file is rewritten by edits of its text at the places that the syntax tree knows, so that comments, order and
-//! layout stay. Cost: linear in the text for each rewritten argument. Limits: a value is converted as text; what a change cannot convert
+//! layout stay. The settings of its named qualities are rewritten as well (`qualities`). Cost: linear in the text for each rewritten argument. Limits: a value is converted as text; what a change cannot convert
 //! is left, and the load names it.
 
+mod qualities;
+
+use super::draft::Draft;
 use super::fault::{Fault, Faults, Lines};
+use super::read::Read;
 use super::tree::{Entry, Shape, Tree};
 use super::{parse, read};
 use crate::Registry;
@@ -140,14 +144,20 @@ pub fn migrate(text: &str, file: &str, registry: &Registry) -> Result<Migrated, 
     let mut m = Migrator { text, registry, edits: Vec::new(), faults: Vec::new() };
     for draft in drafts.sections.iter().chain(&drafts.stages).filter(|d| !d.is_table) {
         if let Some(stage) = find(&tree, &draft.span) {
-            let named = drafts.stages.iter().flat_map(|d| &d.from).any(|(id, _)| *id == draft.id);
-            m.stage(stage, (named && draft.given_id.is_none()).then_some(draft.id.as_str()));
+            let keeps_id = is_read_from(draft, &drafts) && draft.given_id.is_none();
+            m.stage(stage, keeps_id.then_some(draft.id.as_str()));
         }
     }
+    m.qualities(&tree, &drafts);
     match m.faults.is_empty() {
         true => Ok(m.finish()),
         false => Err(Faults::new(file, text, m.faults)),
     }
+}
+
+/// Whether another stage names a stage by its id.
+fn is_read_from(draft: &Draft, drafts: &Read) -> bool {
+    drafts.stages.iter().flat_map(|d| &d.from).any(|(id, _)| *id == draft.id)
 }
 
 /// The value at a place.
@@ -163,6 +173,16 @@ struct Edit {
     at: Range<usize>,
     text: String,
     what: String,
+}
+
+/// What became of a parameter.
+enum Followed {
+    /// It is as it was, or its value cannot be converted.
+    Same,
+    /// It is no more, with what does its work now.
+    Removed(&'static str),
+    /// Its new name and value.
+    Renamed(String, String),
 }
 
 struct Migrator<'a> {
@@ -201,32 +221,42 @@ impl Migrator<'_> {
         }
     }
 
-    /// One argument of a stage that has had these names.
-    fn argument(&mut self, stages: Vec<&str>, entries: &[Entry], i: usize, entry: &Entry) {
-        let Some(key) = &entry.key else { return };
-        let (old, mut value) = (self.at(key).to_owned(), self.at(&entry.value.span).to_owned());
-        let stage = stages.last().copied().unwrap_or("");
-        let mut name = old.clone();
+    /// What became of a parameter of a stage that has had these names.
+    fn followed(&self, stages: &[&str], param: &str, value: &str) -> Followed {
+        let (mut name, mut value) = (param.to_owned(), value.to_owned());
         for m in self.registry.migrations() {
             if !stages.iter().any(|s| m.of_param(s, &name)) {
                 continue;
             }
             match m.change {
                 Change::Stage { .. } => {}
-                Change::Removed { why, .. } => {
-                    let what = format!("{stage}: {old} removed: {why}");
-                    self.edits.push(Edit { at: self.whole(entries, i), text: String::new(), what });
-                    return;
-                }
+                Change::Removed { why, .. } => return Followed::Removed(why),
                 Change::Param { to, convert, .. } => match convert(&value) {
                     Some(new) => (name, value) = (to.to_owned(), new),
-                    None => return,
+                    None => return Followed::Same,
                 },
             }
         }
-        if name == old {
-            return;
-        }
+        if name == param { Followed::Same } else { Followed::Renamed(name, value) }
+    }
+
+    /// One argument of a stage that has had these names.
+    fn argument(&mut self, stages: Vec<&str>, entries: &[Entry], i: usize, entry: &Entry) {
+        let Some(key) = &entry.key else { return };
+        let (old, mut value) = (self.at(key).to_owned(), self.at(&entry.value.span).to_owned());
+        let stage = stages.last().copied().unwrap_or("");
+        let name = match self.followed(&stages, &old, &value) {
+            Followed::Same => return,
+            Followed::Removed(why) => {
+                let what = format!("{stage}: {old} removed: {why}");
+                self.edits.push(Edit { at: self.whole(entries, i), text: String::new(), what });
+                return;
+            }
+            Followed::Renamed(name, new) => {
+                value = new;
+                name
+            }
+        };
         if let Some(twice) = entries.iter().filter_map(|e| e.key.as_ref()).find(|k| self.at(k) == name) {
             let message = format!("`{old}` is now called `{name}`, which is given as well");
             let fault = Fault::new("old_name", message).at(key, "old name").at(twice, "new name");
@@ -400,6 +430,48 @@ mod tests {
         let faults = migrate(text, "x.ron", &registry()).unwrap_err().faults;
         assert_eq!(faults[0].message, "`offset` is now called `bias`, which is given as well");
         assert_eq!(faults[0].hint.as_deref(), Some("leave one of them away"));
+    }
+
+    const QUALITIES: &str = r#"(
+    stages: [Threshold(), Grid(id: "fine"), Lattice(edge_mm: 9), Taubin()],
+    qualities: [
+        Quality(name: "Draft", max_error: "9 mm", set: [
+            "stages.Threshold.offset=3.0",   // darker
+            "stages.fine.edge_mm=12", "stages.fine.rounds=2",
+            "stages.Taubin=Lattice(rounds: 1, edge_mm: 4)",
+            "stages.Canny.low=3",
+        ]),
+        Quality(name: "Fine", max_error: "1 mm", set: ["stages.Lattice.rounds=9"]),
+    ],
+)"#;
+
+    #[test]
+    fn the_settings_of_qualities_get_the_new_names() {
+        let new = migrate(QUALITIES, "x.ron", &registry()).unwrap();
+        let set = new.text.split_once("qualities").unwrap().1;
+        let expected = r#": [
+        Quality(name: "Draft", max_error: "9 mm", set: [
+            "stages.Otsu.bias=3.0",   // darker
+            "stages.fine.edge=\"12 mm\"", 
+            "stages.Taubin=GridMesher(edge: \"4 mm\")",
+            "stages.Canny.low=3",
+        ]),
+        Quality(name: "Fine", max_error: "1 mm", set: []),
+    ],
+)"#;
+        assert_eq!(set, expected);
+        assert_eq!(
+            new.changes[4..],
+            [
+                "line 5: quality Draft: stages.Threshold.offset=3.0 -> stages.Otsu.bias=3.0",
+                "line 6: quality Draft: stages.fine.edge_mm=12 -> stages.fine.edge=\"12 mm\"",
+                "line 6: quality Draft: stages.fine.rounds=2 removed: the mesh is improved until it is good",
+                "line 7: quality Draft: stages.Taubin=Lattice(rounds: 1, edge_mm: 4) -> stages.Taubin=GridMesher(edge: \"4 mm\")",
+                "line 10: quality Fine: stages.Lattice.rounds=9 removed: the mesh is improved until it is good",
+            ]
+        );
+        let again = migrate(&new.text, "x.ron", &registry()).unwrap();
+        assert_eq!((again.text.as_str(), again.changes.len()), (new.text.as_str(), 0));
     }
 
     #[test]

@@ -57,6 +57,11 @@ impl Quality {
         Quality { name, max_error, set, measured, place: 0..0, places: Vec::new() }
     }
 
+    /// Where its settings stand in the file that it was read from.
+    pub(super) fn places(&self) -> &[Range<usize>] {
+        &self.places
+    }
+
     /// In words: `Draft (10 mm)`.
     pub fn words(&self) -> String {
         format!("{} ({})", self.name, self.max_error)

@@ -1,8 +1,9 @@
 //! Picks and refusals of made-up fronts.
 #![allow(clippy::unwrap_used)]
 
+use super::written::commented;
 use super::*;
-use crate::errors::Errors;
+use crate::errors::{Errors, Millimetres};
 use crate::record::*;
 use std::collections::BTreeMap;
 
@@ -32,16 +33,7 @@ fn trade(floor: Option<f64>) -> Trade {
         point("8 mm", 20.0, 0.5, true),
     ];
     let order = floor.map(|missing_mm| Order { order: Some(1.0), missing_mm });
-    let reference = Reference {
-        ratio: 2.0,
-        levels: Vec::new(),
-        mean: None,
-        p95: order,
-        displacement: None,
-        stopped: String::new(),
-        spread: None,
-        ease_mm: BTreeMap::new(),
-    };
+    let reference = Reference { p95: order, ..Reference::default() };
     Trade {
         scheme: SCHEME,
         toile: "0.1.0".into(),
@@ -75,7 +67,8 @@ fn for_an_error_the_quickest_for_a_time_the_most_accurate() {
 
 #[test]
 fn refusals_word_for_word() {
-    let e = refusal(&trade(None), &wish(Some(0.1), Some(5.0)));
+    let refused = |floor, error, time| refusal(&trade(floor), &wish(error, time));
+    let e = refused(None, Some(0.1), Some(5.0)).unwrap();
     assert_eq!(
         e.message,
         "no setting of the measured front keeps an error of at most 0.1 mm and a time of at most 5 s"
@@ -84,11 +77,25 @@ fn refusals_word_for_word() {
         e.hint.unwrap(),
         "the most accurate keeps 0.50 mm in 20.00 s, the quickest takes 1.00 s at 6.00 mm"
     );
-    let e = refusal(&trade(Some(0.3)), &wish(Some(0.1), None));
+    assert_eq!(refused(None, Some(2.0), None), None);
+}
+
+#[test]
+fn an_error_below_what_the_reference_is_known_to_is_refused_though_settings_keep_it() {
+    let refused = |error, time| refusal(&trade(Some(1.701)), &wish(error, time));
+    assert_eq!(picks(&trade(Some(1.701)), &wish(Some(1.6), None)), [0, 3]);
+    let e = refused(Some(1.6), None).unwrap();
+    assert_eq!(
+        e.message,
+        "an error of at most 1.6 mm cannot be proved: the reference is known to 1.70 mm only: so much is missing from \
+         its finest level to the limit of its order"
+    );
     assert_eq!(
         e.hint.unwrap(),
-        "the reference itself is only known to 0.30 mm (what it lacks, or its spread over moved starts)"
+        "ask for 1.71 mm or more; give `toile trade` a longer --budget, so that it is refined further"
     );
+    assert_eq!(refused(Some(1.71), None), None);
+    assert_eq!(refused(None, Some(5.0)), None, "a time alone is judged by the clock");
 }
 
 #[test]
