@@ -6,6 +6,7 @@
 //! which one is found.
 
 use super::ImplicitEuler;
+use super::motion::engine_air;
 use crate::cloth::check_garment;
 use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
@@ -79,6 +80,7 @@ impl Rest {
         let card = collider.map(|c| c.scheme.card());
         let setting = Setting {
             gravity,
+            air: phases.and_then(Phases::last_air).map(engine_air),
             thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
             self_collision: card.is_none_or(|c| c.self_collision),
         };

@@ -21,7 +21,7 @@ fn run(motion: &Motion, scene: &Scene) -> Result<Moved, MotionError> {
 
 fn falling(cells: u32) -> Scene {
     let gravity = Vector3::new(0.0, -9.81, 0.0);
-    let phases = vec![Phase { name: "fall".into(), seconds: 0.5, gravity }];
+    let phases = vec![Phase { name: "fall".into(), seconds: 0.5, gravity, air: None }];
     Scene { pinned: vec![], phases, ..generate::hang(cells) }
 }
 
@@ -72,7 +72,8 @@ fn the_same_motion_has_the_same_bits_on_one_thread_and_on_four() {
 #[test]
 fn cloth_thrown_at_a_ball_stays_outside_and_does_not_cross_itself() {
     let mut scene = generate::drape(12);
-    scene.phases = vec![Phase { name: "fall".into(), seconds: 0.6, gravity: Vector3::new(0.0, -40.0, 0.0) }];
+    let gravity = Vector3::new(0.0, -40.0, 0.0);
+    scene.phases = vec![Phase { name: "fall".into(), seconds: 0.6, gravity, air: None }];
     let moved = run(&Motion { drag: 1.0, ..Motion::default() }, &scene).unwrap();
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
