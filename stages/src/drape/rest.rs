@@ -25,7 +25,8 @@ const MOST_DIP: f64 = 1e-4;
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. A scene that nothing holds has no rest: its fall is
-/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`.
+/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
+/// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
     version = 4,
