@@ -42,7 +42,7 @@ pub use measures::{Measure, Measures};
 pub use model::{Material, Mesh, Model, Texture};
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
-pub use phases::{Phase, Phases};
+pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
 pub use runlog::{RunLog, StageRecord};
 pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SeamKind, SewingPlan};

@@ -272,8 +272,12 @@ impl Collide for Capsules {
 
 /// What acts in a prepared scene.
 pub fn phases() -> Phases {
-    let phase =
-        |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
+    let phase = |name: &str, g: f64| Phase {
+        name: name.into(),
+        seconds: 0.02,
+        gravity: Vector3::new(0.0, -g, 0.0),
+        air: None,
+    };
     Phases(vec![phase("sew", 0.0), phase("drape", 9.81)])
 }
 

@@ -81,6 +81,15 @@ pub enum ClothError {
         /// The largest stable step.
         limit: f64,
     },
+    /// Wind where only a potential can be solved for.
+    #[error(
+        "wind of {speed} m/s has no potential, so this solver finds no state of rest in it; take ImplicitEuler, \
+         CentralDifferences, Xpbd or Projective, which move the cloth until it rests"
+    )]
+    Wind {
+        /// Its speed, m/s.
+        speed: f64,
+    },
     /// More stretch than the model is meant for.
     #[error("triangle {index} is stretched by {strain:.3}, above the limit {limit:.3}")]
     StrainLimitExceeded {

@@ -5,6 +5,7 @@ use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, wel
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
+use toile_cloth::force::Air as EngineAir;
 use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Until};
 use toile_cloth::rest::solve::Wearer;
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
@@ -15,6 +16,7 @@ use toile_core::prelude::*;
 pub(super) struct Course {
     pub(super) method: Method,
     pub(super) gravity: f64,
+    pub(super) air: EngineAir,
     pub(super) dt: f64,
     pub(super) drag: f64,
     pub(super) speed: f64,
@@ -37,9 +39,11 @@ pub(super) fn drape(
     cx: &Context,
 ) -> Result<Garment, StageError> {
     check_garment(garment)?;
+    check_wind(&course.air)?;
     let card = collider.map(|c| c.scheme.card());
     let setting = Setting {
         gravity: Vector3::new(0.0, -course.gravity, 0.0),
+        air: Some(course.air).filter(EngineAir::acts),
         thickness: card.map_or(THICKNESS, |c| c.thickness),
         self_collision: card.is_none_or(|c| c.self_collision),
     };
@@ -71,9 +75,32 @@ pub(super) fn drape(
     Ok(finish(garment, &moved))
 }
 
+/// The air that a stage's parameters name.
+pub(super) fn air(density: f64, normal: f64, tangential: f64, wind: (f64, f64, f64)) -> EngineAir {
+    EngineAir { density, normal, tangential, wind: Vector3::new(wind.0, wind.1, wind.2) }
+}
+
+pub(super) fn engine_air(a: Air) -> EngineAir {
+    EngineAir { density: a.density, normal: a.normal, tangential: a.tangential, wind: a.wind }
+}
+
+fn check_wind(air: &EngineAir) -> Result<(), StageError> {
+    if air.wind.norm() > 0.0 && !air.acts() {
+        let e = StageError::new(ErrorCode::InvalidParameter, "there is wind, but no air that could blow");
+        return Err(e.hint("write `air: 1.2`").at("wind"));
+    }
+    Ok(())
+}
+
 fn with_phases(scene: Scene, phases: Option<&Phases>) -> Scene {
     let Some(phases) = phases else { return scene };
-    let phase = |p: &Phase| ScenePhase { name: p.name.clone(), seconds: p.seconds, gravity: p.gravity };
+    let own = scene.phases.last().and_then(|p| p.air);
+    let phase = |p: &Phase| ScenePhase {
+        name: p.name.clone(),
+        seconds: p.seconds,
+        gravity: p.gravity,
+        air: p.air.map(engine_air).or(own),
+    };
     Scene { phases: phases.0.iter().map(phase).collect(), ..scene }
 }
 

@@ -6,6 +6,7 @@
 //! which one is found.
 
 use super::ImplicitEuler;
+use super::motion::engine_air;
 use crate::cloth::check_garment;
 use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
@@ -24,7 +25,8 @@ const MOST_DIP: f64 = 1e-4;
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. A scene that nothing holds has no rest: its fall is
-/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`.
+/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
+/// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
     version = 5,
@@ -79,6 +81,7 @@ impl Rest {
         let card = collider.map(|c| c.scheme.card());
         let setting = Setting {
             gravity,
+            air: phases.and_then(Phases::last_air).map(engine_air),
             thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
             self_collision: card.is_none_or(|c| c.self_collision),
         };

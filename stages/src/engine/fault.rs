@@ -11,10 +11,14 @@ pub fn cloth_error(error: &ClothError) -> StageError {
             ErrorCode::DegenerateTriangles
         }
         ClothError::InvalidParameter { .. } => ErrorCode::InvalidParameter,
-        ClothError::Diverged { .. } => ErrorCode::StaticEquilibrium,
+        ClothError::Diverged { .. } | ClothError::Wind { .. } => ErrorCode::StaticEquilibrium,
         _ => ErrorCode::InvalidInput,
     };
-    StageError::new(code, error.to_string())
+    let text = error.to_string();
+    match (error, text.split_once("; ")) {
+        (ClothError::Wind { .. }, Some((text, hint))) => StageError::new(code, text).hint(hint),
+        _ => StageError::new(code, text),
+    }
 }
 
 /// A scene file that cannot be used.

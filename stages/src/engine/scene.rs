@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric as engine;
+use toile_cloth::force::Air;
 use toile_cloth::scene::{Panel, Phase, Scene, Seam};
 use toile_core::StageError;
 use toile_core::artifact::{
@@ -17,6 +18,8 @@ use toile_core::artifact::{
 pub struct Setting {
     /// m/s².
     pub gravity: Vector3<f64>,
+    /// What it moves in.
+    pub air: Option<Air>,
     /// Distance at which cloth is held off the body and off itself, m.
     pub thickness: f64,
     /// Whether cloth is kept out of itself.
@@ -47,7 +50,12 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
         body: None,
         material: material.unwrap_or_else(|| engine::Fabric::isotropic(0.1, 500.0, 0.0, 1e-5)),
         strain_limit: None,
-        phases: vec![Phase { name: "drape".into(), seconds: 0.0, gravity: setting.gravity }],
+        phases: vec![Phase {
+            name: "drape".into(),
+            seconds: 0.0,
+            gravity: setting.gravity,
+            air: setting.air,
+        }],
         self_collision: setting.self_collision,
     })
 }

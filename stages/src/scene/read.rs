@@ -59,6 +59,7 @@ impl Scene {
             name: p.name.clone(),
             seconds: p.seconds,
             gravity: p.gravity,
+            air: p.air.map(air),
         });
         Ok((garment_of(&scene), body, collider, Phases(phases.collect())))
     }
@@ -85,6 +86,10 @@ impl Scene {
                 .with(Quantity::BodyTriangles, body as f64),
         )
     }
+}
+
+fn air(a: toile_cloth::force::Air) -> Air {
+    Air { density: a.density, normal: a.normal, tangential: a.tangential, wind: a.wind }
 }
 
 fn text(cx: &Context, file: &str) -> Result<String, StageError> {

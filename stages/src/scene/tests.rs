@@ -5,6 +5,7 @@ use super::Scene;
 use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
+use toile_cloth::force::Air;
 use toile_cloth::scene::{body_to_obj, generate, to_json};
 use toile_core::Cancel;
 use toile_core::prelude::*;
@@ -101,6 +102,61 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
         warnings,
         ["nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases"]
     );
+}
+
+/// A free, level sheet for 0.2 s without weight, in this air.
+fn in_air(air: Option<Air>) -> toile_cloth::scene::Scene {
+    let mut scene = generate::hang(3);
+    (scene.pinned, scene.self_collision) = (vec![], false);
+    scene.phases.truncate(1);
+    scene.phases[0].seconds = 0.2;
+    scene.phases[0].gravity = nalgebra::Vector3::zeros();
+    scene.phases[0].air = air;
+    scene
+}
+
+#[test]
+fn the_wind_of_a_scene_and_that_of_a_stage_blow_alike_and_the_scenes_comes_first() {
+    let wind = (0.0, 6.0, 0.0);
+    let stage = ImplicitEuler { drag: 0.0, air: 1.2, wind, ..ImplicitEuler::default() };
+    let run = |stage: &ImplicitEuler, scene: &toile_cloth::scene::Scene| {
+        let (g, _, c, p) = through_files(scene).unwrap();
+        stage.run(&g, Some(&c), Some(&p), &Context::quiet()).unwrap().velocities
+    };
+    let blown = Air { wind: nalgebra::Vector3::new(0.0, 6.0, 0.0), ..Air::still(1.2) };
+    let by_stage = run(&stage, &in_air(None));
+    assert_eq!(run(&ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }, &in_air(Some(blown))), by_stage);
+    let k = 0.5 * 1.2 * 1.17 / in_air(None).material.density;
+    let exact = 6.0 - 6.0 / (1.0 + k * 6.0 * 0.2);
+    assert!(by_stage.iter().all(|v| (v.y - exact).abs() < 1e-5), "{} against {exact}", by_stage[0].y);
+    assert!(run(&stage, &in_air(Some(blown.calmed()))).iter().all(|v| v.y.abs() < 1e-12));
+}
+
+#[test]
+fn rest_names_the_stages_that_rest_in_wind_and_wind_needs_air() {
+    let cx = Context::quiet();
+    let mut scene = in_air(Some(Air { wind: nalgebra::Vector3::new(3.0, 0.0, 4.0), ..Air::still(1.2) }));
+    scene.pinned = vec![0, 1];
+    let (g, _, c, p) = through_files(&scene).unwrap();
+    let e = Rest::default().run(&g, Some(&c), Some(&p), &cx).unwrap_err();
+    assert_eq!(e.code, ErrorCode::StaticEquilibrium);
+    assert_eq!(e.message, "wind of 5 m/s has no potential, so this solver finds no state of rest in it");
+    assert_eq!(
+        e.hint.as_deref(),
+        Some(
+            "take ImplicitEuler, CentralDifferences, Xpbd or Projective, which move the cloth until it rests"
+        )
+    );
+    let e = Xpbd { wind: (1.0, 0.0, 0.0), ..Xpbd::default() }.run(&g, Some(&c), Some(&p), &cx).unwrap_err();
+    assert_eq!(
+        (e.code, &*e.message),
+        (ErrorCode::InvalidParameter, "there is wind, but no air that could blow")
+    );
+    assert_eq!(e.hint.as_deref(), Some("write `air: 1.2`"));
+    let gale = Projective { air: 1.2, wind: (0.0, 2000.0, 0.0), ..Projective::default() };
+    let (g, _, c, p) = through_files(&in_air(None)).unwrap();
+    let e = gale.run(&g, Some(&c), Some(&p), &cx).unwrap_err();
+    assert_eq!(e.message, "wind speed = 2000 is out of range: at most 1000 m/s");
 }
 
 #[test]

@@ -49,12 +49,13 @@ impl SceneJson {
         let down = Vector3::new(0.0, -self.gravity, 0.0);
         let setting = Setting {
             gravity: down,
+            air: None,
             thickness: card.map_or(PLAIN.0, |c| c.thickness),
             self_collision: card.is_none_or(|c| c.self_collision),
         };
         let mut scene = scene_of(garment, &setting)?;
         scene.name.clone_from(&self.name);
-        let phase = |name: &str, seconds, gravity| Phase { name: name.into(), seconds, gravity };
+        let phase = |name: &str, seconds, gravity| Phase { name: name.into(), seconds, gravity, air: None };
         scene.phases = vec![phase("sew", self.sew, Vector3::zeros()), phase("drape", self.drape, down)];
         scene.body = body.filter(|b| !b.triangles.is_empty()).map(|b| SceneBody {
             vertices: b.positions.iter().map(|p| p.coords).collect(),

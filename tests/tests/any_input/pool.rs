@@ -45,8 +45,12 @@ impl Pool {
 
 /// What acts in a prepared scene, which the vest is not.
 fn phases() -> Phases {
-    let phase =
-        |name: &str, g: f64| Phase { name: name.into(), seconds: 0.02, gravity: Vector3::new(0.0, -g, 0.0) };
+    let phase = |name: &str, g: f64| Phase {
+        name: name.into(),
+        seconds: 0.02,
+        gravity: Vector3::new(0.0, -g, 0.0),
+        air: None,
+    };
     Phases(vec![phase("sew", 0.0), phase("drape", 9.81)])
 }
 

@@ -1,8 +1,9 @@
 //! Records of plans and judgements: fabrics, seams, phases, figures, finished files.
 
 use super::super::{
-    Curve, EdgeRef, Fabric, Figures, GarmentFigures, Limb, OutputFile, OutputFiles, PanelFigures,
+    Air, Curve, EdgeRef, Fabric, Figures, GarmentFigures, Limb, OutputFile, OutputFiles, PanelFigures,
     PanelPlacement, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall, StrainFigures,
+    Vector3,
 };
 use super::flat::{value, word};
 use super::{Reader, Record, Stored};
@@ -126,14 +127,31 @@ impl Phases {
 }
 
 fn phase_fields(p: &Phase) -> Record<'_> {
-    Record::new().text("name", &p.name).number("seconds", p.seconds).owned("gravity", [p.gravity])
+    let record =
+        Record::new().text("name", &p.name).number("seconds", p.seconds).owned("gravity", [p.gravity]);
+    match p.air {
+        Some(air) => record.owned("air", air.figures()),
+        None => record,
+    }
+}
+
+fn air_of(r: &Reader<'_>) -> Result<Option<Air>, String> {
+    if r.find("air").is_none() {
+        return Ok(None);
+    }
+    match r.list::<f64>("air")?[..] {
+        [density, normal, tangential, x, y, z] => {
+            Ok(Some(Air { density, normal, tangential, wind: Vector3::new(x, y, z) }))
+        }
+        ref other => Err(format!("`air` has {} numbers, 6 are wanted", other.len())),
+    }
 }
 
 impl Stored for Phases {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
         let phase = |p: Reader<'_>| {
             let (name, seconds, gravity) = (p.text("name")?, p.one("seconds")?, p.one("gravity")?);
-            Ok::<_, String>(Phase { name, seconds, gravity })
+            Ok::<_, String>(Phase { name, seconds, gravity, air: air_of(&p)? })
         };
         r.records("phases")?.map(phase).collect::<Result<_, _>>().map(Phases)
     }

@@ -165,7 +165,10 @@ fn figures() -> Figures {
 }
 
 fn phases() -> Phases {
-    Phases(vec![Phase { name: "sew".into(), seconds: 0.5, gravity: Vector3::new(0.0, -9.81, 0.0) }])
+    let gravity = Vector3::new(0.0, -9.81, 0.0);
+    let air = Air { density: 1.2, normal: 1.17, tangential: 0.01, wind: Vector3::new(3.0, 0.0, -0.5) };
+    let phase = |name: &str, air| Phase { name: name.into(), seconds: 0.5, gravity, air };
+    Phases(vec![phase("sew", None), phase("drape", Some(air))])
 }
 
 fn every_kind() -> Vec<Arc<dyn Artifact>> {

@@ -20,6 +20,21 @@ fn e1_cantilever() {
     worst(Test::Cantilever, 40);
 }
 
+/// Under a thousand times its stiffness a strip turns down within a thirtieth of its length. What it errs there on a coarse mesh is what
+/// rigid links of that length must err, which falls with their square, and what its weight stretches it: half a two-thousandth.
+#[test]
+fn e1_on_a_coarse_mesh_errs_as_rigid_links_do() {
+    let exact = reference::cantilever(1000.0).drop;
+    let links = [20, 40, 80, 160, 320].map(|n| reference::chain(1000.0, n) - exact);
+    let order = links.windows(2).map(|w| (w[0] / w[1]).log2()).collect::<Vec<_>>();
+    assert!(order[0] > 1.6 && order[1..].iter().all(|o| (o - 2.0).abs() < 0.03), "{order:?}");
+    for (along, chain) in [(20, links[0]), (40, links[1]), (80, links[2])] {
+        let score = run(Test::Cantilever, Models::DEFAULT, Layout::OneDiagonal, along).unwrap();
+        let own = score.parts.iter().find(|p| p.0 == "Gamma 1000").unwrap().1 - chain;
+        assert!((own - 2.5e-4).abs() < 3e-5, "{along}: {own} beyond the {chain} of the chain");
+    }
+}
+
 /// Chance must not decide: the limits hold for ten irregular meshes, the spread of the plates with them.
 #[test]
 fn bending_is_right_on_ten_irregular_meshes() {

@@ -1,5 +1,6 @@
 //! Energies: what every implicit solver asks of a model, and the assembly of small elements into forces and matrices.
 
+mod air;
 mod assemble;
 mod check;
 mod energy;
@@ -9,6 +10,7 @@ mod load;
 #[cfg(test)]
 mod tests;
 
+pub use air::{Air, AirDrag, AirStep, carried, mobility};
 pub use assemble::{Assembled, Element};
 pub use check::{gradient_error, hessian_error};
 pub use energy::{Energy, Projection, Vec3, total_gradient, total_value};

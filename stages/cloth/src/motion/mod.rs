@@ -20,6 +20,7 @@ pub use method::Method;
 
 use crate::bench::Models;
 use crate::fabric::Fabric;
+use crate::force::Air;
 use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
 use crate::scene::Scene;
@@ -35,7 +36,7 @@ type Vec3 = Vector3<f64>;
 pub enum Until {
     /// After the phases of the scene, each for its seconds.
     Phases,
-    /// Sewn without weight, then at rest under the last phase's gravity, or after so many seconds of either.
+    /// Sewn without weight and without wind, then at rest under the last phase's gravity, in its air, or after so many seconds of either.
     Rest {
         /// Way of every vertex in a sixtieth of a second, as a speed, m/s.
         speed: f64,
@@ -171,6 +172,7 @@ impl Run<'_> {
     fn phases(&mut self, mut moving: Moving) -> Result<Moved, MotionError> {
         for phase in &self.scene.phases {
             moving.set_gravity(phase.gravity);
+            moving.set_air(phase.air);
             let end = moving.progress.time + phase.seconds;
             while end - moving.progress.time > SAME_TIME {
                 self.step(&mut moving, end)?;
@@ -190,7 +192,10 @@ impl Run<'_> {
         energy: f64,
         longest: f64,
     ) -> Result<Moved, MotionError> {
+        let last = self.scene.phases.last();
+        let (gravity, air) = (last.map(|p| p.gravity).unwrap_or_default(), last.and_then(|p| p.air));
         moving.set_gravity(Vec3::zeros());
+        moving.set_air(air.map(Air::calmed));
         while !moving.seams.is_empty() && moving.progress.time < longest {
             self.step(&mut moving, f64::INFINITY)?;
             if moving.seams_met(self.settings.join_gap) {
@@ -198,7 +203,8 @@ impl Run<'_> {
             }
         }
         self.closed(&moving)?;
-        moving.set_gravity(self.scene.phases.last().map(|p| p.gravity).unwrap_or_default());
+        moving.set_gravity(gravity);
+        moving.set_air(air);
         let end = moving.progress.time + longest;
         let mut stored = f64::INFINITY;
         while moving.progress.time < end {

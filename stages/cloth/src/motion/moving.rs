@@ -5,6 +5,7 @@ use super::seams::Seams;
 use super::{Motion, MotionError, Progress, Run, Vec3};
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
+use crate::force::{Air, AirDrag};
 use crate::mesh::Sheet;
 use crate::rest::solve::Wearer;
 use crate::solver::{Model, Solver, State};
@@ -64,6 +65,7 @@ impl Moving {
         };
         let mut moving = Self::new(run, sheet, &fixed, state)?;
         moving.set_gravity(self.model.gravity);
+        moving.set_air(self.model.air.map(|a| a.air));
         moving.joined_at = self.seams.widest(&self.state.x).map(|(_, gap)| gap);
         moving.progress = Progress { gap: 0.0, ..self.progress };
         moving.is_joined = true;
@@ -98,6 +100,10 @@ impl Moving {
 
     pub(super) fn set_gravity(&mut self, gravity: Vec3) {
         self.model.gravity = gravity;
+    }
+
+    pub(super) fn set_air(&mut self, air: Option<Air>) {
+        self.model.air = air.filter(Air::acts).map(|a| AirDrag::new(a, self.sheet.triangles()));
     }
 
     /// Whether there are seams and all are within `gap`.

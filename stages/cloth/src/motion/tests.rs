@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::{Method, Motion, MotionError, Moved, Until};
 use crate::contact::body::Body;
+use crate::force::Air;
 use crate::rest::solve::{Rest, Wearer};
 use crate::scene::{Phase, Scene, generate};
 use nalgebra::Vector3;
@@ -21,7 +22,7 @@ fn run(motion: &Motion, scene: &Scene) -> Result<Moved, MotionError> {
 
 fn falling(cells: u32) -> Scene {
     let gravity = Vector3::new(0.0, -9.81, 0.0);
-    let phases = vec![Phase { name: "fall".into(), seconds: 0.5, gravity }];
+    let phases = vec![Phase { name: "fall".into(), seconds: 0.5, gravity, air: None }];
     Scene { pinned: vec![], phases, ..generate::hang(cells) }
 }
 
@@ -72,7 +73,8 @@ fn the_same_motion_has_the_same_bits_on_one_thread_and_on_four() {
 #[test]
 fn cloth_thrown_at_a_ball_stays_outside_and_does_not_cross_itself() {
     let mut scene = generate::drape(12);
-    scene.phases = vec![Phase { name: "fall".into(), seconds: 0.6, gravity: Vector3::new(0.0, -40.0, 0.0) }];
+    let gravity = Vector3::new(0.0, -40.0, 0.0);
+    scene.phases = vec![Phase { name: "fall".into(), seconds: 0.6, gravity, air: None }];
     let moved = run(&Motion { drag: 1.0, ..Motion::default() }, &scene).unwrap();
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
@@ -109,4 +111,85 @@ fn two_fabrics_are_refused_by_the_panel() {
             scene.panels[1].name
         )
     );
+}
+
+/// A square metre of 0.1 kg/m2 hung by its upper edge, in this air.
+fn flag(cells: u32, air: Option<Air>) -> Scene {
+    let mut scene = generate::hang(cells);
+    scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, p.y, 0.0)).collect();
+    let top = scene.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    scene.pinned =
+        (0..scene.positions.len() as u32).filter(|&v| scene.positions[v as usize].y > top - 1e-9).collect();
+    scene.phases.iter_mut().for_each(|p| p.air = air);
+    scene.self_collision = false;
+    scene
+}
+
+#[test]
+fn wind_blows_in_the_phases_that_have_it() {
+    let wind = Vector3::new(0.0, 0.0, 5.0);
+    let mut scene = Scene { pinned: vec![], ..flag(3, None) };
+    let phase = |seconds, air| Phase { name: "p".into(), seconds, gravity: Vector3::zeros(), air };
+    let air = Air { wind, ..Air::still(1.2) };
+    scene.phases = vec![phase(0.1, None), phase(0.2, Some(air)), phase(0.1, None)];
+    let k = 0.5 * air.density * air.normal / scene.material.density;
+    let exact = 5.0 - 5.0 / (1.0 + k * 5.0 * 0.2);
+    for method in METHODS {
+        let moved = run(&Motion { method, ..Motion::default() }, &scene).unwrap();
+        let off = moved.velocities.iter().map(|v| (v.z - exact).abs()).fold(0.0, f64::max);
+        // Central differences start half a step late.
+        assert!(off < if method == Method::CentralDifferences { 0.01 } else { 1e-6 }, "{method:?}: {off}");
+    }
+}
+
+#[test]
+fn a_flag_in_the_wind_comes_to_rest_where_weight_and_wind_balance_and_rest_names_who_can() {
+    let air = Air { wind: Vector3::new(0.0, 0.0, 2.0), ..Air::still(1.2) };
+    let scene = flag(5, Some(air));
+    let until = Until::Rest { speed: 0.005, energy: 1e-3, longest: 12.0 };
+    let method = Method::ImplicitEuler { tolerance: 1e-7, relative: None };
+    let moved = run(&Motion { method, until, drag: 4.0, ..Motion::default() }, &scene).unwrap();
+    assert!(moved.converged, "{:?}", moved.progress);
+    let q = air.density * air.normal * 4.0 / (2.0 * scene.material.density * 9.81);
+    let sine = ((1.0 + 4.0 * q * q).sqrt() - 1.0) / (2.0 * q);
+    for (p, s) in moved.positions.iter().zip(&scene.positions).filter(|(p, s)| (*p - *s).norm() > 1e-9) {
+        let (out, down) = (p.z - s.z, scene.positions[scene.pinned[0] as usize].y - p.y);
+        assert!((out / out.hypot(down) - sine).abs() < 5e-3, "{} against {sine}", out / out.hypot(down));
+    }
+    let error = Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "wind of 2 m/s has no potential, so this solver finds no state of rest in it; take ImplicitEuler, \
+         CentralDifferences, Xpbd or Projective, which move the cloth until it rests"
+    );
+    let calm = |air: Option<Air>| {
+        let rested = Rest::default().solve(&flag(5, air), &mut |_| ControlFlow::Continue(())).unwrap();
+        rested.positions
+    };
+    assert_eq!(calm(Some(air.calmed())), calm(None));
+}
+
+#[test]
+fn seams_are_sewn_without_wind() {
+    let storm = Air { wind: Vector3::new(0.0, 0.0, 20.0), ..Air::still(1.2) };
+    let until = Until::Rest { speed: 0.02, energy: 1e-3, longest: 3.0 };
+    let start = generate::tube(4, 5);
+    let sewn_with = |air: Air| {
+        let mut scene = start.clone();
+        scene.phases.iter_mut().for_each(|p| p.air = Some(air));
+        let (mut last, mut seen) = (0.0, vec![]);
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+        let motion = Motion { until, ..Motion::default() };
+        let ended = motion.run(&scene, wearer, &mut |p| {
+            let sewn = last > 0.0 && p.gap == 0.0;
+            last = p.gap;
+            seen.push((p.time, p.gap, p.speed));
+            if sewn { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        assert_eq!(ended.unwrap_err(), MotionError::Stopped);
+        seen.pop();
+        seen
+    };
+    assert_eq!(sewn_with(storm), sewn_with(storm.calmed()));
 }

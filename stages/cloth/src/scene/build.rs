@@ -31,6 +31,7 @@ impl Scene {
             name: name.into(),
             seconds: 1.0,
             gravity: Vector3::new(0.0, -g, 0.0),
+            air: None,
         };
         Self {
             name: name.into(),

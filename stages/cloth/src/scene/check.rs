@@ -3,6 +3,7 @@
 use super::{Scene, SceneError};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
+use crate::force::Air;
 use nalgebra::Vector3;
 
 /// Checks everything.
@@ -21,6 +22,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     for phase in &scene.phases {
         finite("gravity", std::iter::once(is_finite(&phase.gravity)))?;
         check_parameter("seconds", phase.seconds, |s| s >= 0.0, "0 s or more")?;
+        phase.air.as_ref().map_or(Ok(()), Air::check)?;
     }
     check_panels(scene)?;
     check_seams(scene)?;

@@ -62,7 +62,7 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
 }
 
 fn phase(name: &str, seconds: f64, gravity: f64) -> Phase {
-    Phase { name: name.into(), seconds, gravity: Vector3::new(0.0, -gravity, 0.0) }
+    Phase { name: name.into(), seconds, gravity: Vector3::new(0.0, -gravity, 0.0), air: None }
 }
 
 /// A square metre held at the two corners of its far edge.

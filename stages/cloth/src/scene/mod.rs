@@ -20,6 +20,7 @@ pub use write::{body_to_obj, to_json};
 
 use crate::error::ClothError;
 use crate::fabric::Fabric;
+use crate::force::Air;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -120,7 +121,7 @@ pub struct SceneBody {
     pub friction: f64,
 }
 
-/// A span of time with one gravity.
+/// A span of time with one gravity and one air.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
     /// What it is called.
@@ -129,6 +130,8 @@ pub struct Phase {
     pub seconds: f64,
     /// m/s².
     pub gravity: Vector3<f64>,
+    /// What the cloth moves in; none for a vacuum.
+    pub air: Option<Air>,
 }
 
 /// Why a scene cannot be used.

@@ -5,6 +5,7 @@ use super::{
 };
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::{Curve, Fabric};
+use crate::force::Air;
 use nalgebra::{Vector2, Vector3};
 use serde::Deserialize;
 use std::path::Path;
@@ -111,6 +112,26 @@ struct RawPhase {
     name: String,
     seconds: f64,
     gravity: [f64; 3],
+    air: Option<RawAir>,
+}
+
+#[derive(Deserialize)]
+struct RawAir {
+    density: f64,
+    #[serde(default = "normal")]
+    normal: f64,
+    #[serde(default = "tangential")]
+    tangential: f64,
+    #[serde(default)]
+    wind: [f64; 3],
+}
+
+fn normal() -> f64 {
+    Air::NORMAL
+}
+
+fn tangential() -> f64 {
+    Air::TANGENTIAL
 }
 
 /// Reads a scene file and the body OBJ it names, which lies beside it.
@@ -148,7 +169,12 @@ fn body(raw: &RawBody, load: &dyn Fn(&str) -> Result<String, SceneError>) -> Res
 }
 
 fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
-    let phase = |p: RawPhase| Phase { name: p.name, seconds: p.seconds, gravity: Vector3::from(p.gravity) };
+    let phase = |p: RawPhase| Phase {
+        name: p.name,
+        seconds: p.seconds,
+        gravity: Vector3::from(p.gravity),
+        air: p.air.map(air),
+    };
     let seam = |s: RawSeam| Seam { name: s.name, pairs: s.pairs, joined: s.joined, gather: s.gather };
     let band =
         |b: RawBand| Band { name: b.name, vertices: b.vertices, ratio: b.ratio, stiffness: b.stiffness };
@@ -167,6 +193,11 @@ fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
         phases: raw.phases.into_iter().map(phase).collect(),
         self_collision: raw.self_collision,
     })
+}
+
+fn air(raw: RawAir) -> Air {
+    let RawAir { density, normal, tangential, wind } = raw;
+    Air { density, normal, tangential, wind: Vector3::from(wind) }
 }
 
 fn panel(raw: RawPanel) -> Result<Panel, SceneError> {

@@ -59,6 +59,35 @@ fn faults_are_named() {
 }
 
 #[test]
+fn the_air_of_a_phase_is_read_and_its_faults_are_named() {
+    let with = |air: &str| SMALL.replace("[0,-9.81,0]}", &format!("[0,-9.81,0], \"air\": {air}}}"));
+    let read = |air: &str| parse(&with(air), &|_| Ok(String::new()));
+    assert_eq!(read("null").unwrap().phases[0].air, None);
+    assert_eq!(read(r#"{"density": 1.2}"#).unwrap().phases[0].air, Some(Air::still(1.2)));
+    let full = Air { density: 1.1, normal: 1.3, tangential: 0.02, wind: Vector3::new(3.0, 0.5, -1.0) };
+    let text = r#"{"density": 1.1, "normal": 1.3, "tangential": 0.02, "wind": [3, 0.5, -1]}"#;
+    let scene = read(text).unwrap();
+    assert_eq!(scene.phases[0].air, Some(full));
+    assert_eq!(parse(&to_json(&scene, "body.obj"), &|_| Ok(String::new())).unwrap().phases, scene.phases);
+    let said = |air: &str| read(air).unwrap_err().to_string();
+    assert!(
+        said(r#"{"wind": [1,0,0]}"#).starts_with("not a garment-scene-1: missing field `density` at line ")
+    );
+    assert_eq!(said(r#"{"density": -1}"#), "air density = -1 is out of range: from 0 to 2000 kg/m^3");
+    assert_eq!(
+        said(r#"{"density": 1, "tangential": 1e9}"#),
+        "tangential drag coefficient = 1000000000 is out of range: from 0 to 100"
+    );
+    assert_eq!(
+        said(r#"{"density": 1, "wind": [0, 0, -4000]}"#),
+        "wind speed = 4000 is out of range: at most 1000 m/s"
+    );
+    let mut made = scene;
+    made.phases[0].air = Some(Air { wind: Vector3::new(0.0, f64::NAN, 0.0), ..full });
+    assert_eq!(made.check().unwrap_err().to_string(), "wind[1] is not a finite number");
+}
+
+#[test]
 fn warp_and_weft_curves_and_panel_materials_are_read() {
     let own = r#""name": "one", "body_friction": 0.1, "material": {"area_density": 0.3, "warp": [[0.02, 1], [0.04, 9]], "weft": 20,
         "poisson": 0.1, "shear": [[0.1, 2]], "bend_warp": 2e-5, "bend_weft": 1e-5, "damping": 0.01, "friction": 0.2,

@@ -1,6 +1,6 @@
 //! Writing the JSON form `garment-scene-1`, so that a garment of ours can be given to other programs.
 
-use super::{Panel, Scene, Seam};
+use super::{Panel, Phase, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -13,7 +13,7 @@ use std::fmt::Write as _;
 pub fn to_json(scene: &Scene, body_obj: &str) -> String {
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
     let body = scene.body.as_ref().map(|b| json!({ "obj": body_obj, "friction": b.friction }));
-    let phases = scene.phases.iter().map(|p| json!({ "name": p.name, "seconds": p.seconds, "gravity": [p.gravity.x, p.gravity.y, p.gravity.z] }));
+    let phases = scene.phases.iter().map(phase);
     let seams = scene.seams.iter().map(seam);
     let bands = scene.bands.iter().map(
         |b| json!({ "name": b.name, "vertices": b.vertices, "ratio": b.ratio, "stiffness": b.stiffness }),
@@ -51,6 +51,17 @@ pub fn body_to_obj(scene: &Scene) -> String {
         let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
     }
     text
+}
+
+fn phase(p: &Phase) -> Value {
+    let mut value =
+        json!({ "name": p.name, "seconds": p.seconds, "gravity": [p.gravity.x, p.gravity.y, p.gravity.z] });
+    if let Some(a) = &p.air {
+        let wind = [a.wind.x, a.wind.y, a.wind.z];
+        value["air"] =
+            json!({ "density": a.density, "normal": a.normal, "tangential": a.tangential, "wind": wind });
+    }
+    value
 }
 
 fn seam(s: &Seam) -> Value {

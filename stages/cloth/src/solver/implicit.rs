@@ -6,7 +6,7 @@
 
 use super::{Model, Newton, NewtonReport, Report, Solver, State};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{Energy, Projection, Vec3, total_value};
+use crate::force::{AirStep, Energy, Projection, Vec3, total_value};
 use crate::linear::BlockMatrix;
 
 /// Pseudo-time step of a hard step, as a share of the step.
@@ -121,11 +121,18 @@ impl Solver for ImplicitEuler {
             start: start.clone(),
             scale: model.viscosity / dt,
         });
+        let air = model.air.as_ref().map(|a| AirStep {
+            start: &start,
+            grips: a.grips(&start, &state.v),
+            wind: a.air.wind,
+            dt,
+        });
         let weight = model.weight();
         let mut energies = model.internal();
         energies.extend([&weight as &dyn Energy, &inertia]);
         energies.extend((model.drag > 0.0).then_some(&drag as &dyn Energy));
         energies.extend(viscous.as_ref().map(|v| v as &dyn Energy));
+        energies.extend(air.as_ref().map(|a| a as &dyn Energy));
         // From the better of coasting and standing still: then a step can never end above the energy it began with.
         let mut x = start.clone();
         if total_value(&energies, &inertia.target) < total_value(&energies, &x) {

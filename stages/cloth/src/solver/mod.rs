@@ -18,6 +18,8 @@ mod statics;
 mod xpbd;
 
 #[cfg(test)]
+mod air_tests;
+#[cfg(test)]
 mod tests;
 
 pub use explicit::CentralDifferences;

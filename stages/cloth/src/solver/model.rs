@@ -2,7 +2,7 @@
 
 use crate::constraint::Obstacle;
 use crate::error::{ClothError, check_parameter};
-use crate::force::{Energy, Gravity, Projection, Vec3};
+use crate::force::{Air, AirDrag, Energy, Gravity, Projection, Vec3};
 use crate::linear::BlockMatrix;
 use crate::mesh::{Sheet, check_finite};
 
@@ -20,6 +20,8 @@ pub struct Model {
     pub drag: f64,
     /// Stiffness-proportional damping time, s: force -viscosity K v.
     pub viscosity: f64,
+    /// The air that the sheet moves in; none for a vacuum.
+    pub air: Option<AirDrag>,
     /// Rigid bodies with a closed form, seen by solvers that move vertex by vertex.
     pub obstacles: Vec<Box<dyn Obstacle>>,
 }
@@ -61,6 +63,7 @@ impl Model {
             fixed: sheet.masses().iter().map(|&m| m == 0.0).collect(),
             drag: 0.0,
             viscosity: 0.0,
+            air: None,
             obstacles: Vec::new(),
         }
     }
@@ -86,6 +89,13 @@ impl Model {
         self
     }
 
+    /// In this air; `sheet` is the one that the model is of.
+    #[must_use]
+    pub fn in_air(mut self, air: Air, sheet: &Sheet) -> Self {
+        self.air = air.acts().then(|| AirDrag::new(air, sheet.triangles()));
+        self
+    }
+
     /// Checks parameters and state before the first step.
     ///
     /// # Errors
@@ -107,7 +117,8 @@ impl Model {
             }
         }
         check_parameter("drag", self.drag, |d| d >= 0.0, "0 or more 1/s")?;
-        check_parameter("viscosity", self.viscosity, |d| d >= 0.0, "0 or more s")
+        check_parameter("viscosity", self.viscosity, |d| d >= 0.0, "0 or more s")?;
+        self.air.as_ref().map_or(Ok(()), |a| a.air.check())
     }
 
     /// Gravity as an energy.

@@ -3,8 +3,8 @@
 //! Local: each triangle's deformation is taken to the nearest rotation. Global: one linear system whose matrix never changes, so
 //! it is factored once, a number a vertex pair. Membrane `k A |F - R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull),
 //! bending quadratic. Every turn lowers the energy; the first few do most of it, the rest converge slowly, slower the
-//! stiffer the sheet and the longer the step: `iterations` trades that. The model's energies are not used; its masses, gravity, drag, pins
-//! and obstacles are.
+//! stiffer the sheet and the longer the step: `iterations` trades that. The model's energies are not used; its masses, gravity, drag, air,
+//! pins and obstacles are. In air the matrix is factored anew each step: how firmly the air grips depends on the motion.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector2};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::{Model, Report, Solver, State};
 use crate::bending::{Rigidity, hinge_terms};
 use crate::error::{ClothError, check_parameter};
-use crate::force::Vec3;
+use crate::force::{AirDrag, Vec3};
 use crate::linear::{BlockMatrix, Cholesky};
 use crate::mesh::Sheet;
 
@@ -31,6 +31,8 @@ pub struct Projective {
     factor: Cholesky,
     fixed: Vec<bool>,
     inertia: Vec<f64>,
+    /// Whether the factor holds the grip of the air in some step.
+    gripped: bool,
 }
 
 impl Projective {
@@ -77,7 +79,37 @@ impl Projective {
         reduced.fix(&model.fixed);
         let mut factor = Cholesky::analyse_scalar(&reduced)?;
         factor.factor(&reduced)?;
-        Ok(Self { dt, iterations, triangles, matrix: full, factor, fixed: model.fixed.clone(), inertia })
+        Ok(Self {
+            dt,
+            iterations,
+            triangles,
+            matrix: full,
+            factor,
+            fixed: model.fixed.clone(),
+            inertia,
+            gripped: false,
+        })
+    }
+
+    /// The grip of the air in a step from `state`, with a factor that bounds it from above: turns then go downhill.
+    fn take_air(
+        &mut self,
+        air: &AirDrag,
+        state: &State,
+        half: &Vec3,
+    ) -> Result<Vec<Matrix3<f64>>, ClothError> {
+        let last: Vec<Vec3> = state.v.iter().map(|v| v - half).collect();
+        let grips = air.grips(&state.x, &last);
+        let mut bound = self.matrix.clone();
+        bound.add_diagonal(grips.iter().map(|b| b.symmetric_eigenvalues().max().max(0.0) / self.dt));
+        self.refactor(bound)?;
+        self.gripped = true;
+        Ok(grips)
+    }
+
+    fn refactor(&mut self, mut matrix: BlockMatrix) -> Result<(), ClothError> {
+        matrix.fix(&self.fixed);
+        self.factor.factor(&matrix)
     }
 
     /// Pull of the rotated rest shapes on the vertices, N.
@@ -135,11 +167,23 @@ impl Solver for Projective {
         let coast: Vec<Vec3> = (0..start.len())
             .map(|v| (state.v[v] * dt + model.gravity * (0.5 * dt * dt)) * (model.masses[v] / (dt * dt)))
             .collect();
+        let half = model.gravity * (0.5 * dt);
+        let grips = match &model.air {
+            Some(air) => Some((air.air.wind * dt, self.take_air(air, state, &half)?)),
+            None => None,
+        };
+        if grips.is_none() && std::mem::take(&mut self.gripped) {
+            self.refactor(self.matrix.clone())?;
+        }
         let mut residual = 0.0;
         for _ in 0..self.iterations {
             let mut load = self.local(&state.x);
             for v in 0..load.len() {
                 load[v] += coast[v] + start[v] * self.inertia[v];
+            }
+            if let Some((way, grips)) = &grips {
+                let pull = |v: usize| grips[v] * (start[v] + way - state.x[v]) / dt;
+                load.iter_mut().enumerate().for_each(|(v, l)| *l += pull(v));
             }
             // Solved for the change, so that held vertices need no special right-hand side.
             let now = self.matrix.times(&state.x);

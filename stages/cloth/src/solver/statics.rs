@@ -33,9 +33,10 @@ impl Solver for Static {
     }
 
     /// # Errors
-    /// [`ClothError::NotConverged`] with the residual reached, besides those of input.
+    /// [`ClothError::NotConverged`] with the residual reached, [`ClothError::Wind`], besides those of input.
     fn advance(&mut self, model: &Model, state: &mut State) -> Result<Report, ClothError> {
         model.check(state)?;
+        model.air.as_ref().map_or(Ok(()), |a| a.air.check_still())?;
         let weight = model.weight();
         let mut energies = model.internal();
         energies.push(&weight as &dyn Energy);

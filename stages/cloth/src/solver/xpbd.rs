@@ -4,7 +4,7 @@
 //! of its fold angle with the hinge's; one Gauss-Seidel walk a small step. In the limit of small steps it solves the same equations as the
 //! finite elements in their linear range; at a given cost it is too soft, most of all in long, stiff pieces, because a walk carries a pull
 //! only as far as the vertices are numbered. Never unstable. Cost: one 3 x 3 solve a triangle and step, no matrix.
-//! The model's energies are not used; its masses, gravity, drag, pins and obstacles are.
+//! The model's energies are not used; its masses, gravity, drag, air, pins and obstacles are.
 
 use nalgebra::Matrix3;
 
@@ -12,7 +12,7 @@ use super::{Model, Report, Solver, State};
 use crate::bending::{HingeTerm, Rigidity, hinge_terms};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
-use crate::force::Vec3;
+use crate::force::{Vec3, carried, mobility};
 use crate::membrane::Woven;
 use crate::mesh::Sheet;
 
@@ -62,20 +62,37 @@ impl Xpbd {
         })
     }
 
+    /// One walk over all constraints.
+    fn project<W: Answer>(&self, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
+        for s in &self.strains {
+            s.project(&self.compliance, x, inverse_mass, h);
+        }
+        for hinge in &self.hinges {
+            project_hinge(hinge, x, inverse_mass, h);
+        }
+    }
+
     fn substep(&self, model: &Model, state: &mut State, inverse_mass: &[f64], h: f64) {
         let start = state.x.clone();
         let keep = 1.0 / (1.0 + model.drag * h);
-        for (v, &w) in inverse_mass.iter().enumerate() {
-            if w > 0.0 {
-                // The middle of the step: free fall is then exact.
-                state.x[v] += (state.v[v] * keep + model.gravity * (0.5 * h)) * h;
+        let half = model.gravity * (0.5 * h);
+        // The middle of the step: free fall is then exact.
+        let coasting: Vec<Vec3> = state.v.iter().map(|v| v * keep + half).collect();
+        match &model.air {
+            None => {
+                advance_free(&mut state.x, &coasting, inverse_mass, h);
+                self.project(&mut state.x, inverse_mass, h);
             }
-        }
-        for s in &self.strains {
-            s.project(&self.compliance, &mut state.x, inverse_mass, h);
-        }
-        for hinge in &self.hinges {
-            project_hinge(hinge, &mut state.x, inverse_mass, h);
+            Some(air) => {
+                // The air grips what moved in the last step, half a step of gravity behind the velocities.
+                let last: Vec<Vec3> = state.v.iter().map(|v| v - half).collect();
+                let grips = air.grips(&state.x, &last);
+                let answers = mobilities(model, &grips, h);
+                let blown = |v: usize| carried(&coasting[v], &air.air.wind, &answers[v], &grips[v], h);
+                let blown: Vec<Vec3> = (0..coasting.len()).map(blown).collect();
+                advance_free(&mut state.x, &blown, inverse_mass, h);
+                self.project(&mut state.x, &answers, h);
+            }
         }
         for v in 0..start.len() {
             if inverse_mass[v] == 0.0 {
@@ -92,8 +109,50 @@ impl Xpbd {
     }
 }
 
+/// How a vertex answers an impulse, 1/kg: by its mass alone, or with the air that holds it.
+trait Answer: Copy {
+    /// `a W b`.
+    fn between(self, a: &Vec3, b: &Vec3) -> f64;
+    /// `W a by`.
+    fn to(self, a: &Vec3, by: f64) -> Vec3;
+}
+
+impl Answer for f64 {
+    fn between(self, a: &Vec3, b: &Vec3) -> f64 {
+        self * a.dot(b)
+    }
+
+    fn to(self, a: &Vec3, by: f64) -> Vec3 {
+        a * (by * self)
+    }
+}
+
+impl Answer for Matrix3<f64> {
+    fn between(self, a: &Vec3, b: &Vec3) -> f64 {
+        a.dot(&(self * b))
+    }
+
+    fn to(self, a: &Vec3, by: f64) -> Vec3 {
+        self * a * by
+    }
+}
+
+fn advance_free(x: &mut [Vec3], velocities: &[Vec3], inverse_mass: &[f64], h: f64) {
+    for (v, _) in inverse_mass.iter().enumerate().filter(|(_, w)| **w > 0.0) {
+        x[v] += velocities[v] * h;
+    }
+}
+
+fn mobilities(model: &Model, grips: &[Matrix3<f64>], h: f64) -> Vec<Matrix3<f64>> {
+    let of = |(v, grip): (usize, &Matrix3<f64>)| match model.fixed[v] {
+        true => Matrix3::zeros(),
+        false => mobility(model.masses[v], grip, h),
+    };
+    grips.iter().enumerate().map(of).collect()
+}
+
 impl StrainTerm {
-    fn project(&self, compliance: &Matrix3<f64>, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
+    fn project<W: Answer>(&self, compliance: &Matrix3<f64>, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
         let vertices = self.vertices.map(|v| v as usize);
         let shape = [-self.shape[0] - self.shape[1], self.shape[0], self.shape[1]];
         let p = vertices.map(|v| x[v]);
@@ -105,27 +164,27 @@ impl StrainTerm {
         });
         let w = vertices.map(|v| inverse_mass[v]);
         let system = Matrix3::from_fn(|r, s| {
-            (0..3).map(|c| w[c] * jacobian[r][c].dot(&jacobian[s][c])).sum::<f64>()
+            (0..3).map(|c| w[c].between(&jacobian[r][c], &jacobian[s][c])).sum::<f64>()
                 + compliance[(r, s)] / (self.area * h * h)
         });
         let Some(pull) = system.cholesky().map(|c| c.solve(&-strain)) else { return };
         for c in 0..3 {
             let d: Vec3 = (0..3).map(|r| jacobian[r][c] * pull[r]).sum();
-            x[vertices[c]] += d * w[c];
+            x[vertices[c]] += w[c].to(&d, 1.0);
         }
     }
 }
 
-fn project_hinge(hinge: &HingeTerm, x: &mut [Vec3], inverse_mass: &[f64], h: f64) {
+fn project_hinge<W: Answer>(hinge: &HingeTerm, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
     if hinge.stiffness <= 0.0 {
         return;
     }
     let vertices = hinge.vertices.map(|v| v as usize);
     let (angle, gradient) = hinge.fold(&vertices.map(|v| x[v]));
-    let sum: f64 = (0..4).map(|k| inverse_mass[vertices[k]] * gradient[k].norm_squared()).sum();
+    let sum: f64 = (0..4).map(|k| inverse_mass[vertices[k]].between(&gradient[k], &gradient[k])).sum();
     let pull = -angle / (sum + 1.0 / (hinge.stiffness * h * h));
     for k in 0..4 {
-        x[vertices[k]] += gradient[k] * (pull * inverse_mass[vertices[k]]);
+        x[vertices[k]] += inverse_mass[vertices[k]].to(&gradient[k], pull);
     }
 }
 

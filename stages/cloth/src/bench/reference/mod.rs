@@ -4,6 +4,7 @@
 
 mod beam;
 mod cable;
+mod chain;
 mod elastica;
 mod plate;
 mod stretch;
@@ -14,6 +15,7 @@ mod tests;
 
 pub use beam::{Elastica, cantilever};
 pub use cable::{Catenary, catenary};
+pub use chain::chain;
 pub use elastica::{Curve, heart_loop, lateral_buckling, plate_pendulum, pressed_column};
 pub use plate::{clamped_plate, supported_plate};
 pub use stretch::{Orthotropic, hanging_linear, hanging_piecewise, hanging_stvk};

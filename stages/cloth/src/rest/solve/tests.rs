@@ -181,7 +181,7 @@ fn what_has_no_rest_is_named() {
 #[test]
 fn without_weight_nothing_moves() {
     let mut scene = generate::hang(9);
-    scene.phases = vec![Phase { name: "none".into(), seconds: 1.0, gravity: Vec3::zeros() }];
+    scene.phases = vec![Phase { name: "none".into(), seconds: 1.0, gravity: Vec3::zeros(), air: None }];
     let state = settle(&scene).unwrap();
     let moved = state.positions.iter().zip(&scene.positions).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(moved < 1e-9, "{moved}");
