@@ -23,6 +23,11 @@ const SAFETY: f64 = 0.9;
 
 /// Shortens `moves` so that no pair of `pairs` meets; the number of pairs that would have.
 pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
+    limit_or_stop(x, moves, pairs).0
+}
+
+/// The same; besides, to what share the whole step was shortened.
+fn limit_or_stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     let mut suspects: Vec<Pair> = pairs.to_vec();
     let mut first = 0;
     for round in 0..ROUNDS {
@@ -31,7 +36,7 @@ pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
             first = hits.len();
         }
         if hits.is_empty() {
-            return first;
+            return (first, 1.0);
         }
         let mut share = vec![1.0f64; x.len()];
         for (pair, time) in &hits {
@@ -43,11 +48,11 @@ pub fn limit(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
         suspects =
             pairs.iter().filter(|p| p.nodes.iter().any(|&i| share[i as usize] < 1.0)).copied().collect();
     }
-    stop(x, moves, pairs);
-    first
+    (first, stop(x, moves, pairs).1)
 }
 
-/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count; the pairs found last.
+/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count; the pairs found last, and to
+/// what share the whole step was shortened: below 1, cloth that touches nothing was held back as well.
 ///
 /// What falls together meets nowhere until one of it is held back; so pairs are sought again for the moves that are left,
 /// unless `seek` says that those known hold for all shorter moves.
@@ -57,10 +62,13 @@ pub fn hold_apart(
     mut pairs: Vec<Pair>,
     counts: impl Fn(&Pair) -> bool,
     seek: impl Fn(&[Vec3]) -> Option<Vec<Pair>>,
-) -> Vec<Pair> {
+) -> (Vec<Pair>, f64) {
+    let mut whole = 1.0;
     for search in 0..=SEARCHES {
         let strict: Vec<Pair> = pairs.iter().filter(|p| counts(p)).copied().collect();
-        let hits = if search < SEARCHES { limit(x, moves, &strict) } else { stop(x, moves, &strict) };
+        let (hits, share) =
+            if search < SEARCHES { limit_or_stop(x, moves, &strict) } else { stop(x, moves, &strict) };
+        whole *= share;
         if hits == 0 {
             break;
         }
@@ -69,18 +77,19 @@ pub fn hold_apart(
             None => break,
         }
     }
-    pairs
+    (pairs, whole)
 }
 
-/// Ends the whole step before the first of `pairs` meets; how many would have.
-fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> usize {
+/// Ends the whole step before the first of `pairs` meets; how many would have, and the share that is left.
+fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     // Scaled as a whole, a step that is safe until some time is safe when it ends there.
     let hits = hits(x, moves, pairs);
     let least = hits.iter().map(|(_, t)| *t).fold(1.0, f64::min);
-    if least < 1.0 {
-        moves.iter_mut().for_each(|m| *m *= SAFETY * least);
+    let share = if least < 1.0 { SAFETY * least } else { 1.0 };
+    if share < 1.0 {
+        moves.iter_mut().for_each(|m| *m *= share);
     }
-    hits.len()
+    (hits.len(), share)
 }
 
 fn hits(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {

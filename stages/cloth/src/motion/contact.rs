@@ -88,9 +88,9 @@ pub(super) fn off_itself(
     }
 }
 
-/// Cuts moves short where cloth would pass through cloth.
-pub(super) fn stop_short(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) {
+/// Cuts moves short where cloth would pass through cloth; to what share all of the cloth was, for want of a better way.
+pub(super) fn stop_short(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) -> f64 {
     let seek = |moves: &[Vec3]| tree.pairs(x, moves, thickness);
     let pairs = seek(moves);
-    hold_apart(x, moves, pairs, |_| true, |moves| Some(seek(moves)));
+    hold_apart(x, moves, pairs, |_| true, |moves| Some(seek(moves))).1
 }

@@ -218,7 +218,7 @@ impl Run<'_> {
             let settled = (now - stored).abs() <= energy * now.abs().max(f64::MIN_POSITIVE);
             stored = now;
             moving.progress.speed = way / LOOK;
-            if moving.progress.speed < speed && settled {
+            if moving.progress.speed < speed && settled && !moving.is_jammed {
                 return Ok(self.finish(&moving, true));
             }
         }

@@ -13,6 +13,9 @@ use crate::solver::{Model, Solver, State};
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
 const SAME_STEP: f64 = 1e-6;
 
+/// Contacts that leave less than this share of a step to all of the cloth hold it in the air.
+const JAMMED: f64 = 0.5;
+
 pub(super) struct Moving {
     sheet: Sheet,
     model: Model,
@@ -27,6 +30,8 @@ pub(super) struct Moving {
     pub(super) progress: Progress,
     pub(super) is_joined: bool,
     pub(super) joined_at: Option<f64>,
+    /// Whether contacts held all of the cloth back in the last step: it hangs in the air, and is not at rest.
+    pub(super) is_jammed: bool,
 }
 
 impl Moving {
@@ -95,6 +100,7 @@ impl Moving {
             progress: Progress::default(),
             is_joined: false,
             joined_at: None,
+            is_jammed: false,
         })
     }
 
@@ -129,11 +135,12 @@ impl Moving {
         let report = self.solver.advance(&self.model, &mut self.state)?;
         let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
         let mut moves = wanted.clone();
-        let pushed = self.correct(&start, &mut moves, report.advanced, settings.closing, wearer);
+        let (pushed, share) = self.correct(&start, &mut moves, report.advanced, settings.closing, wearer);
         for (v, m) in moves.iter().enumerate() {
             self.state.x[v] = start[v] + m;
             self.state.v[v] += (m - pushed[v] - wanted[v]) / report.advanced;
         }
+        self.is_jammed = share < JAMMED;
         let fastest = moves.iter().map(|m| m.norm()).fold(0.0, f64::max);
         self.progress = Progress {
             time: self.progress.time + report.advanced,
@@ -155,7 +162,7 @@ impl Moving {
         Ok(())
     }
 
-    /// All corrections; how much of each move is a push, no velocity.
+    /// All corrections; how much of each move is a push, no velocity, and to what share all of the cloth was held back.
     fn correct(
         &self,
         start: &[Vec3],
@@ -163,7 +170,7 @@ impl Moving {
         dt: f64,
         closing: f64,
         wearer: Option<Wearer<'_>>,
-    ) -> Vec<Vec3> {
+    ) -> (Vec<Vec3>, f64) {
         let offset = self.fabric.thickness;
         self.seams.close(start, moves, &self.model.masses, &self.model.fixed, closing * dt);
         if let Some(tree) = &self.tree {
@@ -175,9 +182,7 @@ impl Moving {
             None => vec![Vec3::zeros(); moves.len()],
         };
         moves.iter_mut().zip(&self.model.fixed).filter(|(_, f)| **f).for_each(|(m, _)| *m = Vec3::zeros());
-        if let Some(tree) = &self.tree {
-            stop_short(tree, start, moves, offset);
-        }
-        pushed
+        let share = self.tree.as_ref().map_or(1.0, |tree| stop_short(tree, start, moves, offset));
+        (pushed, share)
     }
 }

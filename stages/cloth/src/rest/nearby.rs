@@ -93,7 +93,7 @@ impl Nearby {
         // Pairs all round hold for every short move.
         let tree = self.tree.as_ref().filter(|_| self.at.is_empty());
         let seek = |moves: &[Vec3]| tree.map(|t| t.pairs(x, moves, layers.thickness));
-        layers.pairs = hold_apart(x, moves, pairs, counts, seek);
+        layers.pairs = hold_apart(x, moves, pairs, counts, seek).0;
         if wanted > 0.0 && layers.tangled.is_empty() { norm(moves) / wanted } else { 1.0 }
     }
 
