@@ -51,6 +51,7 @@ impl<'a> Live<'a> {
         state: &Rested,
     ) -> Result<Self, RestError> {
         scene.check()?;
+        scene.check_still()?;
         if state.positions.len() != scene.rest.len() {
             return Err(RestError::Reshaped);
         }
@@ -96,6 +97,7 @@ impl<'a> Live<'a> {
         let mut scene = self.scene.clone();
         edit(&mut scene);
         scene.check()?;
+        scene.check_still()?;
         let same_panels =
             scene.panels.iter().map(|p| &p.vertices).eq(self.scene.panels.iter().map(|p| &p.vertices));
         let same_mesh = scene.rest == self.scene.rest && scene.triangles == self.scene.triangles;

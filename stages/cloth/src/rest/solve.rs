@@ -235,7 +235,7 @@ impl Rest {
     ) -> Result<Rested, RestError> {
         let clock = Instant::now();
         scene.check()?;
-        scene.phases.last().and_then(|p| p.air).map_or(Ok(()), |a| a.check_still())?;
+        scene.check_still()?;
         let mut coarsest = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
         loop {
             match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {

@@ -16,6 +16,7 @@
 //! ```
 
 use super::{Panel, Phase, Scene, SceneBody, SceneError, Seam, check};
+use crate::error::ClothError;
 use crate::fabric::Fabric;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
@@ -74,6 +75,14 @@ impl Scene {
     /// The first [`SceneError`].
     pub fn check(&self) -> Result<(), SceneError> {
         check::check(self)
+    }
+
+    /// Whether the air of the last phase is still, as states of rest want it.
+    ///
+    /// # Errors
+    /// [`ClothError::Wind`].
+    pub fn check_still(&self) -> Result<(), ClothError> {
+        self.phases.last().and_then(|p| p.air).map_or(Ok(()), |air| air.check_still())
     }
 
     /// What panel `k` is made of.

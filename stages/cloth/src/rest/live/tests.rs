@@ -2,7 +2,8 @@
 use super::*;
 use crate::contact::body::Body;
 use crate::fabric::{Curve, Fabric};
-use crate::scene::generate;
+use crate::force::Air;
+use crate::scene::{Phase, generate};
 use std::ops::ControlFlow;
 
 const GO_ON: fn(&LevelReport) -> ControlFlow<()> = |_| ControlFlow::Continue(());
@@ -115,4 +116,22 @@ fn another_mesh_is_refused() {
     assert_eq!(error.to_string(), "the mesh or its seams have changed; solve the scene from its start");
     let error = live.change(|s| s.material.density = -1.0).unwrap_err();
     assert_eq!(error.to_string(), "density = -1 is out of range: above 0 kg/m^2");
+}
+
+#[test]
+fn wind_is_refused_and_changes_nothing() {
+    let scene = stiff();
+    let mut live = Live::new(Rest::default(), scene.clone(), None, &fresh(&scene)).unwrap();
+    let before = live.scene().clone();
+    let gravity = Vec3::new(0.0, -9.81, 0.0);
+    let air = Some(Air { wind: Vec3::new(3.0, 0.0, 0.0), ..Air::still(1.2) });
+    let blow = |s: &mut Scene| s.phases = vec![Phase { name: "storm".into(), seconds: 1.0, gravity, air }];
+    let said = "wind of 3 m/s has no potential, so this solver finds no state of rest in it; take ImplicitEuler, \
+                CentralDifferences, Xpbd or Projective, which move the cloth until it rests";
+    assert_eq!(live.change(blow).unwrap_err().to_string(), said);
+    assert!(*live.scene() == before);
+    let mut windy = scene.clone();
+    blow(&mut windy);
+    let refused = Live::new(Rest::default(), windy, None, &fresh(&scene)).err();
+    assert_eq!(refused.map(|e| e.to_string()).as_deref(), Some(said));
 }
