@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
-use toile_tests::{Answer, pipeline, toile};
+use toile_tests::{Answer, pipeline, toile, without_rest};
 
 /// A copy of the vest's pipeline in a folder of its own, with its photos and a cache.
 struct Bench {
@@ -15,8 +15,7 @@ struct Bench {
 
 /// The vest as placed, not sewn: quick to run, and short of its quality limits.
 fn unsewn(text: &str) -> String {
-    let lines = text.lines().filter(|l| !l.contains("Rest()"));
-    lines.collect::<Vec<_>>().join("\n").replace("Preview(), Report(),", "Report(pictures: 32),")
+    without_rest(text).replace("Preview(), Report(),", "Report(pictures: 32),")
 }
 
 impl Bench {

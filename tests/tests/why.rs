@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 use std::fs;
-use toile_tests::{pipeline, toile};
+use toile_tests::{pipeline, toile, without_rest};
 
 #[test]
 fn the_cause_is_the_field_that_changed() {
@@ -43,8 +43,7 @@ fn a_triangle_is_followed_to_its_panel_edge_and_pixel() {
     let ron = dir.path().join("vest.ron");
     let text = fs::read_to_string(pipeline("vest.ron")).unwrap();
     // Placed is enough: sewing moves no triangle in its panel.
-    let lines = text.lines().filter(|l| !l.contains("Rest()")).collect::<Vec<_>>().join("\n");
-    let lines = lines.replace("samples/", &format!("{}/samples/", pipeline("")));
+    let lines = without_rest(&text).replace("samples/", &format!("{}/samples/", pipeline("")));
     fs::write(&ron, lines.replace("Preview(), Report(),", "")).unwrap();
     let out = dir.path().join("out");
     let path = |name: &str| out.join(name).display().to_string();
