@@ -194,25 +194,11 @@ fn seams_are_sewn_without_wind() {
     assert_eq!(sewn_with(storm), sewn_with(storm.calmed()));
 }
 
-/// Sheets lying over each other above a ball, nearer to each other than a step is long.
-fn stack(layers: usize, cells: u32) -> Scene {
-    let mut scene = generate::drape(cells);
-    let (rest, triangles) = (scene.rest.iter().map(|p| 0.5 * p).collect::<Vec<_>>(), scene.triangles.clone());
-    let level = |k: usize| -> Vec<Vector3<f64>> {
-        rest.iter().map(|p| Vector3::new(p.x, 0.31 + 0.004 * k as f64, -p.y)).collect()
-    };
-    (scene.rest, scene.positions) = (rest.clone(), level(0));
-    for k in 1..layers {
-        scene.add_panel(format!("layer {k}"), &rest, &level(k), &triangles);
-    }
-    scene
-}
-
 #[test]
 fn cloth_that_contacts_hold_in_the_air_is_not_at_rest() {
     let until = Until::Rest { speed: 0.02, energy: 1e-3, longest: 0.3 };
     let method = Method::ImplicitEuler { tolerance: 1e-4, relative: None };
     let motion = Motion { method, until, drag: 4.0, ..Motion::default() };
-    let moved = run(&motion, &stack(50, 4)).unwrap();
+    let moved = run(&motion, &generate::stack(50, 4)).unwrap();
     assert!(!moved.converged, "at rest after {} s", moved.progress.time);
 }

@@ -58,7 +58,8 @@ fn solve_rows(top: MatRef<'_, f64>, mut below: MatMut<'_, f64>) {
         return solve_lower_triangular_in_place(top, below.transpose_mut(), Par::Seq);
     }
     let (upper, lower) = below.rb_mut().split_at_row_mut(whole_pieces(rows, STRIP));
-    join_above(rows * top.ncols() * top.ncols() / 2, || solve_rows(top, upper), || solve_rows(top, lower));
+    let work = rows * top.ncols() * top.ncols() / 2;
+    join_if(work > TASK, || solve_rows(top, upper), || solve_rows(top, lower));
 }
 
 /// Takes `l` times the transpose of its first rows from the lower trapezoid `to`, or writes it there, negative.
@@ -72,7 +73,7 @@ pub(super) fn take_product(mut to: MatMut<'_, f64>, accum: Accum, l: MatRef<'_, 
     let (left, right) = to.rb_mut().split_at_col_mut(half);
     let right = right.split_at_row_mut(half).1;
     let lower = l.split_at_row(half).1;
-    join_above(work, || take_product(left, accum, l), || take_product(right, accum, lower));
+    join_if(work > TASK, || take_product(left, accum, l), || take_product(right, accum, lower));
 }
 
 /// One strip: a triangle, and what is below it.
@@ -92,11 +93,11 @@ fn whole_pieces(size: usize, piece: usize) -> usize {
     size.div_ceil(2 * piece) * piece
 }
 
-fn join_above(work: usize, a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
-    if work > TASK {
-        rayon::join(a, b);
-    } else {
-        a();
-        b();
-    }
+/// Both, side by side where it is worth it.
+pub(super) fn join_if<A: Send, B: Send>(
+    worth: bool,
+    a: impl FnOnce() -> A + Send,
+    b: impl FnOnce() -> B + Send,
+) -> (A, B) {
+    if worth { rayon::join(a, b) } else { (a(), b()) }
 }

@@ -48,7 +48,7 @@ pub(super) struct Dense<'a> {
 }
 
 impl<'a> Dense<'a> {
-    /// A front of zeros in the memory of `columns` and `border`.
+    /// A front in the memory of `columns`, which are zeros then, and of `border`, which elimination writes over.
     pub(super) fn zeros(columns: &'a mut Vec<f64>, mut border: Vec<f64>, m: usize, own: usize) -> Self {
         let n = m - own;
         columns.resize(m * own, 0.0);
@@ -56,6 +56,7 @@ impl<'a> Dense<'a> {
         border.resize(n * n, 0.0);
         (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(0.0));
         if own == 0 {
+            // Nothing is eliminated, so nothing writes it.
             border.fill(0.0);
         }
         Self { columns, border, m, own }

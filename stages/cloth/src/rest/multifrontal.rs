@@ -11,6 +11,7 @@
 
 mod substitute;
 
+use super::dense::join_if;
 use super::dissect::{Part, dissect};
 use super::front::{Dense, Run};
 use super::pattern::Pattern;
@@ -231,12 +232,11 @@ impl Work<'_> {
             [] => Ok(vec![]),
             [a] => Ok(vec![self.eliminate(a, columns, y)?]),
             [a, b, ..] => {
-                let fronts = &self.symbolic.fronts;
                 // Children come one after the other, each after all below it.
                 let (left, right) = columns.split_at_mut(columns.len() - (b - a));
-                let (left_y, right_y) = y.split_at_mut(fronts[a].weight);
+                let (left_y, right_y) = y.split_at_mut(self.symbolic.fronts[a].weight);
                 let (a, b) = join_if(
-                    fronts[a].weight.min(fronts[b].weight) > TASK_UNKNOWNS,
+                    self.symbolic.worth(a, b),
                     || self.eliminate(a, left, left_y),
                     || self.eliminate(b, right, right_y),
                 );
@@ -244,15 +244,6 @@ impl Work<'_> {
             }
         }
     }
-}
-
-/// Both, side by side where it is worth it.
-fn join_if<A: Send, B: Send>(
-    worth: bool,
-    a: impl FnOnce() -> A + Send,
-    b: impl FnOnce() -> B + Send,
-) -> (A, B) {
-    if worth { rayon::join(a, b) } else { (a(), b()) }
 }
 
 fn build_front(part: Part, later: Vec<(u32, u32, u32, bool)>, order: &[u32], fronts: &[Front]) -> Front {

@@ -80,6 +80,21 @@ pub fn drape(cells: u32) -> Scene {
     Scene { body, self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
 }
 
+/// So many square sheets of half the size over each other, 4 mm apart, above the ball of [`drape`].
+#[must_use]
+pub fn stack(layers: usize, cells: u32) -> Scene {
+    let mut scene = drape(cells);
+    let (rest, triangles) = (scene.rest.iter().map(|p| 0.5 * p).collect::<Vec<_>>(), scene.triangles.clone());
+    let level = |k: usize| -> Vec<Vector3<f64>> {
+        rest.iter().map(|p| Vector3::new(p.x, 0.31 + 0.004 * k as f64, -p.y)).collect()
+    };
+    (scene.rest, scene.positions) = (rest.clone(), level(0));
+    for k in 1..layers {
+        scene.add_panel(format!("layer {k}"), &rest, &level(k), &triangles);
+    }
+    scene
+}
+
 /// Two panels of `nx` by `ny` cells before and behind a form, to be sewn at their sides into a skirt.
 #[must_use]
 pub fn tube(nx: u32, ny: u32) -> Scene {

@@ -35,7 +35,7 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
     }
     for layers in if large { vec![3, 5, 50] } else { vec![3, 5] } {
         checks.push(Check::new("contact_stack", format!("{layers} layers"), must, move || {
-            freed(&stack(layers))
+            freed(&generate::stack(layers, 8))
         }));
     }
     checks.push(Check::new("coincident_vertices", "unjoined: two panels in one place", must, || {
@@ -95,20 +95,6 @@ fn sunk(depth: f64, size: f64) -> Scene {
     for (p, r) in scene.positions.iter_mut().zip(&mut scene.rest) {
         *r *= size;
         *p = Vector3::new(size * p.x, 0.3 - depth, size * p.z);
-    }
-    scene
-}
-
-/// Sheets lying over each other above a ball.
-fn stack(layers: usize) -> Scene {
-    let mut scene = generate::drape(8);
-    let (rest, triangles) = (scene.rest.iter().map(|p| 0.5 * p).collect::<Vec<_>>(), scene.triangles.clone());
-    let level = |k: usize| -> Vec<Vector3<f64>> {
-        rest.iter().map(|p| Vector3::new(p.x, 0.31 + 0.004 * k as f64, -p.y)).collect()
-    };
-    (scene.rest, scene.positions) = (rest.clone(), level(0));
-    for k in 1..layers {
-        scene.add_panel(format!("layer {k}"), &rest, &level(k), &triangles);
     }
     scene
 }

@@ -4,7 +4,8 @@
 //! side by side. What a branch does to the nodes above it goes up as a vector over its border. Cost: each number of the factor
 //! is read twice, so the limit is memory.
 
-use super::{Front, Symbolic, TASK_UNKNOWNS, join_if};
+use super::{Front, Symbolic, TASK_UNKNOWNS};
+use crate::rest::dense::join_if;
 use nalgebra::Vector3;
 
 impl Symbolic {
@@ -64,7 +65,8 @@ impl Symbolic {
         }
     }
 
-    fn worth(&self, a: usize, b: usize) -> bool {
+    /// Whether two branches are large enough to be worked on side by side.
+    pub(super) fn worth(&self, a: usize, b: usize) -> bool {
         self.fronts[a].weight.min(self.fronts[b].weight) > TASK_UNKNOWNS
     }
 }

@@ -51,6 +51,31 @@ fn the_solution_solves() {
 }
 
 #[test]
+fn solving_on_the_way_gives_the_bits_of_solving_afterwards_on_any_number_of_threads() {
+    // Fronts wider than a panel and a strip.
+    let (pattern, values, layout) = sheet(70);
+    let symbolic = Symbolic::new(&pattern, &layout);
+    let right: Vec<Vector3<f64>> =
+        (0..4900).map(|i| Vector3::new(i as f64, 2.0, 0.5).map(f64::sin)).collect();
+    let solved = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let (mut factor, mut now, mut after) = (Factor::default(), right.clone(), right.clone());
+            symbolic.factor_and_solve(&values, &mut factor, &mut now, &|| false).unwrap();
+            symbolic.solve(&factor, &mut after);
+            assert!(now == after, "on {threads} threads");
+            now
+        })
+    };
+    let x = solved(1);
+    assert!(x == solved(3));
+    let mut again = vec![Vector3::zeros(); x.len()];
+    pattern.multiply_add(&values, &x, &mut again);
+    let worst = again.iter().zip(&right).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(worst < 1e-9, "{worst}");
+}
+
+#[test]
 fn an_indefinite_matrix_is_named() {
     let (pattern, mut values, layout) = sheet(9);
     values[40] -= Matrix3::identity() * 100.0;
