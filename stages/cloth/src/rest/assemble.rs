@@ -107,6 +107,7 @@ pub(super) fn assemble<'a>(
         elastic,
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
+        push: vec![],
         pinned,
         threads: vec![],
         support,

@@ -2,12 +2,10 @@
 
 use super::assemble::{assemble, gravity, kept_threads};
 use super::graded::{Grade, stages};
+use super::level::Level;
 use super::newton::Pace;
-use super::sew::size;
 use super::solve::{Draped, Progress, RestError, Work};
-use super::system::System;
 use crate::error::ClothError;
-use crate::mesh::Sheet;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -16,14 +14,8 @@ type Vec3 = Vector3<f64>;
 /// rest, the state forgets where it began.
 const FORGET: (usize, f64) = (60, 0.05);
 
-/// Steps of the first state: a skirt that nothing holds may turn about its body for ever.
-const FIRST_STEPS: usize = 40;
-
-/// How far apart, in the mean and as a share of the garment's size, the first state may lie with friction and without: where
-/// it is farther, friction holds the garment up.
-const MOST_SLIP: f64 = 0.03;
-
-/// How far the middle of a garment without friction may move from state to state, as a share of its size; else it slides off.
+/// How far the middle of a garment without friction may move from where it was placed, as a share of its size; else it slides
+/// off.
 const MOST_FALL: f64 = 0.1;
 
 /// First and longest step of pseudo-time, s, and the farthest way in a step, m.
@@ -34,48 +26,6 @@ const FIRST_AT_END: f64 = 0.15;
 
 /// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
 const LONGEST: f64 = 10.0;
-
-/// One level at work.
-#[derive(Clone)]
-struct Level<'s> {
-    system: System<'s>,
-    sheet: Sheet,
-    /// Orders the elimination.
-    layout: Vec<Vec3>,
-    x: Vec<Vec3>,
-    /// The friction taken away, if it was.
-    friction: Option<Vec<f64>>,
-}
-
-impl Level<'_> {
-    fn loosen(&mut self) {
-        if self.friction.is_none() {
-            let mut none = vec![0.0; self.x.len()];
-            self.system.swap_friction(&mut none);
-            self.friction = Some(none);
-        }
-    }
-
-    /// Gives friction back; whether it was away.
-    fn tighten(&mut self) -> bool {
-        let friction = self.friction.take();
-        friction.map(|mut f| self.system.swap_friction(&mut f)).is_some()
-    }
-
-    fn edge(&self) -> f64 {
-        let lengths = self.sheet.edges().iter().map(|e| e.rest_length);
-        lengths.sum::<f64>() / self.sheet.edges().len().max(1) as f64
-    }
-
-    fn size(&self) -> f64 {
-        size(&self.sheet)
-    }
-
-    fn middle(&self) -> Vec3 {
-        let sum: Vec3 = self.x.iter().zip(&self.system.masses).map(|(p, m)| p * *m).sum();
-        sum / self.system.masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
-    }
-}
 
 impl<'a> Work<'a> {
     /// Lets the sewn garment come to rest.
@@ -136,36 +86,6 @@ impl<'a> Work<'a> {
         Ok(Level { system, sheet, layout, x, friction: None })
     }
 
-    /// Brings the coarsest level to its first state and on to `end`: how stiff it is then, and whether friction was left out.
-    /// A plate falls off a ball that a cloth stays on.
-    fn forget(
-        &mut self,
-        k: usize,
-        level: &mut Level<'a>,
-        first: f64,
-        end: f64,
-        progress: &mut Progress<'_>,
-    ) -> Result<(f64, bool), RestError> {
-        let slick = level.system.rubs_nowhere();
-        let pace = Pace { steps: FIRST_STEPS, ..self.forgetful() };
-        for stiff in std::iter::once(first).chain(stages(first, end)) {
-            let (mut free, mut held) = (level.clone(), level.clone());
-            free.loosen();
-            let stays = self.stays(&mut free, stiff, pace, progress)?;
-            let is_held = !slick && self.stays(&mut held, stiff, pace, progress)?;
-            let alike = slick || is_held && apart(&held.x, &free.x) < MOST_SLIP * level.size();
-            if stays && alike && self.let_go(k, &mut free, [stiff, end], progress)? {
-                *level = free;
-                return Ok((end, true));
-            }
-            if is_held && self.let_go(k, &mut held, [stiff, end], progress)? {
-                *level = held;
-                return Ok((end, false));
-            }
-        }
-        Ok((end, false))
-    }
-
     /// Brings a finer level from one stiffness to another, without friction if it stays; the stiffness reached.
     fn carry_on(
         &mut self,
@@ -188,7 +108,7 @@ impl<'a> Work<'a> {
     }
 
     /// Lets the bending of level `k` go from one factor to another, and gives friction back; whether the garment stays.
-    fn let_go(
+    pub(super) fn let_go(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
@@ -214,18 +134,15 @@ impl<'a> Work<'a> {
     }
 
     /// Brings a level near rest; whether it stays on the body. With friction only a free fall says that it does not.
-    fn stays(
+    pub(super) fn stays(
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
         pace: Pace,
         progress: &mut Progress<'_>,
     ) -> Result<bool, RestError> {
-        let was = level.middle();
         match self.settle(level, stiff, pace, progress) {
-            Ok(()) if level.friction.is_some() => {
-                Ok((level.middle() - was).norm() < MOST_FALL * level.size())
-            }
+            Ok(()) if level.friction.is_some() => Ok(level.moved() < MOST_FALL * level.size()),
             Ok(()) => Ok(true),
             Err(RestError::Falls) => Ok(false),
             Err(e) => Err(e),
@@ -280,7 +197,7 @@ impl<'a> Work<'a> {
     }
 
     /// The pace of a state on the way from stiff to limp.
-    fn forgetful(&self) -> Pace {
+    pub(super) fn forgetful(&self) -> Pace {
         Pace { longest: LONGEST, steps: FORGET.0, speed: FORGET.1 * self.rest.speed, ..self.pace() }
     }
 
@@ -289,9 +206,4 @@ impl<'a> Work<'a> {
         let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
         self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
     }
-}
-
-/// Mean distance of two states of the same nodes, m.
-fn apart(a: &[Vec3], b: &[Vec3]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).norm()).sum::<f64>() / a.len().max(1) as f64
 }

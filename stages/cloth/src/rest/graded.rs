@@ -8,7 +8,8 @@
 //! finest level ends with the fabric as it is.
 //!
 //! Friction remembers, too. Where a garment stays in its place without it, as on shoulders, it is left out on the way and
-//! comes back at the end of each level. A skirt that slides down without it, or a cloth on a ball, keeps it all the way.
+//! comes back at the end of each level. A skirt is held by it from the place that it finds without; a cloth on a ball keeps it
+//! all the way (see `first`).
 //!
 //! Cost: a few short runs on the coarse levels and four or five on the finest, of some twenty factorizations each. Limit: where
 //! friction is kept, where the cloth began is felt a little.

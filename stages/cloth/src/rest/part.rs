@@ -112,6 +112,7 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
         elastic: system.elastic.part(cut),
         masses: pick(nodes, &system.masses),
         gravity: system.gravity,
+        push: pick(nodes, &system.push),
         pinned: nodes.iter().map(asleep).collect(),
         threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
         support: system.support.as_ref().map(|s| support(s, cut, nodes)),

@@ -73,6 +73,8 @@ pub struct System<'a> {
     pub masses: Vec<f64>,
     /// m/s².
     pub gravity: Vec3,
+    /// Forces on the nodes besides their weight, N; empty where there are none.
+    pub push: Vec<Vec3>,
     /// Nodes that stay.
     pub pinned: Vec<bool>,
     /// Seams that still pull.
@@ -199,7 +201,7 @@ impl System<'_> {
     /// Energy at `x`, and what a step that starts there need not look up again.
     #[must_use]
     pub fn visit(&self, x: &[Vec3]) -> Visit {
-        let lasting = self.stored(x) + self.threads.iter().map(|t| t.value(x)).sum::<f64>();
+        let lasting = self.stored(x) + self.pushed(x) + self.threads.iter().map(|t| t.value(x)).sum::<f64>();
         let sight = self.looks(x);
         let body: f64 = match &self.support {
             Some(s) => {
@@ -235,6 +237,11 @@ impl System<'_> {
     pub fn stored(&self, x: &[Vec3]) -> f64 {
         let weight: f64 = x.iter().zip(&self.masses).map(|(p, m)| -m * self.gravity.dot(p)).sum();
         self.elastic.value(x) + weight
+    }
+
+    /// Energy of the forces besides weight, J.
+    fn pushed(&self, x: &[Vec3]) -> f64 {
+        -self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
     }
 
     /// Whether crossings of the start are still being undone.
@@ -321,6 +328,7 @@ impl System<'_> {
     #[must_use]
     pub fn gradient(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut g: Vec<Vec3> = self.masses.iter().map(|m| -self.gravity * *m).collect();
+        g.iter_mut().zip(&self.push).for_each(|(g, p)| *g -= p);
         self.elastic.add_gradient(x, &mut g);
         self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);

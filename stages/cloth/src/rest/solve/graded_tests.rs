@@ -33,6 +33,12 @@ fn a_skirt_from_moved_starts_ends_where_the_unmoved_one_does() {
 }
 
 #[test]
+fn of_two_mirror_images_a_skirt_takes_the_same_from_every_start() {
+    let apart = spread(&generate::tube(16, 16), graded);
+    assert!(apart.iter().all(|d| *d < 1e-3), "{apart:?}");
+}
+
+#[test]
 fn a_square_on_a_ball_keeps_its_friction_and_stays() {
     // A plate falls off the ball, with friction or without: the cloth does not.
     for cells in [12, 20] {
