@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Times the cloth engine beside peers on prepared scenes, in one run and one at a time, and judges both alike.
 
-    TOILE_SHARED=FOLDER tests/peers/beside.py --python PYTHON_WITH_BPY [--scenes tube_2k2,tube_20k,...] [--runs 3]
+    TOILE_SHARED=FOLDER tests/peers/beside.py --python PYTHON_WITH_BPY [--newton PYTHON_WITH_NEWTON] \\
+        [--scenes tube_2k2,tube_20k,...] [--runs 3]
 
-FOLDER/bench holds make_scenes.py, metrics.py and peer_blender.py; PYTHON has numpy, libigl and bpy. Scenes are made in
+FOLDER/bench holds make_scenes.py, metrics.py, peer_blender.py and peer_newton.py; PYTHON has numpy, libigl and bpy, and that
+of --newton numpy, libigl, warp-lang and newton (its Style3D solver, 20 iterations, seams welded before the start). Scenes are made in
 out/scenes. Our time is that of the stage `Rest` in `toile run pipelines/scene.ron`, without a cache, the best of the runs; a peer's is that of
 its simulation alone. Without the folder it says "skipped".
 """
@@ -39,6 +41,18 @@ def judged(python, bench, scene, obj):
     return json.loads(call(python, bench / "metrics.py", OUT / f"{scene}.json", obj))
 
 
+def blender(python, bench, scene):
+    text = call(python, bench / "peer_blender.py", OUT / f"{scene}.json", OUT / f"{scene}_blender.obj",
+                "--quality", "5", "--collision-quality", "2")
+    return json.loads(text.strip().splitlines()[-1])
+
+
+def newton(python, bench, scene):
+    text = call(python, bench / "peer_newton.py", OUT / f"{scene}.json", OUT / f"{scene}_newton.obj",
+                "--solver", "style3d")
+    return json.loads(text.strip().splitlines()[-1])
+
+
 def row(name, scene, wall, m, speed=""):
     area = max(m["panel_area_error"].values())
     cells = [scene, name, f"{wall:.2f}", f"{m.get('seam_gap_max_m', 0) * 1e3:.2f}", f"{m['strain_p99']:.2%}",
@@ -50,6 +64,7 @@ def row(name, scene, wall, m, speed=""):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--python", required=True)
+    parser.add_argument("--newton", metavar="PYTHON")
     parser.add_argument("--scenes", default="tube_2k2,drape_2k2,hang_2k2,tube_20k,drape_20k,tube_100k,fall_1k")
     parser.add_argument("--runs", type=int, default=3)
     args = parser.parse_args()
@@ -68,11 +83,15 @@ def main():
         row("toile", scene, wall, judged(args.python, bench, scene, obj), f"{garment['max_speed_m_s']:.1e}")
         if scene in ("tube_100k", "fall_1k"):
             continue
-        text = call(args.python, bench / "peer_blender.py", OUT / f"{scene}.json", OUT / f"{scene}_blender.obj",
-                    "--quality", "5", "--collision-quality", "2")
-        peer = json.loads(text.strip().splitlines()[-1])
-        row("Blender", scene, peer["wall_sim_s"], peer)
-        print(f"|  | 1/20 of it is {peer['wall_sim_s'] / 20:.3f} s; we take 1/{peer['wall_sim_s'] / wall:.1f} |", flush=True)
+        peers = [("Blender", blender, args.python)]
+        peers += [("Newton", newton, args.newton)] if args.newton else []
+        walls = []
+        for name, peer, python in peers:
+            figures = peer(python, bench, scene)
+            walls.append((figures["wall_sim_s"], name))
+            row(name, scene, figures["wall_sim_s"], figures)
+        least, name = min(walls)
+        print(f"|  | 1/20 of {name}'s is {least / 20:.3f} s; we take 1/{least / wall:.1f} |", flush=True)
 
 
 main()

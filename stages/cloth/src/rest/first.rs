@@ -41,16 +41,15 @@ impl<'a> Work<'a> {
         for stiff in std::iter::once(first).chain(stages(first, end)) {
             let (mut free, mut held) = (level.clone(), level.clone());
             let stays = self.free_state(&mut free, stiff, progress)?;
-            let is_held = !slick && self.first_state(&mut held, stiff, progress)?;
+            let mut is_held = !slick && self.first_state(&mut held, stiff, progress)?;
             let alike = slick || is_held && apart(&held.x, &free.x) < MOST_SLIP * level.size();
-            if stays && alike {
-                if self.let_go(k, &mut free, [stiff, end], progress)? {
-                    *level = free;
-                    return Ok((end, true));
-                }
-            } else if stays && free.turned().abs() < MOST_TURN {
+            if stays && alike && self.let_go(k, &mut free, [stiff, end], progress)? {
+                *level = free;
+                return Ok((end, true));
+            }
+            if stays && !alike && free.turned().abs() < MOST_TURN {
                 free.tighten();
-                held = free;
+                (held, is_held) = (free, true);
             }
             if is_held && self.let_go(k, &mut held, [stiff, end], progress)? {
                 *level = held;
