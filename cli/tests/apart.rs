@@ -13,7 +13,7 @@ use toile_core::{Cancel, Length};
 use toile_trade::apart::Apart;
 use toile_trade::measure::Bench;
 use toile_trade::record::{Clock, Outcome, Trade};
-use toile_trade::slot::Source;
+use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 
 const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";

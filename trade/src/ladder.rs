@@ -15,12 +15,12 @@ use crate::errors::{compare, ease};
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::{Level, Order, OwnSpread, Reference};
 use crate::richardson::convergence;
-use crate::slot::{Board, Setting, Source};
-use std::collections::BTreeMap;
+use crate::slot::{Board, Setting, setting_words};
+use crate::source::Source;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use toile_core::cache::Cache;
-use toile_core::{ErrorCode, Length, StageError};
+use toile_core::{Length, StageError};
 
 /// Factor between levels: twice the triangles, so that a further level is never far out of the budget.
 pub const RATIO: f64 = std::f64::consts::SQRT_2;
@@ -110,7 +110,7 @@ impl Search<'_> {
     pub fn again(&self, reference: Reference) -> Result<Found, StageError> {
         let finest =
             reference.levels.last().ok_or_else(|| StageError::invalid("the record holds no reference"))?;
-        let ran = self.level(&finest.setting, None).map_err(error)?;
+        let ran = self.level(&finest.setting, None)?;
         Ok(Found { ran, reference: with_orders(reference) })
     }
 
@@ -154,7 +154,7 @@ impl Search<'_> {
                 Ok(format!("level {level} was not done after {s:.0} s, its share of the budget"))
             }
             Missed::Failed(e) if level > 0 => Ok(format!("level {level} fails: {}", e.message)),
-            missed => Err(error(missed)),
+            missed => Err(missed.into()),
         }
     }
 
@@ -187,7 +187,7 @@ impl Search<'_> {
                     ));
                     spread.starts_mm.push(d);
                 }
-                Err(Missed::Cancelled) => return Err(error(Missed::Cancelled)),
+                Err(Missed::Cancelled) => return Err(Missed::Cancelled.into()),
                 Err(Missed::OverLimit(_)) => break,
                 Err(Missed::Failed(e)) => spread.failed.push(e.message),
             }
@@ -208,16 +208,6 @@ pub(crate) fn moved_start(
 ) -> Result<Ran, Missed> {
     let pipeline = source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
     bench.run_moved(pipeline, moved, limit, cache)
-}
-
-pub(crate) fn error(missed: Missed) -> StageError {
-    match missed {
-        Missed::Failed(e) => e,
-        Missed::Cancelled => StageError::new(ErrorCode::Cancelled, "stopped on request"),
-        Missed::OverLimit(s) => {
-            StageError::new(ErrorCode::Timeout, format!("it was not done after {s:.0} s"))
-        }
-    }
 }
 
 fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
@@ -260,10 +250,4 @@ fn words(k: usize, level: &Level) -> String {
         format!(", moved by {:.2} mm in the mean, {:.2} mm at 95 %", m.mean, m.p95)
     });
     format!("reference level {k} ({setting}): {} triangles, {:.1} s{moved}", level.triangles, level.wall_s)
-}
-
-/// A setting in a line: `mesher.edge 12 mm, solver Rest`.
-pub fn setting_words(setting: &BTreeMap<String, String>) -> String {
-    let one = |(key, value): (&String, &String)| format!("{key} {}", value.trim_matches('"'));
-    setting.iter().map(one).collect::<Vec<_>>().join(", ")
 }

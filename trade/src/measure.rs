@@ -18,7 +18,8 @@ use toile_core::artifact::{Body, Figures, Garment, Model, RunLog};
 use toile_core::cache::Cache;
 use toile_core::pipeline::Pipeline;
 use toile_core::{
-    ArtifactType, Cancel, ErrorCode, Length, Listener, Reads, RunOptions, RunResult, StageError, run,
+    ArtifactType, Cancel, ErrorCode, Length, Listener, Reads, RunError, RunOptions, RunResult, StageError,
+    run,
 };
 
 /// Seconds of processor time that this process has taken, all threads.
@@ -77,6 +78,18 @@ pub enum Missed {
     Cancelled,
 }
 
+impl From<Missed> for StageError {
+    fn from(missed: Missed) -> Self {
+        match missed {
+            Missed::Failed(e) => e,
+            Missed::Cancelled => StageError::new(ErrorCode::Cancelled, "stopped on request"),
+            Missed::OverLimit(s) => {
+                StageError::new(ErrorCode::Timeout, format!("it was not done after {s:.0} s"))
+            }
+        }
+    }
+}
+
 impl Bench {
     /// Runs a pipeline; `limit` ends it, `cache` is for runs whose times do not count.
     pub fn run(
@@ -85,10 +98,7 @@ impl Bench {
         limit: Option<Duration>,
         cache: Option<Arc<Cache>>,
     ) -> Result<Ran, Missed> {
-        match &self.apart {
-            Some(apart) => apart.run(&self.task(pipeline, &[], limit, cache), &self.cancel),
-            None => self.here(pipeline, &[], limit, cache),
-        }
+        self.anywhere(pipeline, &[], limit, cache)
     }
 
     /// Runs a pipeline with stages that nothing asked for depends on.
@@ -98,10 +108,7 @@ impl Bench {
         also: &[String],
         limit: Option<Duration>,
     ) -> Result<Ran, Missed> {
-        match &self.apart {
-            Some(apart) => apart.run(&self.task(pipeline, also, limit, None), &self.cancel),
-            None => self.here(pipeline, also, limit, None),
-        }
+        self.anywhere(pipeline, also, limit, None)
     }
 
     /// Runs a pipeline from a start moved by so much, with a seed.
@@ -118,6 +125,20 @@ impl Bench {
         }
         jitter::insert(&mut pipeline, amount, seed).map_err(Missed::Failed)?;
         self.here(&pipeline, &[], limit, cache)
+    }
+
+    /// In a process of its own where there is one to start, else in this one.
+    fn anywhere(
+        &self,
+        pipeline: &Pipeline,
+        also: &[String],
+        limit: Option<Duration>,
+        cache: Option<Arc<Cache>>,
+    ) -> Result<Ran, Missed> {
+        match &self.apart {
+            Some(apart) => apart.run(&self.task(pipeline, also, limit, cache), &self.cancel),
+            None => self.here(pipeline, also, limit, cache),
+        }
     }
 
     fn task(
@@ -139,6 +160,10 @@ impl Bench {
         limit: Option<Duration>,
         cache: Option<Arc<Cache>>,
     ) -> Result<Ran, Missed> {
+        // A run may be shorter than the watchdog's first look.
+        if self.cancel.is_cancelled() {
+            return Err(Missed::Cancelled);
+        }
         let reads: Reads = Arc::default();
         let options = RunOptions {
             until: self.until.clone(),
@@ -153,14 +178,8 @@ impl Bench {
         let result = self.watched(pipeline, &options, limit);
         let (wall_s, cpu_s) = (started.elapsed().as_secs_f64(), cpu.elapsed().as_secs_f64());
         let peak_memory_bytes = peak();
-        let result = result.map_err(|e| match e.error.code {
-            ErrorCode::Cancelled if self.cancel.is_cancelled() => Missed::Cancelled,
-            ErrorCode::Cancelled => Missed::OverLimit(wall_s),
-            _ => Missed::Failed(StageError { message: e.to_string(), ..e.error }),
-        })?;
-        let no_garment = StageError::invalid("the pipeline makes no garment to be compared")
-            .hint("leave out --until, or name a stage behind the draper");
-        let garment = last::<Garment>(&result.log).ok_or(Missed::Failed(no_garment))?;
+        let result = result.map_err(|e| self.missed(e, wall_s))?;
+        let garment = last::<Garment>(&result.log).ok_or_else(no_garment)?;
         Ok(Ran {
             garment,
             body: last(&result.log),
@@ -174,13 +193,21 @@ impl Bench {
         })
     }
 
+    fn missed(&self, e: RunError, wall_s: f64) -> Missed {
+        match e.error.code {
+            ErrorCode::Cancelled if self.cancel.is_cancelled() => Missed::Cancelled,
+            ErrorCode::Cancelled => Missed::OverLimit(wall_s),
+            _ => Missed::Failed(StageError { message: e.to_string(), ..e.error }),
+        }
+    }
+
     /// Runs with a watchdog beside it.
     fn watched(
         &self,
         pipeline: &Pipeline,
         options: &RunOptions,
         limit: Option<Duration>,
-    ) -> Result<RunResult, toile_core::RunError> {
+    ) -> Result<RunResult, RunError> {
         let own = Cancel::new();
         let end = limit.map(|l| Instant::now() + l);
         let (done, wait) = channel::<()>();
@@ -199,6 +226,11 @@ impl Bench {
             result
         })
     }
+}
+
+fn no_garment() -> Missed {
+    let e = StageError::invalid("the pipeline makes no garment to be compared");
+    Missed::Failed(e.hint("leave out --until, or name a stage behind the draper"))
 }
 
 fn wait_is_on(wait: &Receiver<()>) -> bool {

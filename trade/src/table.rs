@@ -1,8 +1,8 @@
 //! What was measured as lines of text: a table for people, comma-separated values for programs.
 
-use crate::ladder::setting_words;
 use crate::record::{Clock, Measured, Outcome, Point, Trade};
 use crate::richardson::FORMAL_ORDER;
+use crate::slot::setting_words;
 use std::fmt::Write;
 
 /// A column: its head, its unit, and its value.

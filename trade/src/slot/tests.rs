@@ -3,8 +3,11 @@
 
 use super::*;
 use crate::default_knobs::default_knobs;
+use crate::knob::KnobSpec;
+use crate::source::Source;
+use std::path::PathBuf;
 use toile_core::artifact::Garment;
-use toile_core::{Context, Length, StageError, stage};
+use toile_core::{Context, Length, Registry, StageError, stage};
 
 const FILE: &str = r#"(
     name: "scene",
