@@ -335,7 +335,7 @@ pub(crate) struct TradeArgs {
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
     /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what it saves and changes
-    #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "budget", "jitter", "reference", "clock"])]
+    #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "jitter", "reference", "clock"])]
     pub(crate) ablate: bool,
     /// Print the record as one JSON object on standard output and nothing else
     #[arg(long)]
@@ -349,10 +349,10 @@ pub(crate) struct TradeArgs {
 /// How a front is measured.
 #[derive(Debug, Args)]
 pub(crate) struct StudyArgs {
-    /// Time for everything, like 90s, 5m or 1h
-    #[arg(long, default_value = "5m", value_parser = crate::trade::duration)]
-    pub(crate) budget: Duration,
-    /// Longest run of a setting [default: a tenth of the budget]
+    /// Time for everything, like 90s, 5m or 1h [default: 5m; with `trade --ablate` none]
+    #[arg(long, value_parser = crate::trade::duration)]
+    pub(crate) budget: Option<Duration>,
+    /// Longest run of a setting [default: a tenth of the budget; with `trade --ablate` none]
     #[arg(long, value_parser = crate::trade::duration)]
     pub(crate) limit: Option<Duration>,
     /// Runs of each setting
@@ -370,6 +370,13 @@ pub(crate) struct StudyArgs {
     /// Number of threads [default: one for each core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+}
+
+impl StudyArgs {
+    /// Time for a front.
+    pub(crate) fn budget(&self) -> Duration {
+        self.budget.unwrap_or(Duration::from_secs(300))
+    }
 }
 
 #[derive(Debug, Args)]

@@ -1,6 +1,6 @@
 //! An ablation as lines of text: a table for people, comma-separated values for programs.
 
-use super::record::{Ablation, Change, Row};
+use super::record::{Ablation, Change, Cut, Row};
 use crate::record::median;
 use std::fmt::Write;
 
@@ -38,6 +38,22 @@ pub fn lines(ablation: &Ablation) -> Vec<String> {
         lines.push(format!("    {}{why}", row.verdict.as_str()));
     }
     lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved".into());
+    lines.extend(ablation.cut.iter().flat_map(missing));
+    lines
+}
+
+/// What a budget that ended leaves open.
+fn missing(cut: &Cut) -> Vec<String> {
+    let mut lines = vec![format!(
+        "the budget ended after {} of {} runs; the same command goes on from there",
+        cut.done, cut.all
+    )];
+    for u in &cut.not_measured {
+        lines.push(format!(
+            "    not measured: {} {}, turned round by {}",
+            u.decided.stage, u.decided.decision.rule, u.turned
+        ));
+    }
     lines
 }
 
