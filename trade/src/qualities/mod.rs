@@ -3,6 +3,9 @@
 //! One measurement serves all of them. A quality says what its proof found: the worst of a fresh run and of moved starts, the
 //! processor time of the fresh run, and the day.
 
+#[cfg(test)]
+mod tests;
+
 use crate::record::{Clock, Machine};
 use crate::tune::{Proof, Prover, Wish, overrides, refusal};
 use std::str::FromStr;
@@ -125,7 +128,3 @@ fn words(proof: &Proof, floor: Option<f64>, toile: &str, machine: &Machine, date
         machine.cores
     )
 }
-
-#[cfg(test)]
-#[path = "qualities_tests.rs"]
-mod tests;
