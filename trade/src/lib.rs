@@ -7,7 +7,7 @@
 //! - `sample`, `front`: which settings are tried, and which of them nothing beats;
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
 //! - `jitter`, `ladder`, `richardson`, `floor`: the reference, the proof that it has stopped moving, its own spread, and how well it is known;
-//! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`: the whole, bounded by a budget, kept on disk, resumed; `journal`: how it is kept; `digest`: what tells pipelines and garments apart;
+//! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`: the whole, bounded by a budget, kept on disk, resumed; `journal`: how it is kept; `digest`: what tells pipelines and garments apart; `digits`: numbers as they are read;
 //! - `decided`, `saving`, `ablate`: what a pipeline leaves out by facts of its scene, what that saves, and what turning each
 //!   decision round changes;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
@@ -22,6 +22,7 @@ pub mod decided;
 pub mod default_knobs;
 pub mod dial;
 pub mod digest;
+mod digits;
 pub mod errors;
 pub mod floor;
 pub mod front;

@@ -78,19 +78,21 @@ pub struct Measured {
 impl Measured {
     /// The middle of the runs' times.
     pub fn time(&self, clock: Clock) -> f64 {
-        median(match clock {
+        median(self.times(clock))
+    }
+
+    /// Of each run, seconds.
+    fn times(&self, clock: Clock) -> &[f64] {
+        match clock {
             Clock::Wall => &self.wall_s,
             Clock::Cpu => &self.cpu_s,
-        })
+        }
     }
 
     /// From the quickest to the slowest run, seconds.
     pub fn time_spread(&self, clock: Clock) -> f64 {
-        let times = match clock {
-            Clock::Wall => &self.wall_s,
-            Clock::Cpu => &self.cpu_s,
-        };
-        let (lo, hi) = times.iter().fold((f64::INFINITY, 0.0_f64), |(lo, hi), t| (lo.min(*t), hi.max(*t)));
+        let times = self.times(clock).iter();
+        let (lo, hi) = times.fold((f64::INFINITY, 0.0_f64), |(lo, hi), t| (lo.min(*t), hi.max(*t)));
         (hi - lo).max(0.0)
     }
 

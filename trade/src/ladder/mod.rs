@@ -7,13 +7,17 @@
 //! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
 //!
 //! The garment has many states of rest, so a reference has a spread of its own: the level before the last is started again
-//! from moved starts (`jitter`).
+//! from moved starts (`jitter`, `spread`).
 //!
 //! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
 
+mod spread;
+
+pub(crate) use spread::moved_start;
+
 use crate::errors::{compare, ease};
 use crate::measure::{Bench, Missed, Ran};
-use crate::record::{Level, Order, OwnSpread, Reference};
+use crate::record::{Level, Order, Reference};
 use crate::richardson::convergence;
 use crate::slot::{Board, Setting, setting_words};
 use crate::source::Source;
@@ -78,10 +82,7 @@ impl Search<'_> {
             let left = (k > 0).then(|| self.budget.saturating_sub(started.elapsed()));
             let ran = match self.level(&setting, left) {
                 Ok(ran) => ran,
-                Err(missed) => match self.after_miss(missed, k) {
-                    Ok(why) => break why,
-                    Err(e) => return Err(e),
-                },
+                Err(missed) => break self.after_miss(missed, k)?,
             };
             let level = level(self.board, setting, &ran, last.as_ref())?;
             tell(words(k, &level));
@@ -90,18 +91,9 @@ impl Search<'_> {
         };
         let Some(ran) = last else { return Err(StageError::internal("a reference without levels")) };
         let spread = self.spread(&levels, before.as_ref().unwrap_or(&ran), tell)?;
-        let reference = Reference {
-            ratio: RATIO,
-            mean: None,
-            p95: None,
-            displacement: None,
-            stopped,
-            spread,
-            ease_mm: ease(&ran),
-            levels,
-        };
-        let reference = with_orders(reference);
-        Ok(Found { reference, ran })
+        let ease_mm = ease(&ran);
+        let reference = Reference { ratio: RATIO, levels, stopped, spread, ease_mm, ..Reference::default() };
+        Ok(Found { reference: with_orders(reference), ran })
     }
 
     /// The reference of an earlier session: its finest level again, from the cache where it is still there.
@@ -157,57 +149,6 @@ impl Search<'_> {
             missed => Err(missed.into()),
         }
     }
-
-    /// Starts the level before the last again from moved starts.
-    fn spread(
-        &self,
-        levels: &[Level],
-        unmoved: &Ran,
-        tell: &mut dyn FnMut(String),
-    ) -> Result<Option<OwnSpread>, StageError> {
-        let (started, level) = (Instant::now(), levels.len().saturating_sub(2));
-        let jitter_mm = self.jitter.metres() * 1e3;
-        let mut spread = OwnSpread { jitter_mm, level, starts_mm: Vec::new(), failed: Vec::new() };
-        for seed in 1..=self.starts as u64 {
-            let left = self.starts_budget.saturating_sub(started.elapsed());
-            let overrides = self.board.overrides(&levels[level].setting);
-            match moved_start(
-                self.source,
-                &overrides,
-                self.bench,
-                (self.jitter, seed),
-                Some(left),
-                Some(self.cache.clone()),
-            ) {
-                Ok(ran) => {
-                    let d = compare(&ran, unmoved)?.distance_mm;
-                    tell(format!(
-                        "start {seed} moved by {jitter_mm} mm: 95 % within {:.2} mm of the unmoved",
-                        d.p95
-                    ));
-                    spread.starts_mm.push(d);
-                }
-                Err(Missed::Cancelled) => return Err(Missed::Cancelled.into()),
-                Err(Missed::OverLimit(_)) => break,
-                Err(Missed::Failed(e)) => spread.failed.push(e.message),
-            }
-        }
-        let tried = !spread.starts_mm.is_empty() || !spread.failed.is_empty();
-        Ok(tried.then_some(spread))
-    }
-}
-
-/// Runs a pipeline from a moved start.
-pub(crate) fn moved_start(
-    source: &Source<'_>,
-    overrides: &[toile_core::pipeline::Override],
-    bench: &Bench,
-    moved: (Length, u64),
-    limit: Option<Duration>,
-    cache: Option<Arc<Cache>>,
-) -> Result<Ran, Missed> {
-    let pipeline = source.load(overrides).map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
-    bench.run_moved(pipeline, moved, limit, cache)
 }
 
 fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
