@@ -8,7 +8,7 @@ use std::path::Path;
 use toile_core::pipeline::Pipeline;
 use toile_core::{StageError, write_files};
 use toile_trade::ablate::{Ablation, Options, ablate, files, lines};
-use toile_trade::slot::Source;
+use toile_trade::source::Source;
 
 /// Measures, writes the files and prints the table.
 pub(crate) fn run(
@@ -17,21 +17,23 @@ pub(crate) fn run(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let bench = bench(args.until.clone(), streams);
-    let options = Options { repeats: args.study.repeats, limit: args.study.limit, bench };
-    let out = args
-        .out
-        .clone()
-        .unwrap_or_else(|| default_folder(&args.pipeline, quality(&args.overrides), "ablation"));
+    let folder = || default_folder(&args.pipeline, quality(&args.overrides), "ablation");
+    let options = Options {
+        out: args.out.clone().unwrap_or_else(folder),
+        repeats: args.study.repeats,
+        budget: args.study.budget,
+        limit: args.study.limit,
+        bench: bench(args.until.clone(), streams),
+    };
     let measured = with_runs(args.study.threads, streams, |tell| ablate(source, pipeline, &options, tell));
-    match measured.and_then(|ablation| written(&ablation, &out).map(|()| ablation)) {
+    match measured.and_then(|ablation| written(&ablation, &options.out).map(|()| ablation)) {
         Err(e) => failed(&e, streams),
         Ok(ablation) => {
             match args.json {
                 true => streams.say(serde_json::to_string_pretty(&ablation).unwrap_or_default()),
                 false => {
                     lines(&ablation).iter().for_each(|l| streams.say(l));
-                    streams.say(format!("table in {}", out.display()));
+                    streams.say(format!("table in {}", options.out.display()));
                 }
             }
             exit::DONE

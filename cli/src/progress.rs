@@ -10,7 +10,7 @@ use std::sync::mpsc::channel;
 use std::time::Duration;
 use toile_core::pipeline::Pipeline;
 use toile_core::{Event, Listener, StageError};
-use toile_trade::ablate::Step;
+use toile_trade::ablate::Progress;
 
 /// Steps of the bar a stage.
 const STEPS: u64 = 100;
@@ -65,7 +65,7 @@ pub(crate) fn with_budget<T: Send>(
     streams: &mut Streams<'_>,
     work: impl FnOnce(&mut dyn FnMut(String)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
-    let length = study.budget.as_secs().max(1);
+    let length = study.budget().as_secs().max(1);
     let bar = measuring(length, "{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}");
     let told = |bar: &ProgressBar, line: String| {
         bar.set_position(bar.elapsed().as_secs());
@@ -78,17 +78,22 @@ pub(crate) fn with_budget<T: Send>(
 pub(crate) fn with_runs<T: Send>(
     threads: Option<u16>,
     streams: &mut Streams<'_>,
-    work: impl FnOnce(&mut dyn FnMut(Step)) -> Result<T, StageError> + Send,
+    work: impl FnOnce(&mut dyn FnMut(Progress)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
     let bar = measuring(1, "{spinner} {elapsed:>4} {pos} of {len} runs [{bar:28}] {wide_msg}");
     shown(&bar, threads, streams, at, work)
 }
 
 /// Puts the bar where a measurement is; gives the line to show.
-fn at(bar: &ProgressBar, step: Step) -> String {
-    bar.set_length(step.all as u64);
-    bar.set_position(step.done as u64);
-    step.to_string()
+fn at(bar: &ProgressBar, progress: Progress) -> String {
+    match progress {
+        Progress::Note(line) => line,
+        Progress::Run(step) => {
+            bar.set_length(step.all as u64);
+            bar.set_position(step.done as u64);
+            step.to_string()
+        }
+    }
 }
 
 fn measuring(length: u64, template: &str) -> ProgressBar {
@@ -124,12 +129,15 @@ fn shown<T: Send, M: Send>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_trade::ablate::Step;
 
     #[test]
     fn an_ablation_shows_runs_done_of_runs_to_do() {
         let bar = ProgressBar::hidden();
-        let line = at(&bar, Step { done: 3, all: 12, what: "as decided".into() });
+        let line = at(&bar, Progress::Run(Step { done: 3, all: 12, what: "as decided".into() }));
         assert_eq!((bar.position(), bar.length()), (3, Some(12)));
         assert_eq!(line, "run 4 of 12: as decided");
+        assert_eq!(at(&bar, Progress::Note("goes on".into())), "goes on");
+        assert_eq!(bar.position(), 3);
     }
 }

@@ -9,10 +9,10 @@ use serde_json::{Value, json};
 use std::path::Path;
 use toile_core::StageError;
 use toile_core::pipeline::Pipeline;
-use toile_trade::ladder::setting_words;
 use toile_trade::qualities::{Asked, Proved, prove, written};
 use toile_trade::record::{Clock, Trade, today};
-use toile_trade::slot::Source;
+use toile_trade::slot::setting_words;
+use toile_trade::source::Source;
 use toile_trade::table;
 use toile_trade::tune::{Proof, Prover};
 

@@ -27,7 +27,6 @@ pub(crate) fn once(
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams),
     };
-    let bar = Arc::new(Bar::new(&pipeline));
     let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
         Ok(lock) => lock,
         Err(e) => {
@@ -42,26 +41,16 @@ pub(crate) fn once(
         watch::note_plugins(&pipeline, reads);
     }
     let known = Known::open(&args.cache, args.threads);
-    let predicted = Arc::new(known.by_stage(&pipeline));
-    let outcome = on_threads(args.threads, || {
-        let options = RunOptions {
-            meter: Some(Arc::new(costs::stopwatch())),
-            predicted: predicted.clone(),
-            until: args.until.clone(),
-            also: args.also.clone(),
-            keep: args.keep,
-            cache: cache.clone(),
-            reads: reads.cloned(),
-        };
-        let listener: Arc<dyn Listener> = bar.clone();
-        run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener)
-    });
-    for warning in bar.finish() {
-        streams.tell(format!("warning: {warning}"));
-    }
-    for warning in cache.iter().flat_map(|c| c.take_warnings()) {
-        streams.tell(format!("warning: {warning}"));
-    }
+    let options = RunOptions {
+        meter: Some(Arc::new(costs::stopwatch())),
+        predicted: Arc::new(known.by_stage(&pipeline)),
+        until: args.until.clone(),
+        also: args.also.clone(),
+        keep: args.keep,
+        cache,
+        reads: reads.cloned(),
+    };
+    let outcome = under_a_bar(&pipeline, &options, args.threads, streams);
     match outcome {
         Err(e) => fail_run(&pipeline, &e, args.json, streams),
         Ok(result) => {
@@ -71,6 +60,23 @@ pub(crate) fn once(
             finish(args, &pipeline, result, streams).max(locked)
         }
     }
+}
+
+/// Runs with a progress line; tells the warnings of the stages, then those of the cache.
+fn under_a_bar(
+    pipeline: &Pipeline,
+    options: &RunOptions,
+    threads: Option<u16>,
+    streams: &mut Streams<'_>,
+) -> Result<RunResult, RunError> {
+    let bar = Arc::new(Bar::new(pipeline));
+    let listener: Arc<dyn Listener> = bar.clone();
+    let outcome = on_threads(threads, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
+    let of_cache = options.cache.iter().flat_map(|c| c.take_warnings());
+    for warning in bar.finish().into_iter().chain(of_cache) {
+        streams.tell(format!("warning: {warning}"));
+    }
+    outcome
 }
 
 /// Runs `work` in a pool of so many threads.

@@ -14,7 +14,7 @@ use toile_trade::default_knobs::default_knobs;
 use toile_trade::knob::KnobSpec;
 use toile_trade::measure::Bench;
 use toile_trade::record::{Clock, Trade};
-use toile_trade::slot::Source;
+use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 use toile_trade::table;
 
@@ -80,7 +80,7 @@ pub(crate) fn measured(
     }
     let options = Options {
         out: asked.out.clone(),
-        budget: asked.study.budget,
+        budget: asked.study.budget(),
         limit: asked.study.limit,
         points: asked.points,
         repeats: asked.study.repeats,

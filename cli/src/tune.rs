@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
 use toile_core::pipeline::Pipeline;
 use toile_core::{Registry, StageError, write_files};
-use toile_trade::ladder::setting_words;
 use toile_trade::record::{Clock, Trade, today};
-use toile_trade::slot::Source;
+use toile_trade::slot::setting_words;
+use toile_trade::source::Source;
 use toile_trade::table;
 use toile_trade::tune::{Proof, Prover, Wish, check, refusal};
 

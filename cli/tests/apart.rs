@@ -10,10 +10,11 @@ use std::process::{Command, Output, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 use toile_core::{Cancel, Length};
+use toile_trade::ablate;
 use toile_trade::apart::Apart;
 use toile_trade::measure::Bench;
 use toile_trade::record::{Clock, Outcome, Trade};
-use toile_trade::slot::Source;
+use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 
 const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
@@ -115,14 +116,24 @@ fn a_study_goes_on_from_what_runs_apart_left() {
     assert_eq!(after["points"].as_array().unwrap()[..2], before["points"].as_array().unwrap()[..]);
 }
 
-/// A study of three settings whose runs go through a shell, which counts them and kills the one of that number.
-fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
-    let counter = dir.join(format!("{out}.count")).display().to_string();
+/// Runs through a shell, which counts them and does something else in the place of the one of that number.
+fn shell(counter: &Path, number: usize, instead: &str) -> Option<Apart> {
+    let counter = counter.display();
     let script = format!(
-        "n=$(($(cat {counter} 2>/dev/null || echo 0)+1)); echo $n > {counter}; [ $n -eq {kills} ] && kill -9 $$; exec {} run-apart",
+        "n=$(($(cat {counter} 2>/dev/null || echo 0)+1)); echo $n > {counter}; [ $n -eq {number} ] && {instead}; exec {} run-apart",
         env!("CARGO_BIN_EXE_toile")
     );
-    let apart = Some(Apart { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] });
+    Some(Apart { program: "/bin/sh".into(), arguments: vec!["-c".into(), script.into()] })
+}
+
+fn counted(counter: &Path) -> usize {
+    fs::read_to_string(counter).unwrap().trim().parse().unwrap()
+}
+
+/// A study of three settings, the run of that number killed.
+fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
+    let counter = dir.join(format!("{out}.count"));
+    let apart = shell(&counter, kills, "kill -9 $$");
     let registry = toile::registry();
     let (text, file, base) = (PIPELINE.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
     let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
@@ -140,7 +151,7 @@ fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
     };
     let knobs = ["Rest.speed=0.001..0.1".parse().unwrap()];
     let trade = study(&source, &source.load(&[]).unwrap(), &knobs, &options, &mut |_| ()).unwrap();
-    (trade, fs::read_to_string(counter).unwrap().trim().parse().unwrap())
+    (trade, counted(&counter))
 }
 
 #[test]
@@ -156,6 +167,35 @@ fn a_run_that_the_system_ends_is_a_failed_setting_and_the_study_goes_on() {
         let errors = |t: &Trade| t.points[i].measured().unwrap().errors.clone();
         assert_eq!(errors(&trade), errors(&whole));
     }
+}
+
+#[test]
+fn an_ablation_that_the_user_ends_goes_on_from_the_runs_that_were_done() {
+    let dir = folder();
+    let (dir, counter) = (dir.path(), dir.path().join("count"));
+    let registry = toile::registry();
+    let text = "(scene: Scene(file: \"sheet.json\"), fabric: Preset(\"cotton poplin\"), stages: [Rest(speed: 0.01)])";
+    let (text, file, base) = (text.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
+    let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
+    // A run that hangs is ended by the user.
+    let session = |hangs: usize| {
+        let apart = shell(&counter, hangs, "exec sleep 600");
+        let (cancel, mut begun) = (Cancel::new(), 0);
+        let bench = Bench { until: None, cancel: cancel.clone(), listener: Arc::new(()), apart };
+        let options = ablate::Options { out: dir.join("out"), repeats: 2, budget: None, limit: None, bench };
+        ablate::ablate(&source, &source.load(&[]).unwrap(), &options, &mut |_| {
+            begun += 1;
+            if begun == hangs {
+                cancel.cancel();
+            }
+        })
+    };
+    let stopped = session(3).unwrap_err();
+    assert_eq!((stopped.message.as_str(), stopped.code.exit_code()), ("stopped on request", 5));
+    let all = session(0).unwrap();
+    assert_eq!(counted(&counter), 5, "two runs, one that was ended, and the two that were left");
+    assert_eq!((all.cpu_s.len(), all.rows.len(), all.rows[0].saved_s.len()), (2, 1, 2));
+    assert!(all.rows[0].change.unwrap().same_bits && all.cut.is_none());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What a knob may be set to, as a dial from 0 to 1, and how its values stand in a pipeline file.
 
+use crate::digits::to_digits;
 use crate::knob::{Number, Values, fault};
 use toile_core::{Finer, Length, ParamDoc, StageError};
 
@@ -133,9 +134,9 @@ pub(crate) fn is_spatial(doc: &ParamDoc) -> bool {
     doc.finer.is_some() && Form::of(doc) == Some(Form::Length)
 }
 
-/// To three digits: nobody reads more, and settings that are alike become equal.
+/// To three digits, so that settings that are alike become equal.
 pub(crate) fn rounded(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
+    to_digits(x, 3)
 }
 
 /// True where `value` is finer than `other` by a factor; `way` is 1 where less is finer, -1 where more is.
@@ -157,25 +158,22 @@ pub(crate) fn dial(key: &str, doc: &ParamDoc, values: &Values) -> Result<Dial, S
             list.iter().try_for_each(|v| check(key, doc, v))?;
             Ok(Dial::List(list))
         }
-        Values::Range(lo, hi) => {
-            let form = Form::of(doc).ok_or_else(|| {
-                fault(format!("`{key}` is {}, which has no range", doc.kind))
-                    .hint("list its values with commas")
-            })?;
-            if (form == Form::Length) != matches!(hi, Number::Length(_)) {
-                let hint = if form == Form::Length {
-                    "write the unit, like `6..24 mm`"
-                } else {
-                    "write bare numbers"
-                };
-                return Err(fault(format!("`{key}` is a {}", doc.kind)).hint(hint));
-            }
-            let (lo, hi) = (lo.value(), hi.value());
-            check(key, doc, &form.write(lo))?;
-            check(key, doc, &form.write(hi))?;
-            Ok(Dial::Range { lo, hi, log: lo > 0.0, form })
-        }
+        Values::Range(lo, hi) => range(key, doc, *lo, *hi),
     }
+}
+
+fn range(key: &str, doc: &ParamDoc, lo: Number, hi: Number) -> Result<Dial, StageError> {
+    let no_range = || fault(format!("`{key}` is {}, which has no range", doc.kind));
+    let form = Form::of(doc).ok_or_else(|| no_range().hint("list its values with commas"))?;
+    if (form == Form::Length) != matches!(hi, Number::Length(_)) {
+        let unit = "write the unit, like `6..24 mm`";
+        let hint = if form == Form::Length { unit } else { "write bare numbers" };
+        return Err(fault(format!("`{key}` is a {}", doc.kind)).hint(hint));
+    }
+    let (lo, hi) = (lo.value(), hi.value());
+    check(key, doc, &form.write(lo))?;
+    check(key, doc, &form.write(hi))?;
+    Ok(Dial::Range { lo, hi, log: lo > 0.0, form })
 }
 
 fn check(key: &str, doc: &ParamDoc, text: &str) -> Result<(), StageError> {

@@ -60,22 +60,23 @@ pub fn insert(pipeline: &mut Pipeline, amount: Length, seed: u64) -> Result<(), 
             *node += 1;
         }
     }
-    let stage = JitteredStart { amount, seed };
+    let start = std::mem::replace(&mut pipeline.nodes[at].inputs[port], Feed::Node { node: at, port: 0 });
+    pipeline.nodes.insert(at, node(JitteredStart { amount, seed }, start));
+    Ok(())
+}
+
+/// A stage that stands in no file.
+fn node(stage: JitteredStart, input: Feed) -> Node {
     let card = toile_core::Stage::card(&stage);
-    let inputs =
-        vec![std::mem::replace(&mut pipeline.nodes[at].inputs[port], Feed::Node { node: at, port: 0 })];
-    let id = card.name.to_owned();
-    let node = Node {
-        id,
+    Node {
+        id: card.name.to_owned(),
         stage: Box::new(stage),
         card,
         span: 0..0,
         place: 0..0,
         params: Default::default(),
-        inputs,
-    };
-    pipeline.nodes.insert(at, node);
-    Ok(())
+        inputs: vec![input],
+    }
 }
 
 /// A plane wave: wave vector (1/m), phase, and the direction in which it moves.

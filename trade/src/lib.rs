@@ -3,11 +3,11 @@
 //! [`study`] runs a pipeline over its *knobs* and holds every garment against a converged *reference*; [`tune`] picks
 //! from what was measured and proves the choice by fresh runs. docs/trade.md defines every figure.
 //!
-//! - `split`, `knob`, `dial`, `slot`, `default_knobs`: what may be turned, and how a setting becomes overrides of the pipeline file;
+//! - `source`, `split`, `knob`, `dial`, `slot`, `default_knobs`: the pipeline's file, what may be turned in it, and how a setting becomes overrides of the pipeline file;
 //! - `sample`, `front`: which settings are tried, and which of them nothing beats;
 //! - `surface`, `girth`, `silhouette`, `texture`, `errors`: how far a garment is from the reference;
 //! - `jitter`, `ladder`, `richardson`, `floor`: the reference, the proof that it has stopped moving, its own spread, and how well it is known;
-//! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`, `store`: the whole, bounded by a budget, kept on disk, resumed;
+//! - `measure`: one run with its clocks; `apart`: in a process of its own; `study`: the whole, bounded by a budget, kept on disk, resumed; `journal`: how it is kept; `digest`: what tells pipelines and garments apart; `digits`: numbers as they are read;
 //! - `decided`, `saving`, `ablate`: what a pipeline leaves out by facts of its scene, what that saves, and what turning each
 //!   decision round changes;
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/costs.md);
@@ -21,11 +21,14 @@ pub mod cost;
 pub mod decided;
 pub mod default_knobs;
 pub mod dial;
+pub mod digest;
+mod digits;
 pub mod errors;
 pub mod floor;
 pub mod front;
 mod girth;
 pub mod jitter;
+mod journal;
 pub mod knob;
 pub mod ladder;
 pub mod measure;
@@ -38,8 +41,8 @@ pub mod sample;
 pub mod saving;
 mod silhouette;
 pub mod slot;
+pub mod source;
 mod split;
-pub mod store;
 pub mod study;
 pub mod surface;
 pub mod table;

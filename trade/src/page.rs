@@ -3,7 +3,7 @@
 use crate::measure::Ran;
 use crate::plot::{marks, png, svg};
 use crate::record::{Clock, Measured, Outcome, Trade};
-use crate::table::{csv, reference, setting_of, whose_memory};
+use crate::table::{by_time, csv, reference, setting_of, whose_memory};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::codecs::jpeg::JpegEncoder;
@@ -99,10 +99,7 @@ fn html(trade: &Trade, drawing: &str, folder: &Path) -> Result<String, minijinja
 fn page(trade: &Trade, drawing: &str, folder: &Path) -> Page {
     let machine = &trade.machine;
     let load = machine.load.map_or_else(String::new, |l| format!(", load {l:.1}"));
-    let mut order: Vec<usize> = (0..trade.points.len()).collect();
-    let time = |i: &usize| trade.points[*i].measured().map_or(f64::INFINITY, |m| m.time(trade.clock));
-    order.sort_by(|a, b| time(a).total_cmp(&time(b)));
-    let ran = order.iter().filter_map(|&i| Some((i, trade.points[i].measured()?)));
+    let ran = by_time(trade).into_iter().filter_map(|i| Some((i, trade.points[i].measured()?)));
     Page {
         pipeline: trade.pipeline.clone(),
         file: trade.file.clone(),

@@ -3,7 +3,7 @@
 use crate::ablate::{Ablation, Row, path_to};
 use crate::cost::{Costs, predict, time, total};
 use crate::record::Clock;
-use crate::slot::Source;
+use crate::source::Source;
 use serde::Serialize;
 use toile_core::cost::Predicted;
 use toile_core::decide::{Decided, Saves, Turn};

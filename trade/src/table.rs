@@ -1,8 +1,10 @@
 //! What was measured as lines of text: a table for people, comma-separated values for programs.
 
-use crate::ladder::setting_words;
-use crate::record::{Clock, Measured, Outcome, Point, Trade};
+use crate::digits::to_digits;
+use crate::floor::Floor;
+use crate::record::{Clock, Level, Measured, Order, Outcome, OwnSpread, Point, Trade};
 use crate::richardson::FORMAL_ORDER;
+use crate::slot::setting_words;
 use std::fmt::Write;
 
 /// A column: its head, its unit, and its value.
@@ -35,6 +37,9 @@ const COLUMNS: [Column; 23] = [
     ("runs", |m| Some(m.wall_s.len() as f64)),
 ];
 
+/// More than any figure is good for.
+const DIGITS: usize = 6;
+
 /// All settings as comma-separated values, a head line first; empty where a figure is not known.
 pub fn csv(trade: &Trade) -> String {
     let heads: Vec<&str> = COLUMNS.iter().map(|(head, _)| *head).collect();
@@ -48,7 +53,7 @@ pub fn csv(trade: &Trade) -> String {
             Outcome::OverLimit { .. } => "over_limit".to_owned(),
         };
         let figure =
-            |(_, of): &Column| m.and_then(of).map_or_else(String::new, |x| format!("{}", significant(x)));
+            |(_, of): &Column| m.and_then(of).map_or_else(String::new, |x| to_digits(x, DIGITS).to_string());
         let figures: Vec<String> = COLUMNS.iter().map(figure).collect();
         let values: Vec<String> = keys.iter().map(|k| quoted(p.setting.get(*k))).collect();
         let sound = m.map_or("", |m| if m.sound { "true" } else { "false" });
@@ -62,11 +67,6 @@ pub fn csv(trade: &Trade) -> String {
         );
     }
     text
-}
-
-/// Six digits are more than any figure is good for.
-fn significant(x: f64) -> f64 {
-    format!("{x:.5e}").parse().unwrap_or(x)
 }
 
 fn quoted(value: Option<&String>) -> String {
@@ -107,7 +107,7 @@ pub(crate) fn whose_memory(trade: &Trade) -> &'static str {
 }
 
 /// Indices by time; those without one last.
-fn by_time(trade: &Trade) -> Vec<usize> {
+pub(crate) fn by_time(trade: &Trade) -> Vec<usize> {
     let time = |i: &usize| trade.points[*i].measured().map_or(f64::INFINITY, |m| m.time(trade.clock));
     let mut order: Vec<usize> = (0..trade.points.len()).collect();
     order.sort_by(|a, b| time(a).total_cmp(&time(b)));
@@ -117,47 +117,47 @@ fn by_time(trade: &Trade) -> Vec<usize> {
 /// What the reference is, and how well it is known.
 pub fn reference(trade: &Trade) -> Vec<String> {
     let r = &trade.reference;
-    let mut lines = Vec::new();
-    for (k, l) in r.levels.iter().enumerate() {
-        let moved = match (l.moved_mm, l.displaced_mm) {
-            (Some(m), Some(d)) => format!(
-                ", moved by {:.2} mm (mean), {:.2} mm (95 %), {:.2} mm (worst); displaced by {:.2} mm (mean)",
-                m.mean, m.p95, m.max, d.mean
-            ),
-            _ => String::new(),
-        };
-        lines.push(format!(
-            "reference level {k}: {}: {} triangles, {:.1} s cpu{moved}",
-            setting_words(&l.setting),
-            l.triangles,
-            l.cpu_s
-        ));
-    }
-    let order = |name: &str, o: Option<crate::record::Order>| match o {
+    let mut lines: Vec<String> = r.levels.iter().enumerate().map(|(k, l)| level(k, l)).collect();
+    lines.push(format!("{}; {}", order("mean distance", r.mean), order("distance of 95 %", r.p95)));
+    lines.push(format!("refined no further: {}", r.stopped));
+    lines.extend(r.spread.as_ref().map(spread));
+    let floor = |f: Floor| format!("errors below {:.2} mm mean nothing: {}", f.mm, f.words());
+    lines.extend(r.floor().map(floor));
+    lines
+}
+
+fn level(k: usize, l: &Level) -> String {
+    let moved = match (l.moved_mm, l.displaced_mm) {
+        (Some(m), Some(d)) => format!(
+            ", moved by {:.2} mm (mean), {:.2} mm (95 %), {:.2} mm (worst); displaced by {:.2} mm (mean)",
+            m.mean, m.p95, m.max, d.mean
+        ),
+        _ => String::new(),
+    };
+    let setting = setting_words(&l.setting);
+    format!("reference level {k}: {setting}: {} triangles, {:.1} s cpu{moved}", l.triangles, l.cpu_s)
+}
+
+fn order(name: &str, order: Option<Order>) -> String {
+    match order {
         Some(o) => format!(
             "observed order of the {name} {}, {:.2} mm missing",
             o.order.map_or_else(|| "beyond all bounds".into(), order_words),
             o.missing_mm
         ),
         None => format!("no order of the {name}: the last levels do not come nearer"),
-    };
-    lines.push(format!("{}; {}", order("mean distance", r.mean), order("distance of 95 %", r.p95)));
-    lines.push(format!("refined no further: {}", r.stopped));
-    if let Some(s) = &r.spread {
-        let worst =
-            s.p95().map_or_else(|| "none ran".into(), |p| format!("95 % within {p:.2} mm in the worst"));
-        lines.push(format!(
-            "its own spread: {} starts moved by {} mm at level {}: {worst}{}",
-            s.starts_mm.len() + s.failed.len(),
-            s.jitter_mm,
-            s.level,
-            if s.failed.is_empty() { String::new() } else { format!(", {} failed", s.failed.len()) }
-        ));
     }
-    if let Some(floor) = r.floor() {
-        lines.push(format!("errors below {:.2} mm mean nothing: {}", floor.mm, floor.words()));
-    }
-    lines
+}
+
+fn spread(s: &OwnSpread) -> String {
+    let worst = s.p95().map_or_else(|| "none ran".into(), |p| format!("95 % within {p:.2} mm in the worst"));
+    format!(
+        "its own spread: {} starts moved by {} mm at level {}: {worst}{}",
+        s.starts_mm.len() + s.failed.len(),
+        s.jitter_mm,
+        s.level,
+        if s.failed.is_empty() { String::new() } else { format!(", {} failed", s.failed.len()) }
+    )
 }
 
 /// An order above the method's own is luck: it is said how much of it counts.
@@ -170,19 +170,21 @@ fn order_words(order: f64) -> String {
 
 fn line(trade: &Trade, i: usize) -> String {
     let p = &trade.points[i];
-    let setting = setting_of(trade, p);
-    let Some(m) = p.measured() else {
-        let why = match &p.outcome {
-            Outcome::Failed { message, .. } => format!("fails: {}", message.lines().next().unwrap_or("")),
-            _ => format!("stopped after {:.0} s", over(p)),
-        };
-        return format!("{:>3}  {setting}: {why}", i + 1);
-    };
-    let (e, mark) = (&m.errors, mark(trade, i, m));
+    let (number, setting) = (i + 1, setting_of(trade, p));
+    match &p.outcome {
+        Outcome::Measured(m) => format!("{number:>3}{} {}  {setting}", mark(trade, i, m), figures(m)),
+        Outcome::Failed { message, .. } => {
+            format!("{number:>3}  {setting}: fails: {}", message.lines().next().unwrap_or(""))
+        }
+        Outcome::OverLimit { seconds } => format!("{number:>3}  {setting}: stopped after {seconds:.0} s"),
+    }
+}
+
+fn figures(m: &Measured) -> String {
+    let e = &m.errors;
     let ease = |name: &str| e.ease_mm.get(name).map_or_else(|| "-".into(), |x| format!("{x:.1}"));
     format!(
-        "{:>3}{mark} {:>9.2} {:>7.2} {:>9.2} {:>6} | {:>6.2} {:>6.2} {:>6.1} {:>6.2} | {:>6} {:>6} {:>6} | {:>5.2} {:>5.2} {:>5.2} {:>6.2} | {:>6.4} {:>6.4} {:>5}  {setting}",
-        i + 1,
+        "{:>9.2} {:>7.2} {:>9.2} {:>6} | {:>6.2} {:>6.2} {:>6.1} {:>6.2} | {:>6} {:>6} {:>6} | {:>5.2} {:>5.2} {:>5.2} {:>6.2} | {:>6.4} {:>6.4} {:>5}",
         m.time(Clock::Wall),
         m.time_spread(Clock::Wall),
         m.time(Clock::Cpu),
@@ -209,13 +211,6 @@ fn mark(trade: &Trade, i: usize, m: &Measured) -> char {
         (true, _) => '*',
         (_, false) => '!',
         _ => ' ',
-    }
-}
-
-fn over(p: &Point) -> f64 {
-    match p.outcome {
-        Outcome::OverLimit { seconds } => seconds,
-        _ => 0.0,
     }
 }
 

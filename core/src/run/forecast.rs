@@ -1,6 +1,7 @@
 //! What a run would find in the cache and what it would run, and why, without running anything.
 
-use super::steps::{Ran, Run, Search, Step, held};
+use super::known::{Search, held};
+use super::steps::{Ran, Run, Step};
 use super::value::{Held, Slot, gather};
 use super::{RunError, RunOptions, plan};
 use crate::artifact::{ArtifactType, RunLog};

@@ -2,8 +2,10 @@
 
 mod forecast;
 mod implicit;
+mod known;
 mod node;
 mod pixels;
+mod recall;
 mod record;
 mod steps;
 mod value;

@@ -1,15 +1,14 @@
-//! A run under way: stage by stage, each from the cache where its result is known, and what lies in the cache
-//! only brought into memory once something needs it.
+//! A run under way: stage by stage, each from the cache where its result is known (`known`), and what lies in the cache
+//! only brought into memory once something needs it (`recall`).
 
 use super::node::{Failure, Made, run_entries};
-use super::value::{Held, gather};
+use super::value::Held;
 use super::{Reads, RunError, typed};
-use crate::artifact::{Measure, stored};
-use crate::cache::{Cache, Fed, Found, Hash, Ingredients, Kept, Manifest, Miss, RUN_SO_FAR, of_stage};
+use crate::artifact::Measure;
+use crate::cache::{Cache, Fed, Found, Hash, Ingredients, RUN_SO_FAR, of_stage};
 use crate::cost::{Meter, Predicted, Size, StageCost, Used, size_of};
 use crate::pipeline::{Feed, Node, Pipeline};
-use crate::{Arity, ArtifactType, Cancel, Context, Contract, Event, Inputs, Listener, PortValue, StageError};
-use rayon::prelude::*;
+use crate::{Arity, ArtifactType, Cancel, Context, Inputs, Listener, PortValue, StageError};
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
@@ -46,13 +45,6 @@ pub(super) struct Run<'a> {
     pub(super) steps: Vec<Step>,
 }
 
-/// One run of a stage, as it is looked for in the cache.
-pub(super) struct Search {
-    pub(super) entry: String,
-    pub(super) ingredients: Ingredients,
-    pub(super) found: Found,
-}
-
 impl Run<'_> {
     /// Gives the next stage its result.
     pub(super) fn step(&mut self) -> Result<(), RunError> {
@@ -77,102 +69,9 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
+    pub(super) fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
         let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), listener);
         cx.with_memo(self.cache.cloned(), of_stage(&node.card))
-    }
-
-    /// Looks for every run of a stage in the cache.
-    pub(super) fn search(&self, index: usize) -> Result<Vec<Search>, Failure> {
-        let node = &self.pipeline.nodes[index];
-        let kept = node.card.contracts.contains(&Contract::Deterministic);
-        let search = |entry: String| {
-            let ingredients = self.ingredients(index, &entry);
-            let key = ingredients.key().filter(|_| kept);
-            let found = match (self.cache, key) {
-                (Some(cache), Some(key)) => shaped(node, cache.find(&key, &self.pipeline.base)),
-                _ => Found::Miss(Miss::Unknown),
-            };
-            Search { entry, ingredients, found }
-        };
-        Ok(self.entries(index)?.into_iter().map(search).collect())
-    }
-
-    /// The key of a run; none where it cannot be kept.
-    fn key(&self, node: &Node, ingredients: &Ingredients) -> Option<(&Cache, Hash)> {
-        let kept = node.card.contracts.contains(&Contract::Deterministic);
-        Some((self.cache?, ingredients.key().filter(|_| kept)?))
-    }
-
-    /// Says what is wrong with the cache, and repeats the warnings of results that come from it.
-    fn tell(&self, node: &Node, searches: &[Search]) {
-        for search in searches {
-            match &search.found {
-                Found::Hit(manifest) => {
-                    self.note_reads(manifest.reads.clone());
-                    for warning in &manifest.warnings {
-                        self.listener.event(&node.id, &search.entry, &Event::Warning(warning.clone()));
-                    }
-                }
-                Found::Miss(Miss::Damaged(why)) => self.damaged(node, &search.entry, why),
-                Found::Miss(_) => {}
-            }
-        }
-    }
-
-    fn damaged(&self, node: &Node, entry: &str, why: &str) {
-        let of = if entry.is_empty() { String::new() } else { format!(" ({entry})") };
-        if let Some(cache) = self.cache {
-            cache.warn(format!("damaged cache entry of {}{of}: {why}; it is made anew", node.id));
-        }
-    }
-
-    /// Keeps what was made and puts it together with what was found.
-    fn ran(&self, node: &Node, searches: Vec<Search>, made: Vec<Made>, cx: &Context) -> Ran {
-        let cached = made.is_empty() && self.cache.is_some();
-        let kept = self.keep(node, &searches, &made);
-        let mut made = made.into_iter().zip(kept).peekable();
-        let (mut notes, mut entries) = ((Vec::new(), Vec::new()), Vec::new());
-        for Search { entry, ingredients, found } in searches {
-            let (fresh, manifest) = match found {
-                Found::Hit(manifest) => (None, Some(manifest)),
-                Found::Miss(_) => made.next().map_or((None, None), |(made, kept)| (Some(made), kept)),
-            };
-            if let (Some(cache), Some(manifest)) = (self.cache, &manifest) {
-                if let (None, Some(key)) = (&fresh, ingredients.key()) {
-                    cache.touch(&key, manifest);
-                }
-                cache.note(self.pipeline, &node.id, &ingredients, manifest);
-            }
-            entries.push((entry.clone(), held(node, fresh.as_ref(), manifest.as_ref())));
-            let own = match (fresh, manifest) {
-                (Some(made), _) => (made.figures, made.warnings),
-                (None, Some(manifest)) => (manifest.figures(), manifest.warnings),
-                (None, None) => (Vec::new(), Vec::new()),
-            };
-            match node.card.is_mapped() {
-                true => cx.absorb(&entry, own.0, own.1),
-                false => notes = own,
-            }
-        }
-        let outputs = match node.card.is_mapped() {
-            true => {
-                notes = cx.take_notes();
-                gather(&node.card, &entries)
-            }
-            false => entries.pop().map(|(_, outputs)| outputs).unwrap_or_default(),
-        };
-        Ran { outputs, wall_s: 0.0, cached, figures: notes.0, warnings: notes.1, cost: None }
-    }
-
-    /// Puts into the cache what was made; none for what cannot be kept.
-    fn keep(&self, node: &Node, searches: &[Search], made: &[Made]) -> Vec<Option<Manifest>> {
-        let keep = |made: &Made| {
-            let search = searches.iter().find(|s| s.entry == made.entry)?;
-            let (cache, key) = self.key(node, &search.ingredients)?;
-            Some(cache.keep(&key, made))
-        };
-        made.par_iter().map(keep).collect()
     }
 
     /// What every stage took.
@@ -187,7 +86,7 @@ impl Run<'_> {
     }
 
     /// Runs a stage for some of its entries, and says what that took.
-    fn make(
+    pub(super) fn make(
         &mut self,
         index: usize,
         entries: &[String],
@@ -216,79 +115,11 @@ impl Run<'_> {
     }
 
     /// Tells whoever asked which files were read.
-    fn note_reads(&self, files: impl IntoIterator<Item = (String, Option<Hash>)>) {
+    pub(super) fn note_reads(&self, files: impl IntoIterator<Item = (String, Option<Hash>)>) {
         if let Some(reads) = self.reads {
             let full = files.into_iter().map(|(path, hash)| (self.pipeline.base.join(path), hash));
             reads.lock().unwrap_or_else(PoisonError::into_inner).extend(full);
         }
-    }
-
-    /// Brings what a report on the stages before `index` is given into memory: all but services.
-    fn ensure_before(&mut self, index: usize) -> Result<(), RunError> {
-        for i in 0..index {
-            for (port, out) in self.pipeline.nodes[i].card.outputs.iter().enumerate() {
-                if stored::is_stored(out.kind) {
-                    self.ensure(i, port, None)?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Brings all that a stage made into memory.
-    pub(super) fn ensure_all(&mut self, index: usize) -> Result<(), RunError> {
-        let ports = match &self.steps[index] {
-            Step::Ran(ran) => ran.outputs.len(),
-            Step::Skipped(_) => 0,
-        };
-        (0..ports).try_for_each(|port| self.ensure(index, port, None))
-    }
-
-    /// Brings a port's value (of some entries) into memory: from the cache, or where it is not to be had from there
-    /// by running its stage.
-    pub(super) fn ensure(
-        &mut self,
-        index: usize,
-        port: usize,
-        entries: Option<&[String]>,
-    ) -> Result<(), RunError> {
-        let (node, cache) = (&self.pipeline.nodes[index], self.cache.map(Arc::as_ref));
-        let Step::Ran(ran) = &mut self.steps[index] else { return Ok(()) };
-        let Some(held) = ran.outputs.get_mut(port) else { return Ok(()) };
-        let lost = held.ensure(entries, cache);
-        for (name, damage) in &lost {
-            if let Some(why) = damage {
-                self.damaged(node, name, why);
-            }
-        }
-        let mut lost: Vec<String> = lost.into_iter().map(|(name, _)| name).collect();
-        if !lost.is_empty() && !node.card.is_mapped() {
-            lost = vec![String::new()];
-        }
-        if lost.is_empty() { Ok(()) } else { self.remake(index, &lost) }
-    }
-
-    /// Runs a stage again whose result is known but not to be had.
-    fn remake(&mut self, index: usize, entries: &[String]) -> Result<(), RunError> {
-        let node = &self.pipeline.nodes[index];
-        // What it said came from the cache already.
-        let cx = self.context(node, Arc::new(()));
-        let started = Instant::now();
-        let (made, _) = self.make(index, entries, &cx)?;
-        for made in &made {
-            if let Some((cache, key)) = self.key(node, &self.ingredients(index, &made.entry)) {
-                cache.keep(&key, made);
-            }
-        }
-        let Step::Ran(ran) = &mut self.steps[index] else { return Ok(()) };
-        for made in &made {
-            for (held, value) in ran.outputs.iter_mut().zip(&made.outputs) {
-                held.restore(&made.entry, value);
-            }
-        }
-        ran.cached = false;
-        ran.wall_s += started.elapsed().as_secs_f64();
-        Ok(())
     }
 
     /// The inputs of one run, all of which are in memory.
@@ -305,14 +136,14 @@ impl Run<'_> {
         Inputs(node.card.inputs.iter().zip(&node.inputs).map(value).collect())
     }
 
-    fn held(&self, node: usize, port: usize) -> Option<&Held> {
+    pub(super) fn held(&self, node: usize, port: usize) -> Option<&Held> {
         match self.steps.get(node)? {
             Step::Ran(ran) => ran.outputs.get(port),
             Step::Skipped(_) => None,
         }
     }
 
-    fn ingredients(&self, index: usize, entry: &str) -> Ingredients {
+    pub(super) fn ingredients(&self, index: usize, entry: &str) -> Ingredients {
         let node = &self.pipeline.nodes[index];
         let fed = |(port, feed): (&crate::InPort, &Feed)| match feed {
             Feed::Nothing => (String::new(), Fed::Nothing),
@@ -333,7 +164,7 @@ impl Run<'_> {
 
     /// The names of the sets on the mapped ports, which must all be the same; one empty name for a stage that is not
     /// mapped.
-    fn entries(&self, index: usize) -> Result<Vec<String>, Failure> {
+    pub(super) fn entries(&self, index: usize) -> Result<Vec<String>, Failure> {
         let node = &self.pipeline.nodes[index];
         if !node.card.is_mapped() {
             return Ok(vec![String::new()]);
@@ -373,31 +204,10 @@ impl Run<'_> {
     }
 }
 
-/// The values of one run's ports.
-pub(super) fn held(node: &Node, made: Option<&Made>, manifest: Option<&Manifest>) -> Vec<Held> {
-    let port = |(i, out): (usize, &crate::OutPort)| {
-        let value = made.and_then(|m| m.outputs.get(i));
-        Held::of(out.kind, value, manifest.and_then(|m| m.outputs.get(i)))
-    };
-    node.card.outputs.iter().enumerate().map(port).collect()
-}
-
 /// How much was made, all entries and ports together.
 fn sizes(made: &[Made]) -> Size {
     let ports = |m: &Made| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&size_of(v)));
     made.iter().fold(Size::new(), |sum, m| sum.plus(&ports(m)))
-}
-
-/// A manifest that does not have the stage's ports is damaged.
-fn shaped(node: &Node, found: Found) -> Found {
-    let Found::Hit(manifest) = found else { return found };
-    let fits =
-        |(port, kept): (&crate::OutPort, &Kept)| (port.arity == Arity::All) == matches!(kept, Kept::Set(_));
-    let ports = &node.card.outputs;
-    match manifest.outputs.len() == ports.len() && ports.iter().zip(&manifest.outputs).all(fits) {
-        true => Found::Hit(manifest),
-        false => Found::Miss(Miss::Damaged("its outputs are not those of the stage".into())),
-    }
 }
 
 /// A failure with its place in the pipeline file.

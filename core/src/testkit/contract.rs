@@ -109,7 +109,7 @@ pub fn assert_kept<S: StageType>(contract: Contract) {
         return;
     }
     let kept = folder().and_then(|(_kept, path)| {
-        super::dress::files_for(&Registry::new(), card.example, &path)?;
+        super::files::files_for(&Registry::new(), card.example, &path)?;
         check(Trial { stage: &stage, folder: &path }, Some(&stage), contract)
     });
     match kept {

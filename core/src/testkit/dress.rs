@@ -1,11 +1,9 @@
-//! A small body, garment and everything around them, and the files that examples name.
+//! A small body, garment and everything around them.
 
 use super::shapes;
 use crate::artifact::*;
-use crate::{Cancel, Card, Context, Inputs, PortValue, Registry};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Rings of the body: height, half width, half depth; metres.
@@ -203,73 +201,6 @@ pub fn no_garment() -> Garment {
     }
 }
 
-/// A body of capsules: exact, cheap, without the cloth's own contacts.
-#[derive(Debug, Clone)]
-struct Capsules(Vec<(Point3, Point3, f64)>);
-
-/// A trunk, shoulders and a neck.
-pub fn collider() -> Collider {
-    let part = |a: [f64; 3], b: [f64; 3], r: f64| (Point3::from(a), Point3::from(b), r);
-    let parts = vec![
-        part([-0.08, 1.38, 0.0], [0.08, 1.38, 0.0], 0.06),
-        part([-0.05, 0.8, 0.0], [-0.05, 1.3, 0.0], 0.1),
-        part([0.05, 0.8, 0.0], [0.05, 1.3, 0.0], 0.1),
-        part([0.0, 1.4, 0.0], [0.0, 1.6, 0.0], 0.05),
-    ];
-    Collider { scheme: Arc::new(Capsules(parts)), signature: "capsules".into() }
-}
-
-impl Capsules {
-    fn distance(&self, q: &Point3) -> (f64, Vector3) {
-        let one = |(a, b, r): &(Point3, Point3, f64)| {
-            let (ab, aq) = (b - a, q - a);
-            let out = aq - ab * (aq.dot(&ab) / ab.norm_squared()).clamp(0.0, 1.0);
-            (out.norm() - r, out.try_normalize(1e-12).unwrap_or_else(Vector3::z))
-        };
-        self.0.iter().map(one).fold((f64::INFINITY, Vector3::y()), |a, b| if b.0 < a.0 { b } else { a })
-    }
-}
-
-impl Collide for Capsules {
-    fn card(&self) -> ColliderCard {
-        ColliderCard {
-            thickness: 1.5e-3,
-            friction: 0.3,
-            restitution: 0.0,
-            self_collision: false,
-            penalty: None,
-        }
-    }
-
-    fn body_contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>) {
-        for (i, q) in positions.iter().enumerate() {
-            let (distance, normal) = self.distance(q);
-            if distance <= reach {
-                out.push(BodyContact { vertex: i as u32, point: q - normal * distance, normal, distance });
-            }
-        }
-    }
-
-    fn body_hits(&self, from: &[Point3], to: &[Point3], out: &mut Vec<BodyContact>) {
-        for (i, (a, b)) in from.iter().zip(to).enumerate() {
-            let (distance, normal) = self.distance(b);
-            if distance < 0.0 && self.distance(a).0 >= 0.0 {
-                out.push(BodyContact { vertex: i as u32, point: b - normal * distance, normal, distance });
-            }
-        }
-    }
-
-    fn self_contacts(&self, _: &[Point3], _: &[[u32; 3]], _: f64, _: &mut Vec<SelfContact>) {}
-
-    fn conservative_bounds(&self, positions: &[Point3], _: &[[u32; 3]], reach: f64) -> Vec<f64> {
-        vec![reach; positions.len()]
-    }
-
-    fn self_crossings(&self, _: &[Point3], _: &[[u32; 3]]) -> Vec<[u32; 2]> {
-        Vec::new()
-    }
-}
-
 /// What acts in a prepared scene.
 pub fn phases() -> Phases {
     let phase = |name: &str, g: f64| Phase {
@@ -317,83 +248,4 @@ pub fn model() -> Model {
         materials: vec![material("front", Some(0)), material("body", None)],
         textures: vec![Texture { name: "front".into(), pixels: shapes::photo().pixels }],
     }
-}
-
-/// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
-/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
-///
-/// Errors: the system's, where a file cannot be written.
-pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
-    let lay = |name: &str, bytes: &[u8]| {
-        std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))
-    };
-    for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
-        match name.rsplit_once('.').map(|(_, extension)| extension) {
-            Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
-            Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
-            Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
-            Some(extension) if extension.chars().all(char::is_alphabetic) => {
-                let ending = format!(".{extension}");
-                let files = writers_for(registry, example).find_map(|card| written(registry, card, &ending));
-                for file in files.into_iter().flatten() {
-                    let own = if file.path.ends_with(&ending) { name } else { &file.path };
-                    lay(own, &file.bytes)?;
-                }
-            }
-            _ => {}
-        }
-    }
-    Ok(())
-}
-
-/// All cards, first those that are named after the stage of the example: `SceneJson` writes what `Scene` reads.
-fn writers_for<'r>(registry: &'r Registry, example: &'r str) -> impl Iterator<Item = &'r Card> {
-    let stage = example.split('(').next().unwrap_or("").trim();
-    let kin = move |card: &&Card| card.name.starts_with(stage);
-    registry.cards().filter(kin).chain(registry.cards())
-}
-
-fn picture(format: image::ImageFormat) -> Vec<u8> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    // Writing into memory cannot fail; a stage that is given nothing says so.
-    let _ = shapes::photo().pixels.write_to(&mut bytes, format);
-    bytes.into_inner()
-}
-
-/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without
-/// arguments, since readers of bodies look for shoulders and legs, else the suite's own.
-fn body_file(registry: &Registry, z_up: bool) -> Vec<u8> {
-    let made = registry.of_role(crate::Role::Body).find_map(|card| {
-        let outcome =
-            registry.make(card, "()").ok()?.run_ports(&Inputs::default(), &Context::quiet()).ok()?;
-        first::<Body>(&outcome)
-    });
-    let mut body = made.unwrap_or_else(body);
-    if z_up {
-        body.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
-    }
-    body.export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
-}
-
-fn first<T: Clone + 'static>(made: &[PortValue]) -> Option<T> {
-    made.iter().flat_map(PortValue::entries).find_map(|(_, a)| {
-        let any: &dyn std::any::Any = a.as_ref();
-        any.downcast_ref::<T>().cloned()
-    })
-}
-
-/// What a writer of garments makes, where one of its files has that ending.
-fn written(registry: &Registry, card: &Card, ending: &str) -> Option<Vec<OutputFile>> {
-    let takes_garment = card.inputs.first().is_some_and(|port| port.kind == Garment::KIND);
-    if card.role != crate::Role::Writer || !takes_garment {
-        return None;
-    }
-    let cx = Context::new("suite", Path::new("."), Cancel::new(), Arc::new(()));
-    let made = registry.make(card, "()").ok()?.run_ports(&inputs_of(card), &cx).ok()?;
-    let files = first::<OutputFiles>(&made)?;
-    files.0.iter().any(|f| f.path.ends_with(ending)).then_some(files.0)
-}
-
-fn inputs_of(card: &Card) -> Inputs {
-    Inputs(card.inputs.iter().map(super::suite::default_value).collect())
 }

@@ -15,7 +15,7 @@
 //! toile_core::contracts!(MyMesher, MySmoother);
 //! ```
 //!
-//! - [`suite`]: the inputs. [`shapes`], [`dress`]: what they are made of.
+//! - [`suite`]: the inputs. [`shapes`], [`dress`], [`capsules`]: what they are made of. [`files`]: those that examples name.
 //! - [`contract`]: one check for each contract, and which of them the kit can check for a card.
 //! - [`motion`]: artifacts moved, turned and scaled.
 //! - [`trial`]: a single run and its outcome.
@@ -24,8 +24,10 @@
 //! run two to five times a contract. Limits: a contract is checked on the suite and not proved; equivariance is
 //! checked where the kit knows how to move what a stage takes and how to compare what it gives.
 
+pub mod capsules;
 pub mod contract;
 pub mod dress;
+pub mod files;
 pub mod motion;
 pub mod shapes;
 pub mod suite;
@@ -63,7 +65,7 @@ pub fn run_one<T: ArtifactType + Clone>(
 ///
 /// Errors: why the example cannot be loaded.
 pub fn from_example(registry: &Registry, card: &Card, folder: &Path) -> Result<Box<dyn Stage>, String> {
-    dress::files_for(registry, card.example, folder)?;
+    files::files_for(registry, card.example, folder)?;
     let arguments = card.example.strip_prefix(card.name).unwrap_or(card.example);
     let stage = registry.make(card, arguments)?;
     match stage.card().name == card.name && stage.card().role == card.role {

@@ -3,7 +3,7 @@
 //! A scene holds what belongs together: a photo with its mask and its outline. A card's cases are the scenes that
 //! hold what its ports take; what a scene does not hold comes from [`dress`](super::dress).
 
-use super::{dress, shapes};
+use super::{capsules, dress, shapes};
 use crate::artifact::*;
 use crate::{Arity, Card, InPort, Inputs, PortValue, Role};
 use image::{GrayImage, Luma, RgbImage};
@@ -155,7 +155,7 @@ pub fn default_value(port: &InPort) -> Option<PortValue> {
         k if k == Fabric::KIND => Arc::new(dress::fabric()),
         k if k == SewingPlan::KIND => Arc::new(dress::plan()),
         k if k == Garment::KIND => Arc::new(dress::garment()),
-        k if k == Collider::KIND => Arc::new(dress::collider()),
+        k if k == Collider::KIND => Arc::new(capsules::collider()),
         k if k == Phases::KIND => Arc::new(dress::phases()),
         k if k == Model::KIND => Arc::new(dress::model()),
         k if k == RunLog::KIND => Arc::new(RunLog { pipeline: "suite".into(), ..RunLog::default() }),

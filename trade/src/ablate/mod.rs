@@ -2,18 +2,29 @@
 //!
 //! Runs are fresh, without a cache, in rounds: once as decided, then once with each decision turned round, and again. So what a
 //! busy machine does to one run it does to its neighbours as well, and times are compared within a round.
+//!
+//! Each run is kept as soon as it is done, and a later session goes on from there. A round that was broken off is gone on with
+//! beside one more run as decided, since times and garments are compared with those of the same session alone; that run
+//! is not counted.
+//!
+//! - `turned`: the pipelines; `run`: the rounds; `kept`: what is on disk; `rows`, `record`, `table`: what it comes to.
 
+mod kept;
 mod outline;
+mod progress;
 mod record;
+mod rows;
 mod run;
 mod table;
 #[cfg(test)]
 mod tests;
+mod turned;
 
-pub use record::{Ablation, Change, Row, SCHEME, Saved, Verdict};
-pub(crate) use run::path_to;
-pub use run::{Options, Step, ablate};
+pub use progress::{Progress, Step};
+pub use record::{Ablation, Change, Cut, Row, SCHEME, Saved, Unmeasured, Verdict};
+pub use run::{Options, ablate};
 pub use table::{csv, lines};
+pub(crate) use turned::path_to;
 
 use toile_core::StageError;
 use toile_core::artifact::OutputFile;

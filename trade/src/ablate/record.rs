@@ -1,8 +1,8 @@
 //! What an ablation found, as it is written to `ablation.json`.
 
+use crate::digest::digest;
 use crate::errors::Millimetres;
 use crate::record::Machine;
-use crate::store::digest;
 use serde::{Deserialize, Serialize};
 use toile_core::decide::{Decided, Tolerance};
 use toile_core::pipeline::Pipeline;
@@ -24,7 +24,7 @@ pub struct Ablation {
     /// Digest of its stages, versions and parameters: by it an old measurement is told from one of the pipeline as it is.
     #[serde(default)]
     pub base: String,
-    /// Day of the measurement.
+    /// Day of the last run.
     pub date: String,
     /// Where.
     pub machine: Machine,
@@ -32,8 +32,32 @@ pub struct Ablation {
     pub until: Option<String>,
     /// Processor time of each run as decided, seconds.
     pub cpu_s: Vec<f64>,
-    /// A row a decision.
+    /// A row a decision that was turned round.
     pub rows: Vec<Row>,
+    /// What is missing where the budget ended before all runs were done.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub cut: Option<Cut>,
+}
+
+/// A budget that ended before all runs were done.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Cut {
+    /// Runs that are done.
+    pub done: usize,
+    /// Runs that were asked for.
+    pub all: usize,
+    /// Decisions that were not turned round at all.
+    pub not_measured: Vec<Unmeasured>,
+}
+
+/// A decision that was not turned round.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unmeasured {
+    /// The decision.
+    #[serde(flatten)]
+    pub decided: Decided,
+    /// The option that turns it round.
+    pub turned: String,
 }
 
 impl Ablation {

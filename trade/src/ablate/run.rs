@@ -1,149 +1,169 @@
-//! The runs of an ablation.
+//! The runs of an ablation, each kept as soon as it is done.
 
-use super::outline;
-use super::record::{Ablation, Change, Row, SCHEME, Verdict};
+use super::kept::{Came, Kept};
+use super::record::{Ablation, Change};
+use super::rows::ablation;
+use super::turned::{Turned, all_turned};
+use super::{Progress, Step, outline};
+use crate::digest::garment_digest;
 use crate::errors::compare;
-use crate::ladder::error;
 use crate::measure::{Bench, Missed, Ran};
-use crate::record::{Machine, today};
-use crate::slot::{Source, path_of};
-use crate::store::{digest, garment_digest};
-use std::time::Duration;
-use toile_core::decide::{Decided, Turn, decisions};
-use toile_core::pipeline::{Override, Pipeline};
-use toile_core::{RunOptions, StageError};
+use crate::source::Source;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+use toile_core::pipeline::Pipeline;
+use toile_core::{ErrorCode, StageError};
 
 /// What is asked.
 #[derive(Clone)]
 pub struct Options {
-    /// Rounds.
+    /// Folder of the record.
+    pub out: PathBuf,
+    /// Rounds, those of earlier sessions counted.
     pub repeats: usize,
+    /// Time for everything; none ends with the last round.
+    pub budget: Option<Duration>,
     /// Longest run with a decision turned round.
     pub limit: Option<Duration>,
     /// How runs are made.
     pub bench: Bench,
 }
 
-/// How far an ablation is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Step {
-    /// Runs that are done.
-    pub done: usize,
-    /// Runs in all.
-    pub all: usize,
-    /// The run that begins, in words.
-    pub what: String,
-}
-
-impl Step {
-    fn before(&self, what: &str) -> Step {
-        Step { what: what.to_owned(), ..self.clone() }
-    }
-}
-
-impl std::fmt::Display for Step {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "run {} of {}: {}", self.done + 1, self.all, self.what)
-    }
-}
-
-/// A decision with the pipeline that it is turned round in, and what came of it so far.
-struct Turned {
-    row: Row,
-    pipeline: Pipeline,
-    also: Vec<String>,
-}
-
-/// Runs the pipeline as decided and with each decision turned round.
+/// Runs the pipeline as decided and with each decision turned round, or goes on with what was run.
 ///
-/// Errors: no decision there is to turn round; the pipeline fails as it is; an override that does not load; stopped by the
-/// user.
+/// Errors: no decision there is to turn round; the pipeline fails as it is, or does not end within the budget; an override
+/// that does not load; the folder cannot be written; stopped by the user (what was measured is kept).
 pub fn ablate(
     source: &Source<'_>,
     pipeline: &Pipeline,
     options: &Options,
-    tell: &mut dyn FnMut(Step),
+    tell: &mut dyn FnMut(Progress),
 ) -> Result<Ablation, StageError> {
-    let run = RunOptions { until: options.bench.until.clone(), ..RunOptions::default() };
-    let decided = decisions(pipeline, &run).map_err(|e| e.error)?;
-    if decided.is_empty() {
-        return Err(StageError::invalid("nothing is left out or simplified in this pipeline")
-            .hint("`toile explain` shows the decisions of a pipeline"));
+    let started = Instant::now();
+    let turned = all_turned(source, pipeline, options.bench.until.as_deref())?;
+    let kept = Kept::open(pipeline, options, &mut |note| tell(Progress::Note(note)));
+    let mut session = Session { pipeline, options, turned, kept, started };
+    match session.rounds(tell) {
+        Ok(()) | Err(Stop::Budget) => session.ablation(),
+        Err(Stop::Failed(e)) => Err(e),
     }
-    let mut turned =
-        decided.into_iter().map(|d| turned(source, pipeline, d)).collect::<Result<Vec<_>, StageError>>()?;
-    let mut cpu_s = Vec::new();
-    let mut step = Step { done: 0, all: options.repeats * (1 + turned.len()), what: String::new() };
-    for _ in 0..options.repeats {
-        tell(step.before("as decided"));
-        let own = options.bench.run(pipeline, None, None).map_err(error)?;
-        cpu_s.push(own.cpu_s);
-        step.done += 1;
-        for t in &mut turned {
-            // What failed once is not run again, and counts as done.
-            if t.row.failed.is_none() {
-                tell(step.before(&t.row.turned));
-                one_turn(t, &own, options)?;
+}
+
+/// An ablation at work.
+struct Session<'a> {
+    pipeline: &'a Pipeline,
+    options: &'a Options,
+    turned: Vec<Turned>,
+    kept: Kept,
+    started: Instant,
+}
+
+/// Why it goes no further.
+enum Stop {
+    /// The budget is used up.
+    Budget,
+    /// A fault, or the user's wish.
+    Failed(StageError),
+}
+
+impl From<StageError> for Stop {
+    fn from(e: StageError) -> Self {
+        Stop::Failed(e)
+    }
+}
+
+impl Session<'_> {
+    fn rounds(&mut self, tell: &mut dyn FnMut(Progress)) -> Result<(), Stop> {
+        (0..self.options.repeats).try_for_each(|round| self.round(round, tell))
+    }
+
+    /// What is missing of a round, beside a run as decided of this session: garments and times of one hour are compared.
+    fn round(&mut self, round: usize, tell: &mut dyn FnMut(Progress)) -> Result<(), Stop> {
+        let missing: Vec<usize> = self.missing(round).collect();
+        let is_new = !self.kept.own().contains_key(&round);
+        if missing.is_empty() && !is_new {
+            return Ok(());
+        }
+        let beside = format!("as decided, beside the rest of round {}", round + 1);
+        let own = self.as_decided(if is_new { "as decided" } else { &beside }, tell)?;
+        if is_new {
+            self.kept.add_own(round, &own)?;
+        }
+        missing.into_iter().try_for_each(|index| self.turned_round(index, round, &own, tell))
+    }
+
+    fn as_decided(&self, what: &str, tell: &mut dyn FnMut(Progress)) -> Result<Ran, Stop> {
+        let left = self.left()?;
+        tell(self.step(what));
+        let ran = self.options.bench.run(self.pipeline, left, None);
+        ran.map_err(|missed| match missed {
+            // Without a limit of its own, only the budget ends it.
+            Missed::OverLimit(_) => Stop::Budget,
+            missed => Stop::Failed(missed.into()),
+        })
+    }
+
+    /// One run with a decision turned round, beside the run of the same round as decided.
+    fn turned_round(
+        &mut self,
+        index: usize,
+        round: usize,
+        own: &Ran,
+        tell: &mut dyn FnMut(Progress),
+    ) -> Result<(), Stop> {
+        let left = self.left()?;
+        let turned = &self.turned[index];
+        tell(self.step(&turned.by));
+        let limit = [self.options.limit, left].into_iter().flatten().min();
+        let came = match self.options.bench.run_also(&turned.pipeline, &turned.also, limit) {
+            Ok(ran) => Came::Ran {
+                cpu_s: ran.cpu_s,
+                saved_s: ran.cpu_s - own.cpu_s,
+                change: (!self.kept.has_change(&turned.by)).then(|| changed(own, &ran)).transpose()?,
+            },
+            Err(Missed::Cancelled) => return Err(Stop::Failed(Missed::Cancelled.into())),
+            Err(Missed::Failed(e)) => Came::Failed { message: e.message },
+            // The end of the budget says nothing of the decision.
+            Err(Missed::OverLimit(seconds)) => {
+                self.left()?;
+                Came::OverLimit { seconds }
             }
-            step.done += 1;
-        }
+        };
+        Ok(self.kept.add_turned(round, &turned.by, came)?)
     }
-    Ok(Ablation {
-        scheme: SCHEME,
-        toile: env!("CARGO_PKG_VERSION").to_owned(),
-        pipeline: pipeline.name.clone(),
-        file: pipeline.file.clone(),
-        base: digest(pipeline, &[]),
-        date: today(),
-        machine: Machine::here(),
-        until: options.bench.until.clone(),
-        cpu_s,
-        rows: turned.into_iter().map(judged).collect(),
-    })
-}
 
-/// The pipeline with a decision turned round.
-fn turned(source: &Source<'_>, pipeline: &Pipeline, decided: Decided) -> Result<Turned, StageError> {
-    let path = path_to(source, pipeline, &decided.stage);
-    let (more, also) = match &decided.decision.turn {
-        Turn::Param { name, value } => {
-            (vec![Override { path: format!("{path}.{name}"), value: value.clone() }], Vec::new())
-        }
-        Turn::Also => (Vec::new(), vec![decided.stage.clone()]),
-    };
-    let row = Row {
-        turned: decided.words(&path),
-        decided,
-        cpu_s: Vec::new(),
-        saved_s: Vec::new(),
-        change: None,
-        failed: None,
-        verdict: Verdict::Needed,
-    };
-    let pipeline = source.load(&more).map_err(|faults| StageError::internal(faults.to_string()))?;
-    Ok(Turned { row, pipeline, also })
-}
-
-/// Where overrides reach a stage.
-pub(crate) fn path_to(source: &Source<'_>, pipeline: &Pipeline, stage: &str) -> String {
-    let node = pipeline.nodes.iter().find(|n| n.id == stage);
-    node.map_or_else(|| format!("stages.{stage}"), |n| path_of(source, pipeline, n))
-}
-
-/// One run with a decision turned round, beside the run of the same round as decided.
-fn one_turn(t: &mut Turned, own: &Ran, options: &Options) -> Result<(), StageError> {
-    match options.bench.run_also(&t.pipeline, &t.also, options.limit) {
-        Ok(ran) => {
-            t.row.cpu_s.push(ran.cpu_s);
-            t.row.saved_s.push(ran.cpu_s - own.cpu_s);
-            let change = changed(own, &ran)?;
-            t.row.change.get_or_insert(change);
-        }
-        Err(Missed::Cancelled) => return Err(error(Missed::Cancelled)),
-        Err(Missed::Failed(e)) => t.row.failed = Some(e.message),
-        Err(Missed::OverLimit(seconds)) => t.row.failed = Some(format!("stopped after {seconds:.0} s")),
+    /// What is left of the budget, where there is one.
+    fn left(&self) -> Result<Option<Duration>, Stop> {
+        let left = self.options.budget.map(|budget| budget.saturating_sub(self.started.elapsed()));
+        if left.is_some_and(|l| l.is_zero()) { Err(Stop::Budget) } else { Ok(left) }
     }
-    Ok(())
+
+    /// The decisions that a round has not turned round yet.
+    fn missing(&self, round: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.turned.len()).filter(move |i| self.kept.is_missing(&self.turned[*i].by, round))
+    }
+
+    /// Runs that are done, and runs in all.
+    fn count(&self) -> [usize; 2] {
+        let (own, rounds) = (self.kept.own(), self.options.repeats);
+        let missing = |round| self.missing(round).count() + usize::from(!own.contains_key(&round));
+        let all = rounds * (1 + self.turned.len());
+        [all - (0..rounds).map(missing).sum::<usize>(), all]
+    }
+
+    fn step(&self, what: &str) -> Progress {
+        let [done, all] = self.count();
+        Progress::Run(Step { done, all, what: what.to_owned() })
+    }
+
+    fn ablation(self) -> Result<Ablation, StageError> {
+        if self.kept.own().is_empty() {
+            let message = "the budget ended before the pipeline as it is had run once";
+            return Err(StageError::new(ErrorCode::Timeout, message).hint("give a longer --budget"));
+        }
+        let (count, until) = (self.count(), self.options.bench.until.clone());
+        Ok(ablation(self.pipeline, until, &self.turned, &self.kept, count))
+    }
 }
 
 fn changed(own: &Ran, turned: &Ran) -> Result<Change, StageError> {
@@ -156,10 +176,4 @@ fn changed(own: &Ran, turned: &Ran) -> Result<Change, StageError> {
         texture_levels: errors.texture_levels,
         crossings: [crossings(own), crossings(turned)],
     })
-}
-
-fn judged(t: Turned) -> Row {
-    let change = t.row.change.filter(|_| t.row.failed.is_none());
-    let verdict = Verdict::of(change.as_ref(), t.row.decided.decision.tolerance, &t.row.saved_s);
-    Row { change, verdict, ..t.row }
 }

@@ -1,36 +1,12 @@
 //! An ablation as lines of text: a table for people, comma-separated values for programs.
 
-use super::record::{Ablation, Change, Row};
+use super::record::{Ablation, Change, Cut, Row};
 use crate::record::median;
 use std::fmt::Write;
 
 /// The table: a line a decision, and below it how it is turned round and what the rule comes to.
 pub fn lines(ablation: &Ablation) -> Vec<String> {
-    let runs = ablation.cpu_s.len();
-    let mut lines = vec![
-        format!(
-            "{}: as decided {:.2} s of processor time (from {:.2} to {:.2} s in {runs} runs)",
-            ablation.pipeline,
-            median(&ablation.cpu_s),
-            ablation.cpu_s.iter().copied().fold(f64::INFINITY, f64::min),
-            ablation.cpu_s.iter().copied().fold(0.0, f64::max),
-        ),
-        format!(
-            "{:<20} {:<18} {:>9} {:>8} {:>8} | {:>7} {:>7} {:>5} | {:>7} {:>7} | {:>7} | {:>9}  within",
-            "stage",
-            "rule",
-            "turned, s",
-            "saved, s",
-            "+-",
-            "95 %",
-            "worst",
-            "bits",
-            "outl 95",
-            "worst",
-            "texture",
-            "crossings"
-        ),
-    ];
+    let mut lines = vec![as_decided(ablation), head()];
     for row in &ablation.rows {
         lines.push(line(row));
         lines.push(format!("    turned round by {}", row.turned));
@@ -38,6 +14,52 @@ pub fn lines(ablation: &Ablation) -> Vec<String> {
         lines.push(format!("    {}{why}", row.verdict.as_str()));
     }
     lines.push("surface and outline in mm, texture in grey levels, crossings as decided and turned round; +- is twice the standard error of what was saved".into());
+    lines.extend(ablation.cut.iter().flat_map(missing));
+    lines
+}
+
+fn as_decided(ablation: &Ablation) -> String {
+    let runs = &ablation.cpu_s;
+    format!(
+        "{}: as decided {:.2} s of processor time (from {:.2} to {:.2} s in {} runs)",
+        ablation.pipeline,
+        median(runs),
+        runs.iter().copied().fold(f64::INFINITY, f64::min),
+        runs.iter().copied().fold(0.0, f64::max),
+        runs.len()
+    )
+}
+
+fn head() -> String {
+    format!(
+        "{:<20} {:<18} {:>9} {:>8} {:>8} | {:>7} {:>7} {:>5} | {:>7} {:>7} | {:>7} | {:>9}  within",
+        "stage",
+        "rule",
+        "turned, s",
+        "saved, s",
+        "+-",
+        "95 %",
+        "worst",
+        "bits",
+        "outl 95",
+        "worst",
+        "texture",
+        "crossings"
+    )
+}
+
+/// What a budget that ended leaves open.
+fn missing(cut: &Cut) -> Vec<String> {
+    let mut lines = vec![format!(
+        "the budget ended after {} of {} runs; the same command goes on from there",
+        cut.done, cut.all
+    )];
+    for u in &cut.not_measured {
+        lines.push(format!(
+            "    not measured: {} {}, turned round by {}",
+            u.decided.stage, u.decided.decision.rule, u.turned
+        ));
+    }
     lines
 }
 
@@ -84,39 +106,37 @@ const HEAD: &str = "stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,s
 
 /// All rows as comma-separated values, a head line first; empty where a figure is not known.
 pub fn csv(ablation: &Ablation) -> String {
-    let mut text = HEAD.to_owned();
     let own = median(&ablation.cpu_s);
-    for row in &ablation.rows {
-        let d = &row.decided.decision;
-        let turned = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
-        let c = row.change.as_ref();
-        let same = c.map_or("", |c| if c.same_bits { "true" } else { "false" });
-        let numbers = [
-            c.map(|c| c.distance_mm.mean),
-            c.map(|c| c.distance_mm.p95),
-            c.map(|c| c.distance_mm.max),
-            c.map(|c| c.outline_mm.p95),
-            c.map(|c| c.outline_mm.max),
-            c.and_then(|c| c.texture_levels),
-            c.and_then(|c| c.crossings[0]).map(|n| n as f64),
-            c.and_then(|c| c.crossings[1]).map(|n| n as f64),
-        ];
-        let noise = row.saved().map(|s| s.noise).filter(|n| n.is_finite());
-        let times = [Some(own), turned, row.saved().map(|s| s.mean), noise];
-        let _ = writeln!(
-            text,
-            "{},{},{},{},\"{}\",{},{same},{},{}",
-            row.decided.stage,
-            d.rule,
-            d.state.as_str(),
-            d.tolerance,
-            row.turned.replace('"', "\"\""),
-            listed(&times),
-            listed(&numbers),
-            row.verdict.as_str().replace(',', ";")
-        );
-    }
-    text
+    let rows = ablation.rows.iter().map(|row| values(row, own) + "\n");
+    std::iter::once(HEAD.to_owned()).chain(rows).collect()
+}
+
+/// The values of a row; `own` is the time as decided.
+fn values(row: &Row, own: f64) -> String {
+    let d = &row.decided.decision;
+    let turned = (!row.cpu_s.is_empty()).then(|| median(&row.cpu_s));
+    let noise = row.saved().map(|s| s.noise).filter(|n| n.is_finite());
+    let same = row.change.map_or("", |c| if c.same_bits { "true" } else { "false" });
+    format!(
+        "{},{},{},{},\"{}\",{},{same},{},{}",
+        row.decided.stage,
+        d.rule,
+        d.state.as_str(),
+        d.tolerance,
+        row.turned.replace('"', "\"\""),
+        listed(&[Some(own), turned, row.saved().map(|s| s.mean), noise]),
+        listed(&changes(row.change.as_ref())),
+        row.verdict.as_str().replace(',', ";")
+    )
+}
+
+fn changes(change: Option<&Change>) -> [Option<f64>; 8] {
+    let Some(c) = change else { return [None; 8] };
+    let [own, turned] = c.crossings.map(|n| n.map(|n| n as f64));
+    let (d, outline) = (&c.distance_mm, &c.outline_mm);
+    let known = [d.mean, d.p95, d.max, outline.p95, outline.max].map(Some);
+    let [mean, p95, max, outline_p95, outline_max] = known;
+    [mean, p95, max, outline_p95, outline_max, c.texture_levels, own, turned]
 }
 
 fn listed(numbers: &[Option<f64>]) -> String {

@@ -1,7 +1,9 @@
 #![allow(clippy::unwrap_used)]
+use super::kept::Came;
 use super::*;
 use crate::errors::Millimetres;
 use crate::record::Machine;
+use std::time::Duration;
 use toile_core::decide::{Decided, Decision, Saves, State, Tolerance, Turn};
 
 fn change(p95: f64, same_bits: bool) -> Change {
@@ -81,7 +83,16 @@ fn ablation() -> Ablation {
             row(Tolerance::Outline(1e-3), Some(change(3.0, false)), &[0.4, 0.5, 0.3]),
             row(Tolerance::SameBits, None, &[]),
         ],
+        cut: None,
     }
+}
+
+/// The ablation as a budget cut it short.
+fn cut() -> Ablation {
+    let mut all = ablation();
+    let last = all.rows.pop().unwrap();
+    let not_measured = vec![Unmeasured { decided: last.decided, turned: last.turned }];
+    Ablation { cut: Some(Cut { done: 4, all: 9, not_measured }), ..all }
 }
 
 #[test]
@@ -100,6 +111,16 @@ surface and outline in mm, texture in grey levels, crossings as decided and turn
 }
 
 #[test]
+fn a_table_that_was_cut_short_says_what_is_missing() {
+    let told = lines(&cut());
+    let words = "\
+the budget ended after 4 of 9 runs; the same command goes on from there
+    not measured: Mean few-pixels, turned round by --set 'stages.Mean.pixel=\"0 mm\"'";
+    assert_eq!(told[told.len() - 2..].join("\n"), words);
+    assert_eq!(csv(&cut()).lines().count(), 2, "rows of what was measured alone");
+}
+
+#[test]
 fn the_file_word_for_word() {
     let words = "\
 stage,rule,state,within,turned_round_by,cpu_s,cpu_turned_s,saved_s,saved_noise_s,same_bits,distance_mean_mm,distance_p95_mm,distance_max_mm,outline_p95_mm,outline_max_mm,texture_levels,crossings,crossings_turned,verdict
@@ -115,4 +136,18 @@ fn the_record_comes_back_as_it_was_written() {
     let files = files(&all).unwrap();
     assert_eq!(files.iter().map(|f| f.path.as_str()).collect::<Vec<_>>(), ["ablation.csv", "ablation.json"]);
     assert_eq!(serde_json::from_slice::<Ablation>(&files[1].bytes).unwrap(), all);
+    assert!(!String::from_utf8_lossy(&files[1].bytes).contains("cut"), "nothing is missing");
+    let cut = cut();
+    let json = serde_json::to_string(&cut).unwrap();
+    assert!(json.contains(r#""cut":{"done":4,"all":9,"not_measured":[{"stage":"Mean","rule":"few-pixels""#));
+    assert_eq!(serde_json::from_str::<Ablation>(&json).unwrap(), cut);
+}
+
+#[test]
+fn a_run_that_was_stopped_stands_until_a_longer_limit_is_asked() {
+    let stopped = Came::OverLimit { seconds: 5.0 };
+    let stands = |limit: Option<u64>| stopped.stands(limit.map(Duration::from_secs));
+    assert_eq!([stands(Some(5)), stands(Some(6)), stands(None)], [true, false, false]);
+    assert!(Came::Failed { message: "it tears".into() }.stands(None));
+    assert_eq!(stopped.failed().unwrap(), "stopped after 5 s");
 }

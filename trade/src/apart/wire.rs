@@ -86,7 +86,7 @@ pub(super) fn write(ran: Result<Ran, Missed>) -> Result<Vec<u8>, String> {
             (Head::Ran { figures: figures(ran), parts }, bytes)
         }
         Err(missed) => {
-            let StageError { code, message, hint, .. } = crate::ladder::error(missed);
+            let StageError { code, message, hint, .. } = missed.into();
             (Head::Failed { code: code.to_string(), message, hint }, Vec::new())
         }
     };

@@ -9,6 +9,11 @@ const RIGHT: f64 = 0.3;
 /// Shorter stages are timer and cache noise, seconds; lesser memory, bytes.
 const TELLING: (f64, f64) = (1e-3, 1e6);
 
+/// Whether a prediction is near enough to the fact.
+pub(super) fn is_right(prediction: f64, fact: f64) -> bool {
+    (prediction / fact - 1.0).abs() <= RIGHT
+}
+
 /// How many predictions are right.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -21,7 +26,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    fn add(&mut self, right: bool, in_range: bool) {
+    pub(super) fn add(&mut self, right: bool, in_range: bool) {
         self.count += 1;
         self.right += usize::from(right);
         self.in_range += usize::from(in_range);
@@ -96,7 +101,7 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
             let Some(fact) = check.figure.of(&run.used) else { continue };
             let size = costs.corrected(stage, &run.style, &run.foreseen);
             let estimate = costs.estimate(&Place { pipeline, stage, role: &run.role }, &size, check.figure);
-            let right = estimate.is_some_and(|e| (e.value / fact - 1.0).abs() <= RIGHT);
+            let right = estimate.is_some_and(|e| is_right(e.value, fact));
             let in_range = estimate.is_some_and(|e| e.holds(fact));
             tally.add(right, in_range);
             check.all.add(right, in_range);

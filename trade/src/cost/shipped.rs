@@ -4,6 +4,7 @@
 //! line loses itself alone.
 
 use super::record::{CostRecord, Host};
+use crate::digits::to_digits;
 use serde::{Deserialize, Serialize};
 use toile_core::cost::Size;
 
@@ -61,8 +62,8 @@ impl Collection {
             record.key.clear();
             record.made = Size::new();
             (record.size, record.foreseen) = (rounded(&record.size), rounded(&record.foreseen));
-            record.used.wall_s = three_digits(record.used.wall_s);
-            record.used.cpu_s = record.used.cpu_s.map(three_digits);
+            record.used.wall_s = to_digits(record.used.wall_s, 3);
+            record.used.cpu_s = record.used.cpu_s.map(|s| to_digits(s, 3));
         }
         self
     }
@@ -70,12 +71,7 @@ impl Collection {
 
 /// To five digits.
 fn rounded(size: &Size) -> Size {
-    let amount = |x: f64| format!("{x:.4e}").parse().unwrap_or(x);
-    size.iter().fold(Size::new(), |all, (q, a)| all.with(q, amount(a)))
-}
-
-fn three_digits(x: f64) -> f64 {
-    format!("{x:.2e}").parse().unwrap_or(x)
+    size.iter().fold(Size::new(), |all, (q, a)| all.with(q, to_digits(a, 5)))
 }
 
 /// Reads a collection.

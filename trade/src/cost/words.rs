@@ -1,6 +1,6 @@
 //! What people read of forecasts.
 
-use super::check::{Check, Tally};
+use super::check::{Check, Tally, Verdict, is_right};
 use super::predict::{Forecast, total};
 use toile_core::cache::Bytes;
 use toile_core::cost::{Estimate, Predicted, Used};
@@ -58,9 +58,7 @@ pub fn beside(stages: &[(&str, Used, Predicted)]) -> Vec<String> {
         let expected = [range(predicted.wall_s, time), range(predicted.peak_bytes, bytes)].join(", ");
         lines.push(format!("  {name:<20} took {took:<18} expected {expected}"));
         if let Some(e) = predicted.wall_s {
-            tally.count += 1;
-            tally.right += usize::from((e.value / used.wall_s - 1.0).abs() <= 0.3);
-            tally.in_range += usize::from(e.holds(used.wall_s));
+            tally.add(is_right(e.value, used.wall_s), e.holds(used.wall_s));
         }
     }
     if tally.count > 0 {
@@ -78,8 +76,8 @@ fn share(tally: &Tally) -> String {
 
 /// The table of a check.
 pub fn check_lines(check: &Check) -> Vec<String> {
-    let time_like = check.figure.is_time();
-    let write = if time_like { time } else { bytes };
+    let (write, least): (fn(f64) -> String, _) =
+        if check.figure.is_time() { (time, "1 ms") } else { (bytes, "1 MB") };
     let mut lines = vec![
         format!("{}: prediction / fact on pipelines left out of the fit", check.figure.as_str()),
         format!(
@@ -87,26 +85,7 @@ pub fn check_lines(check: &Check) -> Vec<String> {
             "pipeline", "stage", "runs", "fact", "least", "middle", "most"
         ),
     ];
-    for v in &check.stages {
-        let at = |share: f64| {
-            let i = ((v.ratios.len().saturating_sub(1)) as f64 * share).round() as usize;
-            v.ratios.get(i).map_or_else(|| "-".to_owned(), |r| format!("{r:.2}"))
-        };
-        let mark = if v.stand_in { "  others of its role stand in" } else { "" };
-        lines.push(format!(
-            "  {:<11} {:<20} {:>4} {:>10} {:>7} {:>7} {:>7}  {} of {}{mark}",
-            v.pipeline,
-            v.stage,
-            v.tally.count,
-            write(v.fact),
-            at(0.0),
-            at(0.5),
-            at(1.0),
-            v.tally.right,
-            v.tally.count
-        ));
-    }
-    let least = if time_like { "1 ms" } else { "1 MB" };
+    lines.extend(check.stages.iter().map(|v| verdict(v, &write(v.fact))));
     lines.push(format!(
         "within 30 %: {} of all, {} of those above {least}, {} of these where other pipelines have the stage",
         share(&check.all),
@@ -116,4 +95,23 @@ pub fn check_lines(check: &Check) -> Vec<String> {
     let covered = check.telling.in_range as f64 / check.telling.count.max(1) as f64;
     lines.push(format!("in the range of 80 %: {:.0} % of those above {least}", covered * 100.0));
     lines
+}
+
+fn verdict(v: &Verdict, fact: &str) -> String {
+    let at = |share: f64| {
+        let i = ((v.ratios.len().saturating_sub(1)) as f64 * share).round() as usize;
+        v.ratios.get(i).map_or_else(|| "-".to_owned(), |r| format!("{r:.2}"))
+    };
+    format!(
+        "  {:<11} {:<20} {:>4} {fact:>10} {:>7} {:>7} {:>7}  {} of {}{}",
+        v.pipeline,
+        v.stage,
+        v.tally.count,
+        at(0.0),
+        at(0.5),
+        at(1.0),
+        v.tally.right,
+        v.tally.count,
+        if v.stand_in { "  others of its role stand in" } else { "" }
+    )
 }

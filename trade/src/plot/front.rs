@@ -25,17 +25,13 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
     let errors: Vec<f64> = shown.iter().map(|(_, m)| cost(m).error).chain(floor).collect();
     let (x, y) = (Axis::over(&times, FRAME[0], FRAME[2]), Axis::over(&errors, FRAME[3], FRAME[1]));
     let mut marks = axes(&x, &y, trade);
-    if let Some(floor) = floor {
-        let at = y.at(floor);
-        marks.push(line([FRAME[0], at], [FRAME[2], at], 1.5, PALE, true));
-        marks.push(text([FRAME[0] + 8.0, at - 6.0], Anchor::Start, "the reference is known to this", PALE));
-    }
+    marks.extend(floor.into_iter().flat_map(|f| known_to(y.at(f))));
     marks.extend(steps(trade, &x, &y));
     let kinds = kinds(trade);
     for (i, m) in &shown {
         let at = [x.at(cost(m).time), y.at(cost(m).error)];
-        let on_front = trade.front.contains(i);
         let colour = kinds.iter().position(|k| *k == kind(trade, *i)).map_or(INK, colour);
+        let on_front = trade.front.contains(i);
         marks.push(Mark::Dot { at, radius: if on_front { 6.5 } else { 4.5 }, colour, hollow: !m.sound });
         if on_front || shown.len() <= MOST_NUMBERS {
             marks.push(text([at[0] + 9.0, at[1] - 7.0], Anchor::Start, &(i + 1).to_string(), INK));
@@ -43,6 +39,12 @@ pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
     }
     marks.extend(legend(&kinds, shown.iter().any(|(_, m)| !m.sound)));
     marks
+}
+
+/// The line below which errors mean nothing.
+fn known_to(y: f64) -> [Mark; 2] {
+    let words = text([FRAME[0] + 8.0, y - 6.0], Anchor::Start, "the reference is known to this", PALE);
+    [line([FRAME[0], y], [FRAME[2], y], 1.5, PALE, true), words]
 }
 
 fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {

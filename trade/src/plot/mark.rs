@@ -1,5 +1,7 @@
 //! What pictures are made of.
 
+use crate::digits::to_digits;
+
 /// Size of a picture, px.
 pub(crate) const SIZE: [u32; 2] = [960, 640];
 /// Grey of axes and text.
@@ -45,6 +47,5 @@ pub(crate) fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) ->
 
 /// A tick's number without needless digits.
 pub(crate) fn plain(t: f64) -> String {
-    let rounded: f64 = format!("{t:.2e}").parse().unwrap_or(t);
-    format!("{rounded}")
+    format!("{}", to_digits(t, 3))
 }

@@ -3,6 +3,7 @@
 use super::axis::Axis;
 use super::mark::{Anchor, INK, Mark, PALE, SIZE, line, text};
 use super::{png, svg};
+use crate::digits::to_digits;
 use toile_cloth::bench::map::{Cell, Map, Outcome, Scheme};
 
 /// The area of all panels: left, top, right, bottom.
@@ -221,7 +222,7 @@ fn decades(ticks: &[f64]) -> Vec<f64> {
 
 /// `1e-5`, `0.1`, `10000`, `12.5`.
 fn short(t: f64) -> String {
-    let rounded: f64 = format!("{t:.2e}").parse().unwrap_or(t);
+    let rounded = to_digits(t, 3);
     if (1e-2..1e5).contains(&rounded) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 

@@ -23,8 +23,8 @@ pub use prover::Prover;
 pub use wish::Wish;
 pub use written::MARK;
 
+use crate::digest::digest;
 use crate::record::Trade;
-use crate::store::digest;
 use toile_core::StageError;
 use toile_core::pipeline::{Override, Pipeline};
 

@@ -2,10 +2,11 @@
 
 use super::{Proof, Wish, overrides, picks, refusal};
 use crate::errors::compare;
-use crate::ladder::{moved_start, setting_words};
+use crate::ladder::moved_start;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::Trade;
-use crate::slot::Source;
+use crate::slot::setting_words;
+use crate::source::Source;
 use crate::study::measured;
 use std::path::Path;
 use std::sync::Arc;
@@ -60,7 +61,7 @@ impl Prover<'_> {
                     tell(format!("{setting}: {}", e.message));
                     continue;
                 }
-                Err(missed) => return Err(crate::ladder::error(missed)),
+                Err(missed) => return Err(missed.into()),
             };
             tell(format!("{setting}: {}", proof.words(wish, self.trade.clock)));
             let is_whole = proof.starts.len() + proof.failed.len() == self.starts;
@@ -93,7 +94,7 @@ impl Prover<'_> {
         let finest = self.trade.reference.levels.last().ok_or_else(none)?;
         let cache = Arc::new(Cache::new(&self.folder.join("reference")));
         let pipeline = self.load(&overrides(&finest.overrides))?;
-        self.bench.run(&pipeline, None, Some(cache)).map_err(crate::ladder::error)
+        Ok(self.bench.run(&pipeline, None, Some(cache))?)
     }
 
     pub(super) fn load(&self, overrides: &[Override]) -> Result<Pipeline, StageError> {

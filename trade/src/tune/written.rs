@@ -1,8 +1,8 @@
 //! The tuned pipeline file: the proved setting in its place, and what was measured in lines of comment on top.
 
 use super::{Proof, Prover, Wish, overrides};
-use crate::ladder::setting_words;
 use crate::record::{Clock, Point};
+use crate::slot::setting_words;
 use toile_core::StageError;
 use toile_core::pipeline::without_qualities;
 

@@ -9,7 +9,9 @@ use super::super::qualities::{Quality, named};
 use super::super::read::Read;
 use super::super::tree::{Entry, Tree};
 use super::super::{Override, parse};
-use super::{Edit, Followed, Migrator, is_read_from, renamed};
+use super::is_read_from;
+use super::old_name::renamed;
+use super::rewrite::{Edit, Followed, Migrator};
 use crate::param::ron_text;
 use std::ops::Range;
 

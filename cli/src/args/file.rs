@@ -1,0 +1,81 @@
+//! Arguments of what is done to pipeline files, goldens and stages.
+
+use super::CacheChoice;
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+use toile_core::pipeline::Override;
+
+/// Arguments that change a pipeline before it is loaded.
+#[derive(Debug, Args, Default, Clone)]
+pub(crate) struct Overrides {
+    /// Take the settings of a named quality of the pipeline, like Draft, before those of --set
+    #[arg(long, value_name = "NAME")]
+    pub(crate) quality: Option<String>,
+    /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
+    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
+    pub(crate) set: Vec<Override>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ValidateArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LockArgs {
+    /// Pipeline files; the lock of `vest.ron` is `vest.ron.lock`
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) cache: CacheChoice,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MigrateArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    /// Write nothing; exit code 4 where a file is not up to date
+    #[arg(long)]
+    pub(crate) check: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewStageArgs {
+    /// The stage's name, one word that begins with a capital, like FineMesher
+    pub(crate) name: String,
+    /// What it is for: denoiser, binariser, edge-detector, mesher, smoother, stitcher, collider or texturer
+    #[arg(long)]
+    pub(crate) role: String,
+    /// The folder in which the crate's own folder is made [default: the current one]
+    #[arg(long)]
+    pub(crate) dir: Option<PathBuf>,
+    /// The folder of toile-core, to build against it instead of the published version
+    #[arg(long, value_name = "PATH")]
+    pub(crate) core: Option<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Verb {
+    /// Run pipelines and name the first stage that differs from the golden
+    Check(GoldenArgs),
+    /// Record new goldens, each from two equal runs
+    Accept(GoldenArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GoldenArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
+    /// Folder for the pictures of what differs
+    #[arg(long, default_value = "out/goldens")]
+    pub(crate) out: PathBuf,
+}

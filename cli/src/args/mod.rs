@@ -1,0 +1,85 @@
+//! The arguments of every sub-command.
+
+mod bench;
+mod file;
+mod run;
+mod trade;
+
+pub(crate) use bench::{AccuracyArgs, Bench, CostsArgs, DriversArgs, StabilityArgs};
+pub(crate) use file::{GoldenArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides, ValidateArgs, Verb};
+pub(crate) use run::{CacheArgs, CacheChoice, ExplainArgs, RunArgs, WhyArgs};
+pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
+
+use clap::{Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Photos of a garment laid flat in, a sewn and draped 3D garment out.
+#[derive(Debug, Parser)]
+#[command(name = "toile", version, arg_required_else_help = true)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+    /// Load a plugin's stages: a library, like target/release/libtoile_sdf.so; may be given again
+    #[arg(long = "plugin", value_name = "PATH", global = true)]
+    pub(crate) plugins: Vec<PathBuf>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run a pipeline and write its files
+    Run(RunArgs),
+    /// Check pipelines without running them
+    Validate(ValidateArgs),
+    /// List every stage
+    Stages {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+        /// Print the JSON schema of pipeline files instead
+        #[arg(long, conflicts_with = "json")]
+        schema: bool,
+    },
+    /// Make every stage and plugin, run each on tiny input, and say what fails
+    Doctor {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write a crate with a stage of one's own: it builds, loads, has a test and a benchmark
+    NewStage(NewStageArgs),
+    /// Show one stage's card: what it does, its ports, parameters and promises
+    Stage {
+        /// The stage's name, like Otsu
+        name: String,
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Say what a run would do, what it would leave out, and why
+    Explain(ExplainArgs),
+    /// Say what a run would do again and why, or where a triangle of a result comes from
+    Why(WhyArgs),
+    /// Show the cache of results, make room in it or empty it
+    Cache(CacheArgs),
+    /// Keep what a pipeline is made of beside it, to run against with `run --locked`
+    Lock(LockArgs),
+    /// Rewrite old pipeline files to the names that stages and parameters have now
+    Migrate(MigrateArgs),
+    /// Measure how a pipeline trades accuracy for time: the front of settings that nothing beats
+    Trade(TradeArgs),
+    /// Pick a setting for an error or a time from the measured front, and prove it by fresh runs
+    Tune(TuneArgs),
+    /// One run of a measurement in a process of its own: its task on standard input, its answer on standard output
+    #[command(hide = true)]
+    RunApart,
+    /// Keep goldens: text sheets of measures for every edge of a pipeline
+    Golden {
+        #[command(subcommand)]
+        verb: Verb,
+    },
+    /// Hold the cloth engine against exact references and extremes
+    Bench {
+        #[command(subcommand)]
+        what: Bench,
+    },
+}

@@ -1,0 +1,61 @@
+//! What is known of a parameter.
+
+use super::{Check, Length};
+
+/// One parameter of a stage: the single source of its RON form, checks, card and schema.
+#[derive(Debug, Clone)]
+pub struct ParamDoc {
+    /// Field name.
+    pub name: &'static str,
+    /// What it does.
+    pub doc: &'static str,
+    /// Its type in words.
+    pub kind: String,
+    /// Its unit; empty where it has none.
+    pub unit: &'static str,
+    /// Least value allowed (lengths in metres).
+    pub min: Option<f64>,
+    /// Greatest value allowed.
+    pub max: Option<f64>,
+    /// Default as RON text.
+    pub default: String,
+    /// True where it trades accuracy for time.
+    pub trades: bool,
+    /// Which way it is refined where it is a resolution; none where it is none.
+    pub finer: Option<Finer>,
+    /// Parses a RON text as this parameter's type and checks its numbers' range.
+    pub check: Check,
+}
+
+impl ParamDoc {
+    /// Its range in words, `1 mm to 100 mm`; `None` where it has none.
+    pub fn range(&self) -> Option<String> {
+        let show =
+            |x: f64| if self.kind.contains("length") { Length::m(x).to_string() } else { x.to_string() };
+        match (self.min, self.max) {
+            (Some(lo), Some(hi)) => Some(format!("{} to {}", show(lo), show(hi))),
+            (Some(lo), None) => Some(format!("at least {}", show(lo))),
+            (None, Some(hi)) => Some(format!("at most {}", show(hi))),
+            (None, None) => None,
+        }
+    }
+}
+
+/// Which way a resolution is refined: the results of ever finer values come nearer to one limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Finer {
+    /// Less is finer: an edge length, a time step, a tolerance.
+    Less,
+    /// More is finer: a count of iterations.
+    More,
+}
+
+impl Finer {
+    /// In one word.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Finer::Less => "less",
+            Finer::More => "more",
+        }
+    }
+}

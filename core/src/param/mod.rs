@@ -1,0 +1,21 @@
+//! Parameters of stages: lengths with units, and the table that documents and checks them.
+//!
+//! - `length`, `kind`: what a parameter may be; `doc`: what is known of one; `check`, `words`: whether a text is its value, and
+//!   why not; `dialect`: the form of the files.
+
+mod check;
+mod dialect;
+mod doc;
+mod kind;
+mod length;
+mod words;
+
+pub(crate) use check::check_number;
+pub use check::{Check, ParamFault};
+pub use dialect::ron_options;
+#[doc(hidden)]
+pub use dialect::ron_text;
+pub use doc::{Finer, ParamDoc};
+pub use kind::ParamType;
+pub use length::{LENGTH_UNITS, Length};
+pub(crate) use words::ron_fault;

@@ -1,0 +1,55 @@
+//! The one trait that every step of a pipeline stands behind.
+
+mod card;
+mod contract;
+mod role;
+mod values;
+
+pub use card::{Arity, Card, InPort, OutPort, PluginId};
+pub use contract::Contract;
+pub use role::Role;
+pub use values::{Input, Inputs, Output, PortValue, Set};
+
+use crate::cost::Size;
+use crate::decide::{Decision, Known};
+use crate::{Context, StageError};
+
+/// A step of a pipeline, with its parameters set.
+///
+/// Authors do not implement it by hand: `#[stage]` on the parameter struct and on its `impl`
+/// derives it from one typed function.
+#[typetag::serde]
+pub trait Stage: std::fmt::Debug + Send + Sync {
+    /// The stage's card.
+    fn card(&self) -> Card;
+
+    /// Its parameters as RON: `(bias: 3.0)`.
+    fn params(&self) -> String;
+
+    /// How much it makes of so much, all ports together; none where the rules of its role tell (see [`crate::cost`]).
+    fn sizes(&self, _given: &Size, _cx: &Context) -> Option<Size> {
+        None
+    }
+
+    /// What it leaves out or simplifies here, by which facts of the scene (see [`crate::decide`]).
+    fn decisions(&self, _known: &Known<'_>) -> Vec<Decision> {
+        Vec::new()
+    }
+
+    /// Runs it on its ports' values, in the order of the card's inputs.
+    fn run_ports(&self, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError>;
+}
+
+/// What a stage type says of itself, apart from any parameters.
+pub trait StageType: Stage + StageMeta + Default + serde::de::DeserializeOwned {
+    /// Its card.
+    fn type_card() -> Card;
+}
+
+/// The half of the card that comes from the parameter struct.
+pub trait StageMeta {
+    /// The stage's name.
+    const NAME: &'static str;
+    /// A card without its ports.
+    fn meta() -> Card;
+}

@@ -1,0 +1,86 @@
+//! The files that examples name.
+
+use super::{dress, shapes, suite};
+use crate::artifact::*;
+use crate::{Cancel, Card, Context, Inputs, PortValue, Registry};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
+/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
+///
+/// Errors: the system's, where a file cannot be written.
+pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
+    let lay = |name: &str, bytes: &[u8]| {
+        std::fs::write(folder.join(name), bytes).map_err(|e| format!("cannot write {name}: {e}"))
+    };
+    for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
+        match name.rsplit_once('.').map(|(_, extension)| extension) {
+            Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
+            Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
+            Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
+            Some(extension) if extension.chars().all(char::is_alphabetic) => {
+                let ending = format!(".{extension}");
+                let files = writers_for(registry, example).find_map(|card| written(registry, card, &ending));
+                for file in files.into_iter().flatten() {
+                    let own = if file.path.ends_with(&ending) { name } else { &file.path };
+                    lay(own, &file.bytes)?;
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+/// All cards, first those that are named after the stage of the example: `SceneJson` writes what `Scene` reads.
+fn writers_for<'r>(registry: &'r Registry, example: &'r str) -> impl Iterator<Item = &'r Card> {
+    let stage = example.split('(').next().unwrap_or("").trim();
+    let kin = move |card: &&Card| card.name.starts_with(stage);
+    registry.cards().filter(kin).chain(registry.cards())
+}
+
+fn picture(format: image::ImageFormat) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    // Writing into memory cannot fail; a stage that is given nothing says so.
+    let _ = shapes::photo().pixels.write_to(&mut bytes, format);
+    bytes.into_inner()
+}
+
+/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without
+/// arguments, since readers of bodies look for shoulders and legs, else the suite's own.
+fn body_file(registry: &Registry, z_up: bool) -> Vec<u8> {
+    let made = registry.of_role(crate::Role::Body).find_map(|card| {
+        let outcome =
+            registry.make(card, "()").ok()?.run_ports(&Inputs::default(), &Context::quiet()).ok()?;
+        first::<Body>(&outcome)
+    });
+    let mut body = made.unwrap_or_else(dress::body);
+    if z_up {
+        body.positions.iter_mut().for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
+    }
+    body.export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
+}
+
+fn first<T: Clone + 'static>(made: &[PortValue]) -> Option<T> {
+    made.iter().flat_map(PortValue::entries).find_map(|(_, a)| {
+        let any: &dyn std::any::Any = a.as_ref();
+        any.downcast_ref::<T>().cloned()
+    })
+}
+
+/// What a writer of garments makes, where one of its files has that ending.
+fn written(registry: &Registry, card: &Card, ending: &str) -> Option<Vec<OutputFile>> {
+    let takes_garment = card.inputs.first().is_some_and(|port| port.kind == Garment::KIND);
+    if card.role != crate::Role::Writer || !takes_garment {
+        return None;
+    }
+    let cx = Context::new("suite", Path::new("."), Cancel::new(), Arc::new(()));
+    let made = registry.make(card, "()").ok()?.run_ports(&inputs_of(card), &cx).ok()?;
+    let files = first::<OutputFiles>(&made)?;
+    files.0.iter().any(|f| f.path.ends_with(ending)).then_some(files.0)
+}
+
+fn inputs_of(card: &Card) -> Inputs {
+    Inputs(card.inputs.iter().map(suite::default_value).collect())
+}

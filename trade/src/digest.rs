@@ -1,0 +1,34 @@
+//! What tells one pipeline, one garment, one file from another.
+
+use std::path::Path;
+use toile_core::artifact::{Artifact, Digester, Garment};
+use toile_core::cache::Hash;
+use toile_core::pipeline::Pipeline;
+
+/// What tells one pipeline from another: its stages with versions, plugins and parameters.
+pub fn digest(pipeline: &Pipeline, more: &[&str]) -> String {
+    let mut d = Digester::new();
+    for node in &pipeline.nodes {
+        d.text(node.card.name)
+            .text(node.card.role.as_str())
+            .count(node.card.version as usize)
+            .text(&node.stage.params());
+        d.text(&node.card.plugin.map_or_else(String::new, |p| p.digest.hex()));
+    }
+    more.iter().for_each(|text| {
+        d.text(text);
+    });
+    d.finish().short()
+}
+
+/// Names a garment by its content.
+pub(crate) fn garment_digest(garment: &Garment) -> String {
+    let mut d = Digester::new();
+    garment.digest(&mut d);
+    d.finish().hex()
+}
+
+/// Names a file's content; none for one that cannot be read.
+pub(crate) fn content(path: impl AsRef<Path>) -> Option<String> {
+    std::fs::read(path).ok().map(|bytes| Hash::of(&bytes).hex())
+}

@@ -1,0 +1,194 @@
+//! The reference: the pipeline refined level by level until its garment stops moving.
+//!
+//! Level k divides every knob whose card says that less is finer (edge length, time step, tolerance) by sqrt(2)^k and multiplies
+//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
+//! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
+//! surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than any setting to be judged by it; or with the
+//! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
+//!
+//! The garment has many states of rest, so a reference has a spread of its own: the level before the last is started again
+//! from moved starts (`jitter`, `spread`).
+//!
+//! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
+
+mod spread;
+
+pub(crate) use spread::moved_start;
+
+use crate::errors::{compare, ease};
+use crate::measure::{Bench, Missed, Ran};
+use crate::record::{Level, Order, Reference};
+use crate::richardson::convergence;
+use crate::slot::{Board, Setting, setting_words};
+use crate::source::Source;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use toile_core::cache::Cache;
+use toile_core::{Length, StageError};
+
+/// Factor between levels: twice the triangles, so that a further level is never far out of the budget.
+pub const RATIO: f64 = std::f64::consts::SQRT_2;
+/// Missing distance at which the reference counts as found, mm: a quarter of what a tape measure resolves.
+pub const CLOSE_ENOUGH: f64 = 0.25;
+/// How much finer than the finest setting to be judged the reference must be.
+pub const FINER: f64 = 1.3;
+/// Levels at most: 2^9 times the triangles.
+const MOST_LEVELS: usize = 10;
+/// Time of a level in times of the level before it, where only one is known.
+const GROWTH: f64 = 3.0;
+
+/// How the reference is looked for.
+pub struct Search<'a> {
+    /// The pipeline.
+    pub source: &'a Source<'a>,
+    /// Its knobs.
+    pub board: &'a Board,
+    /// How runs are made.
+    pub bench: &'a Bench,
+    /// Keeps the levels for later sessions.
+    pub cache: Arc<Cache>,
+    /// Time for the levels.
+    pub budget: Duration,
+    /// Time for the moved starts.
+    pub starts_budget: Duration,
+    /// How many moved starts.
+    pub starts: usize,
+    /// Root mean square move of a start.
+    pub jitter: Length,
+}
+
+/// The reference with its garment.
+pub struct Found {
+    /// The record.
+    pub reference: Reference,
+    /// The finest level.
+    pub ran: Ran,
+}
+
+impl Search<'_> {
+    /// Refines until the garment stops moving or the budget is used.
+    ///
+    /// Errors: the pipeline's own setting fails; stopped by the user.
+    pub fn run(&self, tell: &mut dyn FnMut(String)) -> Result<Found, StageError> {
+        let started = Instant::now();
+        let (mut levels, mut last, mut before) = (Vec::<Level>::new(), None::<Ran>, None::<Ran>);
+        let stopped = loop {
+            let k = levels.len();
+            if let Some(why) = self.enough(&levels, self.budget.saturating_sub(started.elapsed())) {
+                break why;
+            }
+            let setting = self.board.refined(RATIO.powi(k as i32));
+            // The pipeline's own setting is run to its end whatever the budget: without it there is nothing to say.
+            let left = (k > 0).then(|| self.budget.saturating_sub(started.elapsed()));
+            let ran = match self.level(&setting, left) {
+                Ok(ran) => ran,
+                Err(missed) => break self.after_miss(missed, k)?,
+            };
+            let level = level(self.board, setting, &ran, last.as_ref())?;
+            tell(words(k, &level));
+            levels.push(level);
+            before = last.replace(ran);
+        };
+        let Some(ran) = last else { return Err(StageError::internal("a reference without levels")) };
+        let spread = self.spread(&levels, before.as_ref().unwrap_or(&ran), tell)?;
+        let ease_mm = ease(&ran);
+        let reference = Reference { ratio: RATIO, levels, stopped, spread, ease_mm, ..Reference::default() };
+        Ok(Found { reference: with_orders(reference), ran })
+    }
+
+    /// The reference of an earlier session: its finest level again, from the cache where it is still there.
+    ///
+    /// Errors: it does not run any more.
+    pub fn again(&self, reference: Reference) -> Result<Found, StageError> {
+        let finest =
+            reference.levels.last().ok_or_else(|| StageError::invalid("the record holds no reference"))?;
+        let ran = self.level(&finest.setting, None)?;
+        Ok(Found { ran, reference: with_orders(reference) })
+    }
+
+    fn level(&self, setting: &Setting, limit: Option<Duration>) -> Result<Ran, Missed> {
+        let pipeline = self.source.load(&self.board.overrides(setting));
+        let pipeline = pipeline.map_err(|f| Missed::Failed(StageError::invalid(f.to_string())))?;
+        self.bench.run(&pipeline, limit, Some(self.cache.clone()))
+    }
+
+    /// Why no further level is wanted; none where one is.
+    fn enough(&self, levels: &[Level], left: Duration) -> Option<String> {
+        let k = levels.len();
+        let last = levels.last()?;
+        if self.board.refined(RATIO.powi(k as i32)) == last.setting {
+            return Some("no knob can be refined further".into());
+        }
+        let missing = order(levels, |l| Some(l.moved_mm?.p95)).map(|o| o.missing_mm);
+        if missing.is_some_and(|m| m <= CLOSE_ENOUGH) && self.board.is_finer(&last.setting, FINER) {
+            return Some(format!("it stopped moving: less than {CLOSE_ENOUGH} mm is missing"));
+        }
+        if k >= MOST_LEVELS {
+            return Some(format!("{MOST_LEVELS} levels are the most"));
+        }
+        let growth = match levels {
+            // No solver is quicker than its triangles are many.
+            [.., a, b] => (b.wall_s / a.wall_s).clamp(RATIO * RATIO, 8.0),
+            _ => GROWTH,
+        };
+        let next = last.wall_s * growth;
+        // The second level is always tried: one level alone says nothing.
+        (k >= 2 && next > left.as_secs_f64()).then(|| {
+            format!(
+                "the next level would take about {next:.0} s, more than is left of its share of the budget"
+            )
+        })
+    }
+
+    fn after_miss(&self, missed: Missed, level: usize) -> Result<String, StageError> {
+        match missed {
+            Missed::OverLimit(s) if level > 0 => {
+                Ok(format!("level {level} was not done after {s:.0} s, its share of the budget"))
+            }
+            Missed::Failed(e) if level > 0 => Ok(format!("level {level} fails: {}", e.message)),
+            missed => Err(missed.into()),
+        }
+    }
+}
+
+fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Result<Level, StageError> {
+    let moved = before.map(|b| compare(ran, b)).transpose()?;
+    let strain = ran.figures.as_ref().map_or(0.0, |f| f.garment.edge_strain.p99);
+    let overrides = board.overrides(&setting).into_iter().map(|o| (o.path, o.value)).collect();
+    Ok(Level {
+        setting,
+        overrides,
+        triangles: ran.garment.triangles.len(),
+        wall_s: ran.wall_s,
+        cpu_s: ran.cpu_s,
+        moved_mm: moved.as_ref().map(|e| e.distance_mm),
+        displaced_mm: moved.as_ref().map(|e| e.displacement_mm),
+        ease_mm: ease(ran),
+        strain_p99: strain * 1e2,
+    })
+}
+
+/// The reference with the orders that its levels show.
+fn with_orders(reference: Reference) -> Reference {
+    let order = |figure: fn(&Level) -> Option<f64>| order(&reference.levels, figure);
+    Reference {
+        mean: order(|l| Some(l.moved_mm?.mean)),
+        p95: order(|l| Some(l.moved_mm?.p95)),
+        displacement: order(|l| Some(l.displaced_mm?.mean)),
+        ..reference.clone()
+    }
+}
+
+fn order(levels: &[Level], figure: fn(&Level) -> Option<f64>) -> Option<Order> {
+    let distances: Vec<f64> = levels.iter().filter_map(figure).collect();
+    let c = convergence(&distances, RATIO)?;
+    Some(Order { order: c.order.is_finite().then_some(c.order), missing_mm: c.missing })
+}
+
+fn words(k: usize, level: &Level) -> String {
+    let setting = setting_words(&level.setting);
+    let moved = level.moved_mm.map_or_else(String::new, |m| {
+        format!(", moved by {:.2} mm in the mean, {:.2} mm at 95 %", m.mean, m.p95)
+    });
+    format!("reference level {k} ({setting}): {} triangles, {:.1} s{moved}", level.triangles, level.wall_s)
+}

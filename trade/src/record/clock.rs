@@ -1,0 +1,24 @@
+//! Clocks.
+
+use serde::{Deserialize, Serialize};
+
+/// Which clock the front is drawn by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Clock {
+    /// What passes for the user.
+    #[default]
+    Wall,
+    /// What the processors work, all together: the one to look at on a busy machine.
+    Cpu,
+}
+
+impl Clock {
+    /// In words.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Clock::Wall => "wall",
+            Clock::Cpu => "cpu",
+        }
+    }
+}
