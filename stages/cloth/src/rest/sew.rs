@@ -39,7 +39,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Closes the seams of cloth as stiff as its first state is to be, or as they close.
+    /// Closes the seams of cloth as stiff as its first state is to be, or else, each time from the start, as stiff as they close.
     fn close(
         &mut self,
         sheet: &Sheet,
@@ -49,7 +49,10 @@ impl Work<'_> {
     ) -> Result<(), RestError> {
         let first = self.grade(size(sheet)).map_or(1.0, |g| g.first());
         let mut force = 0.0;
+        let start = x.to_vec();
         for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
+            // Cloth too stiff to go round the body has been squeezed out of its place: above the arms, off the shoulders.
+            x.copy_from_slice(&start);
             force = self.pull(sheet, pairs, x, stiff, progress)?;
             if widest(x, pairs) <= self.rest.join_gap {
                 break;
