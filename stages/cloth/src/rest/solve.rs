@@ -438,8 +438,8 @@ impl<'a> Work<'a> {
         let tree = self.scene.self_collision.then(|| self.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
-        let mut stop = None;
-        let mut falling = 0;
+        let (mut stop, mut is_late, mut falling) = (None, false, 0);
+        let late = || self.clock.elapsed() > self.rest.budget;
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             report = LevelReport { outcome: *outcome, seconds: start.elapsed().as_secs_f64(), ..report };
             let free = system.touches.is_empty() && !system.pinned.contains(&true);
@@ -451,36 +451,41 @@ impl<'a> Work<'a> {
                 stop = Some(RestError::Falls);
             } else if progress(&report).is_break() {
                 stop = Some(RestError::Stopped);
-            } else if self.clock.elapsed() > self.rest.budget {
-                stop = Some(self.timeout());
             }
-            if stop.is_some() || done(x) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            is_late = late();
+            if stop.is_some() || is_late || done(x) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
         };
-        let late = || self.clock.elapsed() > self.rest.budget;
         match relax(system, layout, tree, x, pace, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
             Err(Halt::NotPositive(error)) => return Err(error.into()),
-            Err(Halt::Stopped) => stop = Some(self.timeout()),
+            Err(Halt::Stopped) => is_late = true,
         }
         match stop {
-            Some(RestError::Timeout { seconds, level, levels, .. }) => {
-                Err(RestError::Timeout { seconds, level, levels, positions: self.carried(x) })
-            }
             Some(error) => Err(error),
+            None if is_late => Err(self.timeout(x)),
             None => Ok(report),
         }
     }
 
-    fn timeout(&self) -> RestError {
-        let done = self.reports.iter().filter(|r| !r.sewing).count();
-        let seconds = self.clock.elapsed().as_secs_f64();
-        RestError::Timeout { seconds, level: done + 1, levels: self.pieces.len(), positions: vec![] }
+    /// Out of time with the nodes of a level at `x`.
+    fn timeout(&self, x: &[Vec3]) -> RestError {
+        let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.pieces.len());
+        RestError::Timeout { seconds, level: levels - self.level_of(x), levels, positions: self.carried(x) }
+    }
+
+    /// The level, fine to coarse, that has these nodes, sewn or open.
+    fn level_of(&self, x: &[Vec3]) -> usize {
+        let has = |p: &Pieces| p.nodes == x.len() || p.rest.len() == x.len();
+        self.pieces.iter().position(has).unwrap_or(0)
     }
 
     /// The level's nodes, sewn or open, carried to the finest vertices.
     fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
-        let open = |p: &&Pieces| p.rest.len() == x.len();
-        let k = self.pieces.iter().position(|p| p.nodes == x.len() || open(&p)).unwrap_or(0);
+        let k = self.level_of(x);
         let vertices = if self.pieces[k].nodes == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
         self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }

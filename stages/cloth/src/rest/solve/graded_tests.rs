@@ -68,3 +68,18 @@ fn cloth_without_bending_or_weight_is_solved_straight_away() {
     let straight = super::tests::roughly(&scene);
     assert_eq!(graded(&scene).positions, straight.positions);
 }
+
+#[test]
+fn out_of_time_tells_the_mesh_whatever_the_state_of_stiffness() {
+    let scene = generate::hang(24);
+    let rest = Rest { graded: true, budget: Duration::from_secs(1), ..Rest::default() };
+    let error = rest.solve(&scene, &mut |level| {
+        if level.nodes == scene.rest.len() {
+            std::thread::sleep(rest.budget);
+        }
+        ControlFlow::Continue(())
+    });
+    let Err(RestError::Timeout { level, levels, positions, .. }) = error else { panic!("{error:?}") };
+    assert!((1..=levels).contains(&level), "{level} of {levels}");
+    assert_eq!(positions.len(), scene.rest.len());
+}
