@@ -4,10 +4,10 @@
 //! because their sides on it are long. Stretches without a name are then divided twice as fine, and
 //! the panel is meshed anew; counts of named edges are agreed with other panels and stay.
 
+use super::angles::least_angle;
 use super::check::{check_outline, show};
 use super::divide::{Cuts, Division, divide};
 use super::layout::Layout;
-use super::predicates::least_angle;
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
 

@@ -3,6 +3,7 @@
 //! All share all but the inside: [`check`](self) of the outline, its division into segments that
 //! no mesher may change, constrained triangulation, mending of angles, assembly.
 
+mod angles;
 mod assemble;
 mod check;
 mod crossing;
@@ -22,10 +23,10 @@ mod tests;
 mod triangulate;
 mod trimesh;
 
+pub(crate) use angles::least_angle;
 pub use delaunay::DelaunayMesher;
 pub use graded::GradedMesher;
 pub use grid::GridMesher;
-pub(crate) use predicates::least_angle;
 
 use toile_core::Registry;
 

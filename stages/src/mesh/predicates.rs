@@ -49,20 +49,6 @@ pub(crate) fn distance_to_segment(p: Point2, a: Point2, b: Point2) -> (f64, f64)
     ((p - (a + ab * t)).norm(), t)
 }
 
-/// The angles of the triangle abc at its corners, radians; negative where it is turned over.
-pub(crate) fn angles(a: Point2, b: Point2, c: Point2) -> [f64; 3] {
-    let at = |p: Point2, q: Point2, r: Point2| {
-        let (u, v) = (q - p, r - p);
-        u.perp(&v).atan2(u.dot(&v))
-    };
-    [at(a, b, c), at(b, c, a), at(c, a, b)]
-}
-
-/// The least angle of the triangle abc, radians; negative where it is turned over.
-pub(crate) fn least_angle(a: Point2, b: Point2, c: Point2) -> f64 {
-    angles(a, b, c).into_iter().fold(f64::INFINITY, f64::min)
-}
-
 /// True where `p` lies inside the closed polygon (even-odd, half-open in y so that a vertex on
 /// the scan line counts once).
 pub(crate) fn inside(polygon: &[Point2], p: Point2) -> bool {

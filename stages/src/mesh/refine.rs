@@ -104,12 +104,11 @@ fn best_place(mesh: &TriMesh, star: &[u32], v: u32, before: f64) -> (Point2, f64
     let centre = ring.iter().map(|&w| mesh.points[w as usize].coords).sum::<Vector2>() / ring.len() as f64;
     let (mut best, mut angle) = (start, before);
     let mut take = |p: Point2, best: &mut Point2| {
-        let there = mesh.star_angle(star, v, p);
-        let better = there > angle;
-        if better {
+        let there = mesh.star_angle_above(star, v, p, angle);
+        if let Some(there) = there {
             (*best, angle) = (p, there);
         }
-        better
+        there.is_some()
     };
     take(Point2::from(centre), &mut best);
     let mut step = 0.5 * mean;
@@ -130,9 +129,9 @@ fn add(mesh: &mut TriMesh, t: u32) -> bool {
     let mut best: Option<(f64, u32, Point2)> = None;
     for p in candidates(mesh.corners(t)) {
         let Some(at) = mesh.walk(t, p) else { continue };
-        let (old, new) = mesh.try_insert(at, p);
-        if new > old + GAIN && best.is_none_or(|b| new - old > b.0) {
-            best = Some((new - old, at, p));
+        let Some(gained) = mesh.try_insert(at, p, GAIN) else { continue };
+        if best.is_none_or(|b| gained > b.0) {
+            best = Some((gained, at, p));
         }
     }
     let Some((_, at, p)) = best else { return false };

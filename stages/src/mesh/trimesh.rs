@@ -6,7 +6,8 @@
 //! Cost: every local change costs what it touches.
 //! Limits: borders and walls are never moved or split.
 
-use super::predicates::{in_circle, least_angle, orient};
+use super::angles::{least_angle, least_angle_above};
+use super::predicates::{in_circle, orient};
 use toile_core::StageError;
 use toile_core::artifact::Point2;
 
@@ -203,19 +204,19 @@ impl TriMesh {
         (inside, sides)
     }
 
-    /// What inserting `p`, which lies in triangle `t`, would give: the least angle of the
-    /// triangles it would replace and of those it would make. Negative where it cannot be.
-    pub(crate) fn try_insert(&self, t: u32, p: Point2) -> (f64, f64) {
+    /// By how much inserting `p`, which lies in triangle `t`, raises the least angle (radians): of the triangles
+    /// that it would make over those it would replace. `None` where that is no more than `gain`, or cannot be.
+    pub(crate) fn try_insert(&self, t: u32, p: Point2, gain: f64) -> Option<f64> {
         let (inside, sides) = self.cavity(t, p);
         let old = inside.iter().map(|&t| self.angle(t)).fold(f64::INFINITY, f64::min);
         let at = |v: u32| self.points[v as usize];
-        let new = sides.iter().map(|s| least_angle(at(s.0), at(s.1), p)).fold(f64::INFINITY, f64::min);
+        let new = least_angle_above(sides.iter().map(|s| [at(s.0), at(s.1), p]), old + gain);
         // A disc has two sides more than triangles, and passes every corner once.
         let mut corners: Vec<u32> = sides.iter().map(|s| s.0).collect();
         corners.sort_unstable();
         corners.dedup();
         let disc = sides.len() == inside.len() + 2 && corners.len() == sides.len();
-        (old, if disc { new } else { -1.0 })
+        new.filter(|_| disc).map(|new| new - old)
     }
 
     /// Inserts the free vertex `p`, which lies in triangle `t`.
@@ -331,6 +332,12 @@ impl TriMesh {
             least_angle(a, b, c)
         };
         star.iter().map(angle).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The least angle round `v` if it stood at `p`, where that is above `bound` (radians, 0 to pi).
+    pub(crate) fn star_angle_above(&self, star: &[u32], v: u32, p: Point2, bound: f64) -> Option<f64> {
+        let at = |w: u32| if w == v { p } else { self.points[w as usize] };
+        least_angle_above(star.iter().map(|&t| self.tris[t as usize].map(at)), bound)
     }
 
     /// Moves a free vertex.
