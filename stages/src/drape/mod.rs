@@ -2,6 +2,7 @@
 
 mod central_differences;
 mod implicit_euler;
+mod mixed_precision;
 mod motion;
 mod projective;
 mod rest;
@@ -12,6 +13,7 @@ mod xpbd;
 
 pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
+pub use mixed_precision::Precision;
 pub use projective::Projective;
 pub use rest::Rest;
 pub use spring::SpringDraper;

@@ -6,6 +6,7 @@
 //! which one is found.
 
 use super::ImplicitEuler;
+use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
 use crate::cloth::check_garment;
 use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
@@ -13,6 +14,7 @@ use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
+use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
 /// Triangles may dip this deep into the body before it is said, m: the limit that vertices are judged by.
@@ -29,7 +31,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 6,
+    version = 7,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -60,6 +62,10 @@ pub struct Rest {
     /// folds, and a finer mesh in like ones. Without, it is faster, and chance picks the folds.
     #[param(default = true)]
     pub graded: bool,
+    /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
+    /// always double. The state that is found keeps `speed` either way.
+    #[param(default = Precision::Mixed)]
+    pub precision: Precision,
     /// Distance at which cloth is held off itself where the pipeline names no collider.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.05)]
     pub thickness: Length,
@@ -112,6 +118,10 @@ impl Rest {
         Ok(self.finish(garment, &state, steps, converged))
     }
 
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        mixed_precision::rule(self.precision, self.graded, known.given).into_iter().collect()
+    }
+
     fn solver(&self) -> Solver {
         Solver {
             speed: self.speed,
@@ -121,6 +131,7 @@ impl Rest {
             join_gap: self.join_gap.metres(),
             budget: Duration::from_secs_f64(self.time_limit),
             graded: self.graded,
+            precision: self.precision.into(),
         }
     }
 

@@ -3,6 +3,7 @@
 //! The pieces depend on the sizes alone, so the bits are the same for any number of threads. Products, triangular solutions and
 //! small factors are those of the `faer` library, which picks its instructions at run time.
 
+use super::real::Real;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
@@ -24,7 +25,7 @@ const TASK: usize = 2_000_000;
 ///
 /// # Errors
 /// The column whose pivot is not positive.
-pub(super) fn factor_columns(mut a: MatMut<'_, f64>) -> Result<(), usize> {
+pub(super) fn factor_columns<T: Real>(mut a: MatMut<'_, T>) -> Result<(), usize> {
     let columns = a.ncols();
     if columns <= PANEL {
         return factor_panel(a);
@@ -37,14 +38,14 @@ pub(super) fn factor_columns(mut a: MatMut<'_, f64>) -> Result<(), usize> {
     factor_columns(right).map_err(|c| half + c)
 }
 
-fn factor_panel(a: MatMut<'_, f64>) -> Result<(), usize> {
+fn factor_panel<T: Real>(a: MatMut<'_, T>) -> Result<(), usize> {
     let own = a.ncols();
     let (mut top, below) = a.split_at_row_mut(own);
-    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<f64>(own, Par::Seq, Default::default()));
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<T>(own, Par::Seq, Default::default()));
     let stack = MemStack::new(&mut memory);
     cholesky_in_place(top.rb_mut(), Default::default(), Par::Seq, stack, Default::default())
         .map_err(|LltError::NonPositivePivot { index }| index)?;
-    if let Some(c) = (0..own).find(|&c| !(top[(c, c)] > 0.0 && top[(c, c)].is_finite())) {
+    if let Some(c) = (0..own).find(|&c| !(top[(c, c)] > T::ZERO && top[(c, c)].wide().is_finite())) {
         return Err(c);
     }
     solve_rows(top.rb(), below);
@@ -52,7 +53,7 @@ fn factor_panel(a: MatMut<'_, f64>) -> Result<(), usize> {
 }
 
 /// Solves for the rows below a factored square.
-fn solve_rows(top: MatRef<'_, f64>, mut below: MatMut<'_, f64>) {
+fn solve_rows<T: Real>(top: MatRef<'_, T>, mut below: MatMut<'_, T>) {
     let rows = below.nrows();
     if rows <= STRIP {
         return solve_lower_triangular_in_place(top, below.transpose_mut(), Par::Seq);
@@ -63,7 +64,7 @@ fn solve_rows(top: MatRef<'_, f64>, mut below: MatMut<'_, f64>) {
 }
 
 /// Takes `l` times the transpose of its first rows from the lower trapezoid `to`, or writes it there, negative.
-pub(super) fn take_product(mut to: MatMut<'_, f64>, accum: Accum, l: MatRef<'_, f64>) {
+pub(super) fn take_product<T: Real>(mut to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     let columns = to.ncols();
     if columns <= STRIP {
         return take_strip(to, accum, l);
@@ -77,14 +78,14 @@ pub(super) fn take_product(mut to: MatMut<'_, f64>, accum: Accum, l: MatRef<'_, 
 }
 
 /// One strip: a triangle, and what is below it.
-fn take_strip(to: MatMut<'_, f64>, accum: Accum, l: MatRef<'_, f64>) {
+fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     let columns = to.ncols();
     let (square, rest) = to.split_at_row_mut(columns);
     let (top, lower) = l.split_at_row(columns);
     let (triangle, full) = (BlockStructure::TriangularLower, BlockStructure::Rectangular);
-    triangular_matmul(square, triangle, accum, top, full, top.transpose(), full, -1.0, Par::Seq);
+    triangular_matmul(square, triangle, accum, top, full, top.transpose(), full, T::of(-1.0), Par::Seq);
     if rest.nrows() > 0 {
-        matmul(rest, accum, lower, top.transpose(), -1.0, Par::Seq);
+        matmul(rest, accum, lower, top.transpose(), T::of(-1.0), Par::Seq);
     }
 }
 

@@ -193,7 +193,7 @@ impl<'a> Work<'a> {
     fn pace(&self) -> Pace {
         let (first, longest, farthest) = SPAN;
         let (steps, speed) = (self.rest.coarse_steps, 2.0 * self.rest.speed);
-        Pace { first, longest, steps, speed, farthest, prove: false }
+        Pace { first, longest, steps, speed, farthest, prove: false, precision: self.rest.precision }
     }
 
     /// The pace of a state on the way from stiff to limp.

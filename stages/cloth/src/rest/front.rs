@@ -4,6 +4,7 @@
 //! `m` rows each, which become the factor's, and the border's lower triangle, which becomes what the parent adds.
 
 use super::dense::{factor_columns, take_product};
+use super::real::Real;
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, MatMut};
 use nalgebra::Matrix3;
@@ -30,40 +31,40 @@ impl Run {
 
 /// Adds a run of a child's column to the parent's, without its first rows.
 #[inline]
-fn add(from: &[f64], to: &mut [f64], first: usize, run: &Run, skip: usize) {
+fn add<T: Real>(from: &[T], to: &mut [T], first: usize, run: &Run, skip: usize) {
     let (at, here) = (3 * run.child as usize, 3 * run.parent as usize - first);
     let length = 3 * run.nodes as usize;
     let to = &mut to[here + skip..here + length];
-    to.iter_mut().zip(&from[at + skip..at + length]).for_each(|(t, f)| *t += f);
+    to.iter_mut().zip(&from[at + skip..at + length]).for_each(|(t, f)| *t += *f);
 }
 
 /// One front at work.
-pub(super) struct Dense<'a> {
+pub(super) struct Dense<'a, T> {
     /// Own columns, `m` rows each.
-    pub(super) columns: &'a mut Vec<f64>,
+    pub(super) columns: &'a mut Vec<T>,
     /// The border's part, `m - own` rows and columns; only its lower triangle is used. Elimination writes it first.
-    pub(super) border: Vec<f64>,
+    pub(super) border: Vec<T>,
     m: usize,
     own: usize,
 }
 
-impl<'a> Dense<'a> {
+impl<'a, T: Real> Dense<'a, T> {
     /// A front in the memory of `columns`, which are zeros then, and of `border`, which elimination writes over.
-    pub(super) fn zeros(columns: &'a mut Vec<f64>, mut border: Vec<f64>, m: usize, own: usize) -> Self {
+    pub(super) fn zeros(columns: &'a mut Vec<T>, mut border: Vec<T>, m: usize, own: usize) -> Self {
         let n = m - own;
-        columns.resize(m * own, 0.0);
+        columns.resize(m * own, T::ZERO);
         border.truncate(n * n);
-        border.resize(n * n, 0.0);
-        (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(0.0));
+        border.resize(n * n, T::ZERO);
+        (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(T::ZERO));
         if own == 0 {
             // Nothing is eliminated, so nothing writes it.
-            border.fill(0.0);
+            border.fill(T::ZERO);
         }
         Self { columns, border, m, own }
     }
 
     /// Column `c` from its first row that is kept, and the number of that row.
-    fn column(&mut self, c: usize) -> (&mut [f64], usize) {
+    fn column(&mut self, c: usize) -> (&mut [T], usize) {
         let (m, own, n) = (self.m, self.own, self.m - self.own);
         if c < own {
             (&mut self.columns[c * m..(c + 1) * m], 0)
@@ -77,24 +78,24 @@ impl<'a> Dense<'a> {
         for c in 0..3 {
             let (to, first) = self.column(3 * column + c);
             for r in 0..3 {
-                to[3 * row + r - first] += if flipped { block[(c, r)] } else { block[(r, c)] };
+                to[3 * row + r - first] += T::of(if flipped { block[(c, r)] } else { block[(r, c)] });
             }
         }
     }
 
     /// Adds what a child leaves in the own columns: a lower triangle over its border, whose nodes are the rows of these runs.
-    pub(super) fn add_to_own(&mut self, update: &[f64], runs: &[Run]) {
+    pub(super) fn add_to_own(&mut self, update: &[T], runs: &[Run]) {
         let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
         self.extend_add(update, runs, 0..own);
     }
 
     /// The same in the border's columns, once the own ones are eliminated.
-    pub(super) fn add_to_border(&mut self, update: &[f64], runs: &[Run]) {
+    pub(super) fn add_to_border(&mut self, update: &[T], runs: &[Run]) {
         let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
         self.extend_add(update, runs, own..runs.len());
     }
 
-    fn extend_add(&mut self, update: &[f64], runs: &[Run], of: Range<usize>) {
+    fn extend_add(&mut self, update: &[T], runs: &[Run], of: Range<usize>) {
         let n: usize = runs.iter().map(|r| 3 * r.nodes as usize).sum();
         for k in of {
             let own = &runs[k];

@@ -1,7 +1,9 @@
 //! The linear problem of each Newton step: matrix, factor and solution, kept from step to step.
 
-use super::multifrontal::{Factor, Halt, Stop, Symbolic};
+use super::mixed::{Matrix, Mixed};
+use super::multifrontal::{Halt, Stop, Symbolic};
 use super::pattern::Pattern;
+use super::real::Precision;
 use super::system::System;
 use nalgebra::{Matrix3, Vector3};
 
@@ -23,7 +25,7 @@ pub(super) struct Linear {
     pattern: Pattern,
     symbolic: Symbolic,
     values: Vec<Matrix3<f64>>,
-    factor: Factor,
+    factor: Mixed,
 }
 
 impl Linear {
@@ -32,7 +34,7 @@ impl Linear {
         let pattern = system.pattern();
         system.elastic.bind(&pattern);
         let symbolic = Symbolic::new(&pattern, &layout);
-        Self { layout, pattern, symbolic, values: Vec::new(), factor: Factor::default() }
+        Self { layout, pattern, symbolic, values: Vec::new(), factor: Mixed::default() }
     }
 
     /// What orders the elimination.
@@ -60,17 +62,18 @@ impl Linear {
         system: &System<'_>,
         x: &[Vec3],
         g: &[Vec3],
-        dt: f64,
-        last: f64,
+        [dt, last]: [f64; 2],
+        precision: Precision,
         stop: &Stop,
     ) -> Result<Vec<Vec3>, Halt> {
         let mut shift = 1.0 / (dt * dt);
         let mut compression = if last < NEAR_REST { COMPRESSION } else { 0.0 };
-        let mut moves: Vec<Vec3> = g.iter().map(|g| -g).collect();
+        let right: Vec<Vec3> = g.iter().map(|g| -g).collect();
         loop {
             system.matrix(x, &self.pattern, shift, compression, &mut self.values);
-            match self.symbolic.factor_and_solve(&self.values, &mut self.factor, &mut moves, stop) {
-                Ok(()) => return Ok(moves),
+            let matrix = Matrix { pattern: &self.pattern, symbolic: &self.symbolic, values: &self.values };
+            match self.factor.solve(matrix, &right, precision, compression > 0.0, stop) {
+                Ok(moves) => return Ok(moves),
                 Err(Halt::NotPositive(_)) if compression > 0.0 => compression = 0.0,
                 // Rounding can cost a nearly singular matrix its sign; more inertia gives it back.
                 Err(Halt::NotPositive(_)) if shift <= MOST_INERTIA => shift *= 100.0,
@@ -82,7 +85,7 @@ impl Linear {
     /// The step from a place so near that of the last one that its factor will do.
     pub(super) fn again(&self, g: &[Vec3]) -> Vec<Vec3> {
         let mut step: Vec<Vec3> = g.iter().map(|g| -g).collect();
-        self.symbolic.solve(&self.factor, &mut step);
+        self.factor.again(&self.symbolic, &mut step);
         step
     }
 }

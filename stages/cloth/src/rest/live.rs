@@ -11,6 +11,7 @@ use super::grip::Grip;
 use super::multifrontal::Halt;
 use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
+use super::real::Precision;
 use super::solve::{LevelReport, Progress, Rest, RestError, Rested};
 use super::system::System;
 use crate::contact::tree::ClothTree;
@@ -178,7 +179,15 @@ impl<'a> Live<'a> {
 
     fn pace(&self) -> Pace {
         let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
-        Pace { first: FIRST, longest: 1.0, steps, speed, farthest: FARTHEST, prove: true }
+        Pace {
+            first: FIRST,
+            longest: 1.0,
+            steps,
+            speed,
+            farthest: FARTHEST,
+            prove: true,
+            precision: Precision::default(),
+        }
     }
 
     fn step(&mut self, pace: &Pace, stop: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, RestError> {

@@ -15,6 +15,7 @@ use super::dense::join_if;
 use super::dissect::{Part, dissect};
 use super::front::{Dense, Run};
 use super::pattern::Pattern;
+use super::real::Real;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Mutex;
 
@@ -77,25 +78,25 @@ impl Front {
 
 /// A factor: for each front the columns of its own nodes, `unknowns` rows each.
 #[derive(Debug, Default)]
-pub struct Factor {
-    columns: Vec<Vec<f64>>,
-    spare: Spare,
+pub struct Factor<T> {
+    columns: Vec<Vec<T>>,
+    spare: Spare<T>,
 }
 
 /// Memory of borders, kept from front to front and from one factorization to the next: fresh pages cost more than sums.
 #[derive(Debug, Default)]
-struct Spare(Mutex<Vec<Vec<f64>>>);
+struct Spare<T>(Mutex<Vec<Vec<T>>>);
 
-impl Spare {
+impl<T> Spare<T> {
     /// The smallest that holds `size` numbers, or a new one: were a leaf's to grow for the root, all would in the end.
-    fn take(&self, size: usize) -> Vec<f64> {
+    fn take(&self, size: usize) -> Vec<T> {
         let Ok(mut spare) = self.0.lock() else { return Vec::new() };
         let fits = (0..spare.len()).filter(|&k| spare[k].capacity() >= size);
         let best = fits.min_by_key(|&k| spare[k].capacity());
         best.map_or_else(|| Vec::with_capacity(size), |k| spare.swap_remove(k))
     }
 
-    fn give(&self, border: Vec<f64>) {
+    fn give(&self, border: Vec<T>) {
         if let Ok(mut s) = self.0.lock() {
             s.push(border);
         }
@@ -148,10 +149,10 @@ impl Symbolic {
     ///
     /// # Errors
     /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
-    pub fn factor_and_solve(
+    pub fn factor_and_solve<T: Real>(
         &self,
         values: &[Matrix3<f64>],
-        factor: &mut Factor,
+        factor: &mut Factor<T>,
         x: &mut [Vector3<f64>],
         stop: &Stop,
     ) -> Result<(), Halt> {
@@ -167,7 +168,7 @@ impl Symbolic {
     }
 
     /// Solves in place: `x` is the right side, then the solution.
-    pub fn solve(&self, factor: &Factor, x: &mut [Vector3<f64>]) {
+    pub fn solve<T: Real>(&self, factor: &Factor<T>, x: &mut [Vector3<f64>]) {
         let Some(root) = self.fronts.len().checked_sub(1) else { return };
         let mut y = self.ordered(x);
         self.forward(root, &factor.columns, &mut y);
@@ -177,25 +178,25 @@ impl Symbolic {
 }
 
 /// A factorization under way.
-struct Work<'w> {
+struct Work<'w, T> {
     symbolic: &'w Symbolic,
     values: &'w [Matrix3<f64>],
-    spare: &'w Spare,
+    spare: &'w Spare<T>,
     stop: &'w Stop<'w>,
 }
 
 /// What a front leaves to its parent.
-struct Left {
+struct Left<T> {
     /// The matrix over its border, lower triangle by columns.
-    border: Vec<f64>,
+    border: Vec<T>,
     /// The right side over its border.
-    right: Vec<f64>,
+    right: Vec<T>,
 }
 
-impl Work<'_> {
+impl<T: Real> Work<'_, T> {
     /// Factors the front `k` and all below it, whose columns are the last of `columns` and whose right sides are `y`, which
     /// becomes the solution's first half.
-    fn eliminate(&self, k: usize, columns: &mut [Vec<f64>], y: &mut [f64]) -> Result<Left, Halt> {
+    fn eliminate(&self, k: usize, columns: &mut [Vec<T>], y: &mut [T]) -> Result<Left<T>, Halt> {
         let front = &self.symbolic.fronts[k];
         let Some((mine, below)) = columns.split_last_mut() else { return Err(Halt::Stopped) };
         let (below_y, y) = y.split_at_mut(y.len() - front.own());
@@ -212,12 +213,12 @@ impl Work<'_> {
         dense.eliminate().map_err(|c| NotPositive { node: front.nodes[c / 3] })?;
         below.iter().zip(&front.child_runs).for_each(|(b, runs)| dense.add_to_border(&b.border, runs));
         let border = dense.border;
-        let rights: Vec<Vec<f64>> = below.into_iter().map(|b| self.recycle(b)).collect();
+        let rights: Vec<Vec<T>> = below.into_iter().map(|b| self.recycle(b)).collect();
         Ok(Left { border, right: front.forward(mine, y, &rights) })
     }
 
     /// Gives the memory of a border back: the right side is left.
-    fn recycle(&self, left: Left) -> Vec<f64> {
+    fn recycle(&self, left: Left<T>) -> Vec<T> {
         self.spare.give(left.border);
         left.right
     }
@@ -225,9 +226,9 @@ impl Work<'_> {
     fn eliminate_children(
         &self,
         front: &Front,
-        columns: &mut [Vec<f64>],
-        y: &mut [f64],
-    ) -> Result<Vec<Left>, Halt> {
+        columns: &mut [Vec<T>],
+        y: &mut [T],
+    ) -> Result<Vec<Left<T>>, Halt> {
         match front.children[..] {
             [] => Ok(vec![]),
             [a] => Ok(vec![self.eliminate(a, columns, y)?]),

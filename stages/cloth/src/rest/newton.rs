@@ -20,6 +20,7 @@
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
+use super::real::Precision;
 use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
@@ -83,6 +84,8 @@ pub struct Pace {
     pub farthest: f64,
     /// Whether rest must be proved by a step of [`REST_STEP`].
     pub prove: bool,
+    /// How precise the factor of each step is.
+    pub precision: Precision,
 }
 
 /// How a level stands after a step.
@@ -239,7 +242,7 @@ impl Descent {
         let used = if self.proves { REST_STEP } else { self.dt };
         let mut moves = match self.proves && self.serves && !is_new {
             true => self.linear.again(&g),
-            false => self.linear.step(system, x, &g, used, self.last, stop)?,
+            false => self.linear.step(system, x, &g, [used, self.last], pace.precision, stop)?,
         };
         self.serves = self.proves;
         let longest = greatest(&moves);

@@ -20,6 +20,7 @@ use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
+pub use super::real::Precision;
 use super::sew::widest;
 use super::system::System;
 use crate::contact::body::Body;
@@ -61,6 +62,8 @@ pub struct Rest {
     /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
     /// cloth began.
     pub graded: bool,
+    /// How precise the factor of each step is.
+    pub precision: Precision,
 }
 
 impl Default for Rest {
@@ -73,6 +76,7 @@ impl Default for Rest {
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
             graded: false,
+            precision: Precision::default(),
         }
     }
 }

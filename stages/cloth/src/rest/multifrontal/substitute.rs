@@ -6,24 +6,25 @@
 
 use super::{Front, Symbolic, TASK_UNKNOWNS};
 use crate::rest::dense::join_if;
+use crate::rest::real::Real;
 use nalgebra::Vector3;
 
 impl Symbolic {
     /// Values of the nodes in the order of elimination.
-    pub(super) fn ordered(&self, x: &[Vector3<f64>]) -> Vec<f64> {
+    pub(super) fn ordered<T: Real>(&self, x: &[Vector3<f64>]) -> Vec<T> {
         debug_assert_eq!(x.len(), self.order.len());
-        self.order.iter().flat_map(|&i| x[i as usize].iter().copied()).collect()
+        self.order.iter().flat_map(|&i| x[i as usize].iter().map(|&v| T::of(v))).collect()
     }
 
     /// Back to the nodes' own order.
-    pub(super) fn restore(&self, y: &[f64], x: &mut [Vector3<f64>]) {
+    pub(super) fn restore<T: Real>(&self, y: &[T], x: &mut [Vector3<f64>]) {
         for (&i, v) in self.order.iter().zip(y.as_chunks::<3>().0) {
-            x[i as usize] = Vector3::from(*v);
+            x[i as usize] = Vector3::from(v.map(T::wide));
         }
     }
 
     /// The first half for the front `k` and all below it: what it leaves to its parent.
-    pub(super) fn forward(&self, k: usize, columns: &[Vec<f64>], y: &mut [f64]) -> Vec<f64> {
+    pub(super) fn forward<T: Real>(&self, k: usize, columns: &[Vec<T>], y: &mut [T]) -> Vec<T> {
         let front = &self.fronts[k];
         let Some((mine, below)) = columns.split_last() else { return Vec::new() };
         let (below_y, y) = y.split_at_mut(y.len() - front.own());
@@ -45,7 +46,7 @@ impl Symbolic {
     }
 
     /// The second half; `border` is the solution there.
-    pub(super) fn backward(&self, k: usize, columns: &[Vec<f64>], y: &mut [f64], border: &[f64]) {
+    pub(super) fn backward<T: Real>(&self, k: usize, columns: &[Vec<T>], y: &mut [T], border: &[T]) {
         let front = &self.fronts[k];
         let Some((mine, below)) = columns.split_last() else { return };
         let (below_y, y) = y.split_at_mut(y.len() - front.own());
@@ -73,14 +74,14 @@ impl Symbolic {
 
 impl Front {
     /// Solves for the own unknowns `y`; what the children left is in `rights`, what is left to the parent comes back.
-    pub(super) fn forward(&self, columns: &[f64], y: &mut [f64], rights: &[Vec<f64>]) -> Vec<f64> {
+    pub(super) fn forward<T: Real>(&self, columns: &[T], y: &mut [T], rights: &[Vec<T>]) -> Vec<T> {
         let own = self.own();
-        let mut local = vec![0.0; self.unknowns()];
+        let mut local = vec![T::ZERO; self.unknowns()];
         local[..own].copy_from_slice(y);
         for (right, runs) in rights.iter().zip(&self.child_runs) {
             for run in runs {
                 let (from, to) = run.rows();
-                local[to].iter_mut().zip(&right[from]).for_each(|(l, r)| *l += r);
+                local[to].iter_mut().zip(&right[from]).for_each(|(l, r)| *l += *r);
             }
         }
         forward(columns, &mut local, own);
@@ -89,7 +90,7 @@ impl Front {
     }
 
     /// Solves for the own unknowns with the solution on the `border`: the solution on both.
-    fn backward(&self, columns: &[f64], y: &mut [f64], border: &[f64]) -> Vec<f64> {
+    fn backward<T: Real>(&self, columns: &[T], y: &mut [T], border: &[T]) -> Vec<T> {
         let own = self.own();
         let mut local = Vec::with_capacity(self.unknowns());
         local.extend_from_slice(y);
@@ -100,22 +101,22 @@ impl Front {
     }
 
     /// What a child sees on its border.
-    fn seen_by(&self, child: usize, local: &[f64]) -> Vec<f64> {
+    fn seen_by<T: Real>(&self, child: usize, local: &[T]) -> Vec<T> {
         self.child_runs[child].iter().flat_map(|run| local[run.rows().1].iter().copied()).collect()
     }
 }
 
-fn forward(columns: &[f64], local: &mut [f64], own: usize) {
+fn forward<T: Real>(columns: &[T], local: &mut [T], own: usize) {
     let m = local.len();
     for c in 0..own {
         let column = &columns[c * m..(c + 1) * m];
         let v = local[c] / column[c];
         local[c] = v;
-        local[c + 1..].iter_mut().zip(&column[c + 1..]).for_each(|(x, l)| *x -= v * l);
+        local[c + 1..].iter_mut().zip(&column[c + 1..]).for_each(|(x, l)| *x -= v * *l);
     }
 }
 
-fn backward(columns: &[f64], local: &mut [f64], own: usize) {
+fn backward<T: Real>(columns: &[T], local: &mut [T], own: usize) {
     let m = local.len();
     for c in (0..own).rev() {
         let column = &columns[c * m..(c + 1) * m];
@@ -125,13 +126,13 @@ fn backward(columns: &[f64], local: &mut [f64], own: usize) {
 }
 
 /// A dot product in eight running sums, which the compiler can keep side by side.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+fn dot<T: Real>(a: &[T], b: &[T]) -> T {
     let ((a8, a1), (b8, b1)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-    let mut sums = [0.0; 8];
+    let mut sums = [T::ZERO; 8];
     for (a, b) in a8.iter().zip(b8) {
         for k in 0..8 {
             sums[k] += a[k] * b[k];
         }
     }
-    sums.iter().sum::<f64>() + a1.iter().zip(b1).map(|(a, b)| a * b).sum::<f64>()
+    sums.into_iter().sum::<T>() + a1.iter().zip(b1).map(|(a, b)| *a * *b).sum::<T>()
 }

@@ -28,7 +28,7 @@ fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
     (pattern, values, layout)
 }
 
-fn factored(symbolic: &Symbolic, values: &[Matrix3<f64>]) -> Result<Factor, Halt> {
+fn factored(symbolic: &Symbolic, values: &[Matrix3<f64>]) -> Result<Factor<f64>, Halt> {
     let mut factor = Factor::default();
     let mut zeros = vec![Vector3::zeros(); symbolic.order.len()];
     symbolic.factor_and_solve(values, &mut factor, &mut zeros, &|| false).map(|()| factor)
@@ -51,6 +51,20 @@ fn the_solution_solves() {
 }
 
 #[test]
+fn single_precision_solves_to_its_own_digits() {
+    let (pattern, values, layout) = sheet(45);
+    let symbolic = Symbolic::new(&pattern, &layout);
+    let mut factor = Factor::<f32>::default();
+    let want: Vec<Vector3<f64>> =
+        (0..45 * 45).map(|i| Vector3::new(i as f64, 1.0, -2.0 * i as f64).map(f64::cos)).collect();
+    let mut x = vec![Vector3::zeros(); 45 * 45];
+    pattern.multiply_add(&values, &want, &mut x);
+    symbolic.factor_and_solve(&values, &mut factor, &mut x, &|| false).unwrap();
+    let worst = x.iter().zip(&want).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(worst > 1e-9 && worst < 1e-4, "{worst}");
+}
+
+#[test]
 fn solving_on_the_way_gives_the_bits_of_solving_afterwards_on_any_number_of_threads() {
     // Fronts wider than a panel and a strip.
     let (pattern, values, layout) = sheet(70);
@@ -60,7 +74,7 @@ fn solving_on_the_way_gives_the_bits_of_solving_afterwards_on_any_number_of_thre
     let solved = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {
-            let (mut factor, mut now, mut after) = (Factor::default(), right.clone(), right.clone());
+            let (mut factor, mut now, mut after) = (Factor::<f64>::default(), right.clone(), right.clone());
             symbolic.factor_and_solve(&values, &mut factor, &mut now, &|| false).unwrap();
             symbolic.solve(&factor, &mut after);
             assert!(now == after, "on {threads} threads");
@@ -134,7 +148,7 @@ fn speed() {
 #[test]
 fn a_factorization_can_be_stopped() {
     let (pattern, values, layout) = sheet(20);
-    let mut factor = Factor::default();
+    let mut factor = Factor::<f64>::default();
     let mut x = vec![Vector3::x(); 400];
     let stopped = Symbolic::new(&pattern, &layout).factor_and_solve(&values, &mut factor, &mut x, &|| true);
     assert!(x.iter().all(|v| *v == Vector3::x()), "the right side is lost");
