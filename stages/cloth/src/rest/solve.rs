@@ -203,9 +203,14 @@ pub enum RestError {
 }
 
 impl RestError {
-    /// Whether a finer mesh to sew on may help.
+    /// Whether a finer mesh to begin on may help.
     fn is_of_a_coarse_mesh(&self) -> bool {
-        matches!(self, Self::SeamNotClosed { .. } | Self::Cloth(ClothError::NonManifoldEdge { .. }))
+        matches!(
+            self,
+            Self::SeamNotClosed { .. }
+                | Self::Cloth(ClothError::NonManifoldEdge { .. })
+                | Self::Crossing { .. }
+        )
     }
 }
 
@@ -257,7 +262,8 @@ impl Rest {
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
                 Err(RestError::Falls) if wearer.is_some() && coarsest < scene.rest.len() => coarsest *= FINER,
-                // A polygon of so few corners does not go round a limb, or is folded onto itself by its seams.
+                // A polygon of so few corners does not go round a limb, is folded onto itself by its seams, or hands on
+                // folds that lie too close for a finer mesh to come apart.
                 Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
                 Err(e) => return Err(e),
             }
