@@ -6,6 +6,7 @@
 mod case;
 mod garment;
 mod model;
+mod precision;
 mod strip;
 mod world;
 
@@ -123,6 +124,7 @@ fn checks(large: bool) -> Vec<Check> {
     checks.extend(strip::checks());
     checks.extend(model::checks());
     checks.extend(world::checks(large));
+    checks.extend(precision::checks());
     checks.extend(garment::checks(large));
     // One axis after the other, in the order of their first checks.
     let mut order: Vec<&str> = Vec::new();

@@ -12,7 +12,7 @@ use crate::fabric::Fabric;
 use crate::force::Vec3;
 use crate::membrane::{Triangles, Woven};
 use crate::mesh::Sheet;
-use crate::solver::{CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Static, Xpbd};
+use crate::solver::{CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Xpbd};
 
 const DENSITY: f64 = 0.15;
 const FRAME: f64 = 1.0 / 60.0;
@@ -23,8 +23,6 @@ const MOST_MEMORY: f64 = 1024.0;
 /// Small steps of which the fastest counts, for other work on the machine only slows: so many, but for more than a second only the least.
 const TIMED: usize = 60;
 const LEAST_TIMED: usize = 5;
-/// What single-precision input may change, in lengths: 6e-8 times the condition of a hanging strip.
-const ROUNDED: f64 = 1e-5;
 
 pub(super) fn checks(large: bool) -> Vec<Check> {
     let must = Must::Converge;
@@ -39,7 +37,6 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
         checks
             .push(Check::new("determinism", format!("{threads} threads"), must, move || same_bits(threads)));
     }
-    checks.push(Check::new("f32_vs_f64", "input rounded to f32", must, || judged(rounded())));
     let most = if large { 1000 } else { 100 };
     for across in [32, 100, 316, 1000].into_iter().filter(|&n| n <= most.max(100)) {
         checks.push(Check::new("vertices", (across + 1) * (across + 1), must, move || judged(sized(across))));
@@ -129,28 +126,6 @@ fn same_bits(threads: usize) -> Verdict {
         (Err(e), _) | (_, Err(e)) => Verdict::Failed(e.to_string()),
         _ => Verdict::Failed("other bits".into()),
     }
-}
-
-/// There is no single-precision path; what single precision of all input changes in the answer.
-fn rounded() -> Result<(bool, String), ClothError> {
-    let rest = |narrow: bool| {
-        let mut mesh = Rectangle::new(Layout::Irregular(3), 0.1, 0.4, 16);
-        if narrow {
-            mesh.uv.iter_mut().for_each(|p| *p = p.map(|c| f64::from(c as f32)));
-        }
-        let sheet = mesh.sheet(if narrow { f64::from(DENSITY as f32) } else { DENSITY })?;
-        let top: Vec<bool> = mesh.uv.iter().map(|p| p.y > 0.4 - 1e-6).collect();
-        let model = cloth(&sheet)?.pinned(|v| top[v]);
-        let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
-        Static::to(1e-10).advance(&model, &mut state)?;
-        Ok(state.x)
-    };
-    let (wide, narrow): (Vec<Vec3>, Vec<Vec3>) = (rest(false)?, rest(true)?);
-    let apart = wide.iter().zip(&narrow).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / 0.4;
-    Ok((
-        apart < ROUNDED,
-        format!("all kernels are f64; rounding the input to f32 moves the answer by {apart:.0e} lengths"),
-    ))
 }
 
 /// Time and memory of small steps against those of a tenth as many vertices.
