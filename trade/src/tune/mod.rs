@@ -1,8 +1,8 @@
-//! Picks a setting from a measured front and proves it by fresh runs.
+//! Picks a setting from a measurement and proves it by fresh runs.
 //!
-//! For an error: the quickest setting of the front that keeps it, for a time: the most accurate that keeps that. The choice
+//! For an error: the quickest setting that keeps it, for a time: the most accurate of the front that keeps that. The choice
 //! is run afresh, and again from moved starts, each held against the reference; where a run misses what was asked, the
-//! next setting of the front is tried. Ten of ten starts within the error mean, with 95 % confidence, that fewer than 26 % of
+//! next one is tried. Ten of ten starts within the error mean, with 95 % confidence, that fewer than 26 % of
 //! all such starts miss it (1 - 0.05^(1/10)); three of three would mean 63 %.
 //!
 //! An error below what the reference itself is known to (`floor`) is refused before anything runs: a fresh run may well lie

@@ -1,18 +1,39 @@
-//! Settings of a measured front that keep a wish, and why none does.
+//! Settings of a measurement that keep a wish, and why none does.
 
 use super::Wish;
+use crate::front::Cost;
 use crate::record::Trade;
 use toile_core::{ErrorCode, StageError};
 
-/// Points of the front that keep a wish, the best first: the quickest where an error is asked, else the most accurate.
+const NEVER: Cost = Cost { time: f64::INFINITY, error: f64::INFINITY };
+
+/// Points that keep a wish, the best first. Where an error is asked: the quickest, of all that miss no quality limit, for what beats
+/// another may do so from its own start alone, and that shows only when it is proved. Where a time is asked: the most accurate
+/// of the front.
 pub fn picks(trade: &Trade, wish: &Wish) -> Vec<usize> {
-    let keeps = |i: &usize| {
-        trade.points[*i]
-            .measured()
-            .is_some_and(|m| wish.is_kept(m.errors.distance_mm.p95, m.time(trade.clock)))
-    };
-    let picks = trade.front.iter().copied().filter(|i| *i < trade.points.len()).filter(keeps);
-    if wish.max_error_mm.is_some() { picks.collect() } else { picks.rev().collect() }
+    if wish.max_error_mm.is_some() { quickest(trade, wish) } else { most_accurate(trade, wish) }
+}
+
+fn quickest(trade: &Trade, wish: &Wish) -> Vec<usize> {
+    let sound = |i: &usize| trade.points[*i].measured().is_some_and(|m| m.sound);
+    let mut picks: Vec<usize> =
+        (0..trade.points.len()).filter(|i| sound(i) && keeps(trade, wish, *i)).collect();
+    let cost = |i: usize| trade.points[i].measured().map_or(NEVER, |m| m.cost(trade.clock));
+    picks.sort_by(|&a, &b| {
+        let (a, b) = (cost(a), cost(b));
+        a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error))
+    });
+    picks
+}
+
+fn most_accurate(trade: &Trade, wish: &Wish) -> Vec<usize> {
+    let front = trade.front.iter().copied().filter(|i| *i < trade.points.len());
+    front.rev().filter(|i| keeps(trade, wish, *i)).collect()
+}
+
+fn keeps(trade: &Trade, wish: &Wish, point: usize) -> bool {
+    let measured = trade.points[point].measured();
+    measured.is_some_and(|m| wish.is_kept(m.errors.distance_mm.p95, m.time(trade.clock)))
 }
 
 /// Why a wish cannot be proved, before anything runs; none where there are settings to try.

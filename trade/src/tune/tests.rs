@@ -66,6 +66,17 @@ fn for_an_error_the_quickest_for_a_time_the_most_accurate() {
 }
 
 #[test]
+fn what_something_quicker_and_nearer_beats_is_tried_after_it() {
+    let mut trade = trade(None);
+    trade.points.push(point("15 mm", 5.0, 1.8, true));
+    trade.points.push(point("14 mm", 5.0, 1.7, true));
+    trade.front = front_of(&trade.points, Clock::Wall);
+    assert_eq!(trade.front, [1, 0, 3]);
+    assert_eq!(picks(&trade, &wish(Some(2.0), None)), [0, 5, 4, 3]);
+    assert_eq!(picks(&trade, &wish(None, Some(6.0))), [0, 1]);
+}
+
+#[test]
 fn refusals_word_for_word() {
     let refused = |floor, error, time| refusal(&trade(floor), &wish(error, time));
     let e = refused(None, Some(0.1), Some(5.0)).unwrap();
