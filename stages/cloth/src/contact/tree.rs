@@ -5,6 +5,7 @@
 //! O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
 
 mod meet;
+mod part;
 
 use super::ccd::approach;
 use super::pair::{Kind, Pair};
@@ -52,6 +53,15 @@ pub struct ClothTree {
     branches: Vec<Branch>,
     /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are neighbours.
     point: Vec<u32>,
+    /// Which branches and triangles look for others, where not all do.
+    awake: Option<Awake>,
+}
+
+/// What of a tree looks for others.
+#[derive(Debug, Clone)]
+struct Awake {
+    branches: Vec<bool>,
+    triangles: Vec<bool>,
 }
 
 impl ClothTree {
@@ -59,17 +69,13 @@ impl ClothTree {
     #[must_use]
     pub fn new(sheet: &Sheet, layout: &[Vec3]) -> Self {
         let all = sheet.triangles();
-        let centres: Vec<Vec3> =
-            all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
-        let mut order: Vec<u32> = (0..all.len() as u32).collect();
-        let mut branches = vec![Branch { first: 0, count: 0 }];
-        split(0, &mut order, 0, &centres, &mut branches);
+        let (order, branches) = halves(all, layout);
         let triangles: Vec<[u32; 3]> = order.iter().map(|&t| all[t as usize]).collect();
         let mut place = vec![0u32; all.len()];
         order.iter().enumerate().for_each(|(k, &t)| place[t as usize] = k as u32);
         let owns = ownership(sheet, &triangles, &place);
         let point = (0..layout.len() as u32).collect();
-        Self { triangles, owns, branches, point }
+        Self { triangles, owns, branches, point, awake: None }
     }
 
     /// The same, where nodes with equal numbers are about to be sewn: features that share one are no pair.
@@ -218,6 +224,16 @@ fn far(kind: Kind, x: &[Vec3; 4], reach: f64) -> bool {
     let (mut low2, mut high2) = (x[3], x[3]);
     x[first..3].iter().for_each(|p| (low2, high2) = (low2.inf(p), high2.sup(p)));
     (0..3).any(|k| low[k] - high2[k] > reach || low2[k] - high[k] > reach)
+}
+
+/// The order of the triangles in the tree, and its branches.
+fn halves(all: &[[u32; 3]], layout: &[Vec3]) -> (Vec<u32>, Vec<Branch>) {
+    let centres: Vec<Vec3> =
+        all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
+    let mut order: Vec<u32> = (0..all.len() as u32).collect();
+    let mut branches = vec![Branch { first: 0, count: 0 }];
+    split(0, &mut order, 0, &centres, &mut branches);
+    (order, branches)
 }
 
 fn split(k: usize, order: &mut [u32], offset: usize, centres: &[Vec3], branches: &mut Vec<Branch>) {

@@ -22,6 +22,9 @@ const SLACK: f64 = 1.5;
 /// The same in edges.
 const EDGE_SLACK: f64 = 0.2;
 
+/// Share of an edge from its end within which its contact with an edge fades, where many cloths lie on each other.
+const FADE: f64 = 0.1;
+
 /// Pairs that may touch, and how stiffly.
 #[derive(Debug, Clone)]
 #[cfg_attr(not(toile_without = "self_contact"), derive(Default))]
@@ -32,6 +35,8 @@ pub struct Layers {
     pub thickness: f64,
     /// Mean length of the edges, m.
     pub edge: f64,
+    /// Whether many cloths lie on each other: each is then near many others.
+    pub crowded: bool,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
     /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
@@ -81,7 +86,8 @@ impl Layers {
     /// triangle is near its neighbours' neighbours.
     #[must_use]
     pub fn slack(&self) -> f64 {
-        (SLACK * self.thickness).max(EDGE_SLACK * self.edge)
+        let least = SLACK * self.thickness;
+        if self.crowded { least } else { least.max(EDGE_SLACK * self.edge) }
     }
 
     /// Finds the contacts at `x`, and what friction holds of them.
@@ -158,8 +164,9 @@ impl Layers {
     }
 
     fn contact(&self, (p, c): &(Pair, Closest)) -> Contact {
-        let stiffness =
+        let full =
             (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
+        let stiffness = if self.crowded && p.kind == Kind::EdgeEdge { full * inwards(c) } else { full };
         Contact {
             nodes: p.nodes,
             weights: c.weights,
@@ -233,6 +240,15 @@ impl Layers {
             }
         }
     }
+}
+
+/// How far the closest points of two edges lie inside them, 0 at an end to 1 from a share [`FADE`] of the edge on.
+///
+/// Cloths of the same mesh that lie on each other have corner over corner. There an edge's contact begins and ends with every
+/// rounding, and at its full force nothing would come to rest; the corners carry what it leaves.
+fn inwards(c: &Closest) -> f64 {
+    let [a, b, d, e] = c.weights.map(f64::abs);
+    (a.min(b) / FADE).min(1.0) * (d.min(e) / FADE).min(1.0)
 }
 
 fn pressure(contacts: &[Contact]) -> f64 {

@@ -178,7 +178,8 @@ impl<'a> Live<'a> {
 
     fn pace(&self) -> Pace {
         let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
-        Pace { first: FIRST, longest: 1.0, steps, speed, farthest: FARTHEST, prove: true }
+        let (first, farthest) = (FIRST, FARTHEST);
+        Pace { first, longest: 1.0, steps, speed, farthest, prove: true, one_by_one: false }
     }
 
     fn step(&mut self, pace: &Pace, stop: &(dyn Fn() -> bool + Sync)) -> Result<Outcome, RestError> {

@@ -22,6 +22,7 @@ pub mod newton;
 mod part;
 pub mod pattern;
 pub mod pieces;
+mod pile;
 pub mod press;
 mod rub;
 mod sew;

@@ -20,6 +20,7 @@
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
+use super::pile::{Around, lay};
 use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
@@ -83,6 +84,8 @@ pub struct Pace {
     pub farthest: f64,
     /// Whether rest must be proved by a step of [`REST_STEP`].
     pub prove: bool,
+    /// Whether cloths are laid down one by one before all move together.
+    pub one_by_one: bool,
 }
 
 /// How a level stands after a step.
@@ -149,7 +152,17 @@ impl Descent {
         x: &[Vec3],
         first: f64,
     ) -> Self {
-        let mut nearby = Nearby::new(tree);
+        Self::with(Nearby::new(tree), system, layout, x, first)
+    }
+
+    /// The same with what looks for neighbours.
+    pub(super) fn with(
+        mut nearby: Nearby,
+        system: &mut System<'_>,
+        layout: &[Vec3],
+        x: &[Vec3],
+        first: f64,
+    ) -> Self {
         nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
         nearby.untangle(system, x);
         Self::among(nearby, system, layout, x, first)
@@ -255,7 +268,7 @@ impl Descent {
         shorten(&mut moves, pace.farthest / longest);
         let pulled = system.pull(x, &mut moves, pace.farthest);
         system.clear_of_body(x, &mut moves);
-        let reach = self.nearby.within_reach(system, x, &moves);
+        let reach = self.nearby.within_reach(x, &moves);
         self.left = reach < 1.0;
         shorten(&mut moves, reach);
         self.nearby.seek(system, x, &moves);
@@ -344,6 +357,11 @@ pub fn relax(
     watch: &mut Watch<'_>,
     stop: &Stop,
 ) -> Result<Outcome, Halt> {
+    if let (true, Some(tree)) = (pace.one_by_one, &tree)
+        && lay(system, &Around { layout, tree, pace: Pace { prove: false, ..*pace }, stop }, x, watch)?.is_break()
+    {
+        return Ok(Outcome::default());
+    }
     let mut descent = Descent::new(system, layout, tree, x, pace.first);
     while descent.outcome.steps < pace.steps {
         let outcome = descent.step(system, x, pace, stop)?;

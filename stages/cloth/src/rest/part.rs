@@ -8,6 +8,7 @@ use super::grip::Grip;
 use super::layers::Layers;
 use super::system::{Support, System, Thread};
 use crate::contact::pair::Pair;
+use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -60,8 +61,13 @@ pub(super) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
 impl<'a> Part<'a> {
     /// The `awake` nodes of a system, and what holds them.
     pub(super) fn of(system: &System<'a>, awake: Vec<bool>) -> Self {
+        let seen = awake.clone();
+        Self::beside(system, awake, seen)
+    }
+
+    /// The same with all that is `seen` from them besides: what they may meet on their way.
+    pub(super) fn beside(system: &System<'a>, awake: Vec<bool>, mut seen: Vec<bool>) -> Self {
         let mut cut = Cut { index: vec![NONE; awake.len()], awake };
-        let mut seen = cut.awake.clone();
         let threads = system.threads.iter().map(|t| &t.nodes[..]);
         let pairs = system.layers.iter().flat_map(|l| l.pairs.iter().map(|p| &p.nodes[..]));
         for nodes in system.elastic.couplings().chain(threads).chain(pairs).filter(|n| cut.wakes(n)) {
@@ -75,6 +81,17 @@ impl<'a> Part<'a> {
     /// Values of the whole at the part's nodes.
     pub(super) fn pick<T: Clone>(&self, of: &[T]) -> Vec<T> {
         pick(&self.nodes, of)
+    }
+
+    /// The tree of its triangles, of which only those of awake nodes look for what they may meet. `layout` is that of the part.
+    pub(super) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
+        let awake: Vec<bool> = self.pick(&self.cut.awake);
+        whole.part(&self.nodes, &self.cut.index, layout).waking(&awake)
+    }
+
+    /// How many nodes it has.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
     }
 
     /// Puts places and what the part has learnt of contacts back into the whole.
@@ -151,6 +168,7 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         never: whole.never,
         thickness: whole.thickness,
         edge: whole.edge,
+        crowded: whole.crowded,
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),

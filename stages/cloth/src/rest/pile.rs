@@ -1,0 +1,160 @@
+//! A pile of many cloths comes to rest one by one, from the innermost outwards, before all of them move together.
+//!
+//! Where many cloths start in the air they all fall at once, and wherever two meet the step of all of them is cut short. One that
+//! comes down on cloth that holds still is a small problem: some hundred steps of a sheet's own size. What is left for the whole
+//! is to give way under the weight of what lies on it, which takes a few dozen steps (block Gauss-Seidel, used once, as a start).
+//!
+//! What a cloth may meet is cut out with it (see `part`) and known within a reach of where it is; beyond that it is cut out anew.
+//! Cost: for each cloth O(n) a cut, and steps of its own and its neighbours' size.
+
+use super::multifrontal::{Halt, Stop};
+use super::nearby::Nearby;
+use super::newton::{Descent, Pace, Watch};
+use super::part::{Part, widen};
+use super::pieces::groups;
+use super::system::System;
+use crate::contact::tree::ClothTree;
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+
+type Vec3 = Vector3<f64>;
+
+/// Cloths from which on they are laid down one by one; fewer come to rest together sooner.
+pub(super) const MANY: usize = 6;
+
+/// Steps of one cloth at most.
+const STEPS: usize = 200;
+
+/// How far about a cloth is known at first, and at least, in thicknesses.
+const REACH: (f64, f64) = (16.0, 4.0);
+
+/// Nodes of a part for each that is awake above which the reach is halved.
+const MOST_SEEN: usize = 5;
+
+/// Steps within which a cloth that leaves its reach is given a longer one.
+const SOON: usize = 3;
+
+/// What cloths are laid down with.
+pub(super) struct Around<'a> {
+    /// Orders the elimination.
+    pub(super) layout: &'a [Vec3],
+    /// Finds cloth near cloth.
+    pub(super) tree: &'a ClothTree,
+    /// How fast to go.
+    pub(super) pace: Pace,
+    /// Asked every few milliseconds.
+    pub(super) stop: &'a Stop<'a>,
+}
+
+/// Brings each cloth near rest on those before it; breaks where `watch` does.
+///
+/// # Errors
+/// [`Halt`], as [`Descent::step`].
+pub(super) fn lay(
+    system: &mut System<'_>,
+    around: &Around<'_>,
+    x: &mut [Vec3],
+    watch: &mut Watch<'_>,
+) -> Result<ControlFlow<()>, Halt> {
+    let (of, count) = cloths(system);
+    for cloth in outwards(system, x, &of, count) {
+        let awake: Vec<bool> = of.iter().map(|c| *c == cloth).collect();
+        if around.settle(system, x, &awake, watch)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}
+
+/// The cloth that each node belongs to, and how many there are.
+fn cloths(system: &System<'_>) -> (Vec<u32>, usize) {
+    let threads = system.threads.iter().map(|t| &t.nodes[..]);
+    let links = system.elastic.couplings().chain(threads).flat_map(|n| n.windows(2).map(|w| [w[0], w[1]]));
+    groups(system.masses.len(), links)
+}
+
+/// The cloths with triangles, from the innermost: by layer, then by mean distance from the body, or by height where there is none.
+fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u32> {
+    let far = distances(system, x);
+    let mut mean = vec![(0u32, 0.0, 0usize); count];
+    for (i, &c) in of.iter().enumerate() {
+        let layer = system.layers.as_ref().and_then(|l| l.order.get(i)).copied().unwrap_or(0);
+        let m = &mut mean[c as usize];
+        *m = (m.0.max(layer), m.1 + far[i], m.2 + 1);
+    }
+    let mut known: Vec<u32> = system.elastic.faces().map(|t| of[t[0] as usize]).collect();
+    known.sort_unstable();
+    known.dedup();
+    let key = |c: u32| (mean[c as usize].0, mean[c as usize].1 / mean[c as usize].2 as f64);
+    known.sort_by(|&a, &b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
+    known
+}
+
+fn distances(system: &System<'_>, x: &[Vec3]) -> Vec<f64> {
+    let Some(s) = &system.support else { return x.iter().map(|p| -p.dot(&system.gravity)).collect() };
+    let near = s.body.nearest(x, &vec![f64::INFINITY; x.len()]);
+    near.into_iter().map(|n| n.map_or(f64::INFINITY, |n| n.distance)).collect()
+}
+
+impl Around<'_> {
+    /// Brings the awake nodes near rest, all else holding still.
+    fn settle(
+        &self,
+        system: &mut System<'_>,
+        x: &mut [Vec3],
+        awake: &[bool],
+        watch: &mut Watch<'_>,
+    ) -> Result<ControlFlow<()>, Halt> {
+        let tree = self.tree.clone().waking(awake);
+        let thickness = system.layers.as_ref().map_or(0.0, |l| l.thickness);
+        let (mut reach, mut dt, mut steps) = (REACH.0 * thickness, self.pace.first, 0);
+        while steps < STEPS {
+            let was = steps;
+            let mut part = self.cut_out(system, &tree, x, awake, reach);
+            let (mut own, layout) = (part.pick(x), part.pick(self.layout));
+            let nearby = Nearby::fenced(part.tree(self.tree, &layout), own.clone(), reach);
+            let mut inner = Descent::with(nearby, &mut part.system, &layout, &own, dt);
+            let mut end = None;
+            while end.is_none() && steps < STEPS && !inner.left {
+                let outcome = inner.step(&mut part.system, &mut own, &self.pace, self.stop)?;
+                steps += 1;
+                end = if watch(&part.system, &own, &outcome).is_break() {
+                    Some(ControlFlow::Break(()))
+                } else {
+                    outcome.at_rest.then_some(ControlFlow::Continue(()))
+                };
+            }
+            dt = inner.dt;
+            let count = part.len();
+            part.put_back(&own, system, x);
+            if let Some(end) = end {
+                return Ok(end);
+            }
+            let wide = count > MOST_SEEN * awake.iter().filter(|a| **a).count();
+            reach = match (wide, steps - was < SOON) {
+                (true, _) => (0.5 * reach).max(REACH.1 * thickness),
+                (false, true) => 2.0 * reach,
+                _ => reach,
+            };
+        }
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// The awake nodes and all triangles that they may meet while they move by up to `reach`.
+    fn cut_out<'s>(
+        &self,
+        system: &mut System<'s>,
+        tree: &ClothTree,
+        x: &[Vec3],
+        awake: &[bool],
+        reach: f64,
+    ) -> Part<'s> {
+        let Some(layers) = &mut system.layers else { return Part::of(system, awake.to_vec()) };
+        layers.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], layers.thickness + 2.0 * reach);
+        let mut seen = awake.to_vec();
+        layers.pairs.iter().flat_map(|p| p.nodes).for_each(|i| seen[i as usize] = true);
+        // A corner that may be met belongs to a triangle.
+        widen(system, &mut seen, 1);
+        Part::beside(system, awake.to_vec(), seen)
+    }
+}
