@@ -6,6 +6,7 @@
 
 mod meet;
 mod part;
+mod slab;
 
 use super::ccd::approach;
 use super::pair::{Kind, Pair};
@@ -92,6 +93,17 @@ impl ClothTree {
     /// Pairs that may come nearer than `reach` while the nodes move from `x` by `moves`, sorted.
     #[must_use]
     pub fn pairs(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        let boxes = self.swept(x, moves, reach);
+        let fitted = self.fit(&boxes);
+        let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
+        let search = Search { x, moves, ways: &ways, reach };
+        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
+        pairs.par_sort_unstable();
+        pairs
+    }
+
+    /// The boxes of the triangles on their way, wider by half of `reach`.
+    fn swept(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Bounds> {
         let margin = Vec3::repeat(0.5 * reach);
         let swept = |t: &[u32; 3]| {
             let mut b = Bounds { low: x[t[0] as usize], high: x[t[0] as usize] };
@@ -101,13 +113,7 @@ impl ClothTree {
             }
             Bounds { low: b.low - margin, high: b.high + margin }
         };
-        let boxes: Vec<Bounds> = self.triangles.par_iter().with_min_len(256).map(swept).collect();
-        let fitted = self.fit(&boxes);
-        let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
-        let search = Search { x, moves, ways: &ways, reach };
-        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
-        pairs.par_sort_unstable();
-        pairs
+        self.triangles.par_iter().with_min_len(256).map(swept).collect()
     }
 
     /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted.
@@ -152,6 +158,9 @@ impl ClothTree {
     /// Adds the pairs of features that two triangles answer for and that may come within reach.
     fn narrow(&self, s: usize, t: usize, search: &Search<'_>, out: &mut Vec<Pair>) {
         let (a, b) = (&self.triangles[s], &self.triangles[t]);
+        if search.is_far(a, b) {
+            return;
+        }
         for (k, other, owner) in [(s, b, a), (t, a, b)] {
             for (own, v) in self.owns[k].0.iter().zip(owner) {
                 if *own && !self.is_one_of(*v, other) {

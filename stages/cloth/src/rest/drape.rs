@@ -42,7 +42,12 @@ impl<'a> Work<'a> {
                     stiff = self.carry_on(k, &mut level, [stiff, end.min(stiff)], loose, progress)?;
                 }
             } else if k > 0 {
-                self.settle(&mut level, 1.0, Pace { one_by_one: self.begins_with_pile(k), ..self.pace() }, progress)?;
+                self.settle(
+                    &mut level,
+                    1.0,
+                    Pace { one_by_one: self.begins_with_pile(k), ..self.pace() },
+                    progress,
+                )?;
             }
             if k == 0 {
                 self.end(&mut level, progress)?;

@@ -49,6 +49,8 @@ pub struct Layers {
     pub corners: Vec<u16>,
     /// Pairs that may touch during the step, sorted.
     pub pairs: Vec<Pair>,
+    /// Those that count as contacts while they are near, sorted; none where only their features tell.
+    pub held: Option<Vec<Pair>>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,
     /// Their friction, one by one; empty where there is none.
@@ -92,7 +94,9 @@ impl Layers {
 
     /// Finds the contacts at `x`, and what friction holds of them.
     pub fn touch(&mut self, x: &[Vec3]) {
-        self.contacts = self.touching(x);
+        let counted = self.feasible(x);
+        self.contacts = counted.iter().map(|near| self.contact(near)).collect();
+        self.remember(&counted);
         if self.friction.is_empty() {
             return;
         }
@@ -126,6 +130,11 @@ impl Layers {
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
+        self.feasible(x).iter().map(|near| self.contact(near)).collect()
+    }
+
+    /// The pairs that count at `x`, with their closest points.
+    fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Closest)> {
         let near = |p: &Pair| {
             if self.is_tangled(p) {
                 return None;
@@ -137,30 +146,48 @@ impl Layers {
         let mut keyed: Vec<([u32; 4], usize)> = Vec::new();
         let mut kept = Vec::new();
         for (k, (p, c)) in near.iter().enumerate() {
-            if p.kind == Kind::EdgeEdge {
-                if c.inside {
-                    kept.push(k);
-                }
-            } else if c.inside {
+            if c.inside || self.is_held(p) {
                 kept.push(k);
-            } else {
+            } else if p.kind == Kind::VertexTriangle {
                 keyed.push((p.key(c), k));
             }
         }
         keyed.sort_unstable();
         for group in keyed.chunk_by(|a, b| a.0 == b.0) {
-            let (p, c) = &near[group[0].1];
+            let (_, c) = &near[group[0].1];
             // A local minimum is the closest point of every triangle that has it.
             let of = match c.feature {
                 Feature::Corner(_) => usize::from(self.corners[group[0].0[1] as usize]),
                 _ => 1,
             };
-            if group.len() >= of && p.kind == Kind::VertexTriangle {
+            if group.len() >= of {
                 kept.push(group[0].1);
             }
         }
         kept.sort_unstable();
-        kept.iter().map(|&k| self.contact(&near[k])).collect()
+        kept.iter().map(|&k| near[k]).collect()
+    }
+
+    fn is_held(&self, p: &Pair) -> bool {
+        self.held.as_ref().is_some_and(|h| h.binary_search(p).is_ok())
+    }
+
+    /// Where many cloths lie on each other: from now on, or no more, what has counted as a contact counts while it is near. Else,
+    /// near rest, features that begin and end with every rounding would go on pushing the cloth to and fro.
+    pub fn hold(&mut self, on: bool) {
+        match (on && self.crowded, &self.held) {
+            (true, None) => self.held = Some(Vec::new()),
+            (false, Some(_)) => self.held = None,
+            _ => {}
+        }
+    }
+
+    fn remember(&mut self, counted: &[(Pair, Closest)]) {
+        if let Some(held) = &mut self.held {
+            held.extend(counted.iter().map(|(p, _)| *p));
+            held.sort_unstable();
+            held.dedup();
+        }
     }
 
     fn contact(&self, (p, c): &(Pair, Closest)) -> Contact {

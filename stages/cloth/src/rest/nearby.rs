@@ -94,7 +94,8 @@ impl Nearby {
     /// Shortens moves that would lead cloth through cloth; the share of them that is left. Of cloth that gets free of crossings,
     /// which takes long ways, all counts as left.
     pub(super) fn limit(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
-        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.fence.is_some()) else {
+        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.fence.is_some())
+        else {
             return 1.0;
         };
         let wanted = norm(moves);

@@ -305,6 +305,7 @@ impl Descent {
             self.proofs += 1;
             self.proves = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
             (self.calm, self.failed) = (0, true);
+            system.layers.iter_mut().for_each(|l| l.hold(true));
             return;
         }
         self.proofs = 0;
@@ -312,6 +313,7 @@ impl Descent {
         self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
         if !slow {
             system.drag(x);
+            system.layers.iter_mut().for_each(|l| l.hold(false));
         }
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
         self.calm = if calm { self.calm + 1 } else { 0 };
@@ -358,7 +360,8 @@ pub fn relax(
     stop: &Stop,
 ) -> Result<Outcome, Halt> {
     if let (true, Some(tree)) = (pace.one_by_one, &tree)
-        && lay(system, &Around { layout, tree, pace: Pace { prove: false, ..*pace }, stop }, x, watch)?.is_break()
+        && lay(system, &Around { layout, tree, pace: Pace { prove: false, ..*pace }, stop }, x, watch)?
+            .is_break()
     {
         return Ok(Outcome::default());
     }

@@ -177,10 +177,20 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         // A grip outlives its pair by the step that parts them.
         grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes) && cut.knows(&g.nodes)).map(grip).collect(),
         pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
+        held: whole
+            .held
+            .as_ref()
+            .map(|h| sorted(h.iter().filter(|p| cut.wakes(&p.nodes) && cut.knows(&p.nodes)).map(pair))),
         contacts: Vec::new(),
         tangles: Vec::new(),
         tangled: Vec::new(),
     }
+}
+
+fn sorted(pairs: impl Iterator<Item = Pair>) -> Vec<Pair> {
+    let mut all: Vec<Pair> = pairs.collect();
+    all.sort_unstable();
+    all
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::newton::{Descent, Pace, Watch};
-use super::part::{Part, widen};
+use super::part::Part;
 use super::pieces::groups;
 use super::system::System;
 use crate::contact::tree::ClothTree;
@@ -29,7 +29,7 @@ const STEPS: usize = 200;
 const REACH: (f64, f64) = (16.0, 4.0);
 
 /// Nodes of a part for each that is awake above which the reach is halved.
-const MOST_SEEN: usize = 5;
+const MOST_SEEN: usize = 20;
 
 /// Steps within which a cloth that leaves its reach is given a longer one.
 const SOON: usize = 3;
@@ -150,11 +150,10 @@ impl Around<'_> {
         reach: f64,
     ) -> Part<'s> {
         let Some(layers) = &mut system.layers else { return Part::of(system, awake.to_vec()) };
-        layers.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], layers.thickness + 2.0 * reach);
-        let mut seen = awake.to_vec();
-        layers.pairs.iter().flat_map(|p| p.nodes).for_each(|i| seen[i as usize] = true);
-        // A corner that may be met belongs to a triangle.
-        widen(system, &mut seen, 1);
+        // Those of the last cloth; this one seeks its own.
+        layers.pairs.clear();
+        let near = tree.about(x, layers.thickness + 2.0 * reach);
+        let seen = near.iter().zip(awake).map(|(n, a)| *n || *a).collect();
         Part::beside(system, awake.to_vec(), seen)
     }
 }

@@ -1,6 +1,6 @@
 //! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among cloth that holds still.
 
-use super::{Awake, ClothTree, halves};
+use super::{Awake, ClothTree, Search, halves};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
@@ -34,6 +34,25 @@ impl ClothTree {
         let triangles: Vec<[u32; 3]> = order.iter().map(|&t| all[t as usize]).collect();
         let point = nodes.iter().map(|&i| self.point[i as usize]).collect();
         Self { owns: owners(&triangles), triangles, branches, point, awake: None }
+    }
+
+    /// Which nodes belong to triangles that may come nearer than `reach` to one that looks for others, at `x`; more are named than
+    /// are that near, none is left out.
+    #[must_use]
+    pub fn about(&self, x: &[Vec3], reach: f64) -> Vec<bool> {
+        let still = vec![Vec3::zeros(); x.len()];
+        let boxes = self.swept(x, &still, reach);
+        let search = Search { x, moves: &still, ways: &[], reach };
+        let near = |s: usize, t: usize, out: &mut Vec<u32>| {
+            let (a, b) = (&self.triangles[s], &self.triangles[t]);
+            if !search.is_far(a, b) {
+                out.extend(a.iter().chain(b));
+            }
+        };
+        let mut named = vec![false; x.len()];
+        let found = self.meetings(&boxes, &self.fit(&boxes), &near);
+        found.into_iter().for_each(|v| named[v as usize] = true);
+        named
     }
 
     /// Whether neither of two branches looks for others.
