@@ -23,6 +23,8 @@ pub(super) struct Part<'a> {
     /// Which nodes these are of the whole, ascending.
     nodes: Vec<u32>,
     cut: Cut,
+    /// How many such parts, one on the other, it stands for.
+    bundle: f64,
 }
 
 /// Which nodes are awake, and where each node of the part comes in it.
@@ -75,7 +77,7 @@ impl<'a> Part<'a> {
         }
         let nodes: Vec<u32> = (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect();
         nodes.iter().enumerate().for_each(|(k, &i)| cut.index[i as usize] = k as u32);
-        Self { system: cut_out(system, &cut, &nodes), nodes, cut }
+        Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
     }
 
     /// Values of the whole at the part's nodes.
@@ -89,13 +91,35 @@ impl<'a> Part<'a> {
         whole.part(&self.nodes, &self.cut.index, layout).waking(&awake)
     }
 
+    /// The same, to stand for so many parts of one shape, one on the other, of which it is the lowest: what lies under it carries
+    /// them all. Told in the forces of one: contact is softer by that number, and so is what presses for friction.
+    pub(super) fn standing_for(mut self, count: usize) -> Self {
+        self.bundle = count as f64;
+        self.weigh(1.0 / self.bundle);
+        self
+    }
+
+    /// Scales contact and its loads.
+    fn weigh(&mut self, factor: f64) {
+        let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
+        scale(&mut self.system.loads);
+        self.system.support.iter_mut().for_each(|s| scale(&mut s.stiffness));
+        if let Some(l) = &mut self.system.layers {
+            scale(&mut l.stiffness);
+            l.grips.iter_mut().for_each(|g| g.load *= factor);
+        }
+    }
+
     /// How many nodes it has.
     pub(super) fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// Puts places and what the part has learnt of contacts back into the whole.
-    pub(super) fn put_back(self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
+    pub(super) fn put_back(mut self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
+        if self.bundle != 1.0 {
+            self.weigh(self.bundle);
+        }
         put(&self.nodes, x, whole);
         put(&self.nodes, &self.system.anchors, &mut system.anchors);
         put(&self.nodes, &self.system.loads, &mut system.loads);

@@ -57,9 +57,11 @@ pub(super) fn lay(
     watch: &mut Watch<'_>,
 ) -> Result<ControlFlow<()>, Halt> {
     let (of, count) = cloths(system);
-    for cloth in outwards(system, x, &of, count) {
-        let awake: Vec<bool> = of.iter().map(|c| *c == cloth).collect();
-        if around.settle(system, x, &awake, watch)?.is_break() {
+    let order = outwards(system, x, &of, count);
+    for (k, cloth) in order.iter().enumerate() {
+        let awake: Vec<bool> = of.iter().map(|c| c == cloth).collect();
+        let above = if std::env::var("ALONE").is_ok() { 1 } else { order.len() - k };
+        if around.settle(system, x, &awake, above, watch)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
     }
@@ -103,6 +105,7 @@ impl Around<'_> {
         system: &mut System<'_>,
         x: &mut [Vec3],
         awake: &[bool],
+        bundle: usize,
         watch: &mut Watch<'_>,
     ) -> Result<ControlFlow<()>, Halt> {
         let tree = self.tree.clone().waking(awake);
@@ -110,7 +113,7 @@ impl Around<'_> {
         let (mut reach, mut dt, mut steps) = (REACH.0 * thickness, self.pace.first, 0);
         while steps < STEPS {
             let was = steps;
-            let mut part = self.cut_out(system, &tree, x, awake, reach);
+            let mut part = self.cut_out(system, &tree, x, awake, reach).standing_for(bundle);
             let (mut own, layout) = (part.pick(x), part.pick(self.layout));
             let nearby = Nearby::fenced(part.tree(self.tree, &layout), own.clone(), reach);
             let mut inner = Descent::with(nearby, &mut part.system, &layout, &own, dt);
