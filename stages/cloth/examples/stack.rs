@@ -1,68 +1,73 @@
-//! scratch
+//! Lets a stack of sheets come to rest on a ball and says where the time goes.
+//!
+//! `cargo run --release -p toile-cloth --example stack -- SHEETS CELLS SECONDS [STATE.obj] [--trace]`
+
 #![allow(clippy::print_stdout, clippy::print_stderr)]
+
 use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::time::Instant;
-use toile_cloth::rest::solve::{Rest, RestError};
+use std::time::{Duration, Instant};
+
+use toile_cloth::rest::solve::{LevelReport, Rest, RestError, Rested};
 use toile_cloth::scene::{self, generate};
 
+const USAGE: &str = "stack SHEETS CELLS SECONDS [STATE.obj] [--trace]";
+
 fn main() -> Result<(), Box<dyn Error>> {
-    let a: Vec<String> = std::env::args().skip(1).collect();
-    let (layers, cells): (usize, u32) = (a[0].parse()?, a[1].parse()?);
-    let seconds: u64 = a[2].parse()?;
-    let scene = generate::stack(layers, cells);
-    let clock = Instant::now();
-    let mut last = 0;
-    let budget = std::time::Duration::from_secs(seconds);
-    let solved = Rest {
-        budget,
-        coarsest: std::env::var("COARSEST").map_or(200, |v| v.parse().unwrap_or(200)),
-        ..Rest::default()
-    }
-    .solve(&scene, &mut |l| {
-        let o = &l.outcome;
-        last += 1;
-        if a.iter().any(|a| a == "--trace") {
-            eprintln!(
-                "{:7.2} {:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
-                std::fs::read_to_string("/proc/self/stat").map_or(0.0, |t| t
-                    .split(' ')
-                    .nth(13)
-                    .map_or(0.0, |v| v.parse::<f64>().unwrap_or(0.0) * 0.01)),
-                l.nodes,
-                o.steps,
-                o.dt,
-                o.speed,
-                o.residual,
-                o.share
-            );
+    let (options, words): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|a| a.starts_with("--"));
+    let [sheets, cells, seconds, file @ ..] = &words[..] else { return Err(USAGE.into()) };
+    let scene = generate::stack(sheets.parse()?, cells.parse()?);
+    let rest = Rest { budget: Duration::from_secs(seconds.parse()?), ..Rest::default() };
+    let (clock, trace, mut steps) = (Instant::now(), options.iter().any(|o| o == "--trace"), 0);
+    let solved = rest.solve(&scene, &mut |level| {
+        steps += 1;
+        if trace {
+            tell(clock, level);
         }
         ControlFlow::Continue(())
     });
-    let wall = clock.elapsed().as_secs_f64();
-    let (text, x) = match solved {
-        Ok(s) => {
-            for l in &s.levels {
-                println!("  {:?}", l);
-            }
-            ("at rest".to_string(), Some(s.positions))
-        }
-        Err(RestError::NotAtRest { wanted, state }) => {
-            (format!("{}", RestError::NotAtRest { wanted, state: state.clone() }), Some(state.positions))
-        }
-        Err(RestError::Crossing { pairs, state }) => (format!("{pairs} crossings"), Some(state.positions)),
-        Err(RestError::Timeout { seconds, level, levels, positions }) => {
-            (format!("timeout {seconds} level {level}/{levels}"), Some(positions))
-        }
-        Err(e) => (e.to_string(), None),
-    };
-    println!(
-        "{layers} layers {cells} cells, {} vertices: {text}, {last} steps, {wall:.2} s",
-        scene.rest.len()
-    );
-    if let (Some(x), Some(f)) = (x, a.get(3).filter(|f| !f.starts_with("--"))) {
-        scene::write_obj(Path::new(f), &x, &scene.triangles)?;
+    println!("{} vertices, {steps} steps, {:.2} s", scene.rest.len(), clock.elapsed().as_secs_f64());
+    let state = found(solved)?;
+    println!("residual {:.1e} N", state.residual);
+    for level in &state.levels {
+        println!("{level:?}");
+    }
+    if let Some(file) = file.first() {
+        scene::write_obj(Path::new(file), &state.positions, &scene.triangles)?;
     }
     Ok(())
+}
+
+fn tell(clock: Instant, level: &LevelReport) {
+    let o = &level.outcome;
+    eprintln!(
+        "{:8.2} s {:6} nodes, step {:3} of {:.3} s: {:.2e} m/s {:.2e} N share {:.3}",
+        clock.elapsed().as_secs_f64(),
+        level.nodes,
+        o.steps,
+        o.dt,
+        o.speed,
+        o.residual,
+        o.share
+    );
+}
+
+/// The state, at rest or not: then it says why.
+fn found(solved: Result<Rested, RestError>) -> Result<Rested, RestError> {
+    match solved {
+        Err(error @ (RestError::NotAtRest { .. } | RestError::Crossing { .. })) => {
+            println!("{error}");
+            match error {
+                RestError::NotAtRest { state, .. } | RestError::Crossing { state, .. } => Ok(*state),
+                other => Err(other),
+            }
+        }
+        Ok(_) => {
+            println!("at rest");
+            solved
+        }
+        Err(_) => solved,
+    }
 }

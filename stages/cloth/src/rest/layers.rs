@@ -4,6 +4,7 @@
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
 //! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
+use self::crowd::fading;
 use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, Slot, add_at};
 use super::press::Press;
@@ -12,18 +13,10 @@ use crate::contact::pair::{Closest, Kind, Pair};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+mod crowd;
 mod tangles;
 
 type Vec3 = Vector3<f64>;
-
-/// Least way that a node may move before pairs are sought anew, in thicknesses.
-const SLACK: f64 = 1.5;
-
-/// The same in edges.
-const EDGE_SLACK: f64 = 0.2;
-
-/// Share of an edge from its end within which its contact with an edge fades, where many cloths lie on each other.
-const FADE: f64 = 0.1;
 
 /// Pairs that may touch, and how stiffly.
 #[derive(Debug, Clone)]
@@ -84,18 +77,10 @@ pub struct Contact {
 }
 
 impl Layers {
-    /// How far a node may move before pairs are sought anew, m. Longer serves more steps, but beyond a part of an edge every
-    /// triangle is near its neighbours' neighbours.
-    #[must_use]
-    pub fn slack(&self) -> f64 {
-        let least = SLACK * self.thickness;
-        if self.crowded { least } else { least.max(EDGE_SLACK * self.edge) }
-    }
-
     /// Finds the contacts at `x`, and what friction holds of them.
     pub fn touch(&mut self, x: &[Vec3]) {
         let counted = self.feasible(x);
-        self.contacts = counted.iter().map(|near| self.contact(near)).collect();
+        self.contacts = counted.iter().map(|near| self.contact(near, x)).collect();
         self.remember(&counted);
         if self.friction.is_empty() {
             return;
@@ -130,7 +115,7 @@ impl Layers {
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
-        self.feasible(x).iter().map(|near| self.contact(near)).collect()
+        self.feasible(x).iter().map(|near| self.contact(near, x)).collect()
     }
 
     /// The pairs that count at `x`, with their closest points.
@@ -168,32 +153,10 @@ impl Layers {
         kept.iter().map(|&k| near[k]).collect()
     }
 
-    fn is_held(&self, p: &Pair) -> bool {
-        self.held.as_ref().is_some_and(|h| h.binary_search(p).is_ok())
-    }
-
-    /// Where many cloths lie on each other: from now on, or no more, what has counted as a contact counts while it is near. Else,
-    /// near rest, features that begin and end with every rounding would go on pushing the cloth to and fro.
-    pub fn hold(&mut self, on: bool) {
-        match (on && self.crowded, &self.held) {
-            (true, None) => self.held = Some(Vec::new()),
-            (false, Some(_)) => self.held = None,
-            _ => {}
-        }
-    }
-
-    fn remember(&mut self, counted: &[(Pair, Closest)]) {
-        if let Some(held) = &mut self.held {
-            held.extend(counted.iter().map(|(p, _)| *p));
-            held.sort_unstable();
-            held.dedup();
-        }
-    }
-
-    fn contact(&self, (p, c): &(Pair, Closest)) -> Contact {
+    fn contact(&self, (p, c): &(Pair, Closest), x: &[Vec3]) -> Contact {
         let full =
             (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
-        let stiffness = if self.crowded && p.kind == Kind::EdgeEdge { full * inwards(c) } else { full };
+        let stiffness = if self.crowded { full * fading(p, c, x) } else { full };
         Contact {
             nodes: p.nodes,
             weights: c.weights,
@@ -267,15 +230,6 @@ impl Layers {
             }
         }
     }
-}
-
-/// How far the closest points of two edges lie inside them, 0 at an end to 1 from a share [`FADE`] of the edge on.
-///
-/// Cloths of the same mesh that lie on each other have corner over corner. There an edge's contact begins and ends with every
-/// rounding, and at its full force nothing would come to rest; the corners carry what it leaves.
-fn inwards(c: &Closest) -> f64 {
-    let [a, b, d, e] = c.weights.map(f64::abs);
-    (a.min(b) / FADE).min(1.0) * (d.min(e) / FADE).min(1.0)
 }
 
 fn pressure(contacts: &[Contact]) -> f64 {

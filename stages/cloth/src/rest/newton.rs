@@ -55,6 +55,10 @@ const CALM: usize = 3;
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
+/// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see [`crate::rest::layers::Layers::hold`]): what
+/// the proof of a pile held it forgets only far from rest, or it would look for it again at every proof.
+const FAST: f64 = 10.0;
+
 /// Shortest step of pseudo-time, s.
 const SHORTEST: f64 = 1e-3;
 
@@ -313,6 +317,8 @@ impl Descent {
         self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
         if !slow {
             system.drag(x);
+        }
+        if self.outcome.speed > FAST * pace.speed {
             system.layers.iter_mut().for_each(|l| l.hold(false));
         }
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;

@@ -1,8 +1,9 @@
 //! A pile of many cloths comes to rest one by one, from the innermost outwards, before all of them move together.
 //!
 //! Where many cloths start in the air they all fall at once, and wherever two meet the step of all of them is cut short. One that
-//! comes down on cloth that holds still is a small problem: some hundred steps of a sheet's own size. What is left for the whole
-//! is to give way under the weight of what lies on it, which takes a few dozen steps (block Gauss-Seidel, used once, as a start).
+//! comes down on cloth that holds still is a small problem: some tens of steps of a sheet's own size. Each is laid down with the
+//! weight of all that will lie on it, as if these had its shape (see [`Part::standing_for`]). What is left for the whole is what
+//! this leaves out, and takes some tens of steps (block Gauss-Seidel, used once, as a start).
 //!
 //! What a cloth may meet is cut out with it (see `part`) and known within a reach of where it is; beyond that it is cut out anew.
 //! Cost: for each cloth O(n) a cut, and steps of its own and its neighbours' size.
@@ -28,7 +29,7 @@ const STEPS: usize = 200;
 /// How far about a cloth is known at first, and at least, in thicknesses.
 const REACH: (f64, f64) = (16.0, 4.0);
 
-/// Nodes of a part for each that is awake above which the reach is halved.
+/// Nodes of a part for each that is awake, rounded down, above which the reach is halved.
 const MOST_SEEN: usize = 20;
 
 /// Steps within which a cloth that leaves its reach is given a longer one.
@@ -60,8 +61,7 @@ pub(super) fn lay(
     let order = outwards(system, x, &of, count);
     for (k, cloth) in order.iter().enumerate() {
         let awake: Vec<bool> = of.iter().map(|c| c == cloth).collect();
-        let above = if std::env::var("ALONE").is_ok() { 1 } else { order.len() - k };
-        if around.settle(system, x, &awake, above, watch)?.is_break() {
+        if around.settle(system, x, &awake, order.len() - k, watch)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
     }
@@ -98,8 +98,28 @@ fn distances(system: &System<'_>, x: &[Vec3]) -> Vec<f64> {
     near.into_iter().map(|n| n.map_or(f64::INFINITY, |n| n.distance)).collect()
 }
 
+/// How far a cloth has come.
+struct Way {
+    /// How far about it is known, m.
+    reach: f64,
+    /// The step of pseudo-time, s.
+    dt: f64,
+    steps: usize,
+}
+
+impl Way {
+    /// Finds the next reach, after so many steps within the last.
+    fn adapt(&mut self, thickness: f64, steps: usize, seen_for_each: usize) {
+        if seen_for_each > MOST_SEEN {
+            self.reach = (0.5 * self.reach).max(REACH.1 * thickness);
+        } else if steps < SOON {
+            self.reach *= 2.0;
+        }
+    }
+}
+
 impl Around<'_> {
-    /// Brings the awake nodes near rest, all else holding still.
+    /// Brings the awake nodes near rest, all else holding still; they stand for so many cloths, one on the other.
     fn settle(
         &self,
         system: &mut System<'_>,
@@ -110,37 +130,42 @@ impl Around<'_> {
     ) -> Result<ControlFlow<()>, Halt> {
         let tree = self.tree.clone().waking(awake);
         let thickness = system.layers.as_ref().map_or(0.0, |l| l.thickness);
-        let (mut reach, mut dt, mut steps) = (REACH.0 * thickness, self.pace.first, 0);
-        while steps < STEPS {
-            let was = steps;
-            let mut part = self.cut_out(system, &tree, x, awake, reach).standing_for(bundle);
-            let (mut own, layout) = (part.pick(x), part.pick(self.layout));
-            let nearby = Nearby::fenced(part.tree(self.tree, &layout), own.clone(), reach);
-            let mut inner = Descent::with(nearby, &mut part.system, &layout, &own, dt);
-            let mut end = None;
-            while end.is_none() && steps < STEPS && !inner.left {
-                let outcome = inner.step(&mut part.system, &mut own, &self.pace, self.stop)?;
-                steps += 1;
-                end = if watch(&part.system, &own, &outcome).is_break() {
-                    Some(ControlFlow::Break(()))
-                } else {
-                    outcome.at_rest.then_some(ControlFlow::Continue(()))
-                };
-            }
-            dt = inner.dt;
-            let count = part.len();
-            part.put_back(&own, system, x);
-            if let Some(end) = end {
+        let own = awake.iter().filter(|a| **a).count().max(1);
+        let mut way = Way { reach: REACH.0 * thickness, dt: self.pace.first, steps: 0 };
+        while way.steps < STEPS {
+            let was = way.steps;
+            let part = self.cut_out(system, &tree, x, awake, way.reach).standing_for(bundle);
+            let seen = part.len() / own;
+            if let Some(end) = self.go(part, system, x, &mut way, watch)? {
                 return Ok(end);
             }
-            let wide = count > MOST_SEEN * awake.iter().filter(|a| **a).count();
-            reach = match (wide, steps - was < SOON) {
-                (true, _) => (0.5 * reach).max(REACH.1 * thickness),
-                (false, true) => 2.0 * reach,
-                _ => reach,
-            };
+            way.adapt(thickness, way.steps - was, seen);
         }
         Ok(ControlFlow::Continue(()))
+    }
+
+    /// Moves a part until it is at rest, `watch` breaks or it leaves what it knows; what came first of the first two.
+    fn go<'s>(
+        &self,
+        mut part: Part<'s>,
+        system: &mut System<'s>,
+        x: &mut [Vec3],
+        way: &mut Way,
+        watch: &mut Watch<'_>,
+    ) -> Result<Option<ControlFlow<()>>, Halt> {
+        let (mut own, layout) = (part.pick(x), part.pick(self.layout));
+        let nearby = Nearby::fenced(part.tree(self.tree, &layout), own.clone(), way.reach);
+        let mut inner = Descent::with(nearby, &mut part.system, &layout, &own, way.dt);
+        let mut end = None;
+        while end.is_none() && way.steps < STEPS && !inner.left {
+            let outcome = inner.step(&mut part.system, &mut own, &self.pace, self.stop)?;
+            way.steps += 1;
+            let flow = watch(&part.system, &own, &outcome);
+            end = (flow.is_break() || outcome.at_rest).then_some(flow);
+        }
+        way.dt = inner.dt;
+        part.put_back(&own, system, x);
+        Ok(end)
     }
 
     /// The awake nodes and all triangles that they may meet while they move by up to `reach`.
@@ -160,3 +185,6 @@ impl Around<'_> {
         Part::beside(system, awake.to_vec(), seen)
     }
 }
+
+#[cfg(test)]
+mod tests;
