@@ -5,6 +5,8 @@
 //! O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
 
 mod meet;
+mod part;
+mod slab;
 
 use super::ccd::approach;
 use super::pair::{Kind, Pair};
@@ -52,6 +54,15 @@ pub struct ClothTree {
     branches: Vec<Branch>,
     /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are neighbours.
     point: Vec<u32>,
+    /// Which branches and triangles look for others, where not all do.
+    awake: Option<Awake>,
+}
+
+/// What of a tree looks for others.
+#[derive(Debug, Clone)]
+struct Awake {
+    branches: Vec<bool>,
+    triangles: Vec<bool>,
 }
 
 impl ClothTree {
@@ -59,17 +70,13 @@ impl ClothTree {
     #[must_use]
     pub fn new(sheet: &Sheet, layout: &[Vec3]) -> Self {
         let all = sheet.triangles();
-        let centres: Vec<Vec3> =
-            all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
-        let mut order: Vec<u32> = (0..all.len() as u32).collect();
-        let mut branches = vec![Branch { first: 0, count: 0 }];
-        split(0, &mut order, 0, &centres, &mut branches);
+        let (order, branches) = halves(all, layout);
         let triangles: Vec<[u32; 3]> = order.iter().map(|&t| all[t as usize]).collect();
         let mut place = vec![0u32; all.len()];
         order.iter().enumerate().for_each(|(k, &t)| place[t as usize] = k as u32);
         let owns = ownership(sheet, &triangles, &place);
         let point = (0..layout.len() as u32).collect();
-        Self { triangles, owns, branches, point }
+        Self { triangles, owns, branches, point, awake: None }
     }
 
     /// The same, where nodes with equal numbers are about to be sewn: features that share one are no pair.
@@ -86,6 +93,17 @@ impl ClothTree {
     /// Pairs that may come nearer than `reach` while the nodes move from `x` by `moves`, sorted.
     #[must_use]
     pub fn pairs(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        let boxes = self.swept(x, moves, reach);
+        let fitted = self.fit(&boxes);
+        let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
+        let search = Search { x, moves, ways: &ways, reach };
+        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
+        pairs.par_sort_unstable();
+        pairs
+    }
+
+    /// The boxes of the triangles on their way, wider by half of `reach`.
+    fn swept(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Bounds> {
         let margin = Vec3::repeat(0.5 * reach);
         let swept = |t: &[u32; 3]| {
             let mut b = Bounds { low: x[t[0] as usize], high: x[t[0] as usize] };
@@ -95,13 +113,7 @@ impl ClothTree {
             }
             Bounds { low: b.low - margin, high: b.high + margin }
         };
-        let boxes: Vec<Bounds> = self.triangles.par_iter().with_min_len(256).map(swept).collect();
-        let fitted = self.fit(&boxes);
-        let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
-        let search = Search { x, moves, ways: &ways, reach };
-        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
-        pairs.par_sort_unstable();
-        pairs
+        self.triangles.par_iter().with_min_len(256).map(swept).collect()
     }
 
     /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted.
@@ -146,6 +158,9 @@ impl ClothTree {
     /// Adds the pairs of features that two triangles answer for and that may come within reach.
     fn narrow(&self, s: usize, t: usize, search: &Search<'_>, out: &mut Vec<Pair>) {
         let (a, b) = (&self.triangles[s], &self.triangles[t]);
+        if search.is_far(a, b) {
+            return;
+        }
         for (k, other, owner) in [(s, b, a), (t, a, b)] {
             for (own, v) in self.owns[k].0.iter().zip(owner) {
                 if *own && !self.is_one_of(*v, other) {
@@ -218,6 +233,16 @@ fn far(kind: Kind, x: &[Vec3; 4], reach: f64) -> bool {
     let (mut low2, mut high2) = (x[3], x[3]);
     x[first..3].iter().for_each(|p| (low2, high2) = (low2.inf(p), high2.sup(p)));
     (0..3).any(|k| low[k] - high2[k] > reach || low2[k] - high[k] > reach)
+}
+
+/// The order of the triangles in the tree, and its branches.
+fn halves(all: &[[u32; 3]], layout: &[Vec3]) -> (Vec<u32>, Vec<Branch>) {
+    let centres: Vec<Vec3> =
+        all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
+    let mut order: Vec<u32> = (0..all.len() as u32).collect();
+    let mut branches = vec![Branch { first: 0, count: 0 }];
+    split(0, &mut order, 0, &centres, &mut branches);
+    (order, branches)
 }
 
 fn split(k: usize, order: &mut [u32], offset: usize, centres: &[Vec3], branches: &mut Vec<Branch>) {

@@ -1,5 +1,6 @@
 //! What still moves near rest settles by itself, before the whole takes its next step.
 
+use super::layers::Layers;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::newton::{Descent, Pace, ROUNDING, greatest};
@@ -38,7 +39,8 @@ impl Descent {
         self.nearby.seek_about(system, x);
         let mut part = Part::of(system, awake);
         let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
-        let nearby = Nearby::of_part(part.pick(self.nearby.at()));
+        let reach = system.layers.as_ref().map_or(f64::INFINITY, Layers::slack);
+        let nearby = Nearby::of_part(part.pick(self.nearby.at()), reach);
         rayon::scope(|_| {
             let mut inner = Self::among(nearby, &mut part.system, &layout, &own, self.dt);
             for _ in 0..PART_STEPS {

@@ -42,7 +42,12 @@ impl<'a> Work<'a> {
                     stiff = self.carry_on(k, &mut level, [stiff, end.min(stiff)], loose, progress)?;
                 }
             } else if k > 0 {
-                self.settle(&mut level, 1.0, self.pace(), progress)?;
+                self.settle(
+                    &mut level,
+                    1.0,
+                    Pace { one_by_one: self.begins_with_pile(k), ..self.pace() },
+                    progress,
+                )?;
             }
             if k == 0 {
                 self.end(&mut level, progress)?;
@@ -75,6 +80,7 @@ impl<'a> Work<'a> {
         let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
         let mut system = assemble(self.scene, self.body, pieces, &sheet, false)?;
         system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
+        system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
         if let (true, true, Some(s)) = (self.rest.graded, k > 0, &mut system.support) {
             // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
             s.edges.clear();
@@ -182,18 +188,33 @@ impl<'a> Work<'a> {
     /// Brings the finest level to rest, and proves it.
     fn end(&mut self, level: &mut Level<'a>, progress: &mut Progress<'_>) -> Result<(), RestError> {
         let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
-        let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, ..self.pace() };
+        let one_by_one = self.begins_with_pile(0);
+        let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
         let Level { system, sheet, layout, x, .. } = level;
         let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
         self.reports.push(report);
         self.clear(system, sheet, layout, x, &pace, progress)
     }
 
+    /// Whether level `k` is where cloths are laid down one by one: finer ones start from a pile.
+    fn begins_with_pile(&self, k: usize) -> bool {
+        self.is_pile && k + 1 == self.pieces.len()
+    }
+
     /// The pace of all but the end.
     fn pace(&self) -> Pace {
         let (first, longest, farthest) = SPAN;
         let (steps, speed) = (self.rest.coarse_steps, 2.0 * self.rest.speed);
-        Pace { first, longest, steps, speed, farthest, prove: false, precision: self.rest.precision }
+        Pace {
+            first,
+            longest,
+            steps,
+            speed,
+            farthest,
+            prove: false,
+            one_by_one: false,
+            precision: self.rest.precision,
+        }
     }
 
     /// The pace of a state on the way from stiff to limp.

@@ -4,6 +4,7 @@
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
 //! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
+use self::crowd::fading;
 use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, Slot, add_at};
 use super::press::Press;
@@ -12,15 +13,10 @@ use crate::contact::pair::{Closest, Kind, Pair};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+mod crowd;
 mod tangles;
 
 type Vec3 = Vector3<f64>;
-
-/// Least way that a node may move before pairs are sought anew, in thicknesses.
-const SLACK: f64 = 1.5;
-
-/// The same in edges.
-const EDGE_SLACK: f64 = 0.2;
 
 /// Pairs that may touch, and how stiffly.
 #[derive(Debug, Clone)]
@@ -32,6 +28,8 @@ pub struct Layers {
     pub thickness: f64,
     /// Mean length of the edges, m.
     pub edge: f64,
+    /// Whether many cloths lie on each other: each is then near many others.
+    pub crowded: bool,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
     /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
@@ -44,6 +42,8 @@ pub struct Layers {
     pub corners: Vec<u16>,
     /// Pairs that may touch during the step, sorted.
     pub pairs: Vec<Pair>,
+    /// Those that count as contacts while they are near, sorted; none where only their features tell.
+    pub held: Option<Vec<Pair>>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,
     /// Their friction, one by one; empty where there is none.
@@ -77,16 +77,11 @@ pub struct Contact {
 }
 
 impl Layers {
-    /// How far a node may move before pairs are sought anew, m. Longer serves more steps, but beyond a part of an edge every
-    /// triangle is near its neighbours' neighbours.
-    #[must_use]
-    pub fn slack(&self) -> f64 {
-        (SLACK * self.thickness).max(EDGE_SLACK * self.edge)
-    }
-
     /// Finds the contacts at `x`, and what friction holds of them.
     pub fn touch(&mut self, x: &[Vec3]) {
-        self.contacts = self.touching(x);
+        let counted = self.feasible(x);
+        self.contacts = counted.iter().map(|near| self.contact(near, x)).collect();
+        self.remember(&counted);
         if self.friction.is_empty() {
             return;
         }
@@ -120,6 +115,11 @@ impl Layers {
     /// The contacts at `x`, in the order of the pairs.
     #[must_use]
     pub fn touching(&self, x: &[Vec3]) -> Vec<Contact> {
+        self.feasible(x).iter().map(|near| self.contact(near, x)).collect()
+    }
+
+    /// The pairs that count at `x`, with their closest points.
+    fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Closest)> {
         let near = |p: &Pair| {
             if self.is_tangled(p) {
                 return None;
@@ -131,35 +131,32 @@ impl Layers {
         let mut keyed: Vec<([u32; 4], usize)> = Vec::new();
         let mut kept = Vec::new();
         for (k, (p, c)) in near.iter().enumerate() {
-            if p.kind == Kind::EdgeEdge {
-                if c.inside {
-                    kept.push(k);
-                }
-            } else if c.inside {
+            if c.inside || self.is_held(p) {
                 kept.push(k);
-            } else {
+            } else if p.kind == Kind::VertexTriangle {
                 keyed.push((p.key(c), k));
             }
         }
         keyed.sort_unstable();
         for group in keyed.chunk_by(|a, b| a.0 == b.0) {
-            let (p, c) = &near[group[0].1];
+            let (_, c) = &near[group[0].1];
             // A local minimum is the closest point of every triangle that has it.
             let of = match c.feature {
                 Feature::Corner(_) => usize::from(self.corners[group[0].0[1] as usize]),
                 _ => 1,
             };
-            if group.len() >= of && p.kind == Kind::VertexTriangle {
+            if group.len() >= of {
                 kept.push(group[0].1);
             }
         }
         kept.sort_unstable();
-        kept.iter().map(|&k| self.contact(&near[k])).collect()
+        kept.iter().map(|&k| near[k]).collect()
     }
 
-    fn contact(&self, (p, c): &(Pair, Closest)) -> Contact {
-        let stiffness =
+    fn contact(&self, (p, c): &(Pair, Closest), x: &[Vec3]) -> Contact {
+        let full =
             (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
+        let stiffness = if self.crowded { full * fading(p, c, x) } else { full };
         Contact {
             nodes: p.nodes,
             weights: c.weights,

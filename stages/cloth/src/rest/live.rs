@@ -186,6 +186,7 @@ impl<'a> Live<'a> {
             speed,
             farthest: FARTHEST,
             prove: true,
+            one_by_one: false,
             precision: Precision::default(),
         }
     }

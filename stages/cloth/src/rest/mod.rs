@@ -23,6 +23,7 @@ pub mod newton;
 mod part;
 pub mod pattern;
 pub mod pieces;
+mod pile;
 pub mod press;
 pub mod real;
 mod rub;

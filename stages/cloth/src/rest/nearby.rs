@@ -19,13 +19,19 @@ const KEPT: f64 = 0.3;
 pub(super) struct Nearby {
     tree: Option<ClothTree>,
     at: Vec<Vec3>,
-    /// Whether the pairs are those of a part: they hold while its nodes stay near where they were.
-    held: bool,
+    /// What a part of a system knows of is about it: this holds while its nodes stay near where they were.
+    fence: Option<Fence>,
+}
+
+/// Where the nodes of a part were when it was cut out, and how far they may go from there, m.
+struct Fence {
+    at: Vec<Vec3>,
+    reach: f64,
 }
 
 impl Nearby {
     pub(super) fn new(tree: Option<ClothTree>) -> Self {
-        Self { tree, at: vec![], held: false }
+        Self { tree, at: vec![], fence: None }
     }
 
     /// Seeks the pairs about `x`, so that they hold for a part.
@@ -44,20 +50,24 @@ impl Nearby {
         &self.at
     }
 
-    /// For a part whose pairs were sought where its nodes were `at`.
-    pub(super) fn of_part(at: Vec<Vec3>) -> Self {
-        Self { tree: None, at, held: true }
+    /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by `reach` from there, m.
+    pub(super) fn of_part(at: Vec<Vec3>, reach: f64) -> Self {
+        Self { tree: None, at: vec![], fence: Some(Fence { at, reach }) }
     }
 
-    /// The share of `moves` from `x` for which the pairs of a part hold.
-    pub(super) fn within_reach(&self, system: &System<'_>, x: &[Vec3], moves: &[Vec3]) -> f64 {
-        let Some(layers) = system.layers.as_ref().filter(|_| self.held) else { return 1.0 };
-        let slack = layers.slack();
+    /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet within `reach` of `at`, m.
+    pub(super) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
+        Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }) }
+    }
+
+    /// The share of `moves` from `x` for which a part knows what is about it.
+    pub(super) fn within_reach(&self, x: &[Vec3], moves: &[Vec3]) -> f64 {
+        let Some(Fence { at, reach }) = &self.fence else { return 1.0 };
         let share = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| {
-            let left = slack - (p - a).norm();
+            let left = reach - (p - a).norm();
             if m.norm() < left { 1.0 } else { (left / m.norm()).max(0.0) * 0.99 }
         };
-        self.at.iter().zip(x).zip(moves).map(share).fold(1.0, f64::min)
+        at.iter().zip(x).zip(moves).map(share).fold(1.0, f64::min)
     }
 
     /// Sees to it that the pairs of the layers hold for `moves` from `x`.
@@ -84,7 +94,8 @@ impl Nearby {
     /// Shortens moves that would lead cloth through cloth; the share of them that is left. Of cloth that gets free of crossings,
     /// which takes long ways, all counts as left.
     pub(super) fn limit(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
-        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.held) else {
+        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.fence.is_some())
+        else {
             return 1.0;
         };
         let wanted = norm(moves);

@@ -20,6 +20,7 @@
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
+use super::pile::{Around, lay};
 use super::real::Precision;
 use super::system::{Sight, System, Visit};
 use crate::contact::tree::ClothTree;
@@ -55,6 +56,10 @@ const CALM: usize = 3;
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
+/// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see [`crate::rest::layers::Layers::hold`]): what
+/// the proof of a pile held it forgets only far from rest, or it would look for it again at every proof.
+const FAST: f64 = 10.0;
+
 /// Shortest step of pseudo-time, s.
 const SHORTEST: f64 = 1e-3;
 
@@ -86,6 +91,8 @@ pub struct Pace {
     pub prove: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
+    /// Whether cloths are laid down one by one before all move together.
+    pub one_by_one: bool,
 }
 
 /// How a level stands after a step.
@@ -152,7 +159,17 @@ impl Descent {
         x: &[Vec3],
         first: f64,
     ) -> Self {
-        let mut nearby = Nearby::new(tree);
+        Self::with(Nearby::new(tree), system, layout, x, first)
+    }
+
+    /// The same with what looks for neighbours.
+    pub(super) fn with(
+        mut nearby: Nearby,
+        system: &mut System<'_>,
+        layout: &[Vec3],
+        x: &[Vec3],
+        first: f64,
+    ) -> Self {
         nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
         nearby.untangle(system, x);
         Self::among(nearby, system, layout, x, first)
@@ -258,7 +275,7 @@ impl Descent {
         shorten(&mut moves, pace.farthest / longest);
         let pulled = system.pull(x, &mut moves, pace.farthest);
         system.clear_of_body(x, &mut moves);
-        let reach = self.nearby.within_reach(system, x, &moves);
+        let reach = self.nearby.within_reach(x, &moves);
         self.left = reach < 1.0;
         shorten(&mut moves, reach);
         self.nearby.seek(system, x, &moves);
@@ -295,6 +312,7 @@ impl Descent {
             self.proofs += 1;
             self.proves = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
             (self.calm, self.failed) = (0, true);
+            system.layers.iter_mut().for_each(|l| l.hold(true));
             return;
         }
         self.proofs = 0;
@@ -302,6 +320,9 @@ impl Descent {
         self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
         if !slow {
             system.drag(x);
+        }
+        if self.outcome.speed > FAST * pace.speed {
+            system.layers.iter_mut().for_each(|l| l.hold(false));
         }
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
         self.calm = if calm { self.calm + 1 } else { 0 };
@@ -347,6 +368,12 @@ pub fn relax(
     watch: &mut Watch<'_>,
     stop: &Stop,
 ) -> Result<Outcome, Halt> {
+    if let (true, Some(tree)) = (pace.one_by_one, &tree)
+        && lay(system, &Around { layout, tree, pace: Pace { prove: false, ..*pace }, stop }, x, watch)?
+            .is_break()
+    {
+        return Ok(Outcome::default());
+    }
     let mut descent = Descent::new(system, layout, tree, x, pace.first);
     while descent.outcome.steps < pace.steps {
         let outcome = descent.step(system, x, pace, stop)?;

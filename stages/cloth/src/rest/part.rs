@@ -8,6 +8,7 @@ use super::grip::Grip;
 use super::layers::Layers;
 use super::system::{Support, System, Thread};
 use crate::contact::pair::Pair;
+use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -22,6 +23,8 @@ pub(super) struct Part<'a> {
     /// Which nodes these are of the whole, ascending.
     nodes: Vec<u32>,
     cut: Cut,
+    /// How many such parts, one on the other, it stands for.
+    bundle: f64,
 }
 
 /// Which nodes are awake, and where each node of the part comes in it.
@@ -60,8 +63,13 @@ pub(super) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
 impl<'a> Part<'a> {
     /// The `awake` nodes of a system, and what holds them.
     pub(super) fn of(system: &System<'a>, awake: Vec<bool>) -> Self {
+        let seen = awake.clone();
+        Self::beside(system, awake, seen)
+    }
+
+    /// The same with all that is `seen` from them besides: what they may meet on their way.
+    pub(super) fn beside(system: &System<'a>, awake: Vec<bool>, mut seen: Vec<bool>) -> Self {
         let mut cut = Cut { index: vec![NONE; awake.len()], awake };
-        let mut seen = cut.awake.clone();
         let threads = system.threads.iter().map(|t| &t.nodes[..]);
         let pairs = system.layers.iter().flat_map(|l| l.pairs.iter().map(|p| &p.nodes[..]));
         for nodes in system.elastic.couplings().chain(threads).chain(pairs).filter(|n| cut.wakes(n)) {
@@ -69,7 +77,7 @@ impl<'a> Part<'a> {
         }
         let nodes: Vec<u32> = (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect();
         nodes.iter().enumerate().for_each(|(k, &i)| cut.index[i as usize] = k as u32);
-        Self { system: cut_out(system, &cut, &nodes), nodes, cut }
+        Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
     }
 
     /// Values of the whole at the part's nodes.
@@ -77,8 +85,41 @@ impl<'a> Part<'a> {
         pick(&self.nodes, of)
     }
 
+    /// The tree of its triangles, of which only those of awake nodes look for what they may meet. `layout` is that of the part.
+    pub(super) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
+        let awake: Vec<bool> = self.pick(&self.cut.awake);
+        whole.part(&self.nodes, &self.cut.index, layout).waking(&awake)
+    }
+
+    /// The same, to stand for so many parts of one shape, one on the other, of which it is the lowest: what lies under it carries
+    /// them all. Told in the forces of one: contact is softer by that number, and so is what presses for friction.
+    pub(super) fn standing_for(mut self, count: usize) -> Self {
+        self.bundle = count as f64;
+        self.weigh(1.0 / self.bundle);
+        self
+    }
+
+    /// Scales contact and its loads.
+    fn weigh(&mut self, factor: f64) {
+        let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
+        scale(&mut self.system.loads);
+        self.system.support.iter_mut().for_each(|s| scale(&mut s.stiffness));
+        if let Some(l) = &mut self.system.layers {
+            scale(&mut l.stiffness);
+            l.grips.iter_mut().for_each(|g| g.load *= factor);
+        }
+    }
+
+    /// How many nodes it has.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
     /// Puts places and what the part has learnt of contacts back into the whole.
-    pub(super) fn put_back(self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
+    pub(super) fn put_back(mut self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
+        if self.bundle != 1.0 {
+            self.weigh(self.bundle);
+        }
         put(&self.nodes, x, whole);
         put(&self.nodes, &self.system.anchors, &mut system.anchors);
         put(&self.nodes, &self.system.loads, &mut system.loads);
@@ -151,6 +192,7 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         never: whole.never,
         thickness: whole.thickness,
         edge: whole.edge,
+        crowded: whole.crowded,
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),
@@ -159,10 +201,20 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         // A grip outlives its pair by the step that parts them.
         grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes) && cut.knows(&g.nodes)).map(grip).collect(),
         pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
+        held: whole
+            .held
+            .as_ref()
+            .map(|h| sorted(h.iter().filter(|p| cut.wakes(&p.nodes) && cut.knows(&p.nodes)).map(pair))),
         contacts: Vec::new(),
         tangles: Vec::new(),
         tangled: Vec::new(),
     }
+}
+
+fn sorted(pairs: impl Iterator<Item = Pair>) -> Vec<Pair> {
+    let mut all: Vec<Pair> = pairs.collect();
+    all.sort_unstable();
+    all
 }
 
 #[cfg(test)]

@@ -234,8 +234,14 @@ impl Pieces {
     }
 }
 
+/// How many cloths a scene has, that hang together by triangles or seams.
+pub(super) fn count_cloths(scene: &Scene) -> usize {
+    let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);
+    groups(scene.rest.len(), sides.chain(scene.seams.iter().flat_map(|s| &s.pairs).copied())).1
+}
+
 /// Numbers the groups that `pairs` connect, in the order of their first members.
-fn groups(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
+pub(super) fn groups(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..n as u32).collect();
     fn root(parent: &mut [u32], mut i: u32) -> u32 {
         while parent[i as usize] != i {

@@ -100,6 +100,7 @@ impl Work<'_> {
                 speed: self.rest.speed,
                 farthest,
                 prove: false,
+                one_by_one: false,
                 precision: self.rest.precision,
             };
             let closed = |x: &[Vec3]| self.rest.join_gap > widest(x, pairs);
@@ -121,6 +122,7 @@ impl Work<'_> {
             speed: 0.0,
             farthest,
             prove: false,
+            one_by_one: false,
             precision: self.rest.precision,
         };
         let layout = x.to_vec();

@@ -19,7 +19,8 @@ use super::grip::Grip;
 use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
-use super::pieces::Pieces;
+use super::pieces::{Pieces, count_cloths};
+use super::pile::MANY;
 pub use super::real::Precision;
 use super::sew::widest;
 use super::system::System;
@@ -245,7 +246,13 @@ impl Rest {
         let clock = Instant::now();
         scene.check()?;
         scene.check_still()?;
+        if self.graded && is_pile(scene) {
+            return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
+        }
         let mut coarsest = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
+        if is_pile(scene) {
+            coarsest *= count_cloths(scene);
+        }
         loop {
             match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
                 Ok(Draped::Rested(state)) => return self.judge(*state),
@@ -298,6 +305,8 @@ pub(super) struct Work<'a> {
     /// What no panel and what each panel is made of.
     pub(super) cloths: Vec<&'a Fabric>,
     clock: Instant,
+    /// Whether many cloths lie on each other.
+    pub(super) is_pile: bool,
     /// Fine to coarse.
     pub(super) pieces: Vec<Pieces>,
     /// How each level but the finest was made from the finer one.
@@ -349,6 +358,7 @@ impl<'a> Work<'a> {
             body,
             cloths: cloths(scene),
             clock,
+            is_pile: is_pile(scene),
             pieces,
             coarser,
             starts,
@@ -374,7 +384,7 @@ impl<'a> Work<'a> {
         pace: &Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        let pace = Pace { first: CLEAR_STEP, steps: 2 * self.rest.coarse_steps, ..*pace };
+        let pace = Pace { first: CLEAR_STEP, steps: 2 * self.rest.coarse_steps, one_by_one: false, ..*pace };
         for _ in 0..CLEARINGS {
             let Some(Clearance { lacks, depth, .. }) = self.body.map(|w| clearance(sheet, w.skin, x)) else {
                 break;
@@ -451,7 +461,8 @@ impl<'a> Work<'a> {
         let (mut stop, mut is_late, mut falling) = (None, false, 0);
         let late = || self.clock.elapsed() > self.rest.budget;
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
-            report = LevelReport { outcome: *outcome, seconds: start.elapsed().as_secs_f64(), ..report };
+            let seconds = start.elapsed().as_secs_f64();
+            report = LevelReport { nodes: x.len(), outcome: *outcome, seconds, ..report };
             let free = system.touches.is_empty() && !system.pinned.contains(&true);
             let falls = free
                 && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt
@@ -519,6 +530,11 @@ impl<'a> Work<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// Whether so many cloths may meet that they are laid down one by one.
+fn is_pile(scene: &Scene) -> bool {
+    scene.self_collision && count_cloths(scene) >= MANY
 }
 
 /// Crossings of a level before it is sewn; none where they do not matter.

@@ -32,6 +32,9 @@ impl ClothTree {
 
 impl<T: Send> Meeting<'_, T> {
     fn itself(&self, k: u32, levels: u32, out: &mut Vec<T>) {
+        if self.tree.sleep(k, k) {
+            return;
+        }
         let branch = self.tree.branches[k as usize];
         if branch.count > 0 {
             return self.within(branch.first, branch.first + branch.count, out);
@@ -50,7 +53,7 @@ impl<T: Send> Meeting<'_, T> {
 
     /// The branch `a` against `b`, which comes after it.
     fn other(&self, a: u32, b: u32, levels: u32, out: &mut Vec<T>) {
-        if !self.fitted[a as usize].meets(&self.fitted[b as usize]) {
+        if self.tree.sleep(a, b) || !self.fitted[a as usize].meets(&self.fitted[b as usize]) {
             return;
         }
         let (left, right) = (self.tree.branches[a as usize], self.tree.branches[b as usize]);
@@ -99,7 +102,7 @@ impl<T: Send> Meeting<'_, T> {
 
     fn test(&self, s: u32, t: u32, out: &mut Vec<T>) {
         let (s, t) = (s as usize, t as usize);
-        if self.boxes[s].meets(&self.boxes[t]) {
+        if self.boxes[s].meets(&self.boxes[t]) && !self.tree.are_still(s, t) {
             (self.visit)(s, t, out);
         }
     }

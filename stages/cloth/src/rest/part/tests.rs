@@ -120,3 +120,31 @@ fn a_grip_whose_pair_has_gone_is_left_out() {
         assert!(layers.grips.iter().flat_map(|g| &g.nodes).all(|&i| (i as usize) < part.nodes.len()));
     });
 }
+
+#[test]
+fn what_stands_for_three_feels_a_third_of_what_carries_it() {
+    with_part(|mut system, x, awake| {
+        let mut part = Part::of(&system, awake.clone());
+        let own = part.pick(&x);
+        let contact = |system: &mut System<'_>| -> Vec<Vec3> {
+            system.touch(&own);
+            let all = system.gradient(&own);
+            (system.support, system.layers) = (None, None);
+            system.touches.clear();
+            all.iter().zip(system.gradient(&own)).map(|(a, rest)| a - rest).collect()
+        };
+        let one = contact(&mut part.system);
+        let mut three = Part::of(&system, awake.clone()).standing_for(3);
+        let third = contact(&mut three.system);
+        let most = one.iter().map(Vec3::norm).fold(0.0, f64::max);
+        assert!(most > 0.0 && one.iter().zip(&third).all(|(a, b)| (a / 3.0 - b).norm() < 1e-9 * most));
+        // What it has learnt of loads comes back in the forces of the whole.
+        let before: Vec<f64> = system.loads.clone();
+        let friction = |s: &System<'_>| s.layers.as_ref().unwrap().grips.iter().map(|g| g.load).sum::<f64>();
+        let loads = friction(&system);
+        let mut whole = x.clone();
+        Part::of(&system, awake).standing_for(3).put_back(&own, &mut system, &mut whole);
+        assert!(system.loads.iter().zip(&before).all(|(a, b)| (a - b).abs() <= 1e-12 * b.abs()));
+        assert!(loads >= 0.0 && (friction(&system) - loads).abs() <= 1e-9 * loads);
+    });
+}
