@@ -19,6 +19,9 @@ struct Side {
     apex: u32,
 }
 
+/// Two triangles and their corners after a flip.
+type Flipped = [(usize, [u32; 3]); 2];
+
 impl Pieces {
     /// Flips edges that more than two triangles would share once the seams are joined.
     pub(super) fn part_ears(&mut self) {
@@ -50,7 +53,7 @@ impl Pieces {
     }
 
     /// The worst quality of the two triangles that flipping an edge of two triangles makes, and these.
-    fn flip(&self, sides: &[Side]) -> Option<(f64, [(usize, [u32; 3]); 2])> {
+    fn flip(&self, sides: &[Side]) -> Option<(f64, Flipped)> {
         let &[s, t] = sides else { return None };
         let is_there =
             |s: &Side| s.ends.iter().chain([&s.apex]).all(|v| self.triangles[s.triangle].contains(v));
