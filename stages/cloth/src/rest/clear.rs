@@ -21,7 +21,7 @@ const MOST: usize = 8;
 pub const GAP: f64 = 2e-4;
 
 /// Least radius of the body whose bulge between vertices is looked for, m.
-const LEAST_RADIUS: f64 = 0.02;
+pub(super) const LEAST_RADIUS: f64 = 0.02;
 
 /// What a look at the triangles found.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,7 +69,7 @@ pub fn clearance(sheet: &Sheet, body: &dyn Skin, x: &[Vec3]) -> Clearance {
 }
 
 /// Hands the lattice's points but the corners to `visit`.
-fn lattice([a, b, c]: &[Vec3; 3], mut visit: impl FnMut(Vec3)) {
+pub(super) fn lattice([a, b, c]: &[Vec3; 3], mut visit: impl FnMut(Vec3)) {
     let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
     let n = ((longest / SPACING).ceil() as usize).clamp(2, MOST);
     for i in 0..=n {

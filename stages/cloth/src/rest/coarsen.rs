@@ -158,7 +158,8 @@ impl Mesh {
         let score = |target: u32| {
             let moves = self.moves(&members, target, fine)?;
             let worst = moves.iter().map(|&[v, w]| self.quality_after(v, w, fine)).fold(1.0, f64::min);
-            (worst > LEAST_QUALITY).then_some((keep[target as usize], worst, moves))
+            let fits = worst > LEAST_QUALITY && self.stays_manifold(&moves, fine);
+            fits.then_some((keep[target as usize], worst, moves))
         };
         let better = |a: &(bool, f64, Vec<[u32; 2]>), b: &(bool, f64, Vec<[u32; 2]>)| (a.0, a.1) > (b.0, b.1);
         let mut best: Option<(bool, f64, Vec<[u32; 2]>)> = None;
@@ -238,7 +239,7 @@ fn outline_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 }
 
 /// Shape quality, 1 for equilateral; negative where the triangle is turned over.
-fn signed_quality(t: &[Vector2<f64>; 3]) -> f64 {
+pub(super) fn signed_quality(t: &[Vector2<f64>; 3]) -> f64 {
     let sum: f64 = (0..3).map(|k| (t[(k + 1) % 3] - t[k]).norm_squared()).sum();
     2.0 * 3.0_f64.sqrt() * (t[1] - t[0]).perp(&(t[2] - t[0])) / sum.max(f64::MIN_POSITIVE)
 }
@@ -375,5 +376,6 @@ fn barycentric(p: &Vector2<f64>, [a, b, c]: &[Vector2<f64>; 3]) -> [f64; 3] {
     [1.0 - v - w, v, w]
 }
 
+mod manifold;
 #[cfg(test)]
 mod tests;

@@ -54,7 +54,10 @@ impl<'a> Work<'a> {
             }
             if level.system.is_tangled() {
                 let pairs = level.system.layers.as_ref().map_or(0, |l| l.tangles.len());
-                return Ok(Draped::Tangled { nodes: level.x.len(), pairs, levels: self.pieces.len() });
+                return Ok(Draped::Tangled { nodes: level.x.len(), pairs });
+            }
+            if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {
+                return Ok(pierced);
             }
             if k == 0 {
                 self.check_kept(&level.x)?;

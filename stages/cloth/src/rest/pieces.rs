@@ -97,7 +97,10 @@ impl Pieces {
         gathers.flat_map(|s| &s.pairs).flatten().for_each(|&v| gathered[v as usize] = true);
         let bands = scene.bands.iter().map(|b| Path::new(b, scene, &point)).collect();
         let (rest, triangles) = (scene.rest.clone(), scene.triangles.clone());
-        Self { rest, triangles, point, points, node, nodes, panel, gathered, bands, piece, pinned }
+        let mut pieces =
+            Self { rest, triangles, point, points, node, nodes, panel, gathered, bands, piece, pinned };
+        pieces.part_ears();
+        pieces
     }
 
     /// The sheet before sewing: every vertex a node of its own.

@@ -5,6 +5,9 @@
 //! level starts from the coarser one's state, carried over by the triangles that its vertices lie in at rest. So the fall
 //! and the sewing happen where steps cost milliseconds, and the finest level only settles.
 //!
+//! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes through a triangle: see
+//! `pierce`), the garment is sewn again on the next finer one.
+//!
 //! With [`Rest::graded`] bending starts stiff and is let go on the way (see `graded`), so that chance has less of a say.
 //!
 //! Cost: some 35 to 150 factorizations of the finest level (docs/performance.md). Limits: what the coarse level cannot see (a fold finer than its
@@ -20,6 +23,7 @@ use super::layers::Layers;
 use super::multifrontal::{Halt, NotPositive};
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::{Pieces, count_cloths};
+use super::pierce::pierced;
 use super::pile::MANY;
 pub use super::real::Precision;
 use super::sew::widest;
@@ -41,9 +45,6 @@ const CLEARINGS: usize = 4;
 
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
-
-/// Factor by which the coarsest level has more nodes where sewing on it failed.
-const FINER: usize = 3;
 
 /// Settings of the rest solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -254,25 +255,26 @@ impl Rest {
             coarsest *= count_cloths(scene);
         }
         loop {
-            match Work::new(self, coarsest, scene, wearer, clock)?.make(progress) {
-                Ok(Draped::Rested(state)) => return self.judge(*state),
+            let work = Work::new(self, coarsest, scene, wearer, clock)?;
+            let finer = work.second();
+            match (work.make(progress), finer) {
+                (Ok(Draped::Rested(state)), _) => return self.judge(*state),
                 // From its own start the level keeps free of crossings by itself, if slowly.
-                Ok(Draped::Tangled { pairs, levels: 1, .. }) => {
+                (Ok(Draped::Tangled { pairs, .. }), None) => {
                     return Err(RestError::InitialCrossing { pairs });
                 }
-                Ok(Draped::Tangled { nodes, .. }) => {
-                    coarsest = if nodes > coarsest { nodes } else { FINER * coarsest }
-                }
+                (Ok(Draped::Tangled { nodes, .. }), Some(finer)) => coarsest = nodes.max(finer),
+                (Ok(Draped::Pierced { finer }), _) => coarsest = finer,
                 // What slides off while it is stiff may stay on as cloth.
-                Err(RestError::Falls) if self.graded => {
+                (Err(RestError::Falls), _) if self.graded => {
                     return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
-                Err(RestError::Falls) if wearer.is_some() && coarsest < scene.rest.len() => coarsest *= FINER,
+                (Err(RestError::Falls), Some(finer)) if wearer.is_some() => coarsest = finer,
                 // A polygon of so few corners does not go round a limb, is folded onto itself by its seams, or hands on
                 // folds that lie too close for a finer mesh to come apart.
-                Err(e) if e.is_of_a_coarse_mesh() && coarsest < scene.rest.len() => coarsest *= FINER,
-                Err(e) => return Err(e),
+                (Err(e), Some(finer)) if e.is_of_a_coarse_mesh() => coarsest = finer,
+                (Err(e), _) => return Err(e),
             }
         }
     }
@@ -293,8 +295,11 @@ pub(super) enum Draped {
         nodes: usize,
         /// Crossings left.
         pairs: usize,
-        /// How many levels there were.
-        levels: usize,
+    },
+    /// The body comes through a coarse level between its vertices.
+    Pierced {
+        /// Points of the next finer level.
+        finer: usize,
     },
 }
 
@@ -368,10 +373,27 @@ impl<'a> Work<'a> {
         })
     }
 
+    /// Points of the level that is finer than the coarsest, if there is one.
+    fn second(&self) -> Option<usize> {
+        self.pieces.len().checked_sub(2).map(|k| self.pieces[k].points)
+    }
+
     /// Sews and drapes.
     fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
         self.sew(progress)?;
-        self.drape(progress)
+        let coarsest = self.pieces.len() - 1;
+        let sheet = self.pieces[coarsest].sewn_sheet(&self.cloths)?;
+        match self.pierced(coarsest, &sheet, &self.x) {
+            Some(draped) => Ok(draped),
+            None => self.drape(progress),
+        }
+    }
+
+    /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by its end.
+    pub(super) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
+        let finer = self.pieces.get(k.checked_sub(1)?)?.points;
+        let wearer = self.body?;
+        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::Pierced { finer })
     }
 
     /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.

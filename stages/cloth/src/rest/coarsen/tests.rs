@@ -33,3 +33,15 @@ fn levels_shrink_and_keep_the_area_and_the_seams() {
         fine.sewn_sheet(&[&cloth; 3]).unwrap();
     }
 }
+
+#[test]
+fn levels_of_narrow_panels_that_are_sewn_to_each_other_stay_surfaces() {
+    let cloth = generate::cloth();
+    for (nx, ny) in (2..7).flat_map(|nx| (8..30).step_by(3).map(move |ny| (nx, ny))) {
+        let mut fine = Pieces::new(&generate::sleeve(nx, ny));
+        while let Some(coarser) = coarsen(&fine) {
+            fine = coarser.pieces;
+            fine.sewn_sheet(&[&cloth; 3]).unwrap();
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Collapses that keep the sewn sheet a surface.
+//!
+//! Two panels of like shape are two meshes and one surface: where both have an edge between the same two points of their
+//! seams, four triangles share it once it is sewn. So the triangles at the sewn edges are counted before a collapse (the
+//! link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for the sewn sheet).
+
+use super::{Mesh, Pieces};
+
+/// Triangles that may share an edge.
+const MOST: usize = 2;
+
+impl Mesh {
+    /// Whether edges of the sewn sheet keep two triangles at most when each vertex moves onto its other one.
+    pub(super) fn stays_manifold(&self, moves: &[[u32; 2]], fine: &Pieces) -> bool {
+        let Some(&ends) = moves.first() else { return true };
+        if !self.nears_seam(ends, fine) {
+            return true;
+        }
+        let to = |c: u32| moves.iter().find(|m| m[0] == c).map_or(c, |m| m[1]);
+        let mut edges: Vec<[u32; 2]> = Vec::new();
+        for t in self.around(ends, fine) {
+            let corners = self.triangles[t as usize].map(to);
+            let [a, b, c] = corners;
+            if a != b && b != c && c != a {
+                edges.extend(sewn_edges(corners.map(|c| fine.node[c as usize])));
+            }
+        }
+        edges.sort_unstable();
+        edges.chunk_by(|a, b| a == b).all(|same| same.len() <= MOST)
+    }
+
+    /// Whether one of the ends or a neighbour of the first is sewn to another vertex.
+    fn nears_seam(&self, [v, w]: [u32; 2], fine: &Pieces) -> bool {
+        let is_sewn = |&c: &u32| self.members[fine.point[c as usize] as usize].len() > 1;
+        is_sewn(&v) || is_sewn(&w) || self.neighbours(v).iter().any(is_sewn)
+    }
+
+    /// The triangles at the sewn points of two vertices.
+    fn around(&self, ends: [u32; 2], fine: &Pieces) -> Vec<u32> {
+        let members = ends.iter().flat_map(|&c| &self.members[fine.point[c as usize] as usize]);
+        let mut all: Vec<u32> = members.flat_map(|&m| self.at[m as usize].iter().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+fn sewn_edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+}
