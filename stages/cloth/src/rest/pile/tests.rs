@@ -4,6 +4,7 @@ use crate::contact::body::Body;
 use crate::rest::assemble::{Wearer, assemble, cloths as fabrics};
 use crate::rest::newton::Outcome;
 use crate::rest::pieces::Pieces;
+use crate::rest::real::Precision;
 use crate::rest::solve::{Rest, RestError};
 use crate::scene::{Scene, generate};
 
@@ -25,7 +26,16 @@ fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec
 }
 
 fn pace() -> Pace {
-    Pace { first: 0.05, longest: 1.0, steps: 200, speed: 1e-3, farthest: 0.1, prove: false, one_by_one: true }
+    Pace {
+        first: 0.05,
+        longest: 1.0,
+        steps: 200,
+        speed: 1e-3,
+        farthest: 0.1,
+        prove: false,
+        one_by_one: true,
+        precision: Precision::Mixed,
+    }
 }
 
 /// A stack of which the sheets were made in the order of these heights.
