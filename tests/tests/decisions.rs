@@ -78,12 +78,28 @@ fn the_reports_views_are_those_of_the_preview_where_there_is_one() {
     }
 }
 
+#[test]
+fn factors_are_of_single_precision_where_that_solves_the_step() {
+    let told = decisions(&[&pipeline("scene.ron")]);
+    let words = "
+  Rest                 simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
+      by      about 1024 triangles, whose matrix tells at each step how well it is solved
+      within  surface 20 mm
+";
+    assert!(told.contains(words), "{told}");
+    assert!(told.contains("      else    --set 'stages.Rest.precision=Double'"), "{told}");
+    let graded = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.graded=true"]);
+    assert!(graded.contains("      within  surface 5 mm\n"), "{graded}");
+    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.precision=Double"]);
+    assert!(!turned.contains("mixed-precision"), "{turned}");
+}
+
 /// The skirt, with a cloth that nothing asks for.
 const SKIRT: &str = r#"(
     name: "skirt",
     scene: Scene(file: "FILE"),
     fabric: Preset("cotton poplin"),
-    stages: [ Rest(), GarmentObj() ],
+    stages: [ Rest(precision: Double), GarmentObj() ],
 )
 "#;
 
@@ -204,7 +220,7 @@ fn explain_gives_one_json_object() {
     assert_eq!((all["pipeline"].as_str(), &all["quality"]), (Some("vest"), &Value::Null));
     let qualities = all["qualities"].as_array().unwrap().iter();
     let named: Vec<_> = qualities.map(|q| (q["name"].as_str(), q["max_error_m"].as_f64())).collect();
-    let want = [("Draft", 0.014), ("Standard", 0.008), ("Fine", 0.007)].map(|(n, e)| (Some(n), Some(e)));
+    let want = [("Draft", 0.014), ("Standard", 0.01), ("Fine", 0.008)].map(|(n, e)| (Some(n), Some(e)));
     assert_eq!(named, want);
     let stages = all["stages"].as_array().unwrap();
     let stage = |id: &str| stages.iter().find(|s| s["id"] == id).unwrap();
@@ -253,7 +269,8 @@ fn explain_gives_one_json_object() {
 
 #[test]
 fn a_pipeline_that_leaves_nothing_out_has_nothing_to_turn_round() {
-    let (scene, ahead) = (pipeline("scene.ron"), ["--set", "scene.distances=Ahead"]);
+    let (scene, ahead) =
+        (pipeline("scene.ron"), ["--set", "scene.distances=Ahead", "--set", "stages.Rest.precision=Double"]);
     assert_eq!(decisions(&[&[&*scene], &ahead[..]].concat()), "decisions: nothing is left out or simplified");
     let answer = toile(&[&["trade", &*scene, "--ablate"], &ahead[..]].concat());
     let words = "error: nothing is left out or simplified in this pipeline\n  help: `toile explain` shows the decisions of a pipeline\n";
