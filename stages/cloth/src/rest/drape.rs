@@ -42,12 +42,8 @@ impl<'a> Work<'a> {
                     stiff = self.carry_on(k, &mut level, [stiff, end.min(stiff)], loose, progress)?;
                 }
             } else if k > 0 {
-                self.settle(
-                    &mut level,
-                    1.0,
-                    Pace { one_by_one: self.begins_with_pile(k), ..self.pace() },
-                    progress,
-                )?;
+                let pace = Pace { one_by_one: self.begins_with_pile(k), ..self.pace() };
+                self.settle(&mut level, 1.0, pace, progress)?;
             }
             if k == 0 {
                 self.end(&mut level, progress)?;
@@ -205,7 +201,7 @@ impl<'a> Work<'a> {
     }
 
     /// The pace of all but the end.
-    fn pace(&self) -> Pace {
+    pub(super) fn pace(&self) -> Pace {
         let (first, longest, farthest) = SPAN;
         let (steps, speed) = (self.rest.coarse_steps, 2.0 * self.rest.speed);
         Pace {

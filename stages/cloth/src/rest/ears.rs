@@ -25,7 +25,7 @@ type Flipped = [(usize, [u32; 3]); 2];
 impl Pieces {
     /// Flips edges that more than two triangles would share once the seams are joined.
     pub(super) fn part_ears(&mut self) {
-        for sides in self.crowded() {
+        for sides in self.non_manifold_edges() {
             let flips = sides.chunk_by(|a, b| a.ends == b.ends).filter_map(|s| self.flip(s));
             if let Some((_, changed)) = flips.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 changed.into_iter().for_each(|(t, corners)| self.triangles[t] = corners);
@@ -34,7 +34,7 @@ impl Pieces {
     }
 
     /// The sides of triangles at each sewn edge that has more than two.
-    fn crowded(&self) -> Vec<Vec<Side>> {
+    fn non_manifold_edges(&self) -> Vec<Vec<Side>> {
         let node = |v: u32| self.node[v as usize];
         let sewn = |s: &Side| {
             let [a, b] = s.ends.map(node);

@@ -11,7 +11,6 @@ use super::grip::Grip;
 use super::multifrontal::Halt;
 use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
-use super::real::Precision;
 use super::solve::{LevelReport, Progress, Rest, RestError, Rested};
 use super::system::System;
 use crate::contact::tree::ClothTree;
@@ -187,7 +186,7 @@ impl<'a> Live<'a> {
             farthest: FARTHEST,
             prove: true,
             one_by_one: false,
-            precision: Precision::default(),
+            precision: self.rest.precision,
         }
     }
 

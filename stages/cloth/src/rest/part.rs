@@ -91,7 +91,7 @@ impl<'a> Part<'a> {
         whole.part(&self.nodes, &self.cut.index, layout).waking(&awake)
     }
 
-    /// The same, to stand for so many parts of one shape, one on the other, of which it is the lowest: what lies under it carries
+    /// This part, to stand for so many of one shape, one on the other, of which it is the lowest: what lies under it carries
     /// them all. Told in the forces of one: contact is softer by that number, and so is what presses for friction.
     pub(super) fn standing_for(mut self, count: usize) -> Self {
         self.bundle = count as f64;

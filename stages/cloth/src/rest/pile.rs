@@ -12,16 +12,17 @@ use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::newton::{Descent, Pace, Watch};
 use super::part::Part;
-use super::pieces::groups;
+use super::pieces::{count_cloths, groups};
 use super::system::System;
 use crate::contact::tree::ClothTree;
+use crate::scene::Scene;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
 
 /// Cloths from which on they are laid down one by one; fewer come to rest together sooner.
-pub(super) const MANY: usize = 6;
+const MANY: usize = 6;
 
 /// Steps of one cloth at most.
 const STEPS: usize = 200;
@@ -34,6 +35,11 @@ const MOST_SEEN: usize = 20;
 
 /// Steps within which a cloth that leaves its reach is given a longer one.
 const SOON: usize = 3;
+
+/// How many cloths a scene has, where they are so many and may meet that they are laid down one by one.
+pub(super) fn pile_of(scene: &Scene) -> Option<usize> {
+    Some(scene).filter(|s| s.self_collision).map(count_cloths).filter(|n| *n >= MANY)
+}
 
 /// What cloths are laid down with.
 pub(super) struct Around<'a> {

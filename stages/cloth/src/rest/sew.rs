@@ -93,16 +93,7 @@ impl Work<'_> {
             system.threads = pairs.iter().map(thread).collect();
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
-            let pace = Pace {
-                first,
-                longest: 1.0,
-                steps,
-                speed: self.rest.speed,
-                farthest,
-                prove: false,
-                one_by_one: false,
-                precision: self.rest.precision,
-            };
+            let pace = Pace { first, longest: 1.0, steps, speed: self.rest.speed, farthest, ..self.pace() };
             let closed = |x: &[Vec3]| self.rest.join_gap > widest(x, pairs);
             let report = self.run(&mut system, sheet, &self.starts[coarsest], x, &pace, &closed, progress)?;
             self.reports.push(report);
@@ -115,16 +106,7 @@ impl Work<'_> {
     fn press(&mut self, sheet: &Sheet, x: &mut [Vec3], progress: &mut Progress<'_>) -> Result<(), RestError> {
         let Some(grade) = self.grade(size(sheet)) else { return Ok(()) };
         let (_, first, farthest) = SEWING;
-        let pace = Pace {
-            first,
-            longest: 1.0,
-            steps: PRESSING,
-            speed: 0.0,
-            farthest,
-            prove: false,
-            one_by_one: false,
-            precision: self.rest.precision,
-        };
+        let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
         let report =
             self.run(&mut self.open(sheet, grade.first())?, sheet, &layout, x, &pace, &|_| false, progress)?;

@@ -17,23 +17,24 @@ pub use super::assemble::Wearer;
 use super::assemble::{KEPT_PULL, cloths, gravity, strongest};
 use super::clear::{Clearance, clearance};
 use super::coarsen::{Coarser, coarsen};
+pub use super::error::RestError;
 use super::graded::COARSEST;
 use super::grip::Grip;
-use super::layers::Layers;
-use super::multifrontal::{Halt, NotPositive};
+use super::multifrontal::Halt;
 use super::newton::{Outcome, Pace, relax};
-use super::pieces::{Pieces, count_cloths};
+use super::pieces::Pieces;
 use super::pierce::pierced;
-use super::pile::MANY;
+use super::pile::pile_of;
 pub use super::real::Precision;
 use super::sew::widest;
+use super::start::{clear_start, crossings_at_start};
 use super::system::System;
 use crate::contact::body::Body;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::scene::{Scene, SceneError};
+use crate::scene::Scene;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -121,101 +122,6 @@ pub struct Rested {
     pub levels: Vec<LevelReport>,
 }
 
-/// Why there is no garment at rest.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum RestError {
-    /// A fault of the input.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// A fault of the mesh.
-    #[error(transparent)]
-    Cloth(#[from] ClothError),
-    /// The matrix stayed indefinite.
-    #[error(transparent)]
-    NotPositive(#[from] NotPositive),
-    /// Nothing holds the cloth.
-    #[error(
-        "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
-    )]
-    Falls,
-    /// A seam does not close.
-    #[error(
-        "seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider"
-    )]
-    SeamNotClosed {
-        /// The seam with the widest gap.
-        seam: String,
-        /// Its widest gap, m.
-        gap: f64,
-        /// The force that did not close it, N/m.
-        force: f64,
-    },
-    /// Vertices start inside the body, too deep to be pushed out.
-    #[error(
-        "{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it"
-    )]
-    InitialPenetration {
-        /// How many.
-        vertices: usize,
-        /// The deepest, m.
-        depth: f64,
-    },
-    /// Cloth that passes through cloth where it starts.
-    #[error("{pairs} pairs of an edge and a triangle cross at the start; lay the panels out so that none do")]
-    InitialCrossing {
-        /// How many.
-        pairs: usize,
-    },
-    /// Cloth that passes through cloth at the end.
-    #[error(
-        "{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level"
-    )]
-    Crossing {
-        /// How many.
-        pairs: usize,
-        /// The state.
-        state: Box<Rested>,
-    },
-    /// Still moving after all steps.
-    #[error("still moving after {steps} steps: {speed:.4} m/s, wanted {wanted:.4} m/s; allow more steps or a faster end", steps = state.outcome.steps, speed = state.outcome.speed)]
-    NotAtRest {
-        /// The speed that was asked for, m/s.
-        wanted: f64,
-        /// The last state, which has neither crossings nor vertices in the body.
-        state: Box<Rested>,
-    },
-    /// The budget of time is spent.
-    #[error("out of time after {seconds:.1} s on level {level} of {levels}")]
-    Timeout {
-        /// Wall time spent, s.
-        seconds: f64,
-        /// The level, coarse to fine, from 1.
-        level: usize,
-        /// Levels.
-        levels: usize,
-        /// The state carried to the finest level.
-        positions: Vec<Vec3>,
-    },
-    /// A garment that is to go on has another mesh or other seams.
-    #[error("the mesh or its seams have changed; solve the scene from its start")]
-    Reshaped,
-    /// The caller asked to stop.
-    #[error("stopped")]
-    Stopped,
-}
-
-impl RestError {
-    /// Whether a finer mesh to begin on may help.
-    fn is_of_a_coarse_mesh(&self) -> bool {
-        matches!(
-            self,
-            Self::SeamNotClosed { .. }
-                | Self::Cloth(ClothError::NonManifoldEdge { .. })
-                | Self::Crossing { .. }
-        )
-    }
-}
-
 /// What a caller learns while solving; it may stop the solver.
 pub type Progress<'p> = dyn FnMut(&LevelReport) -> ControlFlow<()> + 'p;
 
@@ -247,13 +153,13 @@ impl Rest {
         let clock = Instant::now();
         scene.check()?;
         scene.check_still()?;
-        if self.graded && is_pile(scene) {
+        let pile = pile_of(scene);
+        if self.graded && pile.is_some() {
             return Self { graded: false, ..*self }.solve_on(scene, wearer, progress);
         }
         let mut coarsest = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
-        if is_pile(scene) {
-            coarsest *= count_cloths(scene);
-        }
+        // The limit is for each cloth of a pile: nine nodes cannot follow a body.
+        coarsest *= pile.unwrap_or(1);
         loop {
             let work = Work::new(self, coarsest, scene, wearer, clock)?;
             let finer = work.second();
@@ -363,7 +269,7 @@ impl<'a> Work<'a> {
             body,
             cloths: cloths(scene),
             clock,
-            is_pile: is_pile(scene),
+            is_pile: pile_of(scene).is_some(),
             pieces,
             coarser,
             starts,
@@ -552,47 +458,6 @@ impl<'a> Work<'a> {
             None => Ok(()),
         }
     }
-}
-
-/// Whether so many cloths may meet that they are laid down one by one.
-fn is_pile(scene: &Scene) -> bool {
-    scene.self_collision && count_cloths(scene) >= MANY
-}
-
-/// Crossings of a level before it is sewn; none where they do not matter.
-fn crossings_at_start(scene: &Scene, pieces: &Pieces, start: &[Vec3]) -> Result<usize, ClothError> {
-    if !scene.self_collision {
-        return Ok(0);
-    }
-    let sheet = pieces.open_sheet(&cloths(scene))?;
-    let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
-    Ok(unordered(scene, pieces, &tree.crossings(start)))
-}
-
-/// Crossings of vertices of one layer: those of two layers are resolved by their order.
-fn unordered(scene: &Scene, pieces: &Pieces, crossings: &[([u32; 2], [u32; 3])]) -> usize {
-    let of = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
-    let layers = Layers { order: pieces.panel.iter().map(of).collect(), ..Layers::default() };
-    layers.unordered(crossings)
-}
-
-/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
-const DEEPEST_START: f64 = 0.05;
-
-/// The start with vertices that lie a little inside the body moved out.
-fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
-    let mut start = scene.positions.clone();
-    let Some(body) = body else { return Ok(start) };
-    let (mut vertices, mut depth) = (0, 0.0f64);
-    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
-    for (p, n) in start.iter_mut().zip(near) {
-        if let Some(n) = n.filter(|n| n.distance < 0.0) {
-            vertices += 1;
-            depth = depth.max(-n.distance);
-            *p = n.point + n.normal * scene.material.thickness;
-        }
-    }
-    if depth > DEEPEST_START { Err(RestError::InitialPenetration { vertices, depth }) } else { Ok(start) }
 }
 
 #[cfg(test)]
