@@ -14,6 +14,15 @@ pub struct OutputFile {
     pub bytes: Vec<u8>,
 }
 
+impl OutputFile {
+    /// A file with its content. What the content's buffer holds in reserve, up to as much again where it was grown by
+    /// doubling, is given back: files are kept until the end of the run.
+    pub fn new(path: impl Into<String>, mut bytes: Vec<u8>) -> Self {
+        bytes.shrink_to_fit();
+        OutputFile { path: path.into(), bytes }
+    }
+}
+
 /// The files that a writer stage asks the runner to write. Only the runner touches the disk.
 #[derive(Debug, Clone, Default)]
 pub struct OutputFiles(pub Vec<OutputFile>);
@@ -21,7 +30,7 @@ pub struct OutputFiles(pub Vec<OutputFile>);
 impl OutputFiles {
     /// One file.
     pub fn one(path: &str, bytes: Vec<u8>) -> Self {
-        OutputFiles(vec![OutputFile { path: path.to_owned(), bytes }])
+        OutputFiles(vec![OutputFile::new(path, bytes)])
     }
 }
 
@@ -84,5 +93,19 @@ pub(super) fn png_grey(picture: &GrayImage) -> Vec<u8> {
     match picture.write_to(&mut bytes, ImageFormat::Png) {
         Ok(()) => bytes.into_inner(),
         Err(_) => Vec::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_holds_its_content_and_nothing_in_reserve() {
+        let mut grown = Vec::with_capacity(4096);
+        grown.extend(b"content");
+        let file = OutputFile::new("a/b.txt", grown);
+        assert_eq!((file.path.as_str(), file.bytes.as_slice()), ("a/b.txt", b"content".as_slice()));
+        assert!(file.bytes.capacity() < 64, "{}", file.bytes.capacity());
     }
 }

@@ -109,7 +109,8 @@ impl<V: BoundingVolume> Bvh<V> {
             };
         }
         // Every leaf has an item, so none is left out.
-        self.volumes = volumes.into_iter().flatten().collect();
+        self.volumes = Vec::with_capacity(volumes.len());
+        self.volumes.extend(volumes.into_iter().flatten());
     }
 
     /// The volume around everything; `None` for an empty tree.

@@ -63,6 +63,21 @@ impl<V: BoundingVolume> BvhScheme<V> {
         result
     }
 
+    /// As [`Self::with_tree`] for what is asked once: a tree that had to be built for it is not kept.
+    fn with_passing_tree<T>(
+        &self,
+        positions: &[Point3],
+        triangles: &[[u32; 3]],
+        f: impl FnOnce(&ClothTree<V>) -> T,
+    ) -> T {
+        // Not in the scrutinee, whose lock would be held below.
+        let none = self.lock().is_empty();
+        match none {
+            true => f(&ClothTree::build(positions, triangles)),
+            false => self.with_tree(positions, triangles, f),
+        }
+    }
+
     fn lock(&self) -> std::sync::MutexGuard<'_, Vec<ClothTree<V>>> {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -102,7 +117,7 @@ impl<V: BoundingVolume> Collide for BvhScheme<V> {
     }
 
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-        self.with_tree(positions, triangles, |tree| crossing::crossings(tree, positions))
+        self.with_passing_tree(positions, triangles, |tree| crossing::crossings(tree, positions))
     }
 }
 

@@ -48,13 +48,13 @@ impl Obj {
         let names: Vec<String> = parts.iter().map(file).collect();
         let materials = plain_names(model.materials.iter().map(|m| m.name.as_str()));
         let mut files = vec![
-            OutputFile {
-                path: format!("{stem}.obj"),
-                bytes: obj(model, &materials, &format!("{stem}.mtl"), self.weld).into_bytes(),
-            },
-            OutputFile { path: format!("{stem}.mtl"), bytes: mtl(model, &materials, &names).into_bytes() },
+            OutputFile::new(
+                format!("{stem}.obj"),
+                obj(model, &materials, &format!("{stem}.mtl"), self.weld).into_bytes(),
+            ),
+            OutputFile::new(format!("{stem}.mtl"), mtl(model, &materials, &names).into_bytes()),
         ];
-        files.extend(names.into_iter().zip(images).map(|(path, bytes)| OutputFile { path, bytes }));
+        files.extend(names.into_iter().zip(images).map(|(path, bytes)| OutputFile::new(path, bytes)));
         Ok(OutputFiles(files))
     }
 }

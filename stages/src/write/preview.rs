@@ -73,5 +73,5 @@ fn file((path, picture): &(&str, RgbImage)) -> Result<OutputFile, StageError> {
     let mut bytes = Cursor::new(Vec::new());
     let fault = |e| StageError::internal(format!("{path} cannot be encoded: {e}"));
     picture.write_to(&mut bytes, ImageFormat::Png).map_err(fault)?;
-    Ok(OutputFile { path: (*path).to_owned(), bytes: bytes.into_inner() })
+    Ok(OutputFile::new(*path, bytes.into_inner()))
 }

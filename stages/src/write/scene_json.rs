@@ -63,8 +63,8 @@ impl SceneJson {
             friction: card.map_or(PLAIN.1, |c| c.friction),
         });
         let obj = format!("{}_body.obj", self.name);
-        let json = OutputFile { path: format!("{}.json", self.name), bytes: to_json(&scene, &obj).into() };
-        let body = OutputFile { path: obj, bytes: body_to_obj(&scene).into() };
+        let json = OutputFile::new(format!("{}.json", self.name), to_json(&scene, &obj).into());
+        let body = OutputFile::new(obj, body_to_obj(&scene).into());
         Ok(OutputFiles(if scene.body.is_some() { vec![json, body] } else { vec![json] }))
     }
 }

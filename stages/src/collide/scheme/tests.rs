@@ -236,3 +236,15 @@ fn a_tighter_volume_tests_fewer_pairs() {
     let polytope = tests(scheme::<KDop<13>>().count_tests(&cloth.0, &cloth.1, 0.002));
     assert!(boxes < sphere && polytope < boxes, "{sphere} {boxes} {polytope}");
 }
+
+#[test]
+fn what_is_asked_once_leaves_no_tree_behind_and_uses_one_that_is_there() {
+    let cloth = soup(7, 60, 0.5);
+    let scheme = scheme::<Aabb>();
+    let first = scheme.self_crossings(&cloth.0, &cloth.1);
+    assert!(!first.is_empty() && scheme.lock().is_empty());
+    contacts(&scheme, &cloth, 1e-3);
+    assert_eq!(scheme.lock().len(), 1);
+    assert_eq!(scheme.self_crossings(&cloth.0, &cloth.1), first);
+    assert_eq!(scheme.lock().len(), 1);
+}
