@@ -4,6 +4,7 @@ use crate::{Streams, exit};
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, stdin};
 use std::path::PathBuf;
+use std::process::Command;
 use toile_core::Registry;
 use toile_trade::apart::{Apart, answer};
 
@@ -11,6 +12,14 @@ use toile_trade::apart::{Apart, answer};
 pub(crate) fn with_plugins(program: Apart, plugins: &[PathBuf]) -> Apart {
     let named = plugins.iter().flat_map(|p| [OsString::from("--plugin"), p.clone().into_os_string()]);
     Apart { arguments: named.chain([OsString::from("run-apart")]).collect(), ..program }
+}
+
+/// The program to be started once more, for another of its commands, with the same plugins.
+pub(crate) fn again(program: Option<&Apart>) -> Command {
+    let mut command = Command::new(program.map_or_else(PathBuf::new, |p| p.program.clone()));
+    let plugins = program.and_then(|p| p.arguments.split_last()).map(|(_, plugins)| plugins);
+    command.args(plugins.unwrap_or_default());
+    command
 }
 
 /// Runs the task that stands on the first line of standard input. The rest of the input is the parent's life: where it ends

@@ -3,15 +3,20 @@
 use crate::args::{CostsArgs, Overrides};
 use crate::run::fail_run;
 use crate::validate::open;
-use crate::{Streams, costs, exit, interrupt};
+use crate::{Streams, apart, costs, exit, interrupt};
+use rayon::ThreadPool;
 use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
-use toile_core::pipeline::Pipeline;
+use toile_core::pipeline::{Override, Pipeline};
 use toile_core::{Listener, Registry, RunError, RunOptions, run, write_files};
 use toile_trade::cost::{
-    Collection, CostRecord, Costs, Figure, check, check_lines, note, parse_collection, variations,
+    Collection, CostRecord, Costs, Figure, Variation, check, check_lines, note, parse_collection, shortest,
+    variations,
 };
+
+/// Where a run's own process leaves its records, in the folder of photos of other sizes.
+const ONE_RUN: &str = "run.jsonl";
 
 /// Measures, writes the records, and checks predictions on pipelines that are left out.
 pub(crate) fn costs(args: &CostsArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -41,37 +46,76 @@ pub(crate) fn costs(args: &CostsArgs, registry: &Registry, streams: &mut Streams
     exit::DONE
 }
 
-/// Runs a pipeline in each of its settings.
+/// Runs a pipeline in each of its settings; of the runs of a setting each stage's shortest counts.
 fn measure(
     file: &Path,
     args: &CostsArgs,
     registry: &Registry,
     streams: &mut Streams<'_>,
 ) -> Result<Vec<CostRecord>, u8> {
-    let load = |overrides: &[toile_core::pipeline::Override], streams: &mut Streams<'_>| {
-        let set = args.overrides.set.iter().chain(overrides).cloned().collect();
-        let all = Overrides { set, ..args.overrides.clone() };
-        open(file, &all, registry).map_err(|faults| {
-            streams.fault(&faults);
-            exit::INVALID
-        })
+    let pipeline = load(file, args, &[], registry, streams)?;
+    let settings = match args.one_run {
+        true => vec![Variation { words: "one run".into(), overrides: Vec::new() }],
+        false => variations(&pipeline, &args.work).map_err(|e| refused(&e.to_string(), streams))?,
     };
-    let settings =
-        variations(&load(&[], streams)?, &args.work).map_err(|e| refused(&e.to_string(), streams))?;
     // One pool for all runs: threads that end give memory back in the midst of the next run.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build();
     let pool = pool.map_err(|e| refused(&format!("there are no threads: {e}"), streams))?;
     let mut records = Vec::new();
     for setting in &settings {
-        let pipeline = load(&setting.overrides, streams)?;
+        let mut runs = Vec::new();
         for _ in 0..args.repeats {
             streams.tell(format!("{}: {}", pipeline.name, setting.words));
-            let ran =
-                pool.install(|| once(&pipeline)).map_err(|e| fail_run(&pipeline, &e, false, streams))?;
-            records.extend(ran);
+            runs.push(match args.one_run || streams.apart.is_none() {
+                true => here(&load(file, args, &setting.overrides, registry, streams)?, &pool, streams)?,
+                false => alone(file, args, &setting.overrides, streams)?,
+            });
         }
+        records.extend(shortest(runs));
     }
     Ok(records)
+}
+
+fn load(
+    file: &Path,
+    args: &CostsArgs,
+    more: &[Override],
+    registry: &Registry,
+    streams: &mut Streams<'_>,
+) -> Result<Pipeline, u8> {
+    let set = args.overrides.set.iter().chain(more).cloned().collect();
+    open(file, &Overrides { set, ..args.overrides.clone() }, registry).map_err(|faults| {
+        streams.fault(&faults);
+        exit::INVALID
+    })
+}
+
+/// A run in this process.
+fn here(pipeline: &Pipeline, pool: &ThreadPool, streams: &mut Streams<'_>) -> Result<Vec<CostRecord>, u8> {
+    pool.install(|| once(pipeline)).map_err(|e| fail_run(pipeline, &e, false, streams))
+}
+
+/// A run in a process of its own: as `toile run` it finds no memory that an earlier run has touched, nor threads that have
+/// worked before.
+fn alone(
+    file: &Path,
+    args: &CostsArgs,
+    more: &[Override],
+    streams: &mut Streams<'_>,
+) -> Result<Vec<CostRecord>, u8> {
+    let out = args.work.join(ONE_RUN);
+    let mut command = apart::again(streams.apart.as_ref());
+    command.args(["bench", "costs", "--one-run", "--out"]).arg(&out).arg(file);
+    command.args(args.threads.iter().flat_map(|n| ["--threads".to_owned(), n.to_string()]));
+    command.args(args.overrides.quality.iter().flat_map(|q| ["--quality", q]));
+    let set = args.overrides.set.iter().chain(more);
+    command.args(set.flat_map(|o| ["--set".to_owned(), format!("{}={}", o.path, o.value)]));
+    let ran = command.output().map_err(|e| refused(&format!("a run cannot be started: {e}"), streams))?;
+    if !ran.status.success() {
+        streams.tell(String::from_utf8_lossy(&ran.stderr).trim_end());
+        return Err(ran.status.code().and_then(|c| u8::try_from(c).ok()).unwrap_or(exit::STOPPED));
+    }
+    read(&out).map(|c| c.records).map_err(|e| refused(&e, streams))
 }
 
 /// What the stages of a run without cache take.

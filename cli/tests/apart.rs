@@ -2,7 +2,10 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)]
 
+mod sheet;
+
 use serde_json::{Value, json};
+use sheet::sheet;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -18,21 +21,6 @@ use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 
 const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
-
-/// A strip of two triangles held at one side.
-fn sheet() -> Value {
-    json!({
-        "format": "garment-scene-1", "name": "sheet",
-        "rest_uv": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.1, 0.1]],
-        "positions": [[0.0, 0.0, 0.0], [0.1, 0.0, 0.0], [0.0, 0.1, 0.01], [0.1, 0.1, 0.01]],
-        "triangles": [[0, 1, 3], [0, 3, 2]],
-        "panels": [{ "name": "sheet", "vertices": [0, 4], "triangles": [0, 2] }],
-        "seams": [], "pinned": [2, 3], "body": null, "self_collision": true,
-        "material": { "area_density": 0.15, "stretch": 500.0, "shear": 50.0, "bend": 1e-5, "damping": 0.0,
-                      "friction": 0.4, "thickness": 0.001 },
-        "phases": [{ "name": "hang", "seconds": 1.0, "gravity": [0.0, -9.81, 0.0] }],
-    })
-}
 
 fn folder() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();

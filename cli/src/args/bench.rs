@@ -125,12 +125,15 @@ pub(crate) struct CostsArgs {
     /// Write them as they are shipped: without what only a check needs
     #[arg(long, requires = "out")]
     pub(crate) slim: bool,
-    /// Runs of each setting
+    /// Runs of each setting; each stage's shortest counts
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=100))]
     pub(crate) repeats: usize,
     /// Folder for photos of other sizes
     #[arg(long, value_name = "DIR", default_value = "out/costs")]
     pub(crate) work: PathBuf,
+    /// The pipelines as they are, once, in this process
+    #[arg(long, hide = true)]
+    pub(crate) one_run: bool,
     /// Number of threads [default: one for each core]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,

@@ -13,6 +13,8 @@ pub enum Quantity {
     Pixels,
     /// Bytes of the files that are read.
     Bytes,
+    /// Pixels of the files that are read: a side that is another's mirror image reads none.
+    Decoded,
     /// Area of the garment's pattern, square metres.
     Area,
     /// Points of outlines.
@@ -27,10 +29,11 @@ pub enum Quantity {
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 8] = [
+    pub const ALL: [Quantity; 9] = [
         Quantity::Pieces,
         Quantity::Pixels,
         Quantity::Bytes,
+        Quantity::Decoded,
         Quantity::Area,
         Quantity::Points,
         Quantity::Triangles,

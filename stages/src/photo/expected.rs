@@ -9,7 +9,7 @@ use toile_core::cost::{Quantity, Size, garment_area};
 use toile_core::param::ron_options;
 use toile_core::{Context, Length, StageMeta};
 
-/// Pixels, bytes of the files and a guess at the garment's area; none where a photo cannot be read.
+/// Pixels of the photos and of the files, bytes of the files, and a guess at the garment's area; none where a photo cannot be read.
 ///
 /// Cost: the files are read, not decoded.
 pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Option<Size> {
@@ -29,9 +29,10 @@ pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Opti
         area += garment_area(w, h, width(photo, w));
     }
     let bytes: usize = files.values().map(|(bytes, _)| bytes).sum();
+    let decoded: f64 = files.values().map(|(_, (w, h))| f64::from(*w) * f64::from(*h)).sum();
     let size = Size::new().with(Quantity::Pieces, entries.len() as f64);
     let size = size.with(Quantity::Pixels, pixels).with(Quantity::Bytes, bytes as f64);
-    Some(size.with(Quantity::Area, area))
+    Some(size.with(Quantity::Decoded, decoded).with(Quantity::Area, area))
 }
 
 /// Width and height of every photo, px, with the width of its frame, metres, the garment as wide as the frame where only its

@@ -1,15 +1,16 @@
 //! How far the rules of sizes lie beside the facts, learnt from runs.
 //!
 //! A T-shirt fills its photo's frame less than a vest does, and its outline takes fewer triangles: the rules know neither.
-//! Of each stage and quantity the middle of fact / rule is kept, by kind of garment and for all kinds together.
+//! Of each stage and quantity the middle of fact / rule is kept, by kind of garment and for all kinds together, and the
+//! same of all stages together: what a T-shirt's mesh has in one stage it has in the next as well.
 
 use super::law::median;
 use super::record::CostRecord;
 use std::collections::BTreeMap;
 use toile_core::cost::{Quantity, Size};
 
-/// A stage, a kind of garment (none for all kinds) and a quantity.
-type Place = (String, Option<String>, Quantity);
+/// A stage and a kind of garment (none for all of them), and a quantity.
+type Place = (Option<String>, Option<String>, Quantity);
 
 /// Factors on what the rules foresee.
 #[derive(Debug, Clone, Default)]
@@ -22,11 +23,8 @@ impl Bias {
         for r in records {
             for (quantity, foreseen) in r.foreseen.iter().filter(|(_, f)| *f > 0.0) {
                 let Some(fact) = r.size.get(quantity).filter(|f| *f > 0.0) else { continue };
-                for style in [None, Some(r.style.clone())] {
-                    ratios
-                        .entry((r.stage.clone(), style, quantity))
-                        .or_default()
-                        .push((fact / foreseen).ln());
+                for (stage, style) in places(&r.stage, &r.style) {
+                    ratios.entry((stage, style, quantity)).or_default().push((fact / foreseen).ln());
                 }
             }
         }
@@ -35,10 +33,17 @@ impl Bias {
 
     /// What the rules foresee, brought to what they should have.
     pub(super) fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
+        let places = places(stage, style);
         let factor = |q| {
-            let own = self.0.get(&(stage.to_owned(), Some(style.to_owned()), q));
-            own.or_else(|| self.0.get(&(stage.to_owned(), None, q))).copied().unwrap_or(1.0)
+            let mut known = places.iter().filter_map(|(s, k)| self.0.get(&(s.clone(), k.clone(), q)));
+            known.next().copied().unwrap_or(1.0)
         };
         foreseen.iter().fold(Size::new(), |all, (q, a)| all.with(q, a * factor(q)))
     }
+}
+
+/// Where what holds for a stage and a kind of garment is looked up, the nearest first.
+fn places(stage: &str, style: &str) -> [(Option<String>, Option<String>); 4] {
+    let (stage, style) = (Some(stage.to_owned()), Some(style.to_owned()));
+    [(stage.clone(), style.clone()), (None, style), (stage, None), (None, None)]
 }

@@ -100,7 +100,11 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
         for run in runs {
             let Some(fact) = check.figure.of(&run.used) else { continue };
             let size = costs.corrected(stage, &run.style, &run.foreseen);
-            let estimate = costs.estimate(&Place { pipeline, stage, role: &run.role }, &size, check.figure);
+            let estimate = costs.estimate(
+                &Place { pipeline, stage, role: &run.role, style: &run.style },
+                &size,
+                check.figure,
+            );
             let right = estimate.is_some_and(|e| is_right(e.value, fact));
             let in_range = estimate.is_some_and(|e| e.holds(fact));
             tally.add(right, in_range);

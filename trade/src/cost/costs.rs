@@ -43,6 +43,8 @@ pub struct Place<'a> {
     pub stage: &'a str,
     /// Its role.
     pub role: &'a str,
+    /// The kind of garment, as in the records.
+    pub style: &'a str,
 }
 
 #[derive(Debug, Clone)]
@@ -104,7 +106,7 @@ impl Costs {
     pub fn estimate(&self, at: &Place<'_>, size: &Size, figure: Figure) -> Option<Estimate> {
         let own = self.stages.get(&(at.stage.to_owned(), figure));
         let entry = own.or_else(|| self.roles.get(&(at.role.to_owned(), figure)))?;
-        Some(entry.law.estimate(size, self.met.contains(at.pipeline), entry.more))
+        Some(entry.law.estimate(size, at.style, self.met.contains(at.pipeline), entry.more))
     }
 
     /// All figures of a stage.
@@ -142,7 +144,8 @@ fn laws(
     for (record, weight, factor) in all {
         let Some(fact) = figure.of(&record.used) else { continue };
         let entry = seen.entry(name(record)).or_insert((record.role.as_str(), Vec::new()));
-        entry.1.push(Seen { pipeline: &record.pipeline, size: &record.size, fact: fact * factor, weight });
+        let CostRecord { pipeline, style, size, .. } = record;
+        entry.1.push(Seen { pipeline, style, size, fact: fact * factor, weight });
     }
     let law = |(name, (role, seen)): (String, (&str, Vec<Seen<'_>>))| {
         Some((name, Law::fit(terms(role), &seen, figure.floor())?))
@@ -154,7 +157,7 @@ fn laws(
 fn speed(own: &[&CostRecord], prior: &Laws, figure: Figure) -> Option<f64> {
     let ratio = |r: &&CostRecord| {
         let fact = figure.of(&r.used).filter(|f| *f >= TELLING_S)?;
-        Some((fact / prior.get(&r.stage)?.value(&r.size)).ln())
+        Some((fact / prior.get(&r.stage)?.value(&r.size, &r.style)).ln())
     };
     let mut ratios: Vec<f64> = own.iter().filter_map(ratio).collect();
     (ratios.len() >= TELLING_RUNS).then(|| median(&mut ratios).exp())

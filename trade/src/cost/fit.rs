@@ -1,8 +1,9 @@
 //! Least squares with factors that are not negative, of relative errors, little swayed by outliers.
 //!
 //! Method: all subsets of the few terms are tried; on each, weighted least squares of prediction / fact - 1 with weights
-//! that fall off for what lies far out (Huber 1964, iteratively reweighted). Of the subsets whose factors are all
-//! positive, the one with the least generalised cross-validation counts (Golub, Heath, Wahba 1979). Non-negative factors
+//! that fall off for what lies far out (Huber 1964, iteratively reweighted). How far is measured by the logarithm of
+//! prediction / fact: three times too much is as far out as a third, and one odd run bends a law no more from above than
+//! from below. Of the subsets whose factors are all positive, the one with the least generalised cross-validation counts (Golub, Heath, Wahba 1979). Non-negative factors
 //! keep a law rising, so that it can be used beyond the sizes that were measured.
 //! Cost: 2^terms small systems. Limit: five terms.
 
@@ -14,8 +15,10 @@ pub(super) struct Row {
     pub(super) weight: f64,
 }
 
-/// Relative errors beyond this count less.
+/// Errors beyond this, as a logarithm, count less.
 const FAR: f64 = 0.25;
+/// The greatest error, as a logarithm; a row that is predicted to be nothing has it.
+const FARTHEST: f64 = 10.0;
 /// Later subsets must be better by this: terms stand in the order of what is likely, and runs of one pipeline cannot tell
 /// some of them apart.
 const BETTER: f64 = 0.97;
@@ -46,6 +49,11 @@ fn predicted(row: &Row, columns: &[usize], factors: &[f64]) -> f64 {
     columns.iter().zip(factors).map(|(c, f)| row.terms[*c] * f).sum()
 }
 
+/// How far a prediction lies from the fact, as a logarithm.
+fn error(row: &Row, columns: &[usize], factors: &[f64]) -> f64 {
+    (predicted(row, columns, factors) / row.fact).ln().abs().min(FARTHEST)
+}
+
 /// Reweighted least squares; none where a factor is not positive.
 fn robust(rows: &[&Row], columns: &[usize]) -> Option<Vec<f64>> {
     let mut weights: Vec<f64> = rows.iter().map(|r| r.weight).collect();
@@ -53,8 +61,7 @@ fn robust(rows: &[&Row], columns: &[usize]) -> Option<Vec<f64>> {
     for _ in 0..ROUNDS {
         factors = least_squares(rows, columns, &weights)?;
         for (w, row) in weights.iter_mut().zip(rows) {
-            let error = (predicted(row, columns, &factors) / row.fact - 1.0).abs();
-            *w = row.weight * (FAR / error.max(FAR));
+            *w = row.weight * (FAR / error(row, columns, &factors).max(FAR));
         }
     }
     factors.iter().all(|f| f.is_finite() && *f > 0.0).then_some(factors)
@@ -110,12 +117,12 @@ fn solve(mut m: Vec<Vec<f64>>) -> Option<Vec<f64>> {
 /// Generalised cross-validation of the capped errors; none where there are no more rows than factors, save one of each.
 fn validation(rows: &[&Row], columns: &[usize], factors: &[f64]) -> Option<f64> {
     let total: f64 = rows.iter().map(|r| r.weight).sum();
-    let error = |r: &&Row| {
-        let e = (predicted(r, columns, factors) / r.fact - 1.0).abs();
+    let loss = |r: &&Row| {
+        let e = error(r, columns, factors);
         // Huber's loss.
         r.weight * if e < FAR { e * e } else { FAR * (2.0 * e - FAR) }
     };
-    let sum: f64 = rows.iter().map(error).sum();
+    let sum: f64 = rows.iter().map(loss).sum();
     let count = rows.len() as f64;
     let free = 1.0 - columns.len() as f64 / count;
     match (rows.len(), columns.len()) {

@@ -1,6 +1,7 @@
 //! A stage's law with its uncertainty.
 
 use super::fit::{Row, fit};
+use super::kinds::Kinds;
 use super::terms::Term;
 use std::collections::BTreeMap;
 use toile_core::cost::{Estimate, Size};
@@ -22,6 +23,8 @@ const CAP: f64 = 1.5;
 pub(super) struct Law {
     terms: &'static [Term],
     factors: Vec<f64>,
+    /// What kinds of garment add to the sum of terms.
+    kinds: Kinds,
     /// Standard deviation of ln(fact / prediction).
     spread: f64,
     /// Degrees of freedom of the spread.
@@ -37,6 +40,7 @@ pub(super) struct Law {
 #[derive(Debug, Clone)]
 pub(super) struct Seen<'a> {
     pub(super) pipeline: &'a str,
+    pub(super) style: &'a str,
     pub(super) size: &'a Size,
     pub(super) fact: f64,
     pub(super) weight: f64,
@@ -53,12 +57,16 @@ impl Law {
         let rows: Vec<Row> = seen.iter().map(row).collect();
         let factors = fit(&rows, terms.len())?;
         let (range, between) = ((0.0, f64::INFINITY), (0.0, 1.0));
-        let mut law = Law { terms, factors, spread: 0.0, free: 1.0, between, range, floor };
-        let mut errors: Vec<f64> = seen.iter().map(|s| (s.fact / law.value(s.size)).ln()).collect();
+        let kinds = Kinds::default();
+        let mut law = Law { terms, factors, kinds, spread: 0.0, free: 1.0, between, range, floor };
+        let errors = |law: &Law| -> Vec<f64> {
+            seen.iter().map(|s| (s.fact / law.value(s.size, s.style)).ln()).collect()
+        };
         // Least squares of relative errors lie low; the middle of the runs should be in the middle.
-        let middle = median(&mut errors);
+        let middle = median(&mut errors(&law));
         law.factors.iter_mut().for_each(|f| *f *= middle.exp());
-        let values: Vec<f64> = seen.iter().map(|s| law.value(s.size)).collect();
+        law.kinds = Kinds::learn(seen, &errors(&law));
+        let values: Vec<f64> = seen.iter().map(|s| law.value(s.size, s.style)).collect();
         law.range = values.iter().fold((f64::INFINITY, 0.0), |r, v| (r.0.min(*v), r.1.max(*v)));
         let total: f64 = seen.iter().map(|s| s.weight).sum();
         let square = |(s, v): (&Seen<'_>, &f64)| s.weight * (s.fact / v).ln().clamp(-CAP, CAP).powi(2);
@@ -71,16 +79,16 @@ impl Law {
         Some(law)
     }
 
-    /// The middle.
-    pub(super) fn value(&self, size: &Size) -> f64 {
+    /// The middle, for a kind of garment.
+    pub(super) fn value(&self, size: &Size, style: &str) -> f64 {
         let sum: f64 = self.terms.iter().zip(&self.factors).map(|(t, f)| t.at(size) * f).sum();
-        sum.max(self.floor)
+        (sum * self.kinds.factor(style)).max(self.floor)
     }
 
     /// The middle with the range that 80 of 100 runs lie in; `met` where this machine has run the pipeline before, `more`
     /// is spread from elsewhere, as a logarithm.
-    pub(super) fn estimate(&self, size: &Size, met: bool, more: f64) -> Estimate {
-        let value = self.value(size);
+    pub(super) fn estimate(&self, size: &Size, style: &str, met: bool, more: f64) -> Estimate {
+        let value = self.value(size, style);
         let beyond = (value / self.range.1).ln().max((self.range.0 / value).ln()).max(0.0);
         let between = if met { 0.0 } else { self.between.0 * student(self.between.1) };
         let other = NORMAL_90 * more.hypot(BEYOND * beyond);

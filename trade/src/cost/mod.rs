@@ -3,11 +3,12 @@
 //! Core says how much each stage is given and makes ([`toile_core::cost`]); this module holds the laws that lead from
 //! there to seconds and bytes:
 //!
-//! - `terms`, `fit`, `law`: a stage's law, a sum of terms of its sizes with factors that are not negative;
+//! - `terms`, `fit`, `law`: a stage's law, a sum of terms of its sizes with factors that are not negative; `kinds`: what a
+//!   kind of garment adds to it;
 //! - `bias`: how far the rules of sizes lie beside the facts;
 //! - `record`, `store`, `shipped`: what stages took, on this machine and on the one of the shipped file;
 //! - `costs`: the laws of all stages; `predict`: a pipeline's forecast; `meter`, `note`: facts of a run;
-//! - `sweep`, `check`: the measurement that the shipped file comes from, and the proof by leaving pipelines out;
+//! - `sweep`, `repeats`, `check`: the measurement that the shipped file comes from, and the proof by leaving pipelines out;
 //! - `words`: what people read.
 //!
 //! docs/costs.md has the figures.
@@ -16,11 +17,13 @@ mod bias;
 mod check;
 mod costs;
 mod fit;
+mod kinds;
 mod law;
 mod meter;
 mod note;
 mod predict;
 mod record;
+mod repeats;
 mod shipped;
 mod store;
 mod sweep;
@@ -36,6 +39,7 @@ pub use meter::{MemoryCount, Stopwatch};
 pub use note::note;
 pub use predict::{Forecast, predict, total};
 pub use record::{CostRecord, Figure, Host};
+pub use repeats::shortest;
 pub use shipped::{Collection, parse as parse_collection, shipped};
 pub use store::{CostStore, Opened};
 pub use sweep::{Variation, variations};

@@ -39,7 +39,8 @@ pub fn predict(pipeline: &Pipeline, costs: &Costs) -> Vec<Forecast> {
     let forecast = |(node, (rules, facts)): (&Node, (Foreseen, Foreseen))| {
         let (name, role) = (node.card.name, node.card.role.as_str());
         let size = best(&costs.corrected(name, &style, &all(&rules)), &all(&rules), &all(&facts));
-        let predicted = costs.predicted(&Place { pipeline: &pipeline.name, stage: name, role }, &size);
+        let predicted =
+            costs.predicted(&Place { pipeline: &pipeline.name, stage: name, role, style: &style }, &size);
         Forecast { stage: node.id.clone(), size, predicted, known: costs.knows(name) }
     };
     pipeline.nodes.iter().zip(rules.into_iter().zip(facts)).map(forecast).collect()

@@ -41,10 +41,10 @@ impl Term {
 
 /// The terms of a role, the one that matters most first.
 pub(super) fn terms(role: &str) -> &'static [Term] {
-    use Quantity::{BodyTriangles, Bytes, Pieces, Pixels, Points, Texels, Triangles};
+    use Quantity::{BodyTriangles, Bytes, Decoded, Pieces, Pixels, Points, Texels, Triangles};
     use Term::{Constant, Of, Side, Solve, Steps};
     match Role::named(role) {
-        Some(Role::Reader) => &[Of(Pixels), Of(Bytes), Of(BodyTriangles), Of(Triangles), Constant],
+        Some(Role::Reader) => &[Of(Decoded), Of(Pixels), Of(Bytes), Of(Triangles), Constant],
         Some(Role::Denoiser | Role::Binariser) => &[Of(Pixels), Constant],
         Some(Role::EdgeDetector) => &[Of(Pixels), Side(Pixels), Constant],
         Some(Role::Style) => &[Of(Pieces), Constant],

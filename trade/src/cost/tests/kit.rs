@@ -59,7 +59,7 @@ pub(super) fn runs(pipeline: &str, count: usize, spread: f64) -> Vec<CostRecord>
 }
 
 pub(super) fn place<'a>(pipeline: &'a str, stage: &'a str, role: &'a str) -> Place<'a> {
-    Place { pipeline, stage, role }
+    Place { pipeline, stage, role, style: "Vest" }
 }
 
 pub(super) fn wall(costs: &Costs, pipeline: &str, size: &Size) -> Estimate {

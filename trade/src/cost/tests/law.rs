@@ -22,6 +22,53 @@ fn outliers_sway_a_law_little() {
 }
 
 #[test]
+fn odd_runs_sway_a_law_as_little_from_above_as_from_below() {
+    let swayed = |factor: f64| {
+        let mut seen = runs("a", 60, 0.05);
+        seen.iter_mut().step_by(6).for_each(|r| r.used.wall_s *= factor);
+        wall(&Costs::fit(&seen, &[], 2), "a", &pixels(1e6)).value / otsu(1e6)
+    };
+    let (high, low) = (swayed(5.0), swayed(0.2));
+    assert!((high.ln() + low.ln()).abs() < 0.03 && (high - 1.0).abs() < 0.08, "{high} {low}");
+}
+
+#[test]
+fn a_kind_of_garment_that_takes_more_is_known_by_other_pipelines_of_the_kind() {
+    let of = |pipeline: &str, style: &str, factor: f64| {
+        let mut seen = runs(pipeline, 9, 0.01);
+        seen.iter_mut().for_each(|r| (r.style, r.used.wall_s) = (style.into(), r.used.wall_s * factor));
+        seen
+    };
+    let all = [of("a", "Vest", 1.5), of("b", "Vest", 1.5), of("c", "TShirt", 1.0), of("d", "TShirt", 1.0)];
+    let told = |seen: &[CostRecord], style: &str| {
+        let at = Place { style, ..place("new", "Otsu", "binariser") };
+        let e = Costs::fit(seen, &[], 2).estimate(&at, &pixels(1e6), Figure::Wall).unwrap();
+        e.value / otsu(1e6)
+    };
+    let (vest, tee, cape) =
+        (told(&all.concat(), "Vest"), told(&all.concat(), "TShirt"), told(&all.concat(), "Cape"));
+    assert!((1.3..1.5).contains(&vest) && (1.0..1.1).contains(&tee), "{vest} {tee}");
+    assert!(tee < cape && cape < vest, "{cape} lies between");
+    // One pipeline of a kind says less of it than two.
+    let one = told(&all[1..].concat(), "Vest");
+    assert!(tee < one && one < vest, "{one}");
+}
+
+#[test]
+fn of_repeated_runs_each_stage_s_shortest_counts() {
+    let run = |otsu: f64, rest: f64| {
+        vec![
+            record("a", "Otsu", "binariser", pixels(1e6), otsu),
+            record("a", "Rest", "draper", triangles(1e3), rest),
+        ]
+    };
+    let best = shortest(vec![run(0.03, 2.0), run(0.02, 3.0), run(0.05, 2.5)]);
+    assert_eq!(best, [run(0.02, 9.0).remove(0), run(9.0, 2.0).remove(1)]);
+    assert_eq!(shortest(vec![run(0.03, 2.0)]), run(0.03, 2.0));
+    assert_eq!(shortest(Vec::new()), []);
+}
+
+#[test]
 fn a_solver_grows_faster_than_its_mesh() {
     let run = |n: f64| record("a", "Rest", "draper", triangles(n), 1e-5 * n.powf(1.5));
     let seen: Vec<CostRecord> = [500.0, 1e3, 2e3, 4e3].map(run).into();
@@ -122,7 +169,12 @@ fn rules_of_sizes_are_corrected_by_kind_of_garment() {
     let corrected = |style| costs.corrected("Otsu", style, &pixels(1e6)).get(Quantity::Pixels).unwrap();
     assert!((corrected("Vest") / 2e6 - 1.0).abs() < 1e-9 && (corrected("TShirt") / 5e5 - 1.0).abs() < 1e-9);
     assert!((corrected("Cape") / 2e6 - 1.0).abs() < 1e-9, "the middle of all kinds");
-    assert_eq!(costs.corrected("Canny", "Vest", &pixels(7.0)), pixels(7.0));
+    assert_eq!(
+        costs.corrected("Canny", "Vest", &pixels(7.0)),
+        pixels(14.0),
+        "what other stages tell of vests"
+    );
+    assert_eq!(costs.corrected("Canny", "Vest", &triangles(7.0)), triangles(7.0));
 }
 
 #[test]

@@ -39,7 +39,7 @@ fn a_store_that_is_of_no_use_is_said_to_be() {
         "is of another machine (Another, 64 cores); the shipped figures stand in",
     );
     warned(&text_of(host(), "0.0.1"), "was kept by version 0.0.1; the shipped figures stand in");
-    let newer = text_of(host(), version).replace("\"scheme\":1", "\"scheme\":2");
+    let newer = text_of(host(), version).replace("\"scheme\":2", "\"scheme\":3");
     warned(&newer, "was kept by another version; the shipped figures stand in");
     assert_eq!(CostStore::new(Path::new("/nowhere/at/all")).open(&host()), Opened::default());
 }
