@@ -31,7 +31,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 7,
+    version = 9,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -44,7 +44,7 @@ pub struct Rest {
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
-    #[param(default = 500, min = 20, max = 100_000, unit = "vertices", trades)]
+    #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
     /// Steps on every mesh but the finest; where bending is graded, each of its states has 60.
     #[param(default = 30, min = 1, max = 100_000, unit = "steps", trades)]

@@ -93,11 +93,16 @@ impl ClothTree {
     /// Pairs that may come nearer than `reach` while the nodes move from `x` by `moves`, sorted.
     #[must_use]
     pub fn pairs(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        self.pairs_looked_for(self.awake.as_ref(), x, moves, reach)
+    }
+
+    /// The same, where only what is awake looks for others.
+    fn pairs_looked_for(&self, awake: Option<&Awake>, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
         let boxes = self.swept(x, moves, reach);
         let fitted = self.fit(&boxes);
         let ways: Vec<f64> = moves.iter().map(Vec3::norm).collect();
         let search = Search { x, moves, ways: &ways, reach };
-        let mut pairs = self.meetings(&boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
+        let mut pairs = self.meetings(awake, &boxes, &fitted, &|s, t, out| self.narrow(s, t, &search, out));
         pairs.par_sort_unstable();
         pairs
     }
@@ -136,7 +141,7 @@ impl ClothTree {
                 );
             }
         };
-        let mut all = self.meetings(&boxes, &fitted, &crossing);
+        let mut all = self.meetings(self.awake.as_ref(), &boxes, &fitted, &crossing);
         all.iter_mut().for_each(|(e, _)| e.sort_unstable());
         all.sort_unstable();
         all.dedup();

@@ -36,7 +36,7 @@ impl Descent {
         stop: &Stop,
     ) -> Result<(), Halt> {
         let Some(awake) = self.awake(system) else { return Ok(()) };
-        self.nearby.seek_about(system, x);
+        self.nearby.seek_about(system, x, &awake);
         let mut part = Part::of(system, awake);
         let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
         let reach = system.layers.as_ref().map_or(f64::INFINITY, Layers::slack);

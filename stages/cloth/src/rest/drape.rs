@@ -1,14 +1,10 @@
 //! The sewn garment comes to rest, level by level and from stiff to limp.
 
-use super::assemble::{assemble, gravity, kept_threads};
-use super::graded::{Grade, stages};
+use super::graded::stages;
 use super::level::Level;
 use super::newton::Pace;
 use super::solve::{Draped, Progress, RestError, Work};
 use crate::error::ClothError;
-use nalgebra::Vector3;
-
-type Vec3 = Vector3<f64>;
 
 /// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of that of the end: so near
 /// rest, the state forgets where it began.
@@ -30,24 +26,20 @@ const LONGEST: f64 = 10.0;
 impl<'a> Work<'a> {
     /// Lets the sewn garment come to rest.
     pub(super) fn drape(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
-        let (mut stiff, mut loose) = (1.0, false);
-        let mut slides = Vec::new();
-        for k in (0..self.pieces.len()).rev() {
-            let mut level = self.level(k, std::mem::take(&mut slides))?;
-            if let Some(grade) = self.grade(level.size()) {
-                let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()) };
-                if k + 1 == self.pieces.len() {
-                    (stiff, loose) = self.forget(k, &mut level, grade.first(), end, progress)?;
-                } else {
-                    stiff = self.carry_on(k, &mut level, [stiff, end.min(stiff)], loose, progress)?;
+        let plan = self.plan;
+        let (mut bending, mut slides) = ((1.0, false), Vec::new());
+        let mut ready = plan.level(plan.pieces.len() - 1);
+        for k in (0..plan.pieces.len()).rev() {
+            let mut level = ready?;
+            level.begin(std::mem::take(&mut self.x), slides);
+            // Another thread makes the next finer level ready meanwhile; below the finest there is none, and nobody asks.
+            ready = Err(ClothError::EmptyScene.into());
+            rayon::in_place_scope(|scope| {
+                if k > 0 {
+                    scope.spawn(|_| ready = plan.level(k - 1));
                 }
-            } else if k > 0 {
-                let pace = Pace { one_by_one: self.begins_with_pile(k), ..self.pace() };
-                self.settle(&mut level, 1.0, pace, progress)?;
-            }
-            if k == 0 {
-                self.end(&mut level, progress)?;
-            }
+                self.bring(k, &mut level, &mut bending, progress)
+            })?;
             if level.system.is_tangled() {
                 let pairs = level.system.layers.as_ref().map_or(0, |l| l.tangles.len());
                 return Ok(Draped::Tangled { nodes: level.x.len(), pairs });
@@ -60,35 +52,34 @@ impl<'a> Work<'a> {
                 self.check_strain(&level.system, &level.x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(level.system, &level.sheet, level.x)?)));
             }
-            slides = self.finer(k, &level.system.held_back(&level.x));
-            self.x = self.finer(k, &level.x);
+            slides = plan.finer(k, &level.system.held_back(&level.x));
+            self.x = plan.finer(k, &level.x);
         }
         Err(ClothError::EmptyScene.into())
     }
 
-    /// How bending is let go in a garment of that size, if it is.
-    pub(super) fn grade(&self, size: f64) -> Option<Grade> {
-        let gravity = gravity(self.scene).norm();
-        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size)).flatten()
-    }
-
-    /// Level `k`, where the level before left the cloth.
-    fn level(&mut self, k: usize, slides: Vec<Vec3>) -> Result<Level<'a>, RestError> {
-        let pieces = &self.pieces[k];
-        let sheet = pieces.sewn_sheet(&self.cloths)?;
-        let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-        let mut system = assemble(self.scene, self.body, pieces, &sheet, false)?;
-        system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
-        system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
-        if let (true, true, Some(s)) = (self.rest.graded, k > 0, &mut system.support) {
-            // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
-            s.edges.clear();
+    /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it was left by the level before, and
+    /// whether without friction.
+    fn bring(
+        &mut self,
+        k: usize,
+        level: &mut Level<'a>,
+        bending: &mut (f64, bool),
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
+        let (stiff, loose) = *bending;
+        if let Some(grade) = self.plan.grade(level.size()) {
+            let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()) };
+            *bending = if k + 1 == self.plan.pieces.len() {
+                self.forget(k, level, grade.first(), end, progress)?
+            } else {
+                (self.carry_on(k, level, [stiff, end.min(stiff)], loose, progress)?, loose)
+            };
+        } else if k > 0 {
+            let pace = Pace { one_by_one: self.begins_with_pile(k), ..self.pace() };
+            self.settle(level, 1.0, pace, progress)?;
         }
-        let x = std::mem::take(&mut self.x);
-        if slides.len() == x.len() {
-            system.slides = slides;
-        }
-        Ok(Level { system, sheet, layout, x, friction: None })
+        if k == 0 { self.end(level, progress) } else { Ok(()) }
     }
 
     /// Brings a finer level from one stiffness to another, without friction if it stays; the stiffness reached.
@@ -163,7 +154,7 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
         level.system.elastic.stiffen(stiff);
-        let offsets = level.system.support.as_mut().filter(|_| self.rest.graded).map(|s| {
+        let offsets = level.system.support.as_mut().filter(|_| self.plan.rest.graded).map(|s| {
             s.grows = true;
             s.offsets.clone()
         });
@@ -186,7 +177,7 @@ impl<'a> Work<'a> {
 
     /// Brings the finest level to rest, and proves it.
     fn end(&mut self, level: &mut Level<'a>, progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
+        let (steps, speed) = (self.plan.rest.finest_steps, self.plan.rest.speed);
         let one_by_one = self.begins_with_pile(0);
         let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
         let Level { system, sheet, layout, x, .. } = level;
@@ -197,13 +188,13 @@ impl<'a> Work<'a> {
 
     /// Whether level `k` is where cloths are laid down one by one: finer ones start from a pile.
     fn begins_with_pile(&self, k: usize) -> bool {
-        self.is_pile && k + 1 == self.pieces.len()
+        self.plan.is_pile && k + 1 == self.plan.pieces.len()
     }
 
     /// The pace of all but the end.
     pub(super) fn pace(&self) -> Pace {
         let (first, longest, farthest) = SPAN;
-        let (steps, speed) = (self.rest.coarse_steps, 2.0 * self.rest.speed);
+        let (steps, speed) = (self.plan.rest.coarse_steps, 2.0 * self.plan.rest.speed);
         Pace {
             first,
             longest,
@@ -212,18 +203,12 @@ impl<'a> Work<'a> {
             farthest,
             prove: false,
             one_by_one: false,
-            precision: self.rest.precision,
+            precision: self.plan.rest.precision,
         }
     }
 
     /// The pace of a state on the way from stiff to limp.
     pub(super) fn forgetful(&self) -> Pace {
-        Pace { longest: LONGEST, steps: FORGET.0, speed: FORGET.1 * self.rest.speed, ..self.pace() }
-    }
-
-    /// Values at the nodes of level `k` carried to those of the next finer one.
-    fn finer(&self, k: usize, values: &[Vec3]) -> Vec<Vec3> {
-        let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
-        self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
+        Pace { longest: LONGEST, steps: FORGET.0, speed: FORGET.1 * self.plan.rest.speed, ..self.pace() }
     }
 }

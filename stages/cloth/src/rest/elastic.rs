@@ -7,6 +7,7 @@
 //! calibrated weights and the free edges' correction (see `border`), whose matrix never changes. Cost O(triangles), and once a
 //! mesh the calibration's sparse factor of one number a pair of nodes.
 
+mod assembly;
 mod border;
 mod law;
 mod part;
@@ -14,11 +15,12 @@ mod spring;
 
 pub use spring::Spring;
 
-use super::pattern::{Pattern, Slot, add_at};
+use super::pattern::Pattern;
 use crate::bending::{Calibration, Rigidity, flaps};
 use crate::fabric::Fabric;
 use crate::mesh::{Edge, Sheet, Side};
 use crate::scene::StrainLimit;
+use assembly::{Assembly, Local};
 use border::Border;
 use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -52,14 +54,16 @@ pub struct Elastic {
     hinges: Vec<Hinge>,
     borders: Vec<Border>,
     springs: Vec<Spring>,
-    slots: Vec<[Slot; 6]>,
-    bending: Vec<(u32, f64)>,
+    assembly: Assembly,
     /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
     foretold: Vec<[f64; 3]>,
 }
 
-/// Elements that one task evaluates.
+/// Elements that one sum adds up.
 const CHUNK: usize = 512;
+
+/// Elements of one task: to wake a thread takes as long as some thousand.
+const TASK: usize = 2048;
 
 /// The pairs of corners of a triangle, row before column.
 const PAIRS: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
@@ -93,8 +97,8 @@ impl Elastic {
             true => (Vec::new(), Vec::new()),
             false => bending(&Calibration::of(cut), sheet, |t| &bends[of(t)]),
         };
-        let (slots, bending, foretold) = (Vec::new(), Vec::new(), Vec::new());
-        Self { laws, triangles, hinges, borders, springs: Vec::new(), slots, bending, foretold }
+        let (springs, assembly, foretold) = (Vec::new(), Assembly::default(), Vec::new());
+        Self { laws, triangles, hinges, borders, springs, assembly, foretold }
     }
 
     /// The same with elastic bands.
@@ -116,32 +120,25 @@ impl Elastic {
         sheet.chain(self.springs.iter().map(|s| &s.nodes[..]))
     }
 
-    /// Looks up where its blocks go. The pattern must hold its couplings.
+    /// Looks up where its blocks go. The pattern must hold its couplings, but those of held nodes.
     pub fn bind(&mut self, pattern: &Pattern) {
-        let none = Slot { index: 0, flipped: false };
-        let at = |i: u32, j: u32| pattern.slot(i, j).unwrap_or(none);
-        self.springs.iter_mut().for_each(|s| s.slot = at(s.nodes[0], s.nodes[1]));
-        self.slots = self.triangles.iter().map(|t| PAIRS.map(|(a, b)| at(t.nodes[a], t.nodes[b]))).collect();
-        let mut bending = vec![0.0; pattern.blocks()];
-        for h in &self.hinges {
-            for a in 0..4 {
-                for b in 0..=a {
-                    bending[at(h.nodes[a], h.nodes[b]).index as usize] +=
-                        h.stiffness * h.weights[a] * h.weights[b];
-                }
-            }
-        }
-        for b in &self.borders {
-            b.add_to(|i, j, k| bending[at(i, j).index as usize] += k);
-        }
-        self.bending =
-            bending.into_iter().enumerate().filter(|(_, k)| *k != 0.0).map(|(i, k)| (i as u32, k)).collect();
+        self.springs.iter_mut().for_each(|s| s.slot = pattern.slot(s.nodes[0], s.nodes[1]));
+        self.assembly = Assembly::new(pattern, &self.triangles, &self.hinges, &self.borders);
+    }
+
+    /// Follows into a wider pattern, in which the slots of that of the last [`Self::bind`] are at `slots`.
+    pub fn follow(&mut self, pattern: &Pattern, slots: &[u32]) {
+        self.springs.iter_mut().for_each(|s| s.slot = pattern.slot(s.nodes[0], s.nodes[1]));
+        self.assembly.place(slots, pattern.blocks());
     }
 
     /// Remembers the stress that the linear model foretells for `moves` from `x`.
     pub fn foretell(&mut self, x: &[Vec3], moves: &[Vec3]) {
-        let foretell = |t: &Triangle| t.foretell(&self.laws[t.cloth as usize], x, moves);
-        self.foretold = self.triangles.par_iter().with_min_len(CHUNK).map(foretell).collect();
+        let Self { triangles, laws, foretold, .. } = self;
+        foretold.resize(triangles.len(), [0.0; 3]);
+        let foretell =
+            |(f, t): (&mut [f64; 3], &Triangle)| *f = t.foretell(&laws[t.cloth as usize], x, moves);
+        foretold.par_iter_mut().zip(&*triangles).with_min_len(TASK).for_each(foretell);
     }
 
     /// Energy, J.
@@ -166,12 +163,12 @@ impl Elastic {
             let (pu, pv) = (u * su + v * ss, v * sv + u * ss);
             t.shape.map(|b| pu * b.x + pv * b.y)
         };
-        let membrane: Vec<[Vec3; 3]> = self.triangles.par_iter().with_min_len(CHUNK).map(forces).collect();
+        let membrane: Vec<[Vec3; 3]> = self.triangles.par_iter().with_min_len(TASK).map(forces).collect();
         for (t, f) in self.triangles.iter().zip(&membrane) {
             t.nodes.iter().zip(f).for_each(|(&i, f)| gradient[i as usize] += f);
         }
         let moments: Vec<Vec3> =
-            self.hinges.par_iter().with_min_len(CHUNK).map(|h| h.curvature(x) * h.stiffness).collect();
+            self.hinges.par_iter().with_min_len(2 * TASK).map(|h| h.curvature(x) * h.stiffness).collect();
         for (h, moment) in self.hinges.iter().zip(&moments) {
             h.nodes.iter().zip(&h.weights).for_each(|(&i, w)| gradient[i as usize] += moment * *w);
         }
@@ -179,29 +176,13 @@ impl Elastic {
         self.springs.iter().for_each(|s| s.add_gradient(x, gradient));
     }
 
-    /// Adds the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite
+    /// Writes the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite
     /// without any.
-    pub fn add_matrix(&self, x: &[Vec3], compression: f64, values: &mut [Matrix3<f64>]) {
-        let blocks = |(k, t): (usize, &Triangle)| {
-            let (u, v) = t.columns(x);
-            let response = self.laws[t.cloth as usize].response(metric(&u, &v));
-            let stress = self.foretold.get(k).copied().unwrap_or(response.stress);
-            t.blocks(
-                &u,
-                &v,
-                &response.tangent,
-                tension(stress) * (1.0 - compression) + square(stress) * compression,
-            )
-        };
-        let blocks: Vec<[Matrix3<f64>; 6]> =
-            self.triangles.par_iter().enumerate().with_min_len(CHUNK).map(blocks).collect();
-        for (blocks, slots) in blocks.iter().zip(&self.slots) {
-            blocks.iter().zip(slots).for_each(|(block, slot)| add_at(values, *slot, block));
-        }
-        for &(slot, k) in &self.bending {
-            let block = &mut values[slot as usize];
-            (0..3).for_each(|c| block[(c, c)] += k);
-        }
+    pub fn write_matrix(&self, x: &[Vec3], compression: f64, values: &mut [Matrix3<f64>]) {
+        let local = |(k, t): (usize, &Triangle)| t.local(self, self.foretold.get(k), x, compression);
+        let locals: Vec<Local> =
+            self.triangles.par_iter().enumerate().with_min_len(TASK / 2).map(local).collect();
+        self.assembly.write(&self.triangles, &locals, values);
         self.springs.iter().for_each(|s| s.add_matrix(x, values));
     }
 
@@ -223,7 +204,8 @@ impl Elastic {
 
 /// A sum in chunks of fixed size: the same bits for any number of threads.
 fn sum<T: Sync>(of: &[T], f: impl Fn(&T) -> f64 + Sync) -> f64 {
-    let parts: Vec<f64> = of.par_chunks(CHUNK).map(|c| c.iter().map(&f).sum()).collect();
+    let parts: Vec<f64> =
+        of.par_chunks(CHUNK).with_min_len(2 * TASK / CHUNK).map(|c| c.iter().map(&f).sum()).collect();
     parts.iter().sum()
 }
 
@@ -249,22 +231,13 @@ impl Triangle {
         ]
     }
 
-    fn blocks(&self, u: &Vec3, v: &Vec3, tangent: &[f64; 6], stress: Matrix2<f64>) -> [Matrix3<f64>; 6] {
-        let [c11, c22, c33, c12, c13, c23] = tangent.map(|c| c * self.area);
-        let (uu, vv, uv) = (u * u.transpose(), v * v.transpose(), u * v.transpose());
-        let vu = uv.transpose();
-        let mixed = uv + vu;
-        let a = uu * c11 + vv * c33 + mixed * c13;
-        let d = vv * c22 + uu * c33 + mixed * c23;
-        let b = vu * c33 + uv * c12 + uu * c13 + vv * c23;
-        let bt = b.transpose();
-        PAIRS.map(|(i, j)| {
-            let (p, q) = (&self.shape[i], &self.shape[j]);
-            let mut block = a * (p.x * q.x) + d * (p.y * q.y) + b * (p.x * q.y) + bt * (p.y * q.x);
-            let geometric = self.area * p.dot(&(stress * q));
-            (0..3).for_each(|c| block[(c, c)] += geometric);
-            block
-        })
+    /// Its state at `x`, with the foretold stress if there is any.
+    fn local(&self, of: &Elastic, foretold: Option<&[f64; 3]>, x: &[Vec3], compression: f64) -> Local {
+        let (u, v) = self.columns(x);
+        let response = of.laws[self.cloth as usize].response(metric(&u, &v));
+        let stress = foretold.copied().unwrap_or(response.stress);
+        let mixed = tension(stress) * (1.0 - compression) + square(stress) * compression;
+        Local { u, v, tangent: response.tangent.map(|c| c * self.area), stress: mixed * self.area }
     }
 }
 

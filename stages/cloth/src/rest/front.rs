@@ -42,7 +42,7 @@ fn add<T: Real>(from: &[T], to: &mut [T], first: usize, run: &Run, skip: usize) 
 pub(super) struct Dense<'a, T> {
     /// Own columns, `m` rows each.
     pub(super) columns: &'a mut Vec<T>,
-    /// The border's part, `m - own` rows and columns; only its lower triangle is used. Elimination writes it first.
+    /// The border's part, `m - own` rows and columns or more; only its lower triangle is used. Elimination writes it first.
     pub(super) border: Vec<T>,
     m: usize,
     own: usize,
@@ -53,12 +53,12 @@ impl<'a, T: Real> Dense<'a, T> {
     pub(super) fn zeros(columns: &'a mut Vec<T>, mut border: Vec<T>, m: usize, own: usize) -> Self {
         let n = m - own;
         columns.resize(m * own, T::ZERO);
-        border.truncate(n * n);
-        border.resize(n * n, T::ZERO);
+        // Memory that was longer stays so: to cut it would fill it with zeros again later.
+        border.resize(border.len().max(n * n), T::ZERO);
         (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(T::ZERO));
         if own == 0 {
             // Nothing is eliminated, so nothing writes it.
-            border.fill(T::ZERO);
+            border[..n * n].fill(T::ZERO);
         }
         Self { columns, border, m, own }
     }
@@ -121,7 +121,7 @@ impl<'a, T: Real> Dense<'a, T> {
         let mut all = MatMut::from_column_major_slice_mut(&mut self.columns[..], m, own);
         factor_columns(all.rb_mut())?;
         let below = all.rb().subrows(own, n);
-        let border = MatMut::from_column_major_slice_mut(&mut self.border[..], n, n);
+        let border = MatMut::from_column_major_slice_mut(&mut self.border[..n * n], n, n);
         take_product(border, Accum::Replace, below);
         Ok(())
     }

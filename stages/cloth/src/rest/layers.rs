@@ -6,7 +6,7 @@
 
 use self::crowd::fading;
 use super::grip::{Grip, Memory, between};
-use super::pattern::{Pattern, Slot, add_at};
+use super::pattern::{Pattern, add_at};
 use super::press::Press;
 use crate::contact::closest::Feature;
 use crate::contact::pair::{Closest, Kind, Pair};
@@ -167,8 +167,8 @@ impl Layers {
     }
 
     /// The nodes that each contact couples.
-    pub fn groups(&self) -> impl Iterator<Item = &[u32]> {
-        self.contacts.iter().chain(&self.tangles).map(|c| &c.nodes[..])
+    pub fn groups(&self) -> impl Iterator<Item = &[u32; 4]> {
+        self.contacts.iter().chain(&self.tangles).map(|c| &c.nodes)
     }
 
     /// Energy of the contacts at `x`, J.
@@ -220,10 +220,9 @@ impl Layers {
             for a in 0..4 {
                 for b in 0..=a {
                     let w = c.weights[a] * c.weights[b];
-                    if w != 0.0 {
-                        let slot = pattern
-                            .slot(c.nodes[a], c.nodes[b])
-                            .unwrap_or(Slot { index: c.nodes[a], flipped: false });
+                    if w != 0.0
+                        && let Some(slot) = pattern.slot(c.nodes[a], c.nodes[b])
+                    {
                         add_at(values, slot, &(block * w));
                     }
                 }

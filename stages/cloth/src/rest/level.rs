@@ -20,6 +20,14 @@ pub(super) struct Level<'s> {
 }
 
 impl Level<'_> {
+    /// Puts its nodes where the level before left the cloth, held back by friction as there.
+    pub(super) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>) {
+        if slides.len() == x.len() {
+            self.system.slides = slides;
+        }
+        self.x = x;
+    }
+
     pub(super) fn loosen(&mut self) {
         if self.friction.is_none() {
             let mut none = vec![0.0; self.x.len()];

@@ -27,6 +27,7 @@ pub mod pattern;
 pub mod pieces;
 mod pierce;
 mod pile;
+mod plan;
 pub mod press;
 pub mod real;
 mod rub;

@@ -47,7 +47,7 @@ pub type Stop<'s> = dyn Fn() -> bool + Sync + 's;
 /// What of the factor does not depend on the values.
 #[derive(Debug, Clone)]
 pub struct Symbolic {
-    /// The nodes in the order of elimination.
+    /// The free nodes in the order of elimination.
     order: Vec<u32>,
     fronts: Vec<Front>,
 }
@@ -167,7 +167,7 @@ impl Symbolic {
         Ok(())
     }
 
-    /// Solves in place: `x` is the right side, then the solution.
+    /// Solves in place: `x` is the right side, then the solution; held nodes are left as they are.
     pub fn solve<T: Real>(&self, factor: &Factor<T>, x: &mut [Vector3<f64>]) {
         let Some(root) = self.fronts.len().checked_sub(1) else { return };
         let mut y = self.ordered(x);

@@ -1,7 +1,8 @@
 //! Pairs of cloth that may meet, kept while the cloth hardly moves.
 //!
-//! Pairs are sought a little farther out than contact reaches; they hold until some node has moved by that slack, which
-//! near rest is many steps. Long steps seek along the way of each node, for that step alone.
+//! Pairs are sought a little farther out than contact reaches: a node's hold until it has moved by that slack, which near rest
+//! is many steps. Then they are sought anew for the nodes that have, while the others keep theirs; so a search costs what
+//! moves. A node with a long way before it looks along that way, for that step alone.
 
 use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
@@ -15,10 +16,14 @@ type Vec3 = Vector3<f64>;
 /// Share of the slack that may be used up where a part begins: it goes on with the pairs that are known.
 const KEPT: f64 = 0.3;
 
+/// Share of the nodes with a long way from which on all look along their ways, and no farther.
+const MOST_LONG: f64 = 0.3;
+
 /// What is near what, and where the nodes were when it was sought.
 pub(super) struct Nearby {
     tree: Option<ClothTree>,
-    at: Vec<Vec3>,
+    /// Where each node's pairs were sought; nothing where they hold for one step alone.
+    at: Vec<Option<Vec3>>,
     /// What a part of a system knows of is about it: this holds while its nodes stay near where they were.
     fence: Option<Fence>,
 }
@@ -34,24 +39,30 @@ impl Nearby {
         Self { tree, at: vec![], fence: None }
     }
 
-    /// Seeks the pairs about `x`, so that they hold for a part.
-    pub(super) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        let still = vec![Vec3::zeros(); x.len()];
-        let holds = |l: &Layers| within(&self.at, x, &still, KEPT * l.slack());
-        let holds = self.at.len() == x.len() && system.layers.as_ref().is_none_or(holds);
-        if !holds {
-            self.at.clear();
-            self.seek(system, x, &still);
+    /// Seeks the pairs about `x`, so that they hold for a part whose nodes are `awake`.
+    pub(super) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], awake: &[bool]) {
+        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
+            let still = vec![Vec3::zeros(); x.len()];
+            let mut moved = outside(&self.at, x, &still, layers.slack());
+            let near_end = outside(&self.at, x, &still, KEPT * layers.slack());
+            moved.iter_mut().zip(near_end).zip(awake).for_each(|((m, n), a)| *m |= n && *a);
+            if !moved.contains(&true) {
+                return;
+            }
+            self.at.resize(x.len(), None);
+            self.at.iter_mut().zip(x).zip(&moved).filter(|(_, m)| **m).for_each(|((a, p), _)| *a = Some(*p));
+            layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, &still]);
         }
     }
 
-    /// Where the nodes were when the pairs were sought.
-    pub(super) fn at(&self) -> &[Vec3] {
+    /// Where each node was when its pairs were sought.
+    pub(super) fn at(&self) -> &[Option<Vec3>] {
         &self.at
     }
 
     /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by `reach` from there, m.
-    pub(super) fn of_part(at: Vec<Vec3>, reach: f64) -> Self {
+    pub(super) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
+        let at = at.into_iter().flatten().collect();
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }) }
     }
 
@@ -74,16 +85,42 @@ impl Nearby {
     pub(super) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
         let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
         let slack = layers.slack();
-        if self.at.len() == x.len() && within(&self.at, x, moves, slack) {
+        let moved = outside(&self.at, x, moves, slack);
+        if !moved.contains(&true) {
             return;
         }
-        if within(x, x, moves, 0.5 * slack) {
-            layers.pairs = tree.pairs(x, &vec![Vec3::zeros(); x.len()], layers.thickness + 2.0 * slack);
-            self.at = x.to_vec();
-        } else {
+        let is_long = |m: &Vec3| m.norm() >= 0.5 * slack;
+        let long = moved.iter().zip(moves).filter(|(moved, m)| **moved && is_long(m)).count();
+        if long as f64 > MOST_LONG * x.len() as f64 {
+            self.at = vec![None; x.len()];
             layers.pairs = tree.pairs(x, moves, layers.thickness);
-            self.at.clear();
+            return;
         }
+        self.at.resize(x.len(), None);
+        for (i, _) in moved.iter().enumerate().filter(|(_, m)| **m) {
+            self.at[i] = (!is_long(&moves[i])).then_some(x[i]);
+        }
+        layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, moves]);
+    }
+
+    /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one step alone, along their way.
+    fn renewed(
+        &self,
+        tree: &ClothTree,
+        layers: &Layers,
+        known: &[Pair],
+        moved: &[bool],
+        [x, moves]: [&[Vec3]; 2],
+    ) -> Vec<Pair> {
+        let places: Vec<Vec3> = self.at.iter().zip(x).map(|(a, p)| a.unwrap_or(*p)).collect();
+        let way = |(a, m): (&Option<Vec3>, &Vec3)| if a.is_some() { Vec3::zeros() } else { *m };
+        let ways: Vec<Vec3> = self.at.iter().zip(moves).map(way).collect();
+        let mut pairs: Vec<Pair> =
+            known.iter().filter(|p| !p.nodes.iter().any(|&i| moved[i as usize])).copied().collect();
+        pairs.extend(tree.pairs_of(moved, &places, &ways, layers.thickness + 2.0 * layers.slack()));
+        // Two sorted runs.
+        pairs.sort();
+        pairs
     }
 
     /// How often triangles cross at `x`.
@@ -99,12 +136,19 @@ impl Nearby {
             return 1.0;
         };
         let wanted = norm(moves);
-        let pairs = std::mem::take(&mut layers.pairs);
         let counts = |p: &Pair| !layers.is_tangled(p);
-        // Pairs all round hold for every short move.
-        let tree = self.tree.as_ref().filter(|_| self.at.is_empty());
-        let seek = |moves: &[Vec3]| tree.map(|t| t.pairs(x, moves, layers.thickness));
-        layers.pairs = hold_apart(x, moves, pairs, counts, seek).0;
+        // Pairs all round hold for every short move, those along a way for that way.
+        let long: Vec<bool> = self.at.iter().map(Option::is_none).collect();
+        let all = long.iter().all(|l| *l);
+        let tree = self.tree.as_ref().filter(|_| long.contains(&true));
+        let seek = |moves: &[Vec3]| {
+            tree.map(|t| match all {
+                true => t.pairs(x, moves, layers.thickness),
+                false => self.renewed(t, layers, &layers.pairs, &long, [x, moves]),
+            })
+        };
+        let pairs = hold_apart(x, moves, layers.pairs.clone(), counts, seek).0;
+        layers.pairs = pairs;
         if wanted > 0.0 && layers.tangled.is_empty() { norm(moves) / wanted } else { 1.0 }
     }
 
@@ -120,10 +164,15 @@ fn norm(moves: &[Vec3]) -> f64 {
     moves.iter().map(Vec3::norm_squared).sum::<f64>().sqrt()
 }
 
-/// Whether every node stays within `reach` of where it was.
-fn within(was: &[Vec3], x: &[Vec3], moves: &[Vec3], reach: f64) -> bool {
-    was.iter().zip(x).zip(moves).all(|((a, p), m)| {
+/// Which nodes leave the sphere of that radius about where they were, if they were anywhere.
+fn outside(was: &[Option<Vec3>], x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<bool> {
+    let leaves = |(i, (p, m)): (usize, (&Vec3, &Vec3))| {
         let left = reach - m.norm();
-        left > 0.0 && (p - a).norm_squared() < left * left
-    })
+        let stays = |a: &Vec3| left > 0.0 && (p - a).norm_squared() < left * left;
+        !was.get(i).and_then(Option::as_ref).is_some_and(stays)
+    };
+    x.iter().zip(moves).enumerate().map(leaves).collect()
 }
+
+#[cfg(test)]
+mod tests;

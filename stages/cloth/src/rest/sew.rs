@@ -26,16 +26,16 @@ const PRESSING: usize = 10;
 impl Work<'_> {
     /// Closes the seams on the coarsest level and joins them.
     pub(super) fn sew(&mut self, progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let coarsest = self.pieces.len() - 1;
-        let sheet = self.pieces[coarsest].open_sheet(&self.cloths)?;
-        let mut x = self.starts[coarsest].clone();
-        let pairs = self.pieces[coarsest].seam_pairs();
+        let coarsest = self.plan.pieces.len() - 1;
+        let sheet = self.plan.pieces[coarsest].open_sheet(&self.plan.cloths)?;
+        let mut x = self.plan.starts[coarsest].clone();
+        let pairs = self.plan.pieces[coarsest].seam_pairs();
         if pairs.is_empty() {
             self.press(&sheet, &mut x, progress)?;
         } else {
             self.close(&sheet, &pairs, &mut x, progress)?;
         }
-        self.x = self.pieces[coarsest].sew(&x, sheet.masses());
+        self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
         Ok(())
     }
 
@@ -47,21 +47,21 @@ impl Work<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        let first = self.grade(size(sheet)).map_or(1.0, |g| g.first());
+        let first = self.plan.grade(size(sheet)).map_or(1.0, |g| g.first());
         let mut force = 0.0;
         let start = x.to_vec();
         for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
             // Cloth too stiff to go round the body has been squeezed out of its place: above the arms, off the shoulders.
             x.copy_from_slice(&start);
             force = self.pull(sheet, pairs, x, stiff, progress)?;
-            if widest(x, pairs) <= self.rest.join_gap {
+            if widest(x, pairs) <= self.plan.rest.join_gap {
                 break;
             }
         }
         let gap = widest(x, pairs);
         self.joined_at = Some(gap);
-        if gap > self.rest.join_gap {
-            let seam = self.widest_seam(self.pieces.len() - 1, x);
+        if gap > self.plan.rest.join_gap {
+            let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
             return Err(RestError::SeamNotClosed { seam, gap, force });
         }
         Ok(())
@@ -76,26 +76,28 @@ impl Work<'_> {
         stiff: f64,
         progress: &mut Progress<'_>,
     ) -> Result<f64, RestError> {
-        let coarsest = self.pieces.len() - 1;
-        let spacing = spacing(&self.pieces[coarsest], pairs);
-        let mut pull = SEAM_PULL * strongest(&self.cloths);
+        let coarsest = self.plan.pieces.len() - 1;
+        let spacing = spacing(&self.plan.pieces[coarsest], pairs);
+        let mut pull = SEAM_PULL * strongest(&self.plan.cloths);
         for _ in 0..HARDER.1 {
             let gap = widest(x, pairs);
-            if gap < self.rest.join_gap {
+            if gap < self.plan.rest.join_gap {
                 break;
             }
             let thread = |nodes: &[u32; 2]| Thread {
                 nodes: *nodes,
                 force: pull * spacing,
-                soft: 2.0 * self.rest.join_gap,
+                soft: 2.0 * self.plan.rest.join_gap,
             };
             let mut system = self.open(sheet, stiff)?;
             system.threads = pairs.iter().map(thread).collect();
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
-            let pace = Pace { first, longest: 1.0, steps, speed: self.rest.speed, farthest, ..self.pace() };
-            let closed = |x: &[Vec3]| self.rest.join_gap > widest(x, pairs);
-            let report = self.run(&mut system, sheet, &self.starts[coarsest], x, &pace, &closed, progress)?;
+            let pace =
+                Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
+            let closed = |x: &[Vec3]| self.plan.rest.join_gap > widest(x, pairs);
+            let report =
+                self.run(&mut system, sheet, &self.plan.starts[coarsest], x, &pace, &closed, progress)?;
             self.reports.push(report);
             pull *= HARDER.0;
         }
@@ -104,7 +106,7 @@ impl Work<'_> {
 
     /// Lets stiff cloth without seams forget its unevenness before it has weight.
     fn press(&mut self, sheet: &Sheet, x: &mut [Vec3], progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let Some(grade) = self.grade(size(sheet)) else { return Ok(()) };
+        let Some(grade) = self.plan.grade(size(sheet)) else { return Ok(()) };
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
@@ -116,8 +118,14 @@ impl Work<'_> {
 
     /// Weightless cloth before it is sewn, so many times stiffer.
     fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
-        let mut system = assemble(self.scene, self.body, &self.pieces[self.pieces.len() - 1], sheet, true)?;
-        if self.rest.graded {
+        let mut system = assemble(
+            self.plan.scene,
+            self.plan.body,
+            &self.plan.pieces[self.plan.pieces.len() - 1],
+            sheet,
+            true,
+        )?;
+        if self.plan.rest.graded {
             system.elastic.stiffen(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);
         }
@@ -127,12 +135,12 @@ impl Work<'_> {
     /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
     pub(super) fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
-        let worst = self.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let fine_of = |v: u32| self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
-        let point = |v: u32| self.pieces[0].point[v as usize];
+        let worst = self.plan.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
+        let fine_of = |v: u32| self.plan.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
+        let point = |v: u32| self.plan.pieces[0].point[v as usize];
         let at = worst.map(|p| point(fine_of(p[0])));
         let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
-        self.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
+        self.plan.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
 }
 

@@ -14,9 +14,8 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Wearer;
-use super::assemble::{KEPT_PULL, cloths, gravity, strongest};
+use super::assemble::{KEPT_PULL, strongest};
 use super::clear::{Clearance, clearance};
-use super::coarsen::{Coarser, coarsen};
 pub use super::error::RestError;
 use super::graded::COARSEST;
 use super::grip::Grip;
@@ -25,14 +24,12 @@ use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::pierce::pierced;
 use super::pile::pile_of;
+use super::plan::Plan;
 pub use super::real::Precision;
 use super::sew::widest;
-use super::start::{clear_start, crossings_at_start};
 use super::system::System;
 use crate::contact::body::Body;
-use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
-use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;
@@ -161,9 +158,9 @@ impl Rest {
         // The limit is for each cloth of a pile: nine nodes cannot follow a body.
         coarsest *= pile.unwrap_or(1);
         loop {
-            let work = Work::new(self, coarsest, scene, wearer, clock)?;
-            let finer = work.second();
-            match (work.make(progress), finer) {
+            let plan = Plan::new(self, coarsest, scene, wearer)?;
+            let finer = plan.second();
+            match (Work::new(&plan, clock).make(progress), finer) {
                 (Ok(Draped::Rested(state)), _) => return self.judge(*state),
                 // From its own start the level keeps free of crossings by itself, if slowly.
                 (Ok(Draped::Tangled { pairs, .. }), None) => {
@@ -209,86 +206,28 @@ pub(super) enum Draped {
     },
 }
 
+/// A garment on its way to rest.
 pub(super) struct Work<'a> {
-    pub(super) rest: &'a Rest,
-    pub(super) scene: &'a Scene,
-    pub(super) body: Option<Wearer<'a>>,
-    /// What no panel and what each panel is made of.
-    pub(super) cloths: Vec<&'a Fabric>,
+    pub(super) plan: &'a Plan<'a>,
     clock: Instant,
-    /// Whether many cloths lie on each other.
-    pub(super) is_pile: bool,
-    /// Fine to coarse.
-    pub(super) pieces: Vec<Pieces>,
-    /// How each level but the finest was made from the finer one.
-    pub(super) coarser: Vec<Coarser>,
-    /// Where the vertices of each level start.
-    pub(super) starts: Vec<Vec<Vec3>>,
     /// Where the nodes of the level in work are.
     pub(super) x: Vec<Vec3>,
     pub(super) joined_at: Option<f64>,
+    /// How deep the cloth at rest dips into the body between its vertices, where that is known, m.
+    dip: Option<f64>,
     pub(super) reports: Vec<LevelReport>,
 }
 
 impl<'a> Work<'a> {
-    fn new(
-        rest: &'a Rest,
-        coarsest: usize,
-        scene: &'a Scene,
-        body: Option<Wearer<'a>>,
-        clock: Instant,
-    ) -> Result<Self, RestError> {
-        let mut pieces = vec![Pieces::new(scene)];
-        let mut coarser: Vec<Coarser> = Vec::new();
-        let mut starts = vec![clear_start(scene, body)?];
-        while let Some(fine) = pieces.last().filter(|p| p.points > coarsest) {
-            let Some(next) = coarsen(fine) else { break };
-            let start = starts.last().map(|s| next.kept.iter().map(|&v| s[v as usize]).collect());
-            starts.extend(start);
-            pieces.push(next.pieces.clone());
-            coarser.push(next);
-        }
-        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
-        while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
-            let pairs = crossings_at_start(scene, coarse, start)?;
-            if pairs == 0 {
-                break;
-            }
-            if coarser.pop().is_none() {
-                return Err(RestError::InitialCrossing { pairs });
-            }
-            pieces.pop();
-            starts.pop();
-        }
-        if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
-            return Err(RestError::Falls);
-        }
-        Ok(Self {
-            rest,
-            scene,
-            body,
-            cloths: cloths(scene),
-            clock,
-            is_pile: pile_of(scene).is_some(),
-            pieces,
-            coarser,
-            starts,
-            x: vec![],
-            joined_at: None,
-            reports: vec![],
-        })
-    }
-
-    /// Points of the level that is finer than the coarsest, if there is one.
-    fn second(&self) -> Option<usize> {
-        self.pieces.len().checked_sub(2).map(|k| self.pieces[k].points)
+    fn new(plan: &'a Plan<'a>, clock: Instant) -> Self {
+        Self { plan, clock, x: vec![], joined_at: None, dip: None, reports: vec![] }
     }
 
     /// Sews and drapes.
     fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
         self.sew(progress)?;
-        let coarsest = self.pieces.len() - 1;
-        let sheet = self.pieces[coarsest].sewn_sheet(&self.cloths)?;
+        let coarsest = self.plan.pieces.len() - 1;
+        let sheet = self.plan.pieces[coarsest].sewn_sheet(&self.plan.cloths)?;
         match self.pierced(coarsest, &sheet, &self.x) {
             Some(draped) => Ok(draped),
             None => self.drape(progress),
@@ -297,8 +236,8 @@ impl<'a> Work<'a> {
 
     /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by its end.
     pub(super) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
-        let finer = self.pieces.get(k.checked_sub(1)?)?.points;
-        let wearer = self.body?;
+        let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
+        let wearer = self.plan.body?;
         (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::Pierced { finer })
     }
 
@@ -312,12 +251,15 @@ impl<'a> Work<'a> {
         pace: &Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        let pace = Pace { first: CLEAR_STEP, steps: 2 * self.rest.coarse_steps, one_by_one: false, ..*pace };
+        let pace =
+            Pace { first: CLEAR_STEP, steps: 2 * self.plan.rest.coarse_steps, one_by_one: false, ..*pace };
         for _ in 0..CLEARINGS {
-            let Some(Clearance { lacks, depth, .. }) = self.body.map(|w| clearance(sheet, w.skin, x)) else {
+            let Some(Clearance { lacks, depth, .. }) = self.plan.body.map(|w| clearance(sheet, w.skin, x))
+            else {
                 break;
             };
             if depth == 0.0 {
+                self.dip = Some(depth);
                 break;
             }
             if let Some(s) = &mut system.support {
@@ -338,35 +280,30 @@ impl<'a> Work<'a> {
         system.touch(&x);
         let residual = super::newton::greatest(&system.gradient(&x));
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
-        let positions = self.pieces[0].spread(&x);
+        let positions = self.plan.pieces[0].spread(&x);
         let energy = system.stored(&x);
-        #[cfg(not(toile_without = "self_contact"))]
-        let tree = self.scene.self_collision.then(|| self.tree(sheet, &x, false));
-        let dip = self.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
-        let slides = self.pieces[0].spread(&system.held_back(&x));
-        let offsets = self.pieces[0].offsets(&system);
+        let depth = || self.plan.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let (pairs, dip) = rayon::join(|| self.crossings(sheet, &x), || self.dip.unwrap_or_else(depth));
+        let slides = self.plan.pieces[0].spread(&system.held_back(&x));
+        let offsets = self.plan.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
         let grips = system.layers.take().map_or_else(Vec::new, |l| l.grips);
         let state =
             Rested { positions, outcome, residual, slides, grips, offsets, energy, dip, joined_at, levels };
-        #[cfg(not(toile_without = "self_contact"))]
-        if let Some(tree) = tree {
-            let pairs = tree.crossings(&x).len();
-            if pairs > 0 {
-                return Err(RestError::Crossing { pairs, state: Box::new(state) });
-            }
+        match pairs {
+            0 => Ok(state),
+            pairs => Err(RestError::Crossing { pairs, state: Box::new(state) }),
         }
-        Ok(state)
     }
 
-    /// The tree of a level; what thread holds together is no obstacle to itself.
-    fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
-        let tree = ClothTree::new(sheet, layout);
-        let kept = || self.scene.seams.iter().any(|s| !s.joined);
-        match self.pieces.iter().rev().find(|p| if sewing { p.rest.len() } else { p.nodes } == layout.len()) {
-            Some(p) if sewing => tree.sewing(p.point.clone()),
-            Some(p) if kept() => tree.sewing(p.node_points()),
-            _ => tree,
+    /// How often the sewn garment crosses itself with its nodes at `x`.
+    fn crossings(&self, sheet: &Sheet, x: &[Vec3]) -> usize {
+        #[cfg(toile_without = "self_contact")]
+        return 0;
+        #[cfg(not(toile_without = "self_contact"))]
+        match self.plan.scene.self_collision {
+            true => self.plan.tree(sheet, x, false).crossings(x).len(),
+            false => 0,
         }
     }
 
@@ -383,11 +320,11 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let tree = self.scene.self_collision.then(|| self.tree(sheet, layout, sewing));
+        let tree = self.plan.scene.self_collision.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let (mut stop, mut is_late, mut falling) = (None, false, 0);
-        let late = || self.clock.elapsed() > self.rest.budget;
+        let late = || self.clock.elapsed() > self.plan.rest.budget;
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
             report = LevelReport { nodes: x.len(), outcome: *outcome, seconds, ..report };
@@ -422,36 +359,37 @@ impl<'a> Work<'a> {
 
     /// Out of time with the nodes of a level at `x`.
     fn timeout(&self, x: &[Vec3]) -> RestError {
-        let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.pieces.len());
+        let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
         RestError::Timeout { seconds, level: levels - self.level_of(x), levels, positions: self.carried(x) }
     }
 
     /// The level, fine to coarse, that has these nodes, sewn or open.
     fn level_of(&self, x: &[Vec3]) -> usize {
         let has = |p: &Pieces| p.nodes == x.len() || p.rest.len() == x.len();
-        self.pieces.iter().position(has).unwrap_or(0)
+        self.plan.pieces.iter().position(has).unwrap_or(0)
     }
 
     /// The level's nodes, sewn or open, carried to the finest vertices.
     fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let k = self.level_of(x);
-        let vertices = if self.pieces[k].nodes == x.len() { self.pieces[k].spread(x) } else { x.to_vec() };
-        self.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
+        let vertices =
+            if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
+        self.plan.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
     }
 
     /// Refuses seams that are not joined and stay open at the end.
     pub(super) fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
-        let gap = widest(x, &self.pieces[0].kept_pairs());
-        if gap <= self.rest.join_gap {
+        let gap = widest(x, &self.plan.pieces[0].kept_pairs());
+        if gap <= self.plan.rest.join_gap {
             return Ok(());
         }
-        let seam = self.widest_seam(0, &self.pieces[0].spread(x));
-        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.cloths) })
+        let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
+        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.plan.cloths) })
     }
 
     /// Refuses cloth that the strain limit could not hold.
     pub(super) fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
-        match self.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
+        match self.plan.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
             Some((index, strain, limit)) => {
                 Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
             }

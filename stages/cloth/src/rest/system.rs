@@ -7,7 +7,7 @@
 
 use super::elastic::Elastic;
 use super::layers::Layers;
-use super::pattern::{Pattern, Slot, add_at};
+use super::pattern::{Pattern, add_at};
 use super::rub::Rub;
 use crate::contact::body::Nearest;
 use crate::contact::skin::Skin;
@@ -123,12 +123,11 @@ pub struct Visit {
 }
 
 impl System<'_> {
-    /// The pattern of its matrix.
+    /// The pattern of its matrix without contacts of cloth with cloth.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
         let threads = self.threads.iter().map(|t| &t.nodes[..]);
-        let layers = self.layers.iter().flat_map(|l| l.groups());
-        Pattern::new(self.masses.len(), self.elastic.couplings().chain(threads).chain(layers))
+        Pattern::holding(&self.pinned, self.elastic.couplings().chain(threads))
     }
 
     /// The body nearest to each node, if it presses there; remembers what was seen, now or by who came here before.
@@ -201,8 +200,8 @@ impl System<'_> {
     /// Energy at `x`, and what a step that starts there need not look up again.
     #[must_use]
     pub fn visit(&self, x: &[Vec3]) -> Visit {
-        let lasting = self.stored(x) + self.pushed(x) + self.threads.iter().map(|t| t.value(x)).sum::<f64>();
-        let sight = self.looks(x);
+        let pull = || self.threads.iter().map(|t| t.value(x)).sum::<f64>();
+        let (lasting, sight) = rayon::join(|| self.stored(x) + self.pushed(x) + pull(), || self.looks(x));
         let body: f64 = match &self.support {
             Some(s) => {
                 let press = |((n, o), k): ((&Sight, &f64), &f64)| {
@@ -348,9 +347,8 @@ impl System<'_> {
         compression: f64,
         values: &mut Vec<Matrix3<f64>>,
     ) {
-        values.clear();
         values.resize(pattern.blocks(), Matrix3::zeros());
-        self.elastic.add_matrix(x, compression, values);
+        self.elastic.write_matrix(x, compression, values);
         for (v, m) in values.iter_mut().zip(&self.masses) {
             (0..3).for_each(|c| v[(c, c)] += m * inertia);
         }
@@ -362,7 +360,8 @@ impl System<'_> {
         }
         self.rubs().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
         self.layers.iter().for_each(|l| l.add_matrix(x, pattern, values));
-        hold(&self.pinned, pattern, values);
+        let held = self.pinned.iter().zip(values).filter(|(p, _)| **p);
+        held.for_each(|(_, v)| *v = Matrix3::identity());
     }
 }
 
@@ -414,21 +413,6 @@ impl Support<'_> {
     }
 }
 
-/// Cuts pinned nodes out of the matrix.
-fn hold(pinned: &[bool], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-    if !pinned.contains(&true) {
-        return;
-    }
-    for (i, j, slot) in pattern.upper() {
-        if pinned[i as usize] || pinned[j as usize] {
-            values[slot as usize] = Matrix3::zeros();
-        }
-    }
-    for (i, _) in pinned.iter().enumerate().filter(|(_, p)| **p) {
-        values[i] = Matrix3::identity();
-    }
-}
-
 impl Thread {
     fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
         let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
@@ -453,7 +437,9 @@ impl Thread {
         let k = Matrix3::identity() * (self.force / r);
         values[i as usize] += k;
         values[j as usize] += k;
-        add_at(values, pattern.slot(i, j).unwrap_or(Slot { index: i, flipped: false }), &-k);
+        if let Some(slot) = pattern.slot(i, j) {
+            add_at(values, slot, &-k);
+        }
     }
 }
 

@@ -3,7 +3,7 @@
 //! A branch meets itself where its children do, and where one child meets the other (Gottschalk, Lin, Manocha 1996 for two
 //! trees). Branches run side by side; what they find is put together in their order, whatever the number of threads.
 
-use super::{Bounds, ClothTree};
+use super::{Awake, Bounds, ClothTree};
 
 /// Levels of the tree below which a branch is one task.
 const TASK_LEVELS: u32 = 6;
@@ -11,28 +11,36 @@ const TASK_LEVELS: u32 = 6;
 /// The boxes of triangles and of branches, and what is to be made of two triangles whose boxes meet.
 struct Meeting<'m, T> {
     tree: &'m ClothTree,
+    awake: Option<&'m Awake>,
     boxes: &'m [Bounds],
     fitted: &'m [Bounds],
     visit: &'m (dyn Fn(usize, usize, &mut Vec<T>) + Sync),
 }
 
 impl ClothTree {
-    /// What `visit` adds for every pair of triangles whose boxes meet, the earlier one first.
+    /// What `visit` adds for every pair of triangles whose boxes meet, the earlier one first; where not all look for others,
+    /// of those that do.
     pub(super) fn meetings<T: Send>(
         &self,
+        awake: Option<&Awake>,
         boxes: &[Bounds],
         fitted: &[Bounds],
         visit: &(dyn Fn(usize, usize, &mut Vec<T>) + Sync),
     ) -> Vec<T> {
         let mut found = Vec::new();
-        Meeting { tree: self, boxes, fitted, visit }.itself(0, TASK_LEVELS, &mut found);
+        Meeting { tree: self, awake, boxes, fitted, visit }.itself(0, TASK_LEVELS, &mut found);
         found
     }
 }
 
 impl<T: Send> Meeting<'_, T> {
+    /// Whether neither of two branches looks for others.
+    fn sleep(&self, a: u32, b: u32) -> bool {
+        self.awake.is_some_and(|w| w.sleep(a, b))
+    }
+
     fn itself(&self, k: u32, levels: u32, out: &mut Vec<T>) {
-        if self.tree.sleep(k, k) {
+        if self.sleep(k, k) {
             return;
         }
         let branch = self.tree.branches[k as usize];
@@ -53,7 +61,7 @@ impl<T: Send> Meeting<'_, T> {
 
     /// The branch `a` against `b`, which comes after it.
     fn other(&self, a: u32, b: u32, levels: u32, out: &mut Vec<T>) {
-        if self.tree.sleep(a, b) || !self.fitted[a as usize].meets(&self.fitted[b as usize]) {
+        if self.sleep(a, b) || !self.fitted[a as usize].meets(&self.fitted[b as usize]) {
             return;
         }
         let (left, right) = (self.tree.branches[a as usize], self.tree.branches[b as usize]);
@@ -102,7 +110,7 @@ impl<T: Send> Meeting<'_, T> {
 
     fn test(&self, s: u32, t: u32, out: &mut Vec<T>) {
         let (s, t) = (s as usize, t as usize);
-        if self.boxes[s].meets(&self.boxes[t]) && !self.tree.are_still(s, t) {
+        if self.boxes[s].meets(&self.boxes[t]) && !self.awake.is_some_and(|w| w.are_still(s, t)) {
             (self.visit)(s, t, out);
         }
     }

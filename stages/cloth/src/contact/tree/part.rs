@@ -1,6 +1,7 @@
 //! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among cloth that holds still.
 
 use super::{Awake, ClothTree, Search, halves};
+use crate::contact::pair::Pair;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 
@@ -10,7 +11,12 @@ impl ClothTree {
     /// The same, where only triangles of `awake` nodes look for what they may meet: what sleeps meets nothing else that sleeps.
     #[must_use]
     pub fn waking(self, awake: &[bool]) -> Self {
-        let wakes = |t: &[u32; 3]| t.iter().any(|&v| awake[v as usize]);
+        Self { awake: Some(self.awake(awake)), ..self }
+    }
+
+    /// Which branches and triangles have one of these nodes.
+    fn awake(&self, nodes: &[bool]) -> Awake {
+        let wakes = |t: &[u32; 3]| t.iter().any(|&v| nodes[v as usize]);
         let triangles: Vec<bool> = self.triangles.iter().map(wakes).collect();
         let mut branches = vec![false; self.branches.len()];
         for (k, b) in self.branches.iter().enumerate().rev() {
@@ -20,7 +26,19 @@ impl ClothTree {
                 n => triangles[first..first + n as usize].contains(&true),
             };
         }
-        Self { awake: Some(Awake { branches, triangles }), ..self }
+        Awake { branches, triangles }
+    }
+
+    /// Those of [`ClothTree::pairs`] that have one of these nodes; each of them must be among those that look for others. Cost:
+    /// O(n) for the boxes, and what is about the nodes.
+    #[must_use]
+    pub fn pairs_of(&self, nodes: &[bool], x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        if nodes.iter().all(|n| *n) {
+            return self.pairs(x, moves, reach);
+        }
+        let mut pairs = self.pairs_looked_for(Some(&self.awake(nodes)), x, moves, reach);
+        pairs.retain(|p| p.nodes.iter().any(|&i| nodes[i as usize]));
+        pairs
     }
 
     /// The tree of the triangles all of whose nodes are among `nodes`, ascending; `index` tells where in that list each node of
@@ -50,19 +68,21 @@ impl ClothTree {
             }
         };
         let mut named = vec![false; x.len()];
-        let found = self.meetings(&boxes, &self.fit(&boxes), &near);
+        let found = self.meetings(self.awake.as_ref(), &boxes, &self.fit(&boxes), &near);
         found.into_iter().for_each(|v| named[v as usize] = true);
         named
     }
+}
 
+impl Awake {
     /// Whether neither of two branches looks for others.
     pub(super) fn sleep(&self, a: u32, b: u32) -> bool {
-        self.awake.as_ref().is_some_and(|w| !w.branches[a as usize] && !w.branches[b as usize])
+        !self.branches[a as usize] && !self.branches[b as usize]
     }
 
     /// Whether neither of two triangles does.
     pub(super) fn are_still(&self, s: usize, t: usize) -> bool {
-        self.awake.as_ref().is_some_and(|w| !w.triangles[s] && !w.triangles[t])
+        !self.triangles[s] && !self.triangles[t]
     }
 }
 

@@ -1,5 +1,6 @@
 //! The elements about some of a sheet's nodes.
 
+use super::assembly::Assembly;
 use super::border::Border;
 use super::{Elastic, Hinge, Spring, Triangle};
 use crate::rest::part::Cut;
@@ -26,8 +27,7 @@ impl Elastic {
             hinges: self.hinges.iter().filter(|h| cut.wakes(&h.nodes)).map(hinge).collect(),
             borders: self.borders.iter().filter_map(|b| Border::part(b, cut)).collect(),
             springs: self.springs.iter().filter(|s| cut.wakes(&s.nodes)).map(spring).collect(),
-            slots: Vec::new(),
-            bending: Vec::new(),
+            assembly: Assembly::default(),
             foretold: kept.iter().filter_map(|&t| self.foretold.get(t)).copied().collect(),
         }
     }

@@ -14,14 +14,14 @@ pub struct Spring {
     pub length: f64,
     /// N per unit of strain.
     pub stiffness: f64,
-    pub(super) slot: Slot,
+    pub(super) slot: Option<Slot>,
 }
 
 impl Spring {
     /// A piece of band between two nodes.
     #[must_use]
     pub fn new(nodes: [u32; 2], length: f64, stiffness: f64) -> Self {
-        Self { nodes, length, stiffness, slot: Slot { index: 0, flipped: false } }
+        Self { nodes, length, stiffness, slot: None }
     }
 
     /// From the first node to the second, and the strain; 0 where it hangs loose.
@@ -53,7 +53,9 @@ impl Spring {
             let block = along * (self.stiffness / self.length) + (Matrix3::identity() - along) * turn;
             values[self.nodes[0] as usize] += block;
             values[self.nodes[1] as usize] += block;
-            add_at(values, self.slot, &-block);
+            if let Some(slot) = self.slot {
+                add_at(values, slot, &-block);
+            }
         }
     }
 }

@@ -67,7 +67,7 @@ fn under_tension_the_matrix_is_the_slope_of_the_gradient() {
     let pattern = Pattern::new(x.len(), elastic.couplings());
     elastic.bind(&pattern);
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
-    elastic.add_matrix(&x, 0.0, &mut values);
+    elastic.write_matrix(&x, 0.0, &mut values);
     let push: Vec<Vec3> =
         (0..x.len()).map(|i| Vec3::new(i as f64, 2.0 * i as f64, 1.0).map(f64::sin)).collect();
     let mut product = vec![Vec3::zeros(); x.len()];
@@ -174,7 +174,7 @@ proptest! {
         elastic.bind(&pattern);
         let mut values = vec![Matrix3::zeros(); pattern.blocks()];
         let x: Vec<Vec3> = uv.iter().zip(places.chunks(3)).map(|(p, d)| Vec3::new(p.x + d[0], p.y + d[1], d[2])).collect();
-        elastic.add_matrix(&x, 0.0, &mut values);
+        elastic.write_matrix(&x, 0.0, &mut values);
         let push: Vec<Vec3> = push.chunks(3).map(Vec3::from_column_slice).collect();
         let mut product = vec![Vec3::zeros(); 3];
         pattern.multiply_add(&values, &push, &mut product);

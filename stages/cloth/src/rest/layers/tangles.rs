@@ -5,17 +5,29 @@ use crate::contact::closest::on_triangle;
 use crate::contact::pair::Pair;
 use crate::rest::press::Press;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
+/// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth and more.
+const MERGED: f64 = 0.02;
+
 impl Layers {
-    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side.
+    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side. Cloth
+    /// that lies in cloth counts as tangled, too.
     pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
-        self.tangled = vec![false; if crossings.is_empty() { 0 } else { x.len() }];
-        for (e, t) in crossings {
-            e.iter().chain(t).for_each(|&i| self.tangled[i as usize] = true);
-        }
+        let merged = self.merged(x);
+        let free = crossings.is_empty() && merged.is_empty();
+        self.tangled = vec![false; if free { 0 } else { x.len() }];
+        let crossed = crossings.iter().flat_map(|(e, t)| e.iter().chain(t));
+        crossed.chain(merged.iter().flat_map(|p| &p.nodes)).for_each(|&i| self.tangled[i as usize] = true);
         self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
+    }
+
+    /// Pairs so near that the wall between them and the search for the first impact would hold them there for ever.
+    fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
+        let merged = |p: &&Pair| p.closest(x).distance < MERGED * self.thickness;
+        self.pairs.par_iter().with_min_len(256).filter(merged).copied().collect()
     }
 
     fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
@@ -64,3 +76,6 @@ impl Layers {
         !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -27,7 +27,7 @@ fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     };
     let x: Vec<Vec3> = flat.iter().map(fold).collect();
     let mut nearby = Nearby::new(Some(ClothTree::new(&sheet, &flat)));
-    nearby.seek_about(&mut system, &x);
+    nearby.seek_about(&mut system, &x, &vec![true; x.len()]);
     system.touch(&x);
     let awake = flat.iter().enumerate().map(|(i, p)| p.x > 0.05 && i % 3 == 0).collect();
     check(system, x, awake);
@@ -53,8 +53,11 @@ fn awake_nodes_feel_what_they_feel_in_the_whole() {
 
 /// The matrix at `x` times `way`.
 fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
-    let pattern: Pattern = system.pattern();
-    system.elastic.bind(&pattern);
+    let own = system.pattern();
+    system.elastic.bind(&own);
+    let contacts = system.layers.iter().flat_map(|l| l.groups());
+    let (pattern, slots): (Pattern, _) = own.with(contacts.map(|g| &g[..]));
+    system.elastic.follow(&pattern, &slots);
     let mut values = Vec::new();
     system.matrix(x, &pattern, 1.0, 0.0, &mut values);
     let mut out = vec![Vec3::zeros(); x.len()];

@@ -3,6 +3,7 @@
 use super::tests::*;
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
+use crate::fabric::Fabric;
 use crate::scene::{SceneBody, generate};
 use nalgebra::{Rotation3, Vector2};
 

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
+use crate::contact::tree::ClothTree;
+use crate::rest::assemble::cloths;
 use crate::scene::{SceneError, StrainLimit, generate};
 
 fn gap(scene: &Scene, x: &[Vec3]) -> f64 {

@@ -1,5 +1,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
+use crate::contact::tree::ClothTree;
+use crate::fabric::Fabric;
+use crate::rest::assemble::cloths;
 use crate::scene::Seam;
 use crate::scene::{Phase, SceneBody, generate};
 

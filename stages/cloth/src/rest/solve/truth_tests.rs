@@ -3,6 +3,7 @@
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::reference;
+use crate::fabric::Fabric;
 use nalgebra::Vector2;
 
 /// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level there.

@@ -1,0 +1,124 @@
+//! What a way to rest is laid out on, before anything moves: the levels, from the cut pieces to the coarsest mesh.
+
+use super::assemble::{Wearer, assemble, cloths, gravity, kept_threads};
+use super::coarsen::{Coarser, coarsen};
+use super::error::RestError;
+use super::graded::Grade;
+use super::level::Level;
+use super::pieces::Pieces;
+use super::pile::pile_of;
+use super::solve::Rest;
+use super::start::{clear_start, crossings_at_start};
+use crate::contact::tree::ClothTree;
+use crate::fabric::Fabric;
+use crate::mesh::Sheet;
+use crate::scene::Scene;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready while a coarser one moves.
+pub(super) struct Plan<'a> {
+    pub(super) rest: &'a Rest,
+    pub(super) scene: &'a Scene,
+    pub(super) body: Option<Wearer<'a>>,
+    /// What no panel and what each panel is made of.
+    pub(super) cloths: Vec<&'a Fabric>,
+    /// Whether many cloths lie on each other.
+    pub(super) is_pile: bool,
+    /// Fine to coarse.
+    pub(super) pieces: Vec<Pieces>,
+    /// How each level but the finest was made from the finer one.
+    pub(super) coarser: Vec<Coarser>,
+    /// Where the vertices of each level start.
+    pub(super) starts: Vec<Vec<Vec3>>,
+}
+
+impl<'a> Plan<'a> {
+    /// Levels down to one of about `coarsest` nodes.
+    pub(super) fn new(
+        rest: &'a Rest,
+        coarsest: usize,
+        scene: &'a Scene,
+        body: Option<Wearer<'a>>,
+    ) -> Result<Self, RestError> {
+        let (start, (mut pieces, mut coarser)) =
+            rayon::join(|| clear_start(scene, body), || levels(scene, coarsest));
+        let mut starts = vec![start?];
+        for level in &coarser {
+            let finer = &starts[starts.len() - 1];
+            starts.push(level.kept.iter().map(|&v| finer[v as usize]).collect());
+        }
+        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
+        while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
+            let pairs = crossings_at_start(scene, coarse, start)?;
+            if pairs == 0 {
+                break;
+            }
+            if coarser.pop().is_none() {
+                return Err(RestError::InitialCrossing { pairs });
+            }
+            pieces.pop();
+            starts.pop();
+        }
+        if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
+            return Err(RestError::Falls);
+        }
+        let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
+        Ok(Self { rest, scene, body, cloths, is_pile, pieces, coarser, starts })
+    }
+
+    /// Points of the level that is finer than the coarsest, if there is one.
+    pub(super) fn second(&self) -> Option<usize> {
+        self.pieces.len().checked_sub(2).map(|k| self.pieces[k].points)
+    }
+
+    /// How bending is let go in a garment of that size, if it is.
+    pub(super) fn grade(&self, size: f64) -> Option<Grade> {
+        let gravity = gravity(self.scene).norm();
+        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size)).flatten()
+    }
+
+    /// Level `k`, sewn, with its nodes nowhere yet.
+    pub(super) fn level(&self, k: usize) -> Result<Level<'a>, RestError> {
+        let pieces = &self.pieces[k];
+        let sheet = pieces.sewn_sheet(&self.cloths)?;
+        let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
+        let mut system = assemble(self.scene, self.body, pieces, &sheet, false)?;
+        system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
+        system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
+        if let (true, true, Some(s)) = (self.rest.graded, k > 0, &mut system.support) {
+            // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
+            s.edges.clear();
+        }
+        Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
+    }
+
+    /// The tree of a level; what thread holds together is no obstacle to itself.
+    pub(super) fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
+        let tree = ClothTree::new(sheet, layout);
+        let kept = || self.scene.seams.iter().any(|s| !s.joined);
+        let nodes = |p: &Pieces| if sewing { p.rest.len() } else { p.nodes };
+        match self.pieces.iter().rev().find(|p| nodes(p) == layout.len()) {
+            Some(p) if sewing => tree.sewing(p.point.clone()),
+            Some(p) if kept() => tree.sewing(p.node_points()),
+            _ => tree,
+        }
+    }
+
+    /// Values at the nodes of level `k` carried to those of the next finer one.
+    pub(super) fn finer(&self, k: usize, values: &[Vec3]) -> Vec<Vec3> {
+        let fine = self.coarser[k - 1].prolong(&self.pieces[k].spread(values));
+        self.pieces[k - 1].sew(&fine, &vec![1.0; fine.len()])
+    }
+}
+
+/// The pieces of a scene and coarser ones, fine to coarse, and how each of those was made.
+fn levels(scene: &Scene, coarsest: usize) -> (Vec<Pieces>, Vec<Coarser>) {
+    let (mut pieces, mut coarser) = (vec![Pieces::new(scene)], Vec::new());
+    while let Some(next) = pieces.last().filter(|p| p.points > coarsest).and_then(coarsen) {
+        pieces.push(next.pieces.clone());
+        coarser.push(next);
+    }
+    (pieces, coarser)
+}
