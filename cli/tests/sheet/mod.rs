@@ -3,7 +3,7 @@
 use serde_json::{Value, json};
 
 /// A strip of two triangles held at one side.
-pub fn sheet() -> Value {
+pub(crate) fn sheet() -> Value {
     json!({
         "format": "garment-scene-1", "name": "sheet",
         "rest_uv": [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.1, 0.1]],
