@@ -32,6 +32,9 @@ pub fn approach(kind: Kind, moves: &[Vec3; 4]) -> f64 {
 /// Pieces nearer than this may hardly come nearer: much below it, rounding of places could turn the sides about, m.
 const CLOSEST: f64 = 1e-6;
 
+/// Share of a place, m, that is surely more than its rounding and what sums and products make of it.
+const ROUNDING: f64 = 1e-14;
+
 /// The distance that a pair which starts at `start` keeps through the step.
 #[must_use]
 pub fn kept(start: f64) -> f64 {
@@ -53,6 +56,9 @@ pub fn impact(pair: &Pair, from: &[Vec3; 4], moves: &[Vec3; 4]) -> Option<f64> {
     if start <= 0.0 || !known {
         return Some(0.0);
     }
+    if stays_apart(pair.kind, from, moves, least) {
+        return None;
+    }
     let (mut time, mut left) = (0.0, start - least);
     for _ in 0..MOST_STEPS {
         let next = time + left / speed;
@@ -67,4 +73,31 @@ pub fn impact(pair: &Pair, from: &[Vec3; 4], moves: &[Vec3; 4]) -> Option<f64> {
         }
     }
     Some(time)
+}
+
+/// Whether the lines of the two edges, or the vertex and the triangle's plane, keep a distance of `least` for all of the step.
+///
+/// The distance is the volume that the pair spans over the area of its two sides: a cubic and a quadratic of time, whose
+/// coefficients in Bernstein's form bound them. A pair that turns as one spans the same volume, where the steps of
+/// [`impact`] see its ends come down and grow too short to get anywhere, if it is close.
+fn stays_apart(kind: Kind, from: &[Vec3; 4], moves: &[Vec3; 4], least: f64) -> bool {
+    let sides = |x: &[Vec3; 4]| match kind {
+        Kind::VertexTriangle => (x[0] - x[1], x[2] - x[1], x[3] - x[1]),
+        Kind::EdgeEdge => (x[2] - x[0], x[1] - x[0], x[3] - x[2]),
+    };
+    let (r, a, b) = sides(from);
+    let (s, c, d) = sides(&std::array::from_fn(|i| from[i] + moves[i]));
+    let area = [a.cross(&b), (a.cross(&d) + c.cross(&b)) * 0.5, c.cross(&d)];
+    let volume = [
+        r.dot(&area[0]),
+        (s.dot(&area[0]) + 2.0 * r.dot(&area[1])) / 3.0,
+        (2.0 * s.dot(&area[1]) + r.dot(&area[2])) / 3.0,
+        s.dot(&area[2]),
+    ];
+    let widest = area.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt();
+    let thinnest = volume.iter().map(|v| v * volume[0].signum()).fold(f64::INFINITY, f64::min);
+    // What rounding of the places makes of the volume.
+    let far = from.iter().zip(moves).map(|(p, m)| p.amax() + m.amax()).fold(0.0, f64::max);
+    let long = [a, b, c, d, r, s].iter().map(Vec3::norm_squared).fold(0.0, f64::max);
+    thinnest > least * widest + ROUNDING * far * long
 }

@@ -1,8 +1,8 @@
 //! Nested dissection: an order of elimination that keeps the factor of a sheet's matrix sparse.
 //!
 //! The nodes are laid out in space (where the panels lay before sewing: flat), cut in half across the longer side again
-//! and again (George 1973), large sets where rows of vertices leave a gap near the middle; the nodes of one half that are
-//! coupled to the other are the separator and come last.
+//! and again (George 1973), where rows of vertices leave a gap near the middle; the nodes of one half that are coupled to
+//! the other are the separator and come last.
 //! Cost O(n log n) for the cuts. The order is only as good as the layout, but right for any.
 
 use super::pattern::Pattern;
@@ -13,10 +13,6 @@ const LEAF_NODES: usize = 16;
 
 /// How far from the middle a cut may lie, as a share of the nodes.
 const MIDDLE: f64 = 0.05;
-
-/// Fewer nodes are cut in the middle: a shorter separator gains little there, and the last digits of small scenes, by which
-/// some find their folds, stay as they were.
-const MANY: usize = 1000;
 
 /// One part of the tree: the nodes eliminated there, after those of its children.
 #[derive(Debug, Clone, Default)]
@@ -110,17 +106,13 @@ fn cut(
     parts.len() - 1
 }
 
-/// Sorts the nodes about the middle of their longer side and says how many come before the cut: of many nodes those before the
-/// widest gap there, so that rows of vertices that stand a little out of line are cut apart, not through; of few the half.
+/// Sorts the nodes about the middle of their longer side and says how many come before the cut: those before the widest gap
+/// there, so that rows of vertices that stand a little out of line are cut apart, not through.
 fn cut_at(nodes: &mut [u32], layout: &[Vector3<f64>]) -> usize {
     let axis = longest_axis(nodes, layout);
     let at = |i: u32| layout[i as usize][axis];
     let before = |a: &u32, b: &u32| at(*a).total_cmp(&at(*b)).then(a.cmp(b));
     let half = nodes.len() / 2;
-    if nodes.len() < MANY {
-        nodes.select_nth_unstable_by(half, before);
-        return half;
-    }
     let reach = (nodes.len() as f64 * MIDDLE) as usize;
     let (from, to) = (half - reach, half + reach);
     nodes.select_nth_unstable_by(from, before);

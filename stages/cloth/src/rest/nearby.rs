@@ -4,6 +4,7 @@
 //! is many steps. Then they are sought anew for the nodes that have, while the others keep theirs; so a search costs what
 //! moves. A node with a long way before it looks along that way, for that step alone.
 
+use crate::contact::give_way::give_way;
 use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
@@ -128,14 +129,40 @@ impl Nearby {
         self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
     }
 
-    /// Shortens moves that would lead cloth through cloth; the share of them that is left. Of cloth that gets free of crossings,
-    /// which takes long ways, all counts as left.
+    /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends before it meets where it cannot. The
+    /// share of the moves that is left; of cloth that gets free of crossings, which takes long ways, all counts as left.
     pub(super) fn limit(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
-        let Some(layers) = system.layers.as_mut().filter(|_| self.tree.is_some() || self.fence.is_some())
-        else {
+        if self.tree.is_none() && self.fence.is_none() {
             return 1.0;
-        };
+        }
+        let Some(layers) = &system.layers else { return 1.0 };
         let wanted = norm(moves);
+        let apart: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
+        if let Some(pushed) = give_way(x, moves, &apart, &system.pinned) {
+            self.keep_known(layers.slack(), x, moves, &pushed);
+            system.clear_of_body(x, moves, |i| pushed[i]);
+            self.hold_apart(system, x, moves);
+        }
+        let free = system.layers.as_ref().is_none_or(|l| l.tangled.is_empty());
+        if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
+    }
+
+    /// Shortens moves that were changed to what the known pairs hold for.
+    fn keep_known(&self, slack: f64, x: &[Vec3], moves: &mut [Vec3], changed: &[bool]) {
+        for (i, _) in changed.iter().enumerate().filter(|(_, c)| **c) {
+            let known = self.at.get(i).copied().flatten().map(|a| slack - (x[i] - a).norm());
+            let fenced = self.fence.as_ref().map(|f| f.reach - (x[i] - f.at[i]).norm());
+            let left = 0.99 * known.into_iter().chain(fenced).fold(f64::INFINITY, f64::min).max(0.0);
+            let way = moves[i].norm();
+            if way > left {
+                moves[i] *= left / way;
+            }
+        }
+    }
+
+    /// Ends moves before cloth meets cloth.
+    fn hold_apart(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(layers) = &mut system.layers else { return };
         let counts = |p: &Pair| !layers.is_tangled(p);
         // Pairs all round hold for every short move, those along a way for that way.
         let long: Vec<bool> = self.at.iter().map(Option::is_none).collect();
@@ -147,9 +174,8 @@ impl Nearby {
                 false => self.renewed(t, layers, &layers.pairs, &long, [x, moves]),
             })
         };
-        let pairs = hold_apart(x, moves, layers.pairs.clone(), counts, seek).0;
-        layers.pairs = pairs;
-        if wanted > 0.0 && layers.tangled.is_empty() { norm(moves) / wanted } else { 1.0 }
+        let first = seek(moves).unwrap_or_else(|| layers.pairs.clone());
+        layers.pairs = hold_apart(x, moves, first, counts, seek).0;
     }
 
     /// Takes up crossings that the start has, or that are left of them.

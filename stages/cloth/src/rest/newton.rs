@@ -274,7 +274,7 @@ impl Descent {
         self.last = longest;
         shorten(&mut moves, pace.farthest / longest);
         let pulled = system.pull(x, &mut moves, pace.farthest);
-        system.clear_of_body(x, &mut moves);
+        system.clear_of_body(x, &mut moves, |_| true);
         let reach = self.nearby.within_reach(x, &moves);
         self.left = reach < 1.0;
         shorten(&mut moves, reach);

@@ -172,13 +172,13 @@ impl System<'_> {
     }
 
     /// Ends moves that lead into the body just outside it.
-    pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
+    pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3], asks: impl Fn(usize) -> bool) {
         let Some(s) = &mut self.support else { return };
         let seen = &self.seen;
         let is_free = |i: usize| {
             seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > s.guard(i))
         };
-        let asked: Vec<usize> = (0..x.len()).filter(|&i| !is_free(i)).collect();
+        let asked: Vec<usize> = (0..x.len()).filter(|&i| asks(i) && !is_free(i)).collect();
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
         let gaps: Vec<f64> = asked.iter().map(|&i| s.guard(i)).collect();
         let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
