@@ -7,7 +7,7 @@
 //!
 //! What is left meets again, perhaps: whoever asks must still end moves before that (see [`super::limit`]).
 
-use super::limit::hits;
+use super::limit::meet;
 use super::pair::Pair;
 use nalgebra::Vector3;
 
@@ -16,12 +16,14 @@ type Vec3 = Vector3<f64>;
 /// Rounds in which what was pushed pushes on.
 const ROUNDS: usize = 4;
 
-/// Changes `moves` of nodes that are not `held` where pairs would meet; whose moves have changed, or nothing where none meets.
-pub fn give_way(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair], held: &[bool]) -> Option<Vec<bool>> {
-    let mut meeting: Vec<Pair> = hits(x, moves, pairs).into_iter().map(|(p, _)| p).collect();
-    if meeting.is_empty() {
-        return None;
-    }
+/// Changes `moves` of nodes that are not `held` where the pairs that are `meeting` would meet; whose moves have changed.
+pub fn give_way(
+    x: &[Vec3],
+    moves: &mut [Vec3],
+    pairs: &[Pair],
+    mut meeting: Vec<Pair>,
+    held: &[bool],
+) -> Vec<bool> {
     let mut pushed = vec![false; x.len()];
     for _ in 0..ROUNDS {
         let mut touched = vec![false; x.len()];
@@ -29,12 +31,12 @@ pub fn give_way(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair], held: &[bool]) -
         let about = |p: &&Pair| p.nodes.iter().any(|&i| touched[i as usize]);
         let suspects: Vec<Pair> = pairs.iter().filter(about).copied().collect();
         pushed.iter_mut().zip(&touched).for_each(|(p, t)| *p |= t);
-        meeting = hits(x, moves, &suspects).into_iter().map(|(p, _)| p).collect();
+        meeting = meet(x, moves, &suspects);
         if meeting.is_empty() {
             break;
         }
     }
-    Some(pushed)
+    pushed
 }
 
 /// Takes away what the closest points of a pair come together.

@@ -92,8 +92,13 @@ fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     (hits.len(), share)
 }
 
+/// The pairs that would meet.
+pub fn meet(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<Pair> {
+    hits(x, moves, pairs).into_iter().map(|(p, _)| p).collect()
+}
+
 /// The pairs that would meet, and when.
-pub(super) fn hits(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {
+fn hits(x: &[Vec3], moves: &[Vec3], pairs: &[Pair]) -> Vec<(Pair, f64)> {
     let hit = |p: &Pair| impact(p, &p.at(x), &p.at(moves)).map(|t| (*p, t));
     pairs.par_iter().with_min_len(256).filter_map(hit).collect()
 }

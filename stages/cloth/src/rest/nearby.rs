@@ -5,7 +5,7 @@
 //! moves. A node with a long way before it looks along that way, for that step alone.
 
 use crate::contact::give_way::give_way;
-use crate::contact::limit::hold_apart;
+use crate::contact::limit::{hold_apart, meet};
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use crate::rest::layers::Layers;
@@ -27,6 +27,8 @@ pub(super) struct Nearby {
     at: Vec<Option<Vec3>>,
     /// What a part of a system knows of is about it: this holds while its nodes stay near where they were.
     fence: Option<Fence>,
+    /// Whether layers that lie in each other met in the last step.
+    jammed: bool,
 }
 
 /// Where the nodes of a part were when it was cut out, and how far they may go from there, m.
@@ -37,7 +39,7 @@ struct Fence {
 
 impl Nearby {
     pub(super) fn new(tree: Option<ClothTree>) -> Self {
-        Self { tree, at: vec![], fence: None }
+        Self { tree, at: vec![], fence: None, jammed: false }
     }
 
     /// Seeks the pairs about `x`, so that they hold for a part whose nodes are `awake`.
@@ -64,12 +66,12 @@ impl Nearby {
     /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by `reach` from there, m.
     pub(super) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
         let at = at.into_iter().flatten().collect();
-        Self { tree: None, at: vec![], fence: Some(Fence { at, reach }) }
+        Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
     /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet within `reach` of `at`, m.
     pub(super) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
-        Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }) }
+        Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
     /// The share of `moves` from `x` for which a part knows what is about it.
@@ -131,14 +133,17 @@ impl Nearby {
 
     /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends before it meets where it cannot. The
     /// share of the moves that is left; of cloth that gets free of crossings, which takes long ways, all counts as left.
-    pub(super) fn limit(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
+    pub(super) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;
         }
         let Some(layers) = &system.layers else { return 1.0 };
         let wanted = norm(moves);
         let apart: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
-        if let Some(pushed) = give_way(x, moves, &apart, &system.pinned) {
+        let meeting = meet(x, moves, &apart);
+        if !meeting.is_empty() {
+            self.jammed = !layers.crowded && meeting.iter().any(|p| layers.is_merged(p, x));
+            let pushed = give_way(x, moves, &apart, meeting, &system.pinned);
             self.keep_known(layers.slack(), x, moves, &pushed);
             system.clear_of_body(x, moves, |i| pushed[i]);
             self.hold_apart(system, x, moves);
@@ -178,10 +183,16 @@ impl Nearby {
         layers.pairs = hold_apart(x, moves, first, counts, seek).0;
     }
 
+    /// Whether cloth must be taken out of cloth.
+    pub(super) fn is_tangled(&self, system: &System<'_>) -> bool {
+        system.is_tangled() || self.jammed
+    }
+
     /// Takes up crossings that the start has, or that are left of them.
-    pub(super) fn untangle(&self, system: &mut System<'_>, x: &[Vec3]) {
+    pub(super) fn untangle(&mut self, system: &mut System<'_>, x: &[Vec3]) {
         if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
             layers.untangle(&tree.crossings(x), x);
+            self.jammed = false;
         }
     }
 }

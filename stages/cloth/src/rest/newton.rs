@@ -245,7 +245,7 @@ impl Descent {
         pace: &Pace,
         stop: &Stop,
     ) -> Result<Outcome, Halt> {
-        if system.is_tangled() {
+        if self.nearby.is_tangled(system) {
             self.nearby.untangle(system, x);
         }
         let before = self.before.take().filter(|b| b.at == x);
@@ -347,7 +347,7 @@ impl Descent {
     }
 
     /// Looks for crossings that are left where some were being undone.
-    fn finish(&self, system: &mut System<'_>, x: &[Vec3]) {
+    fn finish(&mut self, system: &mut System<'_>, x: &[Vec3]) {
         if system.is_tangled() {
             self.nearby.untangle(system, x);
         }

@@ -26,8 +26,12 @@ impl Layers {
 
     /// Pairs so near that the wall between them and the search for the first impact would hold them there for ever.
     fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
-        let merged = |p: &&Pair| p.closest(x).distance < MERGED * self.thickness;
-        self.pairs.par_iter().with_min_len(256).filter(merged).copied().collect()
+        self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
+    }
+
+    /// Whether the pair is one of them.
+    pub fn is_merged(&self, pair: &Pair, x: &[Vec3]) -> bool {
+        pair.closest(x).distance < MERGED * self.thickness
     }
 
     fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {

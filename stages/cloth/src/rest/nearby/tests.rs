@@ -112,3 +112,29 @@ fn a_part_keeps_its_distance_from_where_pairs_end() {
         }
     });
 }
+
+#[test]
+fn layers_that_lie_in_each_other_and_meet_are_taken_apart_as_crossings_are() {
+    with_sheets(|mut system, tree, mut x| {
+        let each = x.len() / 3;
+        // The middle one comes down to a micrometre over the lowest.
+        (each..2 * each).for_each(|k| x[k] = x[k - each] + Vec3::y() * 1e-6);
+        let mut nearby = Nearby::new(Some(tree));
+        let mut moves: Vec<Vec3> =
+            (0..x.len()).map(|k| Vec3::y() * if k < each { 1e-4 } else { 0.0 }).collect();
+        nearby.seek(&mut system, &x, &moves);
+        assert!(!nearby.is_tangled(&system));
+        nearby.limit(&mut system, &x, &mut moves);
+        assert!(nearby.is_tangled(&system) && !system.is_tangled());
+        nearby.untangle(&mut system, &x);
+        let tangled = &system.layers.as_ref().unwrap().tangled;
+        assert!(tangled[..2 * each].iter().all(|t| *t) && !tangled[2 * each..].contains(&true));
+        // A pile has layers under great loads that near each other and are held apart.
+        system.layers.as_mut().unwrap().crowded = true;
+        system.layers.as_mut().unwrap().tangled.clear();
+        let mut moves: Vec<Vec3> =
+            (0..x.len()).map(|k| Vec3::y() * if k < each { 1e-4 } else { 0.0 }).collect();
+        nearby.limit(&mut system, &x, &mut moves);
+        assert!(!nearby.is_tangled(&system));
+    });
+}
