@@ -3,7 +3,9 @@
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pieces::Pieces;
-use super::system::{Support, System, Thread};
+use super::support::Support;
+use super::system::System;
+use super::thread::Thread;
 use crate::contact::skin::Skin;
 use crate::error::ClothError;
 use crate::fabric::Fabric;

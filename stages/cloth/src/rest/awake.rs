@@ -3,8 +3,9 @@
 use super::layers::Layers;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
-use super::newton::{Descent, Pace, ROUNDING, greatest};
+use super::newton::{Descent, Pace, greatest};
 use super::part::{Part, widen};
+use super::search::ROUNDING;
 use super::system::System;
 use nalgebra::Vector3;
 

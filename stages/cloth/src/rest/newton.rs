@@ -22,7 +22,9 @@ use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::pile::{Around, lay};
 use super::real::Precision;
-use super::system::{Sight, System, Visit};
+use super::search::{descend, shorten};
+use super::support::Sight;
+use super::system::System;
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -31,18 +33,6 @@ type Vec3 = Vector3<f64>;
 
 /// The step of time in which cloth at rest must not gain speed, s.
 pub const REST_STEP: f64 = 1.0 / 60.0;
-
-/// Halvings of a step before it is taken as it is.
-const MOST_HALVINGS: u32 = 6;
-
-/// Moves shorter than this change the potential by less than its rounding, m.
-pub(super) const ROUNDING: f64 = 1e-10;
-
-/// Share of the slope by which the potential must fall (Armijo's rule).
-const LEAST_FALL: f64 = 1e-4;
-
-/// Steps whose highest potential a new one is measured by. More lets the cloth pass through worse states to better ones.
-const MEMORY: usize = 8;
 
 /// Factor by which pseudo-time grows after a whole step.
 const GROWTH: f64 = 1.5;
@@ -399,50 +389,4 @@ fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
 #[must_use]
 pub fn greatest(v: &[Vec3]) -> f64 {
     v.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
-}
-
-fn shorten(moves: &mut [Vec3], share: f64) {
-    if share < 1.0 {
-        moves.iter_mut().for_each(|m| *m *= share);
-    }
-}
-
-/// The way gone in a step.
-struct Way {
-    /// The share of the step that is left.
-    share: f64,
-    /// What was found at its end, if anybody looked.
-    end: Option<Visit>,
-}
-
-/// Shortens the step until the potential falls below the highest of the last ones; it is `start` where the step begins.
-fn descend(
-    system: &System<'_>,
-    x: &[Vec3],
-    g: &[Vec3],
-    moves: &mut [Vec3],
-    start: f64,
-    heights: &mut Vec<f64>,
-) -> Way {
-    if greatest(moves) < ROUNDING {
-        return Way { share: 1.0, end: None };
-    }
-    let slope: f64 = g.iter().zip(moves.iter()).map(|(g, d)| g.dot(d)).sum();
-    heights.push(start);
-    if heights.len() > MEMORY {
-        heights.remove(0);
-    }
-    // Rounding of the sum hides changes smaller than this.
-    let highest = heights.iter().copied().fold(start, f64::max) + 1e-13 * start.abs();
-    let mut share = 1.0;
-    for _ in 0..MOST_HALVINGS {
-        let trial: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(p, d)| p + d).collect();
-        let visit = system.visit(&trial);
-        if visit.energy <= highest + LEAST_FALL * share * slope.min(0.0) {
-            return Way { share, end: Some(visit) };
-        }
-        share *= 0.5;
-        shorten(moves, 0.5);
-    }
-    Way { share, end: None }
 }

@@ -6,7 +6,9 @@
 
 use super::grip::Grip;
 use super::layers::Layers;
-use super::system::{Support, System, Thread};
+use super::support::Support;
+use super::system::System;
+use super::thread::Thread;
 use crate::contact::pair::Pair;
 use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;

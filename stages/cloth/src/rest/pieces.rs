@@ -2,7 +2,8 @@
 
 use super::elastic::Spring;
 use super::pattern::Pattern;
-use super::system::{Support, System};
+use super::support::Support;
+use super::system::System;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;

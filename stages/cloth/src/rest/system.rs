@@ -7,24 +7,14 @@
 
 use super::elastic::Elastic;
 use super::layers::Layers;
-use super::pattern::{Pattern, add_at};
+use super::pattern::Pattern;
 use super::rub::Rub;
+use super::support::{NEAR, NUDGE, Seen, Sight, Support};
+use super::thread::Thread;
 use crate::contact::body::Nearest;
-use crate::contact::skin::Skin;
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
-
-/// A seam that still pulls its two nodes together, with a force that hardly depends on the gap.
-#[derive(Debug, Clone, Copy)]
-pub struct Thread {
-    /// The nodes.
-    pub nodes: [u32; 2],
-    /// Force at large gaps, N.
-    pub force: f64,
-    /// Gap at which the force falls off, m.
-    pub soft: f64,
-}
 
 /// Where a node touches the body.
 #[derive(Debug, Clone, Copy)]
@@ -37,31 +27,6 @@ pub struct Touch {
     pub force: f64,
     /// The force that limits friction: the mean over the last steps, N.
     pub load: f64,
-}
-
-/// The body and how cloth rests on it.
-#[derive(Debug, Clone)]
-pub struct Support<'a> {
-    /// The body.
-    pub body: &'a dyn Skin,
-    /// Coefficient of friction, per node.
-    pub friction: Vec<f64>,
-    /// Distance at which contact begins, per node, m.
-    pub offsets: Vec<f64>,
-    /// The least of them, m.
-    pub offset: f64,
-    /// How deep inside the body a node is still pushed out, m.
-    pub depth: f64,
-    /// Edges of the sheet and their rest lengths: between two nodes on a curved body an edge sags.
-    pub edges: Vec<([u32; 2], f64)>,
-    /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as keeps the girth right.
-    pub clear: bool,
-    /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
-    pub grows: bool,
-    /// Stiffness of contact, N/m per node.
-    pub stiffness: Vec<f64>,
-    #[cfg(toile_without = "body")]
-    pub(super) never: std::convert::Infallible,
 }
 
 /// All that acts on the nodes.
@@ -96,20 +61,6 @@ pub struct System<'a> {
     /// Where each node was last seen from the body; empty before the first step.
     pub seen: Vec<Seen>,
 }
-
-/// How far a node was from the body when that was last looked up: it bounds how far it can be now.
-#[derive(Debug, Clone, Copy)]
-pub struct Seen {
-    /// Where the node was.
-    pub at: Vec3,
-    /// Its distance, negative inside, or a bound below it, m.
-    pub distance: f64,
-    /// Whether the distance is exact.
-    pub exact: bool,
-}
-
-/// What a node sees of the body: how far it is, and the place that presses, if any does.
-pub type Sight = (Seen, Option<Nearest>);
 
 /// What was found at the end of a step, where the next one starts.
 #[derive(Debug, Clone)]
@@ -364,93 +315,3 @@ impl System<'_> {
         held.for_each(|(_, v)| *v = Matrix3::identity());
     }
 }
-
-impl Support<'_> {
-    /// How near the body a move may lead node `i`, m.
-    fn guard(&self, i: usize) -> f64 {
-        GUARD * if self.grows { self.offset } else { self.offsets[i] }
-    }
-
-    /// Lets the layer under node `i` grow if it lies at its bottom. A stiff sheet presses harder on a few nodes than the layer
-    /// can carry; the guard would stop them at every step, and nothing would come to rest.
-    fn grow(&mut self, i: usize, distance: f64) {
-        if distance < PRESSED * self.offset {
-            self.offsets[i] += GUARD * self.offset;
-        }
-    }
-
-    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body.
-    fn allow_for_sag(&mut self, near: &[Option<Nearest>], x: &[Vec3]) {
-        let mut sags = vec![0.0f64; self.offsets.len()];
-        for &([i, j], length) in &self.edges {
-            let (i, j) = (i as usize, j as usize);
-            if let (Some(a), Some(b)) = (&near[i], &near[j]) {
-                let turn = b.normal - a.normal;
-                if turn.dot(&(x[j] - x[i])) > 0.0 {
-                    let sag = length * turn.norm() / 8.0;
-                    (sags[i], sags[j]) = (sags[i].max(sag), sags[j].max(sag));
-                }
-            }
-        }
-        // Offsets only grow within a level, or contacts would come and go with them.
-        for (i, sag) in sags.into_iter().enumerate() {
-            // A polygon around a circle has its length when its corners stand a third of the sag outside.
-            let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
-            self.offsets[i] = self.offsets[i].max(self.offset + least);
-        }
-    }
-
-    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that it is far.
-    fn reach(&self, p: &Vec3, offset: f64, seen: Option<&Seen>) -> Option<f64> {
-        let within = offset + self.depth;
-        let Some(seen) = seen else { return Some(within) };
-        let way = (p - seen.at).norm();
-        match seen.distance - way > NEAR * offset {
-            true => None,
-            false if seen.exact => Some(within.min(seen.distance.abs() + way + NUDGE)),
-            false => Some(within),
-        }
-    }
-}
-
-impl Thread {
-    fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
-        let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
-        (d, (d.norm_squared() + self.soft * self.soft).sqrt())
-    }
-
-    fn value(&self, x: &[Vec3]) -> f64 {
-        self.force * self.reach(x).1
-    }
-
-    fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
-        let (d, r) = self.reach(x);
-        let pull = d * (self.force / r);
-        g[self.nodes[0] as usize] -= pull;
-        g[self.nodes[1] as usize] += pull;
-    }
-
-    fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
-        let [i, j] = self.nodes;
-        let (_, r) = self.reach(x);
-        // The secant stiffness: a majorant, with which Newton's step never overshoots.
-        let k = Matrix3::identity() * (self.force / r);
-        values[i as usize] += k;
-        values[j as usize] += k;
-        if let Some(slot) = pattern.slot(i, j) {
-            add_at(values, slot, &-k);
-        }
-    }
-}
-
-/// Share of the offset that a move leaves between a node and the body.
-const GUARD: f64 = 0.5;
-
-/// Share of the offset below which a node that the guard stops is one that the layer cannot carry.
-const PRESSED: f64 = 0.6;
-
-/// What a bound on a distance is widened by against rounding, m.
-const NUDGE: f64 = 1e-9;
-
-/// Share of the offset up to which a node that has touched keeps its place on the body.
-const NEAR: f64 = 1.5;

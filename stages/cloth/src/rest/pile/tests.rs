@@ -70,7 +70,7 @@ fn cloths_come_from_the_innermost_outwards() {
 fn what_hangs_together_by_thread_is_one_cloth() {
     with_system(&shuffled(&[0, 1, 2]), |mut system, _, x| {
         system.threads =
-            vec![crate::rest::system::Thread { nodes: [0, 2 * NODES as u32], force: 1.0, soft: 1e-3 }];
+            vec![crate::rest::thread::Thread { nodes: [0, 2 * NODES as u32], force: 1.0, soft: 1e-3 }];
         assert_eq!(cloths(&system).1, 2);
         // Sheet 1 lies lower than the middle of the other two, and comes first only where that is so.
         assert_eq!(order(&system, &x).len(), 2);
