@@ -1,5 +1,6 @@
 //! The linear problem of each Newton step: matrix, factor and solution, kept from step to step.
 
+use super::dissect::smoothed;
 use super::layers::Layers;
 use super::mixed::{Matrix, Mixed};
 use super::multifrontal::{Halt, Stop, Symbolic};
@@ -43,12 +44,13 @@ pub(super) struct Linear {
 
 impl Linear {
     /// Prepares the matrix; `layout` orders the elimination.
-    pub(super) fn new(system: &mut System<'_>, layout: Vec<Vec3>) -> Self {
+    pub(super) fn new(system: &mut System<'_>, layout: &[Vec3]) -> Self {
         let own = system.pattern();
         system.elastic.bind(&own);
         let touched = system.layers.iter().flat_map(Layers::groups).map(|g| (*g, 0)).collect();
         let (pattern, slots) = widened(&own, &touched);
         system.elastic.follow(&pattern, &slots);
+        let layout = smoothed(&own, layout);
         let symbolic = Symbolic::new(&pattern, &layout);
         let (values, factor) = (Vec::new(), Mixed::default());
         Self { layout, touched, steps: 0, own, pattern, slots, symbolic, values, factor }
@@ -154,7 +156,7 @@ mod tests {
         let pair = Pair { kind: Kind::VertexTriangle, nodes: [n, a, b, c] };
         system.layers.as_mut().unwrap().pairs = vec![pair];
         let thickness = system.layers.as_ref().unwrap().thickness;
-        let mut linear = Linear::new(&mut system, scene.positions.clone());
+        let mut linear = Linear::new(&mut system, &scene.positions);
         let mut follow = |height: f64, system: &mut System<'_>| {
             x[n as usize] = middle + Vec3::y() * height;
             system.touch(&x);

@@ -174,7 +174,7 @@ impl Descent {
         first: f64,
     ) -> Self {
         system.touch(x);
-        let linear = Linear::new(system, layout.to_vec());
+        let linear = Linear::new(system, layout);
         let outcome = Outcome { dt: first, ..Outcome::default() };
         Self {
             nearby,

@@ -1,0 +1,142 @@
+//! Where some nodes are cut in two.
+//!
+//! Of all cuts across a side whose places lie about the middle, the number of nodes on either side that have a neighbour on the
+//! other is counted in one sweep; the smallest separator wins, and a crooked half must be worth it.
+//! Cost O(n) for n nodes, whose neighbours are few, and O(w log w) for the w of them about the middle.
+
+use super::Neighbours;
+use nalgebra::Vector3;
+use std::cmp::Ordering;
+
+/// How far from the middle a cut may lie, as a share of the nodes.
+const MIDDLE: f64 = 0.1;
+
+/// Sides shorter than this share of the longest are not cut across.
+const LEAST_SIDE: f64 = 0.5;
+
+/// How much a cut away from the middle adds to its separator, by the square of its distance as a share of half of the nodes.
+const CROOKED: f64 = 2.0;
+
+/// Cuts sets of nodes in two.
+pub(super) struct Halves<'h> {
+    layout: &'h [Vector3<f64>],
+    neighbours: &'h Neighbours,
+    /// The set that each node is in; none is in 0.
+    set: Vec<u32>,
+    sets: u32,
+    /// Which each node of the set at hand is, along the side that is looked at.
+    rank: Vec<u32>,
+}
+
+/// A cut across a side.
+struct Cut {
+    axis: usize,
+    /// Nodes before it.
+    before: usize,
+    /// Nodes of its separator, and what is added to them.
+    cost: f64,
+}
+
+impl<'h> Halves<'h> {
+    pub(super) fn new(layout: &'h [Vector3<f64>], neighbours: &'h Neighbours) -> Self {
+        Self { layout, neighbours, set: vec![0; layout.len()], sets: 0, rank: vec![0; layout.len()] }
+    }
+
+    /// Both halves without the separator, and the separator; each in the order of the nodes' numbers.
+    pub(super) fn of(&mut self, mut nodes: Vec<u32>) -> [Vec<u32>; 3] {
+        let half = self.sort(&mut nodes);
+        let mut high = nodes.split_off(half);
+        let mut low = nodes;
+        let (in_low, in_high) = (self.mark(&low), self.mark(&high));
+        let mut from_low: Vec<u32> = low.iter().copied().filter(|&i| self.meets(i, in_high)).collect();
+        let mut from_high: Vec<u32> = high.iter().copied().filter(|&i| self.meets(i, in_low)).collect();
+        let separator = if from_low.len() < from_high.len() { &mut from_low } else { &mut from_high };
+        separator.iter().for_each(|&i| self.set[i as usize] = 0);
+        low.retain(|&i| self.set[i as usize] == in_low);
+        high.retain(|&i| self.set[i as usize] == in_high);
+        let mut parts = [low, high, std::mem::take(separator)];
+        parts.iter_mut().for_each(|p| p.sort_unstable());
+        parts
+    }
+
+    /// Makes a set of these nodes.
+    fn mark(&mut self, nodes: &[u32]) -> u32 {
+        self.sets += 1;
+        nodes.iter().for_each(|&i| self.set[i as usize] = self.sets);
+        self.sets
+    }
+
+    /// Whether a node has a neighbour in this set.
+    fn meets(&self, i: u32, set: u32) -> bool {
+        self.neighbours.of(i).iter().any(|&j| self.set[j as usize] == set)
+    }
+
+    /// Sorts the nodes so that those before the best cut come first, and says how many they are.
+    fn sort(&mut self, nodes: &mut [u32]) -> usize {
+        let sides = sides(nodes, self.layout);
+        let set = self.mark(nodes);
+        let long = (0..3).filter(|&axis| sides[axis] >= LEAST_SIDE * sides.max());
+        let cuts: Vec<Cut> = long.map(|axis| self.best_across(axis, nodes, set)).collect();
+        let Some(best) = cuts.iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) else { return nodes.len() / 2 };
+        nodes.select_nth_unstable_by(best.before, |a, b| self.order(best.axis, a, b));
+        best.before
+    }
+
+    /// The order of two nodes along an axis.
+    fn order(&self, axis: usize, a: &u32, b: &u32) -> Ordering {
+        let at = |i: u32| self.layout[i as usize][axis];
+        at(*a).total_cmp(&at(*b)).then(a.cmp(b))
+    }
+
+    /// The best cut across an axis.
+    fn best_across(&mut self, axis: usize, nodes: &mut [u32], set: u32) -> Cut {
+        let half = nodes.len() / 2;
+        let reach = (nodes.len() as f64 * MIDDLE).ceil() as usize;
+        let (from, to) = (half - reach, half + reach);
+        nodes.select_nth_unstable_by(from, |a, b| self.order(axis, a, b));
+        nodes[from..].select_nth_unstable_by(to - from, |a, b| self.order(axis, a, b));
+        nodes[from..=to].sort_unstable_by(|a, b| self.order(axis, a, b));
+        // Where exactly the others lie tells nothing.
+        nodes.iter().enumerate().for_each(|(k, &i)| self.rank[i as usize] = k.clamp(from, to) as u32);
+        let cuts =
+            self.separators(nodes, set, from, to).into_iter().zip(from..).map(|(separator, before)| {
+                let off = before.abs_diff(half) as f64 / half as f64;
+                Cut { axis, before, cost: f64::from(separator) * (1.0 + CROOKED * off * off) }
+            });
+        // Before the first of them lie nodes whose ranks are not told apart.
+        let best = cuts.skip(1).min_by(|a, b| a.cost.total_cmp(&b.cost));
+        best.unwrap_or(Cut { axis, before: half, cost: f64::INFINITY })
+    }
+
+    /// The size of the smaller separator of each cut with `from` to `to` nodes before it.
+    fn separators(&self, nodes: &[u32], set: u32, from: usize, to: usize) -> Vec<u32> {
+        // How many nodes before a cut meet those behind it, and the other way round, more than at the cut before.
+        let mut more = vec![[0i32; 2]; to - from + 2];
+        let place = |rank: u32| rank as usize - from + 1;
+        for &i in nodes {
+            let own = self.rank[i as usize];
+            let (mut least, mut most) = (own, own);
+            for &j in self.neighbours.of(i).iter().filter(|&&j| self.set[j as usize] == set) {
+                let rank = self.rank[j as usize];
+                (least, most) = (least.min(rank), most.max(rank));
+            }
+            more[place(own)][0] += 1;
+            more[place(most)][0] -= 1;
+            more[place(least)][1] += 1;
+            more[place(own)][1] -= 1;
+        }
+        let mut across = [0i32; 2];
+        let mut count = |more: &[i32; 2]| {
+            across = [across[0] + more[0], across[1] + more[1]];
+            across[0].min(across[1]).unsigned_abs()
+        };
+        more[..to - from + 1].iter().map(|m| count(m)).collect()
+    }
+}
+
+/// The sides of the box around the nodes.
+fn sides(nodes: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
+    let places = || nodes.iter().map(|&i| layout[i as usize]);
+    let (low, high) = (places().reduce(|a, b| a.inf(&b)), places().reduce(|a, b| a.sup(&b)));
+    low.zip(high).map_or_else(Vector3::zeros, |(low, high)| high - low)
+}
