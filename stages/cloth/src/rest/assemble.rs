@@ -76,6 +76,7 @@ pub(super) fn assemble<'a>(
         #[cfg(toile_without = "body")]
         never: b.never,
         stiffness: stiffness.clone(),
+        pressed: Vec::new(),
     });
     let mut corners = vec![0u16; n];
     sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);

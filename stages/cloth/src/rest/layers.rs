@@ -4,7 +4,6 @@
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
 //! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
-use self::crowd::fading;
 use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, add_at};
 use super::press::Press;
@@ -156,7 +155,7 @@ impl Layers {
     fn contact(&self, (p, c): &(Pair, Closest), x: &[Vec3]) -> Contact {
         let full =
             (0..4).map(|i| c.weights[i].abs() * self.stiffness[p.nodes[i] as usize]).sum::<f64>() * 0.25;
-        let stiffness = if self.crowded { full * fading(p, c, x) } else { full };
+        let stiffness = full * self.fading(p, c, x);
         Contact {
             nodes: p.nodes,
             weights: c.weights,

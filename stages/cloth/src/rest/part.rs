@@ -131,6 +131,7 @@ impl<'a> Part<'a> {
         }
         if let (Some(from), Some(to)) = (&self.system.support, &mut system.support) {
             put(&self.nodes, &from.offsets, &mut to.offsets);
+            put(&self.nodes, &from.stiffness, &mut to.stiffness);
         }
         if let (Some(from), Some(to)) = (&self.system.layers, &mut system.layers) {
             let grip = |g: &Grip| Grip { nodes: g.nodes.map(|i| self.nodes[i as usize]), ..*g };
@@ -181,6 +182,7 @@ fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
         clear: whole.clear,
         grows: whole.grows,
         stiffness: pick(nodes, &whole.stiffness),
+        pressed: Vec::new(),
         #[cfg(toile_without = "body")]
         never: whole.never,
     }

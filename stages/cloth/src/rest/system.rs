@@ -124,6 +124,7 @@ impl System<'_> {
 
     /// Ends moves that lead into the body just outside it.
     pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3], asks: impl Fn(usize) -> bool) {
+        let sews = !self.threads.is_empty();
         let Some(s) = &mut self.support else { return };
         let seen = &self.seen;
         let is_free = |i: usize| {
@@ -135,8 +136,14 @@ impl System<'_> {
         let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
         s.body.guard(&points, &mut guarded, &gaps);
         for (&i, m) in asked.iter().zip(guarded) {
-            if s.grows && (moves[i] - m).norm() > NUDGE {
-                s.grow(i, seen.get(i).map_or(0.0, |n| n.distance));
+            if (moves[i] - m).norm() > NUDGE {
+                let distance = seen.get(i).map_or(0.0, |n| n.distance);
+                match s.grows {
+                    true => s.grow(i, distance),
+                    // What a seam presses on the body gives way to the seam, or the seam stays open.
+                    false if sews => {}
+                    false => s.press(i, distance),
+                }
             }
             moves[i] = m;
         }
@@ -228,6 +235,7 @@ impl System<'_> {
         return;
         let near = self.look(x, sight);
         let Some(s) = &mut self.support else { return };
+        s.stiffen();
         s.allow_for_sag(&near, x);
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];

@@ -126,11 +126,11 @@ impl<'h> Halves<'h> {
             more[place(own)][1] -= 1;
         }
         let mut across = [0i32; 2];
-        let mut count = |more: &[i32; 2]| {
+        let count = |more: &[i32; 2]| {
             across = [across[0] + more[0], across[1] + more[1]];
             across[0].min(across[1]).unsigned_abs()
         };
-        more[..to - from + 1].iter().map(|m| count(m)).collect()
+        more[..to - from + 1].iter().map(count).collect()
     }
 }
 

@@ -14,8 +14,8 @@ const SLACK: f64 = 1.5;
 /// The same in edges.
 const EDGE_SLACK: f64 = 0.2;
 
-/// Share of an edge from its end within which its contact with an edge fades.
-const END: f64 = 0.1;
+/// Share of an edge from its end within which its contact with an edge fades, in a pile and elsewhere.
+const END: (f64, f64) = (0.1, 0.005);
 
 /// Square of the sine of the angle between two edges below which their contact fades.
 const ALONG: f64 = 0.01;
@@ -39,6 +39,16 @@ impl Layers {
         }
     }
 
+    /// The share of its stiffness that a contact has: less than 1 where two edges meet near an end or, in a pile, lie along each
+    /// other. There the corners carry.
+    pub(super) fn fading(&self, p: &Pair, c: &Closest, x: &[Vec3]) -> f64 {
+        match p.kind {
+            Kind::VertexTriangle => 1.0,
+            Kind::EdgeEdge if self.crowded => inwards(c, END.0) * across(&p.at(x)),
+            Kind::EdgeEdge => inwards(c, END.1),
+        }
+    }
+
     pub(super) fn is_held(&self, p: &Pair) -> bool {
         self.held.as_ref().is_some_and(|h| h.binary_search(p).is_ok())
     }
@@ -52,19 +62,10 @@ impl Layers {
     }
 }
 
-/// The share of its stiffness that a contact has: less than 1 where two edges meet near an end or lie along each other. There the
-/// corners carry.
-pub(super) fn fading(p: &Pair, c: &Closest, x: &[Vec3]) -> f64 {
-    match p.kind {
-        Kind::VertexTriangle => 1.0,
-        Kind::EdgeEdge => inwards(c) * across(&p.at(x)),
-    }
-}
-
-/// How far the closest points of two edges lie inside them, 0 at an end to 1 from a share [`END`] of the edge on.
-fn inwards(c: &Closest) -> f64 {
+/// How far the closest points of two edges lie inside them, 0 at an end to 1 from that share of the edge on.
+fn inwards(c: &Closest, end: f64) -> f64 {
     let [a, b, d, e] = c.weights.map(f64::abs);
-    (a.min(b) / END).min(1.0) * (d.min(e) / END).min(1.0)
+    (a.min(b) / end).min(1.0) * (d.min(e) / end).min(1.0)
 }
 
 /// How far two edges are from parallel, 0 to 1 from a square [`ALONG`] of the sine of their angle on.

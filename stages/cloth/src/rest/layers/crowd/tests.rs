@@ -32,11 +32,18 @@ fn share(middle: f64, angle: f64, crowded: bool) -> f64 {
 }
 
 #[test]
-fn in_a_pile_contacts_of_edges_fade_towards_an_end() {
+fn contacts_of_edges_fade_towards_an_end() {
     let right = std::f64::consts::FRAC_PI_2;
-    for (middle, wanted) in [(0.5, 1.0), (0.1, 1.0), (0.05, 0.5), (0.001, 0.01), (0.98, 0.2)] {
-        assert!((share(middle, right, true) - wanted).abs() < 1e-9, "{middle}");
-        assert!((share(middle, right, false) - 1.0).abs() < 1e-12, "{middle}");
+    for (middle, pile, elsewhere) in [
+        (0.5, 1.0, 1.0),
+        (0.1, 1.0, 1.0),
+        (0.05, 0.5, 1.0),
+        (0.001, 0.01, 0.2),
+        (0.98, 0.2, 1.0),
+        (0.999, 0.01, 0.2),
+    ] {
+        assert!((share(middle, right, true) - pile).abs() < 1e-9, "{middle}");
+        assert!((share(middle, right, false) - elsewhere).abs() < 1e-9, "{middle}");
     }
 }
 
