@@ -26,7 +26,9 @@ const MOST_DIP: f64 = 1e-4;
 /// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
-/// `steps`, the last state goes on with a warning. A scene that nothing holds has no rest: its fall is
+/// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
+/// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
+/// `coarsest` saves it. A scene that nothing holds has no rest: its fall is
 /// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
@@ -109,6 +111,8 @@ impl Rest {
         }
         let steps = progress.steps;
         let (state, converged) = self.judge(result, cx)?;
+        cx.figure("residual", state.residual, "N");
+        cx.figure("restarts", state.restarts as f64, "");
         if state.dip > MOST_DIP {
             let mm = state.dip * 1e3;
             cx.warn(format!(

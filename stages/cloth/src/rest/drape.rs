@@ -3,7 +3,8 @@
 use super::graded::stages;
 use super::level::Level;
 use super::newton::Pace;
-use super::solve::{Draped, Progress, RestError, Work};
+use super::solve::{Progress, RestError};
+use super::work::{Draped, Work};
 use crate::error::ClothError;
 
 /// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of that of the end: so near

@@ -11,7 +11,8 @@
 use super::graded::stages;
 use super::level::{Level, apart};
 use super::newton::Pace;
-use super::solve::{Progress, RestError, Work};
+use super::solve::{Progress, RestError};
+use super::work::Work;
 
 /// Steps of the first state: a skirt that nothing holds may turn about its body for ever.
 const FIRST_STEPS: usize = 40;

@@ -223,6 +223,7 @@ impl<'a> Live<'a> {
             dip: self.wearer.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
             joined_at: None,
             levels: vec![self.report(clock, first)],
+            restarts: 0,
         };
         let pairs = self.descent.crossings(&self.x);
         if pairs > 0 {

@@ -38,3 +38,4 @@ mod start;
 pub mod support;
 pub mod system;
 pub mod thread;
+mod work;

@@ -3,9 +3,10 @@
 use super::assemble::{assemble, spacing, strongest};
 use super::graded::stages;
 use super::newton::Pace;
-use super::solve::{Progress, RestError, Work};
+use super::solve::{Progress, RestError};
 use super::system::System;
 use super::thread::Thread;
+use super::work::Work;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
 use nalgebra::Vector3;

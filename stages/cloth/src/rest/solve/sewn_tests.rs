@@ -3,7 +3,9 @@
 use super::tests::*;
 use super::*;
 use crate::contact::tree::ClothTree;
+use crate::error::ClothError;
 use crate::rest::assemble::cloths;
+use crate::rest::pieces::Pieces;
 use crate::scene::{SceneError, StrainLimit, generate};
 
 fn gap(scene: &Scene, x: &[Vec3]) -> f64 {

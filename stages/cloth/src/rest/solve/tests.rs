@@ -3,6 +3,7 @@ use super::*;
 use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::rest::assemble::cloths;
+use crate::rest::pieces::Pieces;
 use crate::scene::Seam;
 use crate::scene::{Phase, SceneBody, generate};
 

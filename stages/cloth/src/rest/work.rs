@@ -1,0 +1,244 @@
+//! A garment on its way to rest: one try, from the coarsest mesh to the finest.
+
+use super::assemble::{KEPT_PULL, strongest};
+use super::clear::{Clearance, clearance};
+use super::multifrontal::Halt;
+use super::newton::{Outcome, Pace, relax};
+use super::pieces::Pieces;
+use super::pierce::pierced;
+use super::plan::Plan;
+use super::sew::widest;
+use super::solve::{LevelReport, Progress, RestError, Rested};
+use super::system::System;
+use crate::error::ClothError;
+use crate::mesh::Sheet;
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+type Vec3 = Vector3<f64>;
+
+/// How often nodes are moved out where triangles dip into the body.
+const CLEARINGS: usize = 4;
+
+/// First step of pseudo-time after that: the cloth hardly moves, s.
+const CLEAR_STEP: f64 = 0.2;
+
+/// How the levels ended.
+pub(super) enum Draped {
+    Rested(Box<Rested>),
+    /// The state carried to the level of so many nodes crosses itself and could not be undone.
+    Tangled {
+        nodes: usize,
+        /// Crossings left.
+        pairs: usize,
+    },
+    /// The body comes through a coarse level between its vertices.
+    Pierced {
+        /// Points of the next finer level.
+        finer: usize,
+    },
+}
+
+/// A garment on its way to rest.
+pub(super) struct Work<'a> {
+    pub(super) plan: &'a Plan<'a>,
+    clock: Instant,
+    /// Where the nodes of the level in work are.
+    pub(super) x: Vec<Vec3>,
+    pub(super) joined_at: Option<f64>,
+    /// How deep the cloth at rest dips into the body between its vertices, where that is known, m.
+    dip: Option<f64>,
+    pub(super) reports: Vec<LevelReport>,
+}
+
+impl<'a> Work<'a> {
+    pub(super) fn new(plan: &'a Plan<'a>, clock: Instant) -> Self {
+        Self { plan, clock, x: vec![], joined_at: None, dip: None, reports: vec![] }
+    }
+
+    /// Sews and drapes.
+    pub(super) fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, RestError> {
+        self.sew(progress)?;
+        let coarsest = self.plan.pieces.len() - 1;
+        let sheet = self.plan.pieces[coarsest].sewn_sheet(&self.plan.cloths)?;
+        match self.pierced(coarsest, &sheet, &self.x) {
+            Some(draped) => Ok(draped),
+            None => self.drape(progress),
+        }
+    }
+
+    /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by its end.
+    pub(super) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
+        let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
+        let wearer = self.plan.body?;
+        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::Pierced { finer })
+    }
+
+    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
+    pub(super) fn clear(
+        &mut self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut [Vec3],
+        pace: &Pace,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
+        let pace =
+            Pace { first: CLEAR_STEP, steps: 2 * self.plan.rest.coarse_steps, one_by_one: false, ..*pace };
+        for _ in 0..CLEARINGS {
+            let Some(Clearance { lacks, depth, .. }) = self.plan.body.map(|w| clearance(sheet, w.skin, x))
+            else {
+                break;
+            };
+            if depth == 0.0 {
+                self.dip = Some(depth);
+                break;
+            }
+            if let Some(s) = &mut system.support {
+                s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
+            }
+            let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
+            self.reports.push(report);
+        }
+        Ok(())
+    }
+
+    pub(super) fn finish(
+        self,
+        mut system: System<'_>,
+        sheet: &Sheet,
+        x: Vec<Vec3>,
+    ) -> Result<Rested, RestError> {
+        system.touch(&x);
+        let residual = super::newton::greatest(&system.gradient(&x));
+        let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
+        let positions = self.plan.pieces[0].spread(&x);
+        let energy = system.stored(&x);
+        let depth = || self.plan.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let (pairs, dip) = rayon::join(|| self.crossings(sheet, &x), || self.dip.unwrap_or_else(depth));
+        let slides = self.plan.pieces[0].spread(&system.held_back(&x));
+        let offsets = self.plan.pieces[0].offsets(&system);
+        let (joined_at, levels) = (self.joined_at, self.reports);
+        let grips = system.layers.take().map_or_else(Vec::new, |l| l.grips);
+        let state = Rested {
+            positions,
+            outcome,
+            residual,
+            slides,
+            grips,
+            offsets,
+            energy,
+            dip,
+            joined_at,
+            levels,
+            restarts: 0,
+        };
+        match pairs {
+            0 => Ok(state),
+            pairs => Err(RestError::Crossing { pairs, state: Box::new(state) }),
+        }
+    }
+
+    /// How often the sewn garment crosses itself with its nodes at `x`.
+    fn crossings(&self, sheet: &Sheet, x: &[Vec3]) -> usize {
+        #[cfg(toile_without = "self_contact")]
+        return 0;
+        #[cfg(not(toile_without = "self_contact"))]
+        match self.plan.scene.self_collision {
+            true => self.plan.tree(sheet, x, false).crossings(x).len(),
+            false => 0,
+        }
+    }
+
+    /// Runs one level.
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn run(
+        &self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut [Vec3],
+        pace: &Pace,
+        done: &dyn Fn(&[Vec3]) -> bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<LevelReport, RestError> {
+        let sewing = self.joined_at.is_none() && !system.threads.is_empty();
+        let tree = self.plan.scene.self_collision.then(|| self.plan.tree(sheet, layout, sewing));
+        let start = Instant::now();
+        let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
+        let (mut stop, mut is_late, mut falling) = (None, false, 0);
+        let late = || self.clock.elapsed() > self.plan.rest.budget;
+        let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
+            let seconds = start.elapsed().as_secs_f64();
+            report = LevelReport { nodes: x.len(), outcome: *outcome, seconds, ..report };
+            let free = system.touches.is_empty() && !system.pinned.contains(&true);
+            let falls = free
+                && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt
+                && outcome.dt >= pace.longest;
+            falling = if falls && outcome.speed > 0.0 { falling + 1 } else { 0 };
+            if falling > 8 {
+                stop = Some(RestError::Falls);
+            } else if progress(&report).is_break() {
+                stop = Some(RestError::Stopped);
+            }
+            is_late = late();
+            if stop.is_some() || is_late || done(x) {
+                ControlFlow::Break(())
+            } else {
+                ControlFlow::Continue(())
+            }
+        };
+        match relax(system, layout, tree, x, pace, &mut watch, &late) {
+            Ok(outcome) => report.outcome = outcome,
+            Err(Halt::NotPositive(error)) => return Err(error.into()),
+            Err(Halt::Stopped) => is_late = true,
+        }
+        match stop {
+            Some(error) => Err(error),
+            None if is_late => Err(self.timeout(x)),
+            None => Ok(report),
+        }
+    }
+
+    /// Out of time with the nodes of a level at `x`.
+    fn timeout(&self, x: &[Vec3]) -> RestError {
+        let (seconds, levels) = (self.clock.elapsed().as_secs_f64(), self.plan.pieces.len());
+        RestError::Timeout { seconds, level: levels - self.level_of(x), levels, positions: self.carried(x) }
+    }
+
+    /// The level, fine to coarse, that has these nodes, sewn or open.
+    fn level_of(&self, x: &[Vec3]) -> usize {
+        let has = |p: &Pieces| p.nodes == x.len() || p.rest.len() == x.len();
+        self.plan.pieces.iter().position(has).unwrap_or(0)
+    }
+
+    /// The level's nodes, sewn or open, carried to the finest vertices.
+    fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
+        let k = self.level_of(x);
+        let vertices =
+            if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
+        self.plan.coarser[..k].iter().rev().fold(vertices, |v, c| c.prolong(&v))
+    }
+
+    /// Refuses seams that are not joined and stay open at the end.
+    pub(super) fn check_kept(&self, x: &[Vec3]) -> Result<(), RestError> {
+        let gap = widest(x, &self.plan.pieces[0].kept_pairs());
+        if gap <= self.plan.rest.join_gap {
+            return Ok(());
+        }
+        let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
+        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.plan.cloths) })
+    }
+
+    /// Refuses cloth that the strain limit could not hold.
+    pub(super) fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
+        match self.plan.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
+            Some((index, strain, limit)) => {
+                Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
+            }
+            None => Ok(()),
+        }
+    }
+}
