@@ -14,7 +14,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
-use super::BlockMatrix;
+use super::{BlockMatrix, leave_vectors};
 use crate::error::ClothError;
 use crate::force::Vec3;
 
@@ -76,17 +76,17 @@ impl Cholesky {
     pub fn factor(&mut self, a: &BlockMatrix) -> Result<(), ClothError> {
         copy_values(a, self.width, &mut self.values);
         let matrix = SparseColMatRef::new(self.pattern.as_ref(), &self.values[..]);
-        self.symbolic
-            .factorize_numeric_llt(
-                &mut self.factor,
-                matrix,
-                Side::Lower,
-                LltRegularization { dynamic_regularization_delta: 0.0, dynamic_regularization_epsilon: 0.0 },
-                Par::Seq,
-                MemStack::new(&mut self.workspace),
-                Default::default(),
-            )
-            .map_err(refused)?;
+        let done = self.symbolic.factorize_numeric_llt(
+            &mut self.factor,
+            matrix,
+            Side::Lower,
+            LltRegularization { dynamic_regularization_delta: 0.0, dynamic_regularization_epsilon: 0.0 },
+            Par::Seq,
+            MemStack::new(&mut self.workspace),
+            Default::default(),
+        );
+        leave_vectors();
+        done.map_err(refused)?;
         // The library only stops at pivots that are not above zero; NaN must not slip through.
         if self.factor.iter().all(|v| v.is_finite()) {
             Ok(())
@@ -112,6 +112,7 @@ impl Cholesky {
             Par::Seq,
             MemStack::new(&mut workspace),
         );
+        leave_vectors();
         (0..b.len()).map(|v| Vec3::new(flat[at(v, 0)], flat[at(v, 1)], flat[at(v, 2)])).collect()
     }
 }

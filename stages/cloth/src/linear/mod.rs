@@ -4,6 +4,7 @@
 mod block;
 mod cholesky;
 mod pcg;
+mod vectors;
 
 #[cfg(test)]
 mod tests;
@@ -11,3 +12,4 @@ mod tests;
 pub use block::BlockMatrix;
 pub use cholesky::Cholesky;
 pub use pcg::{PcgReport, conjugate_gradients};
+pub(crate) use vectors::leave_vectors;

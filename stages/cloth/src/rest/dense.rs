@@ -4,6 +4,7 @@
 //! small factors are those of the `faer` library, which picks its instructions at run time.
 
 use super::real::Real;
+use crate::linear::leave_vectors;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, cholesky_in_place, cholesky_in_place_scratch};
 use faer::linalg::matmul::matmul;
@@ -56,7 +57,8 @@ fn factor_panel<T: Real>(a: MatMut<'_, T>) -> Result<(), usize> {
 fn solve_rows<T: Real>(top: MatRef<'_, T>, mut below: MatMut<'_, T>) {
     let rows = below.nrows();
     if rows <= STRIP {
-        return solve_lower_triangular_in_place(top, below.transpose_mut(), Par::Seq);
+        solve_lower_triangular_in_place(top, below.transpose_mut(), Par::Seq);
+        return leave_vectors();
     }
     let (upper, lower) = below.rb_mut().split_at_row_mut(whole_pieces(rows, STRIP));
     let work = rows * top.ncols() * top.ncols() / 2;
@@ -87,6 +89,7 @@ fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     if rest.nrows() > 0 {
         matmul(rest, accum, lower, top.transpose(), T::of(-1.0), Par::Seq);
     }
+    leave_vectors();
 }
 
 /// Half of `size`, in whole pieces.
