@@ -180,3 +180,22 @@ fn records_are_measured_and_checked_by_the_bench() {
     let refused = toile(&["bench", "costs", "--from", &out]);
     assert_eq!((refused.code, refused.err), (3, format!("error: \"{out}\" is damaged\n")));
 }
+
+#[test]
+fn springs_are_measured_on_the_photo_pipelines_as_they_are() {
+    for kind in ["tee", "vest"] {
+        let read = |path: String| std::fs::read_to_string(root().join(path)).unwrap();
+        let with_springs = read(format!("tests/costs/springs_{kind}.ron"));
+        let file = format!("springs_{kind}.ron");
+        let springs =
+            load(&with_springs, &file, &root().join("tests/costs"), &toile::registry(), &[]).unwrap();
+        assert!(springs.find("SpringDraper").is_some() && springs.find("Rest").is_none());
+        // All but how it is sewn, and its qualities, which are those of `Rest`.
+        let photo = read(format!("pipelines/photo_{kind}.ron"));
+        let (before, after) = photo.split_once("        Rest(),").unwrap();
+        let before = before.split_once("(\n    name:").unwrap().1.split_once('\n').unwrap().1;
+        let after = after.split_once('\n').unwrap().1.split_once("    ],\n").unwrap().0;
+        let moved = before.replace("samples/", "../../pipelines/samples/");
+        assert!(with_springs.contains(&moved) && with_springs.contains(after), "{kind}");
+    }
+}

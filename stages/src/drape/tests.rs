@@ -1,7 +1,7 @@
 //! A sewn vest hangs; cloth comes to rest where it should.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::SpringDraper;
+use super::{Rest, SpringDraper};
 use crate::cloth::fixtures::{Capsules, hanging, plain, vest};
 use crate::stitch::SpringStitcher;
 use toile_core::prelude::*;
@@ -54,6 +54,19 @@ fn a_sheet_on_a_ball_comes_to_rest_on_it() {
     assert!((nearest - 1.5e-3).abs() < 2e-4, "{nearest}");
     let lowest = draped.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     assert!(lowest < 0.06 && lowest > -0.1, "its corners hang: {lowest}");
+}
+
+#[test]
+fn rest_tells_what_force_is_left_and_how_often_it_began_again() {
+    let cx = Context::quiet();
+    let body = Capsules::torso().collider();
+    let draped = Rest::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, &cx).unwrap();
+    assert!(draped.status.converged);
+    let figures = cx.take_notes().0;
+    let told: Vec<(&str, &str)> = figures.iter().map(|f| (f.name.as_str(), f.unit)).collect();
+    assert_eq!(told, [("residual", "N"), ("restarts", "")]);
+    assert!(figures[0].value > 0.0 && figures[0].value < 0.1, "{figures:?}");
+    assert!(figures[1].value.fract() == 0.0, "{figures:?}");
 }
 
 #[test]

@@ -38,4 +38,6 @@ mod start;
 pub mod support;
 pub mod system;
 pub mod thread;
+#[cfg(test)]
+mod trial;
 mod work;

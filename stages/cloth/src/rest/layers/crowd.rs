@@ -1,6 +1,7 @@
 //! What is otherwise where many cloths lie on each other, each near many others, often of one mesh with corner over corner.
 //!
-//! There a contact that begins or ends with every rounding, at its full force, would push the pile to and fro for ever.
+//! There a contact that begins or ends with every rounding, at its full force, would push the pile to and fro for ever. Two edges
+//! may meet at an end anywhere, so at their very ends contacts fade everywhere.
 
 use super::Layers;
 use crate::contact::pair::{Closest, Kind, Pair};
@@ -14,8 +15,11 @@ const SLACK: f64 = 1.5;
 /// The same in edges.
 const EDGE_SLACK: f64 = 0.2;
 
-/// Share of an edge from its end within which its contact with an edge fades, in a pile and elsewhere.
-const END: (f64, f64) = (0.1, 0.005);
+/// Share of an edge from its end within which its contact with an edge fades in a pile.
+const END: f64 = 0.1;
+
+/// The same elsewhere: as little as serves, for where folds press on each other the ends must carry, too.
+const TIP: f64 = 0.005;
 
 /// Square of the sine of the angle between two edges below which their contact fades.
 const ALONG: f64 = 0.01;
@@ -44,8 +48,8 @@ impl Layers {
     pub(super) fn fading(&self, p: &Pair, c: &Closest, x: &[Vec3]) -> f64 {
         match p.kind {
             Kind::VertexTriangle => 1.0,
-            Kind::EdgeEdge if self.crowded => inwards(c, END.0) * across(&p.at(x)),
-            Kind::EdgeEdge => inwards(c, END.1),
+            Kind::EdgeEdge if self.crowded => inwards(c, END) * across(&p.at(x)),
+            Kind::EdgeEdge => inwards(c, TIP),
         }
     }
 

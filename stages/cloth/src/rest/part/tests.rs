@@ -1,22 +1,25 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::contact::body::Body;
 use crate::contact::tree::ClothTree;
-use crate::rest::assemble::{Wearer, assemble, cloths};
+use crate::mesh::Sheet;
 use crate::rest::nearby::Nearby;
 use crate::rest::pattern::Pattern;
-use crate::rest::pieces::Pieces;
+use crate::rest::trial::on_its_body;
 use crate::scene::{Scene, generate};
 
 /// A square on a ball, creased, in contact with the ball and with itself; every third node is awake in the half of greater x.
 fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     let scene: Scene = generate::drape(14);
+    on_its_body(&scene, |system, _, sheet| lay(&scene, system, sheet, check));
+}
+
+fn lay(
+    scene: &Scene,
+    mut system: System<'_>,
+    sheet: &Sheet,
+    check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>),
+) {
     let ball = scene.body.as_ref().unwrap();
-    let body = Body::new(ball.vertices.clone(), &ball.triangles);
-    let wearer = Wearer { skin: &body, friction: ball.friction };
-    let pieces = Pieces::new(&scene);
-    let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-    let mut system = assemble(&scene, Some(wearer), &pieces, &sheet, false).unwrap();
     let flat = scene.positions.clone();
     let top = ball.vertices.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
     // Two halves of the square lie on each other, less than a thickness apart; the lower one touches the ball's top.
@@ -26,7 +29,7 @@ fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
         Vec3::new(-p.x.abs(), top + 5e-4 + upper * 4e-4 + wave, p.z)
     };
     let x: Vec<Vec3> = flat.iter().map(fold).collect();
-    let mut nearby = Nearby::new(Some(ClothTree::new(&sheet, &flat)));
+    let mut nearby = Nearby::new(Some(ClothTree::new(sheet, &flat)));
     nearby.seek_about(&mut system, &x, &vec![true; x.len()]);
     system.touch(&x);
     let awake = flat.iter().enumerate().map(|(i, p)| p.x > 0.05 && i % 3 == 0).collect();

@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use crate::contact::body::Body;
-use crate::rest::assemble::{Wearer, assemble, cloths};
 use crate::rest::newton::{Pace, relax};
-use crate::rest::pieces::Pieces;
 use crate::rest::real::Precision;
-use crate::scene::generate;
+use crate::rest::system::System;
+use crate::rest::trial::on_its_body;
+use crate::scene::{Scene, generate};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
@@ -15,12 +15,10 @@ type Vec3 = Vector3<f64>;
 fn contact_carries_whatever_presses_on_one_node() {
     let mut scene = generate::drape(10);
     scene.self_collision = false;
-    let ball = scene.body.as_ref().unwrap();
-    let body = Body::new(ball.vertices.clone(), &ball.triangles);
-    let wearer = Wearer { skin: &body, friction: ball.friction };
-    let pieces = Pieces::new(&scene);
-    let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-    let mut system = assemble(&scene, Some(wearer), &pieces, &sheet, false).unwrap();
+    on_its_body(&scene, |system, body, _| press_the_middle(&scene, system, body));
+}
+
+fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     let mut x = scene.positions.clone();
     let middle = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
     let (stiffness, offset) = {

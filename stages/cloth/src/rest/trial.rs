@@ -1,0 +1,19 @@
+//! A scene's cloth on its body, sewn and ready for a step: what tests of single parts begin with.
+#![allow(clippy::unwrap_used)]
+
+use super::assemble::{Wearer, assemble, cloths};
+use super::pieces::Pieces;
+use super::system::System;
+use crate::contact::body::Body;
+use crate::mesh::Sheet;
+use crate::scene::Scene;
+
+pub(super) fn on_its_body(scene: &Scene, check: impl FnOnce(System<'_>, &Body, &Sheet)) {
+    let worn = scene.body.as_ref().unwrap();
+    let body = Body::new(worn.vertices.clone(), &worn.triangles);
+    let wearer = Wearer { skin: &body, friction: worn.friction };
+    let pieces = Pieces::new(scene);
+    let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
+    let system = assemble(scene, Some(wearer), &pieces, &sheet, false).unwrap();
+    check(system, &body, &sheet);
+}
