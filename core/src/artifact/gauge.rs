@@ -144,26 +144,29 @@ fn filled(points: &[Point2], corners: &[usize]) -> (Vec<Point2>, Vec<usize>) {
 
 /// The farthest that a chord over an arc of length `s` leaves the curve between two of its points.
 fn worst_sag(points: &[Point2], along: &[f64], from: usize, to: usize, s: f64) -> f64 {
-    let mut worst: f64 = 0.0;
+    let (mut worst, mut j) = (0.0, from);
     for i in from..to {
-        let end = i + along[i..=to].partition_point(|a| *a < along[i] + s);
-        let j = end.min(to);
-        worst = points[i + 1..j.max(i + 1)]
-            .iter()
-            .map(|p| off_chord(*p, points[i], points[j]))
-            .fold(worst, f64::max);
+        while j < to && along[j] < along[i] + s {
+            j += 1;
+        }
+        worst = off_chord(&points[i + 1..j.max(i + 1)], points[i], points[j], worst);
         if j == to {
             break;
         }
     }
-    worst
+    worst.sqrt()
 }
 
-/// Distance of a point from a chord.
-fn off_chord(p: Point2, a: Point2, b: Point2) -> f64 {
-    let (d, v): (Vector2, Vector2) = (b - a, p - a);
-    let t = if d.norm_squared() > 0.0 { (v.dot(&d) / d.norm_squared()).clamp(0.0, 1.0) } else { 0.0 };
-    (v - d * t).norm()
+/// The greatest squared distance of the points from a chord, or `least`.
+fn off_chord(points: &[Point2], a: Point2, b: Point2, least: f64) -> f64 {
+    let d = b - a;
+    let squared = d.norm_squared();
+    let whole = if squared > 0.0 { squared } else { 1.0 };
+    let distance = |p: &Point2| {
+        let v: Vector2 = p - a;
+        (v - d * (v.dot(&d) / whole).clamp(0.0, 1.0)).norm_squared()
+    };
+    points.iter().map(distance).fold(least, |worst, x| if x > worst { x } else { worst })
 }
 
 #[cfg(test)]

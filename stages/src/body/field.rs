@@ -1,6 +1,6 @@
 //! Smooth solids as scalar fields: negative inside, zero on the skin, about the distance near it.
 //!
-//! Parts (lofts, limbs, ellipsoids) are joined by a smooth minimum (after Quilez, 2008), so that no
+//! Parts (lofts, ellipsoids, and [limbs](super::limb)) are joined by a smooth minimum (after Quilez, 2008), so that no
 //! crease shows where an arm leaves the trunk. Every part is symmetric about x = 0 and is asked at
 //! x >= 0 only.
 //!
@@ -92,33 +92,6 @@ impl Loft {
     }
 }
 
-/// A tube of varying radius around a bent axis.
-#[derive(Debug, Clone)]
-pub(crate) struct Limb {
-    /// The axis' points.
-    pub axis: Vec<Point3>,
-    /// Radius over the length along the axis, metres.
-    pub radius: Spline,
-    /// Stretch of the section along x and z: 1 is a circle.
-    pub stretch: [f64; 2],
-}
-
-impl Limb {
-    /// The value: the distance to the axis minus the radius there.
-    pub(crate) fn value(&self, p: Point3) -> f64 {
-        let squeeze = |q: Point3| Point3::new(q.x / self.stretch[0], q.y, q.z / self.stretch[1]);
-        let (p, mut start, mut best) = (squeeze(p), 0.0, f64::INFINITY);
-        for w in self.axis.windows(2) {
-            let (a, b) = (squeeze(w[0]), squeeze(w[1]));
-            let (ab, length) = (b - a, (w[1] - w[0]).norm());
-            let t = ((p - a).dot(&ab) / ab.norm_squared()).clamp(0.0, 1.0);
-            best = best.min((p - (a + ab * t)).norm() - self.radius.at(start + t * length));
-            start += length;
-        }
-        best * self.stretch[0].min(self.stretch[1]).min(1.0)
-    }
-}
-
 /// An ellipsoid with axes along x, y and z.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Ellipsoid {
@@ -158,17 +131,6 @@ mod tests {
     fn smooth_minimum_is_the_minimum_away_from_the_corner() {
         assert_eq!(smooth_min(0.3, 0.1, 0.1), 0.1);
         assert!(smooth_min(0.1, 0.1, 0.06) < 0.1);
-    }
-
-    #[test]
-    fn a_straight_limb_of_even_radius_is_a_capsule() {
-        let limb = Limb {
-            axis: vec![Point3::origin(), Point3::new(0.0, 1.0, 0.0)],
-            radius: Spline::new([(0.0, 0.1), (1.0, 0.1)]),
-            stretch: [1.0, 1.0],
-        };
-        assert!((limb.value(Point3::new(0.3, 0.5, 0.0)) - 0.2).abs() < 1e-12);
-        assert!((limb.value(Point3::new(0.0, 1.5, 0.0)) - 0.4).abs() < 1e-12);
     }
 
     #[test]

@@ -7,7 +7,8 @@
 //!
 //! Limit: a dress form, not a portrait: no fingers, no face.
 
-use super::field::{Ellipsoid, Field, Limb, Loft, smooth_max, smooth_min};
+use super::field::{Ellipsoid, Field, Loft, smooth_max, smooth_min};
+use super::limb::Limb;
 use super::spline::Spline;
 use toile_core::artifact::{Point3, Vector3};
 
@@ -76,6 +77,12 @@ pub(crate) mod level {
     pub(crate) const NECK: f64 = 0.974;
 }
 
+/// Share of its width that a smooth minimum takes off at most.
+const JOINING: f64 = 1.0 / 6.0;
+
+/// Width over which arms and trunk are joined, metres on the adult.
+const ARM: f64 = 0.06;
+
 /// The height of the head from chin to crown: from 18 cm at one year to 22.5 cm grown up.
 fn head_height(height: f64) -> f64 {
     0.18 + (height - 0.8) * (0.045 / 0.92)
@@ -134,8 +141,8 @@ impl Figure {
     pub(crate) fn bounds(&self) -> [f64; 5] {
         let deep = |s: &Spline| TRUNK.iter().map(|r| s.at(r[0] * self.chin)).fold(0.0, f64::max);
         let wide = deep(&self.trunk.half_width);
-        let reach = self.hand[0].axis.iter().map(|p| p.x).fold(wide, f64::max) + 0.07;
-        let toes = self.foot.axis.iter().map(|p| p.z).fold(0.0, f64::max) + 0.06;
+        let reach = self.hand[0].axis().iter().map(|p| p.x).fold(wide, f64::max) + 0.07;
+        let toes = self.foot.axis().iter().map(|p| p.z).fold(0.0, f64::max) + 0.06;
         [
             reach,
             0.0,
@@ -149,22 +156,28 @@ impl Figure {
     fn upper(&self, p: Point3, s: f64) -> f64 {
         let [skull, jaw] = self.head.map(|e| e.value(p));
         let head = smooth_min(skull, jaw, 0.05 * s);
-        let mut trunk = smooth_min(self.trunk.value(p), self.girdle.value(p), 0.11 * s);
+        let mut trunk = self.girdle.joined(self.trunk.value(p), p, 0.11 * s);
         if let Some(breast) = self.breast {
             trunk = smooth_min(trunk, breast.value(p), 0.075 * s);
         }
         let trunk = smooth_min(trunk, self.seat.value(p), 0.06 * s);
-        smooth_min(trunk, smooth_min(head, self.neck.value(p), 0.04 * s), 0.07 * s)
+        smooth_min(trunk, self.neck.joined(head, p, 0.04 * s), 0.07 * s)
     }
 
-    fn arm(&self, p: Point3, s: f64) -> f64 {
-        let [palm, thumb] = [&self.hand[0], &self.hand[1]].map(|l| l.value(p));
-        smooth_min(self.arm.value(p), smooth_min(palm, thumb, 0.02 * s), 0.03 * s)
+    /// `value` joined with arm and hand.
+    fn with_arm(&self, value: f64, p: Point3, s: f64) -> f64 {
+        let [palm, thumb] = &self.hand;
+        let least = [&self.arm, palm, thumb].map(|l| l.at_least(p)).into_iter().fold(f64::INFINITY, f64::min);
+        if least - JOINING * (0.03 + 0.02) * s > value + ARM * s {
+            return value;
+        }
+        let hand = smooth_min(palm.value(p), thumb.value(p), 0.02 * s);
+        smooth_min(value, smooth_min(self.arm.value(p), hand, 0.03 * s), ARM * s)
     }
 
     /// A leg, its foot cut flat at the ground.
     fn leg(&self, p: Point3, s: f64) -> f64 {
-        let leg = smooth_min(self.leg.value(p), self.foot.value(p), 0.05 * s);
+        let leg = self.foot.joined(self.leg.value(p), p, 0.05 * s);
         smooth_max(leg, -p.y, 0.01 * s)
     }
 }
@@ -185,7 +198,11 @@ impl Figure {
         let s = self.size_factor();
         let right = Point3::new(-p.x.abs(), p.y, p.z);
         let p = Point3::new(p.x.abs(), p.y, p.z);
-        let legs = || smooth_min(self.leg(p, s), self.leg(right, s), 0.07 * s);
+        let legs = || {
+            let left = self.leg(p, s);
+            let least = self.leg.at_least(right).min(self.foot.at_least(right)) - JOINING * 0.05 * s;
+            if least > left + 0.07 * s { left } else { smooth_min(left, self.leg(right, s), 0.07 * s) }
+        };
         // Parts that are far above or below cannot be the nearest.
         match p.y / self.chin {
             v if v > 0.72 => upper(p, s),
@@ -197,7 +214,7 @@ impl Figure {
 
 impl Field for Figure {
     fn value(&self, p: Point3) -> f64 {
-        self.joined(p, |p, s| smooth_min(self.upper(p, s), self.arm(p, s), 0.06 * s))
+        self.joined(p, |p, s| self.with_arm(self.upper(p, s), p, s))
     }
 }
 
@@ -275,16 +292,12 @@ impl Shape<'_> {
         let drop = (joint.x - neck.x) * slope.tan();
         let joint = Point3::new(joint.x, neck.y - drop + (inner - outer) / slope.cos(), joint.z);
         let length = (joint - neck).norm();
-        Limb {
-            axis: vec![neck, joint],
-            radius: Spline::new([(0.0, inner), (length, outer)]),
-            stretch: [1.0, 1.25],
-        }
+        Limb::new(vec![neck, joint], Spline::new([(0.0, inner), (length, outer)]), [1.0, 1.25])
     }
 
     fn arm_axis(&self) -> [Point3; 3] {
         let girdle = self.girdle();
-        let joint = girdle.axis[1] + Vector3::new(-0.006, -0.002, 0.0) * self.stature;
+        let joint = girdle.axis()[1] + Vector3::new(-0.006, -0.002, 0.0) * self.stature;
         let (sin, cos) = self.size.arm_angle.sin_cos();
         let upper = Vector3::new(sin, -cos, 0.0) * (0.285 * self.stature);
         let bend = 12.0_f64.to_radians();
@@ -303,21 +316,16 @@ impl Shape<'_> {
             (0.44, 0.033),
             (0.53, 0.0255),
         ];
-        Limb {
-            axis: axis.to_vec(),
-            radius: Spline::new(profile.map(|(l, v)| (l * self.stature, v * r))),
-            stretch: [1.0, 1.05],
-        }
+        Limb::new(axis.to_vec(), Spline::new(profile.map(|(l, v)| (l * self.stature, v * r))), [1.0, 1.05])
     }
 
     /// A mitten and its thumb.
     fn hand(&self, axis: &[Point3; 3]) -> [Limb; 2] {
         let along = (axis[2] - axis[1]).normalize();
         let wrist = axis[2] - along * (0.01 * self.stature);
-        let limb = |from: Point3, to: Vector3, profile: &[(f64, f64)], stretch| Limb {
-            axis: vec![from, from + to],
-            radius: Spline::new(profile.iter().map(|&(l, r)| (l * self.stature, r * self.stature))),
-            stretch,
+        let limb = |from: Point3, to: Vector3, profile: &[(f64, f64)], stretch| {
+            let radius = profile.iter().map(|&(l, r)| (l * self.stature, r * self.stature));
+            Limb::new(vec![from, from + to], Spline::new(radius), stretch)
         };
         let palm = limb(
             wrist,
@@ -333,15 +341,12 @@ impl Shape<'_> {
     fn neck(&self) -> Limb {
         let r = self.size.neck / std::f64::consts::TAU;
         let s = self.stature;
-        Limb {
-            axis: vec![
-                Point3::new(0.0, self.y(0.93), -0.030 * s),
-                Point3::new(0.0, self.y(0.985), -0.014 * s),
-                Point3::new(0.0, self.y(1.03), 0.006 * s),
-            ],
-            radius: Spline::new([(0.0, r * 1.12), (0.08 * s, r), (0.2 * s, r * 0.98)]),
-            stretch: [1.0, 1.02],
-        }
+        let axis = vec![
+            Point3::new(0.0, self.y(0.93), -0.030 * s),
+            Point3::new(0.0, self.y(0.985), -0.014 * s),
+            Point3::new(0.0, self.y(1.03), 0.006 * s),
+        ];
+        Limb::new(axis, Spline::new([(0.0, r * 1.12), (0.08 * s, r), (0.2 * s, r * 0.98)]), [1.0, 1.02])
     }
 
     /// Skull and jaw.
@@ -380,7 +385,7 @@ impl Shape<'_> {
             (0.055, 0.034 * shin),
         ];
         let top = self.y(0.575);
-        Limb { axis, radius: Spline::new(radii.map(|(v, r)| (top - self.y(v), r))), stretch: [1.0, 1.05] }
+        Limb::new(axis, Spline::new(radii.map(|(v, r)| (top - self.y(v), r))), [1.0, 1.05])
     }
 
     /// From heel to toes, turned out a little.
@@ -393,6 +398,6 @@ impl Shape<'_> {
             Point3::new(x + 0.018 * s, 0.012 * s, 0.150 * s),
         ];
         let profile = [(0.0, 0.032), (0.06, 0.036), (0.14, 0.034), (0.204, 0.020)];
-        Limb { axis, radius: Spline::new(profile.map(|(l, v)| (l * s, v * r))), stretch: [1.12, 1.0] }
+        Limb::new(axis, Spline::new(profile.map(|(l, v)| (l * s, v * r))), [1.12, 1.0])
     }
 }

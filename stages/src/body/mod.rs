@@ -6,6 +6,7 @@ mod field;
 mod figure;
 mod isosurface;
 mod landmarks;
+mod limb;
 mod mannequin;
 mod obj;
 mod slice;

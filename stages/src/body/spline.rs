@@ -21,6 +21,11 @@ impl Spline {
         Spline { x, y, slope }
     }
 
+    /// The greatest value: that of a knot, for it never overshoots.
+    pub(crate) fn greatest(&self) -> f64 {
+        self.y.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// The curve's value.
     pub(crate) fn at(&self, x: f64) -> f64 {
         let (Some(&first), Some(&last)) = (self.x.first(), self.x.last()) else { return 0.0 };
@@ -68,6 +73,7 @@ mod tests {
             let i = (x as usize).min(ys.len() - 2);
             let (lo, hi) = (ys[i].min(ys[i + 1]), ys[i].max(ys[i + 1]));
             prop_assert!(s.at(x) >= lo - 1e-12 && s.at(x) <= hi + 1e-12);
+            prop_assert!(s.at(x) <= s.greatest() + 1e-12);
         }
     }
 }

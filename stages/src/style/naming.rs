@@ -1,7 +1,6 @@
 //! From landmarks to named edges: what all upper-body styles share.
 
 use super::neck::neck_points;
-use super::sewing::own_gauges;
 use super::shape::{Bend, MAX_TILT, Path, Shape};
 use toile_core::prelude::*;
 
@@ -24,7 +23,7 @@ pub(super) type Half = Vec<(&'static str, usize)>;
 /// cannot.
 pub(super) type FindHalf = fn(&Shape, Path) -> Result<Half, String>;
 
-/// Names the edges of one panel's outline.
+/// Names the edges of one panel's outline. Into how many parts they are divided is found where they are sewn.
 pub(super) fn name_edges(
     panel: &str,
     style: &str,
@@ -50,7 +49,6 @@ pub(super) fn name_edges(
     named.outer.corners.extend(named.edges.iter().map(|e| e.start));
     named.outer.corners.sort_unstable();
     named.outer.corners.dedup();
-    own_gauges(&mut named);
     Ok(named)
 }
 

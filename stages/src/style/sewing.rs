@@ -4,6 +4,7 @@
 //! one edge on the other: its threads must not be longer than those of the opposite pairing. Cost: linear in the edges.
 
 use super::naming::is_back;
+use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::pipeline::nearest;
@@ -200,10 +201,9 @@ fn evenly(points: &[Point2]) -> [Point2; THREADS] {
 }
 
 /// Gives every edge the divisions that suit it alone.
-pub(super) fn own_gauges(outline: &mut Outline) {
-    for i in 0..outline.edges.len() {
-        outline.edges[i].gauge = own_gauge(outline, &outline.edges[i]);
-    }
+fn own_gauges(outline: &mut Outline) {
+    let gauges: Vec<Gauge> = outline.edges.par_iter().map(|e| own_gauge(outline, e)).collect();
+    outline.edges.iter_mut().zip(gauges).for_each(|(e, gauge)| e.gauge = gauge);
 }
 
 /// The divisions that suit an edge alone.
