@@ -89,9 +89,23 @@ fn factors_are_of_single_precision_where_that_solves_the_step() {
     assert!(told.contains(words), "{told}");
     assert!(told.contains("      else    --set 'stages.Rest.precision=Double'"), "{told}");
     let graded = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.graded=true"]);
-    assert!(graded.contains("      within  surface 5 mm\n"), "{graded}");
+    assert!(graded.contains("      within  surface 8 mm\n"), "{graded}");
     let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.precision=Double"]);
     assert!(!turned.contains("mixed-precision"), "{turned}");
+}
+
+#[test]
+fn regions_at_rest_sleep_unless_they_may_not() {
+    let told = decisions(&[&pipeline("scene.ron")]);
+    let words = "
+  Rest                 simplified steps of all vertices: while few of them move, only these (regions-at-rest)
+      by      about 1024 triangles, most of which rest before the last ones do
+      within  surface 20 mm
+";
+    assert!(told.contains(words), "{told}");
+    assert!(told.contains("      else    --set 'stages.Rest.asleep=false'"), "{told}");
+    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.asleep=false"]);
+    assert!(!turned.contains("regions-at-rest"), "{turned}");
 }
 
 /// The skirt, with a cloth that nothing asks for.
@@ -99,7 +113,7 @@ const SKIRT: &str = r#"(
     name: "skirt",
     scene: Scene(file: "FILE"),
     fabric: Preset("cotton poplin"),
-    stages: [ Rest(precision: Double), GarmentObj() ],
+    stages: [ Rest(precision: Double, asleep: false), GarmentObj() ],
 )
 "#;
 
@@ -269,8 +283,8 @@ fn explain_gives_one_json_object() {
 
 #[test]
 fn a_pipeline_that_leaves_nothing_out_has_nothing_to_turn_round() {
-    let (scene, ahead) =
-        (pipeline("scene.ron"), ["--set", "scene.distances=Ahead", "--set", "stages.Rest.precision=Double"]);
+    let turned = ["scene.distances=Ahead", "stages.Rest.precision=Double", "stages.Rest.asleep=false"];
+    let (scene, ahead) = (pipeline("scene.ron"), turned.map(|t| ["--set", t]).concat());
     assert_eq!(decisions(&[&[&*scene], &ahead[..]].concat()), "decisions: nothing is left out or simplified");
     let answer = toile(&[&["trade", &*scene, "--ablate"], &ahead[..]].concat());
     let words = "error: nothing is left out or simplified in this pipeline\n  help: `toile explain` shows the decisions of a pipeline\n";

@@ -6,6 +6,7 @@
 //! which one is found.
 
 use super::ImplicitEuler;
+use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
 use crate::cloth::check_garment;
@@ -68,6 +69,10 @@ pub struct Rest {
     /// always double. The state that is found keeps `speed` either way.
     #[param(default = Precision::Mixed)]
     pub precision: Precision,
+    /// Whether what has come to rest sleeps while few vertices still move: these settle by themselves before the whole takes its next
+    /// step. Rest is proved with all either way.
+    #[param(default = true)]
+    pub asleep: bool,
     /// Distance at which cloth is held off itself where the pipeline names no collider.
     #[param(default = Length::mm(1.0), min = 1e-5, max = 0.05)]
     pub thickness: Length,
@@ -123,7 +128,11 @@ impl Rest {
     }
 
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
-        mixed_precision::rule(self.precision, self.graded, known.given).into_iter().collect()
+        let rules = [
+            mixed_precision::rule(self.precision, self.graded, known.given),
+            asleep::rule(self.asleep, self.graded, known.given),
+        ];
+        rules.into_iter().flatten().collect()
     }
 
     fn solver(&self) -> Solver {
@@ -136,6 +145,7 @@ impl Rest {
             budget: Duration::from_secs_f64(self.time_limit),
             graded: self.graded,
             precision: self.precision.into(),
+            asleep: self.asleep,
         }
     }
 

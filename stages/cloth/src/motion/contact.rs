@@ -3,6 +3,7 @@
 use super::MotionError;
 use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
+use crate::contact::start;
 use crate::contact::tree::ClothTree;
 use crate::rest::solve::Wearer;
 use crate::scene::Scene;
@@ -10,25 +11,13 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
-const DEEPEST_START: f64 = 0.05;
-
 /// Share of an overlap of two layers that one step takes away.
 const RELEASE: f64 = 0.2;
 
 /// The start with vertices that lie a little inside the body moved out.
 pub(super) fn clear_start(scene: &Scene, wearer: Option<Wearer<'_>>) -> Result<Vec<Vec3>, MotionError> {
-    let mut start = scene.positions.clone();
-    let Some(wearer) = wearer else { return Ok(start) };
-    let (mut vertices, mut depth) = (0, 0.0f64);
-    let near = wearer.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
-    for (p, n) in start.iter_mut().zip(near) {
-        if let Some(n) = n.filter(|n| n.distance < 0.0) {
-            (vertices, depth) = (vertices + 1, depth.max(-n.distance));
-            *p = n.point + n.normal * scene.material.thickness;
-        }
-    }
-    if depth > DEEPEST_START { Err(MotionError::InitialPenetration { vertices, depth }) } else { Ok(start) }
+    let Some(wearer) = wearer else { return Ok(scene.positions.clone()) };
+    Ok(start::clear_start(&scene.positions, wearer.skin, scene.material.thickness)?)
 }
 
 /// Keeps moves out of the body: what a vertex loses of its way into it, times the friction, it may lose of its way along it.

@@ -1,5 +1,6 @@
 //! Why a motion did not end.
 
+use crate::contact::start::Sunk;
 use crate::error::ClothError;
 use crate::scene::SceneError;
 
@@ -59,4 +60,10 @@ pub enum MotionError {
     /// The caller asked to stop.
     #[error("stopped")]
     Stopped,
+}
+
+impl From<Sunk> for MotionError {
+    fn from(sunk: Sunk) -> Self {
+        Self::InitialPenetration { vertices: sunk.vertices, depth: sunk.depth }
+    }
 }

@@ -69,3 +69,35 @@ impl Descent {
         (count as f64 <= FEW * awake.len() as f64).then_some(awake)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use crate::rest::solve::{Rest, Rested};
+    use crate::scene::generate;
+    use std::ops::ControlFlow;
+
+    /// A skirt sewn on a form, and its steps on the finest mesh.
+    fn skirt([nx, ny]: [u32; 2], asleep: bool) -> (Rested, usize) {
+        let (scene, mut levels) = (generate::tube(nx, ny), vec![]);
+        let rest = Rest { asleep, ..Rest::default() };
+        let state = rest.solve(&scene, &mut |level| {
+            levels.push(level.nodes);
+            ControlFlow::Continue(())
+        });
+        let finest = levels.iter().max().copied();
+        (state.unwrap(), levels.iter().filter(|n| Some(**n) == finest).count())
+    }
+
+    #[test]
+    fn while_few_nodes_move_the_others_sleep_and_rest_is_found_in_fewer_steps() {
+        let (mut few, mut many) = (0, 0);
+        for size in [[40, 14], [48, 12], [32, 16], [64, 24]] {
+            let ((asleep, a), (awake, b)) = (skirt(size, true), skirt(size, false));
+            (few, many) = (few + a, many + b);
+            let apart = asleep.energy / awake.energy - 1.0;
+            assert!(apart.abs() < 0.01, "{apart}");
+        }
+        assert!(few < many, "{few} {many}");
+    }
+}

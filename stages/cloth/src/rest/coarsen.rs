@@ -5,15 +5,13 @@
 //! plane). The two sides of a seam collapse together, so they keep matching. Each fine vertex then knows the coarse
 //! triangle that it lies in. A third to a quarter of the vertices remain. Cost O(n) on ordinary meshes.
 
+use self::keep::independent;
+use self::locate::Locator;
 use super::pieces::Pieces;
 use nalgebra::{Vector2, Vector3};
-use std::collections::BTreeMap;
 
 /// Least shape quality (1 equilateral) of a triangle that a collapse may make.
 const LEAST_QUALITY: f64 = 0.3;
-
-/// Cosine of the turn of an outline above which a vertex is a corner: 20 degrees.
-const CORNER_COSINE: f64 = 0.94;
 
 /// A coarser level.
 #[derive(Debug, Clone)]
@@ -244,138 +242,8 @@ pub(super) fn signed_quality(t: &[Vector2<f64>; 3]) -> f64 {
     2.0 * 3.0_f64.sqrt() * (t[1] - t[0]).perp(&(t[2] - t[0])) / sum.max(f64::MIN_POSITIVE)
 }
 
-/// Which sewn points are kept: no two of them neighbours, except those that must be.
-fn independent(fine: &Pieces, mesh: &Mesh) -> Vec<bool> {
-    let must: Vec<bool> = (0..fine.points).map(|p| must_keep(p, fine, mesh)).collect();
-    let mut keep = must.clone();
-    let mut near = vec![false; fine.points];
-    let block = |p: usize, near: &mut [bool]| {
-        for &v in &mesh.members[p] {
-            mesh.neighbours(v).iter().for_each(|&w| near[fine.point[w as usize] as usize] = true);
-        }
-    };
-    (0..fine.points).filter(|&p| must[p]).for_each(|p| block(p, &mut near));
-    let outline = |p: &usize| mesh.members[*p].iter().any(|&v| mesh.on_outline[v as usize]);
-    let inside = |p: &usize| !outline(p);
-    for p in outline_order(fine, mesh, &must).into_iter().chain((0..fine.points).filter(inside)) {
-        if !near[p] && !keep[p] {
-            keep[p] = true;
-            block(p, &mut near);
-        }
-    }
-    keep
-}
-
-/// The points of the outlines, walked from one to the next, so that every second one is kept.
-fn outline_order(fine: &Pieces, mesh: &Mesh, must: &[bool]) -> Vec<usize> {
-    let mut seen = vec![false; fine.points];
-    let mut order = Vec::new();
-    let starts = (0..fine.rest.len()).filter(|&v| mesh.on_outline[v]);
-    let (first, then): (Vec<usize>, Vec<usize>) = starts.partition(|&v| must[fine.point[v] as usize]);
-    for start in first.into_iter().chain(then) {
-        let mut at = start;
-        loop {
-            let p = fine.point[at] as usize;
-            if std::mem::replace(&mut seen[p], true) && at != start {
-                break;
-            }
-            order.push(p);
-            let open = |w: &&u32| !seen[fine.point[**w as usize] as usize];
-            match mesh.outline[at].as_ref().and_then(|ends| ends.iter().find(open)) {
-                Some(&next) => at = next as usize,
-                None => break,
-            }
-        }
-    }
-    order
-}
-
-fn must_keep(p: usize, fine: &Pieces, mesh: &Mesh) -> bool {
-    let sewn = |v: u32| mesh.members[fine.point[v as usize] as usize].len();
-    mesh.members[p].iter().any(|&v| {
-        let i = v as usize;
-        if fine.pinned[i] {
-            return true;
-        }
-        if !mesh.on_outline[i] {
-            return false;
-        }
-        let Some([a, b]) = mesh.outline[i] else { return true };
-        let (from, to) = (fine.rest[i] - fine.rest[a as usize], fine.rest[b as usize] - fine.rest[i]);
-        let turns = from.dot(&to) < CORNER_COSINE * from.norm() * to.norm();
-        // Where a seam begins or ends, its two sides part.
-        turns || sewn(a) != sewn(v) || sewn(b) != sewn(v)
-    })
-}
-
-/// Finds the coarse triangle that a fine vertex lies in.
-struct Locator<'a> {
-    pieces: &'a Pieces,
-    cell: f64,
-    cells: BTreeMap<(u32, i64, i64), Vec<u32>>,
-}
-
-impl<'a> Locator<'a> {
-    fn new(pieces: &'a Pieces) -> Self {
-        let area: f64 = pieces
-            .triangles
-            .iter()
-            .map(|t| corners(pieces, t))
-            .map(|[a, b, c]| 0.5 * (b - a).perp(&(c - a)))
-            .sum();
-        let cell = (2.0 * area / pieces.triangles.len() as f64).sqrt().max(1e-9);
-        let mut cells: BTreeMap<(u32, i64, i64), Vec<u32>> = BTreeMap::new();
-        for (k, t) in pieces.triangles.iter().enumerate() {
-            let c = corners(pieces, t);
-            let (low, high) = (c[0].inf(&c[1]).inf(&c[2]) / cell, c[0].sup(&c[1]).sup(&c[2]) / cell);
-            for i in low.x.floor() as i64..=high.x.floor() as i64 {
-                for j in low.y.floor() as i64..=high.y.floor() as i64 {
-                    cells.entry((pieces.piece[t[0] as usize], i, j)).or_default().push(k as u32);
-                }
-            }
-        }
-        Self { pieces, cell, cells }
-    }
-
-    fn weights(&self, fine: &Pieces) -> Vec<([u32; 3], [f64; 3])> {
-        fine.rest.iter().zip(&fine.piece).map(|(p, &piece)| self.find(p, piece)).collect()
-    }
-
-    /// The triangle that `p` lies in, or least far outside of, and its weights there.
-    fn find(&self, p: &Vector2<f64>, piece: u32) -> ([u32; 3], [f64; 3]) {
-        let (ci, cj) = ((p.x / self.cell).floor() as i64, (p.y / self.cell).floor() as i64);
-        let mut best: Option<(f64, u32, [f64; 3])> = None;
-        for ring in 0..4 {
-            for i in ci - ring..=ci + ring {
-                for j in cj - ring..=cj + ring {
-                    for &t in self.cells.get(&(piece, i, j)).map_or(&[][..], |c| c) {
-                        let w = barycentric(p, &corners(self.pieces, &self.pieces.triangles[t as usize]));
-                        let least = w.iter().copied().fold(f64::INFINITY, f64::min);
-                        if best.is_none_or(|b| least > b.0) {
-                            best = Some((least, t, w));
-                        }
-                    }
-                }
-            }
-            if best.is_some_and(|b| b.0 > -1e-9 || ring > 0) {
-                break;
-            }
-        }
-        let (_, t, w) = best.unwrap_or((0.0, 0, [1.0, 0.0, 0.0]));
-        (self.pieces.triangles[t as usize], w)
-    }
-}
-
-fn corners(pieces: &Pieces, t: &[u32; 3]) -> [Vector2<f64>; 3] {
-    t.map(|v| pieces.rest[v as usize])
-}
-
-fn barycentric(p: &Vector2<f64>, [a, b, c]: &[Vector2<f64>; 3]) -> [f64; 3] {
-    let area = (b - a).perp(&(c - a));
-    let (v, w) = ((p - a).perp(&(c - a)) / area, (b - a).perp(&(p - a)) / area);
-    [1.0 - v - w, v, w]
-}
-
+mod keep;
+mod locate;
 mod manifold;
 #[cfg(test)]
 mod tests;

@@ -204,6 +204,7 @@ impl<'a> Work<'a> {
             farthest,
             prove: false,
             one_by_one: false,
+            asleep: self.plan.rest.asleep,
             precision: self.plan.rest.precision,
         }
     }

@@ -2,6 +2,7 @@
 
 use super::multifrontal::NotPositive;
 use super::solve::Rested;
+use crate::contact::start::Sunk;
 use crate::error::ClothError;
 use crate::scene::SceneError;
 use nalgebra::Vector3;
@@ -100,5 +101,11 @@ impl RestError {
                 | Self::Cloth(ClothError::NonManifoldEdge { .. })
                 | Self::Crossing { .. }
         )
+    }
+}
+
+impl From<Sunk> for RestError {
+    fn from(sunk: Sunk) -> Self {
+        Self::InitialPenetration { vertices: sunk.vertices, depth: sunk.depth }
     }
 }

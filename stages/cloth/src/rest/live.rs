@@ -186,6 +186,7 @@ impl<'a> Live<'a> {
             farthest: FARTHEST,
             prove: true,
             one_by_one: false,
+            asleep: self.rest.asleep,
             precision: self.rest.precision,
         }
     }

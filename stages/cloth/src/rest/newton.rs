@@ -83,6 +83,8 @@ pub struct Pace {
     pub precision: Precision,
     /// Whether cloths are laid down one by one before all move together.
     pub one_by_one: bool,
+    /// Whether what rests sleeps while few nodes move, which settle by themselves.
+    pub asleep: bool,
 }
 
 /// How a level stands after a step.
@@ -370,7 +372,9 @@ pub fn relax(
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        descent.settle_awake(system, x, pace, stop)?;
+        if pace.asleep {
+            descent.settle_awake(system, x, pace, stop)?;
+        }
     }
     descent.finish(system, x);
     Ok(descent.outcome)

@@ -50,6 +50,8 @@ pub struct Rest {
     pub graded: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
+    /// Whether what rests sleeps while few nodes move, which settle by themselves.
+    pub asleep: bool,
 }
 
 impl Default for Rest {
@@ -63,6 +65,7 @@ impl Default for Rest {
             budget: Duration::from_secs(600),
             graded: false,
             precision: Precision::default(),
+            asleep: true,
         }
     }
 }

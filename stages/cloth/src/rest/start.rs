@@ -4,6 +4,7 @@ use super::assemble::{Wearer, cloths};
 use super::error::RestError;
 use super::layers::Layers;
 use super::pieces::Pieces;
+use crate::contact::start;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::scene::Scene;
@@ -32,21 +33,8 @@ fn unordered(scene: &Scene, pieces: &Pieces, crossings: &[([u32; 2], [u32; 3])])
     layers.unordered(crossings)
 }
 
-/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
-const DEEPEST_START: f64 = 0.05;
-
 /// The start with vertices that lie a little inside the body moved out.
 pub(super) fn clear_start(scene: &Scene, body: Option<Wearer<'_>>) -> Result<Vec<Vec3>, RestError> {
-    let mut start = scene.positions.clone();
-    let Some(body) = body else { return Ok(start) };
-    let (mut vertices, mut depth) = (0, 0.0f64);
-    let near = body.skin.nearest(&start, &vec![f64::INFINITY; start.len()]);
-    for (p, n) in start.iter_mut().zip(near) {
-        if let Some(n) = n.filter(|n| n.distance < 0.0) {
-            vertices += 1;
-            depth = depth.max(-n.distance);
-            *p = n.point + n.normal * scene.material.thickness;
-        }
-    }
-    if depth > DEEPEST_START { Err(RestError::InitialPenetration { vertices, depth }) } else { Ok(start) }
+    let Some(body) = body else { return Ok(scene.positions.clone()) };
+    Ok(start::clear_start(&scene.positions, body.skin, scene.material.thickness)?)
 }

@@ -1,4 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
+use super::locate::corners;
 use super::*;
 use crate::scene::generate;
 

@@ -34,6 +34,7 @@ fn pace() -> Pace {
         farthest: 0.1,
         prove: false,
         one_by_one: true,
+        asleep: true,
         precision: Precision::Mixed,
     }
 }

@@ -40,6 +40,7 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
         prove: true,
         precision: Precision::Double,
         one_by_one: false,
+        asleep: true,
     };
     let layout = scene.positions.clone();
     let outcome =
