@@ -162,7 +162,7 @@ fn an_ablation_that_the_user_ends_goes_on_from_the_runs_that_were_done() {
     let dir = folder();
     let (dir, counter) = (dir.path(), dir.path().join("count"));
     let registry = toile::registry();
-    let text = "(scene: Scene(file: \"sheet.json\"), fabric: Preset(\"cotton poplin\"), stages: [Rest(speed: 0.01, precision: Double)])";
+    let text = "(scene: Scene(file: \"sheet.json\"), fabric: Preset(\"cotton poplin\"), stages: [Rest(speed: 0.01, precision: Double, asleep: false)])";
     let (text, file, base) = (text.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
     let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
     // A run that hangs is ended by the user.

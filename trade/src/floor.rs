@@ -2,9 +2,9 @@
 //!
 //! It is the greatest of what is known of the reference's own fault: what its finest level still lacks (Richardson), or, where its
 //! levels show no order, how far the last refinement moved it, for a next one may move it as far; and how far its own moved
-//! starts end from each other.
+//! starts and its neighbours, a little finer and coarser, end from it.
 
-use crate::record::{OwnSpread, Reference};
+use crate::record::{Neighbours, OwnSpread, Reference};
 
 /// How well a reference is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +24,8 @@ pub enum By {
     Moved,
     /// The spread of its moved starts.
     Spread,
+    /// How far neighbouring resolutions end from it.
+    Neighbours,
 }
 
 impl Floor {
@@ -33,6 +35,9 @@ impl Floor {
             By::Missing => "so much is missing from its finest level to the limit of its order",
             By::Moved => "its last refinement moved it as far, and its levels show no order",
             By::Spread => "starts moved by a little end so far apart, in other states of rest",
+            By::Neighbours => {
+                "meshes a fiftieth finer or coarser end so far from it, in other states of rest"
+            }
         };
         format!("the reference is known to {:.2} mm only: {why}", self.mm)
     }
@@ -41,7 +46,7 @@ impl Floor {
     pub fn remedy(&self) -> &'static str {
         match self.by {
             By::Missing | By::Moved => "give `toile trade` a longer --budget, so that it is refined further",
-            By::Spread => "no refinement lowers that: it is the garment's own",
+            By::Spread | By::Neighbours => "no refinement lowers that: it is the garment's own",
         }
     }
 }
@@ -50,7 +55,9 @@ impl Reference {
     /// How well it is known; none where neither its levels nor moved starts tell.
     pub fn floor(&self) -> Option<Floor> {
         let spread = self.spread.as_ref().and_then(OwnSpread::p95).map(|mm| Floor { mm, by: By::Spread });
-        self.lacks().into_iter().chain(spread).reduce(|a, b| if b.mm > a.mm { b } else { a })
+        let near = self.neighbours.as_ref().and_then(Neighbours::p95);
+        let near = near.map(|mm| Floor { mm, by: By::Neighbours });
+        self.lacks().into_iter().chain(spread).chain(near).reduce(|a, b| if b.mm > a.mm { b } else { a })
     }
 
     fn lacks(&self) -> Option<Floor> {
@@ -92,6 +99,11 @@ mod tests {
         // Levels that do not come nearer: quiet starts do not make them a reference.
         assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 8.32, by: By::Moved }));
         assert_eq!(reference(vec![moved(None)], None, None).floor(), None);
+        // Levels that come nearer, while the mesh picks the state of rest.
+        let apart_mm = [0.4, 6.9].map(|p95| Millimetres { p95, ..Millimetres::default() }).to_vec();
+        let near = Some(Neighbours { apart_mm, ..Neighbours::default() });
+        let picked = Reference { neighbours: near, ..reference(levels(), Some(0.2), Some(0.1)) };
+        assert_eq!(picked.floor(), Some(Floor { mm: 6.9, by: By::Neighbours }));
     }
 
     #[test]
@@ -108,6 +120,10 @@ mod tests {
         assert_eq!(
             words(By::Spread),
             "the reference is known to 8.32 mm only: starts moved by a little end so far apart, in other states of rest"
+        );
+        assert_eq!(
+            words(By::Neighbours),
+            "the reference is known to 8.32 mm only: meshes a fiftieth finer or coarser end so far from it, in other states of rest"
         );
     }
 }

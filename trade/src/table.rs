@@ -2,7 +2,7 @@
 
 use crate::digits::to_digits;
 use crate::floor::Floor;
-use crate::record::{Clock, Level, Measured, Order, Outcome, OwnSpread, Point, Trade};
+use crate::record::{Clock, Level, Measured, Neighbours, Order, Outcome, OwnSpread, Point, Trade};
 use crate::richardson::FORMAL_ORDER;
 use crate::slot::setting_words;
 use std::fmt::Write;
@@ -121,6 +121,7 @@ pub fn reference(trade: &Trade) -> Vec<String> {
     lines.push(format!("{}; {}", order("mean distance", r.mean), order("distance of 95 %", r.p95)));
     lines.push(format!("refined no further: {}", r.stopped));
     lines.extend(r.spread.as_ref().map(spread));
+    lines.extend(r.neighbours.as_ref().map(neighbours));
     let floor = |f: Floor| format!("errors below {:.2} mm mean nothing: {}", f.mm, f.words());
     lines.extend(r.floor().map(floor));
     lines
@@ -158,6 +159,12 @@ fn spread(s: &OwnSpread) -> String {
         s.level,
         if s.failed.is_empty() { String::new() } else { format!(", {} failed", s.failed.len()) }
     )
+}
+
+fn neighbours(n: &Neighbours) -> String {
+    let worst = n.p95().map_or_else(|| "none ran".into(), |p| format!("95 % within {p:.2} mm in the worst"));
+    let failed = if n.failed.is_empty() { String::new() } else { format!(", {} failed", n.failed.len()) };
+    format!("a fiftieth finer and coarser than level {}: {worst}{failed}", n.level)
 }
 
 /// An order above the method's own is luck: it is said how much of it counts.

@@ -25,7 +25,7 @@ pub(crate) struct TradeArgs {
     /// Most settings, those of earlier sessions counted [default: as many as the budget allows]
     #[arg(long, value_name = "COUNT")]
     pub(crate) points: Option<usize>,
-    /// Moved starts of the reference, which tell its own spread
+    /// Moved starts of the reference, which tell its own spread; with 0 no neighbouring meshes are tried either
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
     /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what it saves and changes

@@ -7,10 +7,11 @@
 //! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
 //!
 //! The garment has many states of rest, so a reference has a spread of its own: the level before the last is started again
-//! from moved starts (`jitter`, `spread`).
+//! from moved starts (`jitter`, `spread`), and made a little finer and coarser (`neighbours`).
 //!
 //! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
 
+mod neighbours;
 mod spread;
 
 pub(crate) use spread::moved_start;
@@ -49,9 +50,9 @@ pub struct Search<'a> {
     pub cache: Arc<Cache>,
     /// Time for the levels.
     pub budget: Duration,
-    /// Time for the moved starts.
+    /// Time for the moved starts and the neighbours.
     pub starts_budget: Duration,
-    /// How many moved starts.
+    /// How many moved starts; without any, no neighbours are tried either.
     pub starts: usize,
     /// Root mean square move of a start.
     pub jitter: Length,
@@ -90,9 +91,16 @@ impl Search<'_> {
             before = last.replace(ran);
         };
         let Some(ran) = last else { return Err(StageError::internal("a reference without levels")) };
-        let spread = self.spread(&levels, before.as_ref().unwrap_or(&ran), tell)?;
+        let (unmoved, began) = (before.as_ref().unwrap_or(&ran), Instant::now());
+        let spread = self.spread(&levels, unmoved, tell)?;
+        let left = self.starts_budget.saturating_sub(began.elapsed());
+        let neighbours = match self.starts {
+            0 => None,
+            _ => self.neighbours(&levels, unmoved, left, tell)?,
+        };
         let ease_mm = ease(&ran);
-        let reference = Reference { ratio: RATIO, levels, stopped, spread, ease_mm, ..Reference::default() };
+        let reference =
+            Reference { ratio: RATIO, levels, stopped, spread, neighbours, ease_mm, ..Reference::default() };
         Ok(Found { reference: with_orders(reference), ran })
     }
 

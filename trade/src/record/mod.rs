@@ -11,7 +11,7 @@ pub use day::today;
 pub use machine::Machine;
 pub(crate) use point::median;
 pub use point::{Measured, Outcome, Point};
-pub use reference::{Level, Order, OwnSpread, Reference};
+pub use reference::{Level, Neighbours, Order, OwnSpread, Reference};
 
 use crate::front::{Cost, front};
 use serde::{Deserialize, Serialize};

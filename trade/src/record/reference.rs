@@ -22,6 +22,9 @@ pub struct Reference {
     pub stopped: String,
     /// Its own spread; none where no start was tried.
     pub spread: Option<OwnSpread>,
+    /// How far it ends from neighbouring resolutions; none where none was tried, or by an earlier version.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub neighbours: Option<Neighbours>,
     /// Of the reference garment.
     pub ease_mm: BTreeMap<String, f64>,
 }
@@ -75,5 +78,23 @@ impl OwnSpread {
     /// The worst of the starts: 95 % of the surface, millimetres.
     pub fn p95(&self) -> Option<f64> {
         self.starts_mm.iter().map(|m| m.p95).reduce(f64::max)
+    }
+}
+
+/// How much a level differs from ones that are a fiftieth finer and coarser.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Neighbours {
+    /// The level.
+    pub level: usize,
+    /// Distance of each from the level.
+    pub apart_mm: Vec<Millimetres>,
+    /// Those that failed, with the reason.
+    pub failed: Vec<String>,
+}
+
+impl Neighbours {
+    /// The worst of them: 95 % of the surface, millimetres.
+    pub fn p95(&self) -> Option<f64> {
+        self.apart_mm.iter().map(|m| m.p95).reduce(f64::max)
     }
 }
