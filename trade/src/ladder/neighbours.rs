@@ -1,6 +1,6 @@
 //! How far levels that are a little finer or coarser end from each other.
 //!
-//! What a fiftieth of a resolution adds to the error of a mesh is a twentieth of that error, so what lies farther apart are states of
+//! What a fiftieth of a resolution adds to the error of a mesh is a twenty-fifth of that error at second order, so what lies farther apart are states of
 //! rest that the mesh picks by chance. Moved starts of one mesh do not tell of those.
 
 use super::{RATIO, Search};
