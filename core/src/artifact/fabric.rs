@@ -76,6 +76,12 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending stiffness along the weft, N m.
     pub bending_weft: f64,
+    #[serde(default)]
+    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. 0 where it is not known.
+    pub bending_friction_warp: f64,
+    #[serde(default)]
+    /// The same along the weft.
+    pub bending_friction_weft: f64,
     /// Thickness, m.
     pub thickness: f64,
     /// Friction coefficient, cloth on cloth and on the body.
@@ -105,6 +111,10 @@ impl Artifact for Fabric {
             self.friction,
             self.damping,
         ]);
+        let friction = [self.bending_friction_warp, self.bending_friction_weft];
+        if friction != [0.0; 2] {
+            d.text("bending friction").floats(friction);
+        }
         for curve in [&self.warp, &self.weft, &self.shear] {
             d.count(curve.0.len()).floats(curve.0.iter().flat_map(|p| [p.0, p.1]));
         }
@@ -122,8 +132,10 @@ impl Artifact for Fabric {
         for (curve, word) in [(&self.warp, "warp"), (&self.weft, "weft"), (&self.shear, "shear")] {
             ensure(curve.rises(), || format!("its {word} curve does not rise from the origin"))?;
         }
-        let rest = [self.bending_warp, self.bending_weft, self.thickness, self.friction, self.damping];
-        let held = rest.iter().all(|x| x.is_finite() && *x >= 0.0);
+        let bending =
+            [self.bending_warp, self.bending_weft, self.bending_friction_warp, self.bending_friction_weft];
+        let rest = bending.iter().chain([&self.thickness, &self.friction, &self.damping]);
+        let held = rest.into_iter().all(|x| x.is_finite() && *x >= 0.0);
         ensure(held, || "bending, thickness, friction and damping must be finite and at least 0".to_owned())
     }
 

@@ -86,6 +86,8 @@ pub fn fabric() -> Fabric {
         shear: Curve::linear(40.0),
         bending_warp: 1e-5,
         bending_weft: 7e-6,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 3e-4,
         friction: 0.3,
         damping: 0.5,

@@ -87,6 +87,8 @@ pub(crate) fn plain(stretch: f64, shear: f64, bending: f64) -> Arc<Fabric> {
         shear: Curve::linear(shear),
         bending_warp: bending,
         bending_weft: bending,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 3e-4,
         friction: 0.3,
         damping: 0.0,

@@ -34,7 +34,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 11,
+    version = 12,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -65,6 +65,10 @@ pub struct Rest {
     /// folds, and a finer mesh in like ones. Without, it is faster, and chance picks the folds.
     #[param(default = true)]
     pub graded: bool,
+    /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came to rest on a coarser mesh (see
+    /// `Refine`) and shall keep its folds. Nothing is graded then.
+    #[param(default = false)]
+    pub from_here: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
     /// always double. The state that is found keeps `speed` either way.
     #[param(default = Precision::Mixed)]
@@ -144,6 +148,7 @@ impl Rest {
             join_gap: self.join_gap.metres(),
             budget: Duration::from_secs_f64(self.time_limit),
             graded: self.graded,
+            from_here: self.from_here,
             precision: self.precision.into(),
             asleep: self.asleep,
         }

@@ -6,6 +6,8 @@ use toile_core::prelude::*;
 
 /// 1 gf cm2/cm, N m.
 const BENDING: f64 = 9.806_65e-5;
+/// 1 gf cm/cm, N m/m.
+const COUPLE: f64 = 9.806_65e-3;
 /// 1 gf/(cm degree), N/m per rad.
 const SHEAR: f64 = 56.188;
 
@@ -34,6 +36,9 @@ pub struct Kes {
     /// Bending stiffness B, warp and weft.
     #[param(default = (0.11, 0.07), min = 0.0, max = 1000.0, unit = "gf cm2/cm")]
     b: (f64, f64),
+    /// Bending hysteresis 2HB, warp and weft; it holds folds, and only `Rest` knows it.
+    #[param(default = (0.0, 0.0), min = 0.0, max = 1000.0, unit = "gf cm/cm")]
+    hb: (f64, f64),
     /// Thickness T0 at 0.5 gf/cm2.
     #[param(default = 0.35, min = 0.01, max = 50.0, unit = "mm")]
     thickness: f64,
@@ -56,6 +61,8 @@ impl Kes {
             shear: shear_curve(self.g * SHEAR),
             bending_warp: self.b.0 * BENDING,
             bending_weft: self.b.1 * BENDING,
+            bending_friction_warp: 0.5 * self.hb.0 * COUPLE,
+            bending_friction_weft: 0.5 * self.hb.1 * COUPLE,
             thickness: self.thickness * 1e-3,
             friction: self.miu,
             damping: AIR_DAMPING,

@@ -30,6 +30,9 @@ pub struct Cloth {
     /// Bending stiffness along warp and weft.
     #[param(default = (1.1e-5, 7e-6), min = 0.0, max = 1.0, unit = "N m")]
     bending: (f64, f64),
+    /// Friction of bending along warp and weft, half of the hysteresis 2HB; it holds folds, and only `Rest` knows it.
+    #[param(default = (0.0, 0.0), min = 0.0, max = 1.0, unit = "N m/m")]
+    bending_friction: (f64, f64),
     /// Thickness.
     #[param(default = Length::mm(0.35), min = 1e-5, max = 0.05)]
     thickness: Length,
@@ -53,6 +56,8 @@ impl Cloth {
             shear: shear_curve(self.shear),
             bending_warp: self.bending.0,
             bending_weft: self.bending.1,
+            bending_friction_warp: self.bending_friction.0,
+            bending_friction_weft: self.bending_friction.1,
             thickness: self.thickness.metres(),
             friction: self.friction,
             damping: self.damping,

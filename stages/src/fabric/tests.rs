@@ -74,6 +74,19 @@ fn every_preset_lies_in_the_range_of_its_kind() {
 }
 
 #[test]
+fn a_preset_has_the_hysteresis_of_its_kind_where_it_is_asked_for() {
+    for (name, ..) in RANGES {
+        let plain = preset(&format!("(name: \"{name}\")")).unwrap();
+        assert_eq!((plain.bending_friction_warp, plain.bending_friction_weft), (0.0, 0.0));
+        let held = preset(&format!("(name: \"{name}\", hysteresis: true)")).unwrap();
+        // 2HB / B as a KES sheet has it, 1/cm.
+        let sheet = 0.02 * held.bending_friction_warp / held.bending_warp;
+        assert!((0.3..=1.2).contains(&sheet), "{name} {sheet}");
+        assert_eq!(held.bending_warp, plain.bending_warp);
+    }
+}
+
+#[test]
 fn a_preset_is_found_by_its_other_names_and_in_capitals() {
     assert_eq!(preset("(name: \"Jersey\")").unwrap().name, "cotton jersey");
 }
@@ -93,12 +106,14 @@ fn an_unknown_preset_names_the_nearest_and_all() {
 
 #[test]
 fn a_kes_sheet_comes_out_in_si_units() {
-    let kes: Kes = ron_from("(weight: 20.0, emt: (5.0, 10.0), lt: 1.0, g: 1.0, b: (0.1, 0.05))");
+    let kes: Kes = ron_from("(weight: 20.0, emt: (5.0, 10.0), lt: 1.0, g: 1.0, b: (0.1, 0.05), hb: (0.08, 0.0))");
     let f = kes.run(&Context::quiet()).unwrap();
     assert!((f.area_density - 0.2).abs() < 1e-12);
     assert!((f.warp.at(0.01).1 - 9806.65).abs() < 1e-6);
     assert!((f.shear.at(0.01).1 - 56.188).abs() < 1e-6);
     assert!((f.bending_weft - 4.903_325e-6).abs() < 1e-12);
+    // Half of 2HB, 1 gf cm/cm being 9.80665e-3 N m/m.
+    assert!((f.bending_friction_warp - 3.922_66e-4).abs() < 1e-10 && f.bending_friction_weft == 0.0);
 }
 
 #[test]

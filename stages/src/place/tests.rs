@@ -87,6 +87,8 @@ fn poplin() -> Fabric {
         shear: Curve::linear(200.0),
         bending_warp: 5e-6,
         bending_weft: 5e-6,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 3e-4,
         friction: 0.3,
         damping: 1.0,

@@ -180,6 +180,8 @@ fn fabric() -> Fabric {
         shear: Curve::linear(100.0),
         bending_warp: 1e-6,
         bending_weft: 1e-6,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 4e-4,
         friction: 0.3,
         damping: 1.0,

@@ -35,6 +35,8 @@ fn garment() -> Garment {
         shear: Curve::linear(50.0),
         bending_warp: 1e-5,
         bending_weft: 1e-5,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 3e-4,
         friction: 0.3,
         damping: 0.1,

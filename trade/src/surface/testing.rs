@@ -14,6 +14,8 @@ fn garment(rest: Vec<Point2>, positions: Vec<Point3>, triangles: Vec<[u32; 3]>) 
         shear: curve(),
         bending_warp: 1e-6,
         bending_weft: 1e-6,
+        bending_friction_warp: 0.0,
+        bending_friction_weft: 0.0,
         thickness: 1e-3,
         friction: 0.3,
         damping: 0.0,

@@ -21,6 +21,8 @@ impl Fabric {
             .owned("shear", self.shear.0.iter().map(|p| [p.0, p.1]))
             .number("bending_warp", self.bending_warp)
             .number("bending_weft", self.bending_weft)
+            .number("bending_friction_warp", self.bending_friction_warp)
+            .number("bending_friction_weft", self.bending_friction_weft)
             .number("thickness", self.thickness)
             .number("friction", self.friction)
             .number("damping", self.damping)
@@ -40,6 +42,9 @@ impl Stored for Fabric {
             shear: curve("shear")?,
             bending_warp: r.one("bending_warp")?,
             bending_weft: r.one("bending_weft")?,
+            // Older plugins do not know of it.
+            bending_friction_warp: r.maybe_one("bending_friction_warp")?.unwrap_or(0.0),
+            bending_friction_weft: r.maybe_one("bending_friction_weft")?.unwrap_or(0.0),
             thickness: r.one("thickness")?,
             friction: r.one("friction")?,
             damping: r.one("damping")?,

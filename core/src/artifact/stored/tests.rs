@@ -58,6 +58,8 @@ fn fabric() -> Fabric {
         shear: Curve::linear(40.0),
         bending_warp: 1e-5,
         bending_weft: 8e-6,
+        bending_friction_warp: 3e-4,
+        bending_friction_weft: 2e-4,
         thickness: 3e-4,
         friction: 0.4,
         damping: 0.1,

@@ -1,8 +1,8 @@
 //! From a KES (Kawabata evaluation system) test sheet to SI values.
 //!
 //! A tensile test loads to 500 gf/cm and reports the strain there (EMT), the work (WT) and their ratio to a straight line (LT).
-//! Two segments reproduce both EMT and LT: the break lies where a bilinear curve has that work. Hysteresis (2HG, 2HB) has no place
-//! in an elastic model; it is kept as damping by the caller. Source: Kawabata, 1980; unit factors from the definition of the gram-force.
+//! Two segments reproduce both EMT and LT: the break lies where a bilinear curve has that work. Half of the bending hysteresis
+//! 2HB is the frictional couple of bending; that of shear (2HG) has no place in an elastic membrane. Source: Kawabata, 1980; unit factors from the definition of the gram-force.
 
 use super::{Curve, Fabric};
 use crate::error::{ClothError, check_parameter};
@@ -13,6 +13,8 @@ pub(super) const TENSILE_LOAD: f64 = 490.3325;
 pub(super) const SHEAR_UNIT: f64 = 0.980665 * 180.0 / std::f64::consts::PI;
 /// N m of 1 gf cm²/cm.
 pub(super) const BENDING_UNIT: f64 = 9.80665e-5;
+/// N m/m of 1 gf cm/cm.
+pub(super) const COUPLE_UNIT: f64 = 9.80665e-3;
 /// Strain share at which the bilinear tensile curve breaks.
 const BREAK_AT: f64 = 0.5;
 
@@ -27,6 +29,8 @@ pub struct Kes {
     pub g: f64,
     /// Bending rigidity, gf cm²/cm.
     pub b: [f64; 2],
+    /// Bending hysteresis 2HB at a curvature of 1/cm, gf cm/cm.
+    pub hb: [f64; 2],
     /// Weight, mg/cm².
     pub weight: f64,
     /// Thickness at 0.5 gf/cm², mm.
@@ -50,6 +54,8 @@ impl Kes {
             shear: Curve::linear(self.g * SHEAR_UNIT),
             bending_warp: self.b[0] * BENDING_UNIT,
             bending_weft: self.b[1] * BENDING_UNIT,
+            bending_friction_warp: 0.5 * self.hb[0] * COUPLE_UNIT,
+            bending_friction_weft: 0.5 * self.hb[1] * COUPLE_UNIT,
             thickness: self.thickness * 1e-3,
             friction: self.miu,
             damping: 0.0,

@@ -13,6 +13,7 @@ pub use curve::Curve;
 pub use kes::Kes;
 pub use presets::{PRESETS, Preset};
 
+use crate::bending::Rigidity;
 use crate::error::{ClothError, check_parameter};
 
 /// Strain of a worn garment where it carries load.
@@ -35,6 +36,10 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending rigidity of a strip cut along the weft, N m.
     pub bending_weft: f64,
+    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. Only `Rest` knows it.
+    pub bending_friction_warp: f64,
+    /// The same of a strip cut along the weft, N m/m.
+    pub bending_friction_weft: f64,
     /// Thickness, m.
     pub thickness: f64,
     /// Coulomb friction of cloth on cloth and body.
@@ -55,6 +60,8 @@ impl Fabric {
             shear: Curve::linear(k / (2.0 * (1.0 + poisson))),
             bending_warp: bending,
             bending_weft: bending,
+            bending_friction_warp: 0.0,
+            bending_friction_weft: 0.0,
             thickness: 1e-3,
             friction: 0.3,
             damping: 0.0,
@@ -71,6 +78,8 @@ impl Fabric {
         let not_negative = [
             ("bending_warp", self.bending_warp),
             ("bending_weft", self.bending_weft),
+            ("bending_friction_warp", self.bending_friction_warp),
+            ("bending_friction_weft", self.bending_friction_weft),
             ("thickness", self.thickness),
             ("friction", self.friction),
             ("damping", self.damping),
@@ -83,6 +92,18 @@ impl Fabric {
         }
         let product = self.poisson_squared();
         check_parameter("poisson", product, |v| v < 1.0, "so small that warp and weft stay stable together")
+    }
+
+    /// The frictional couple of bending by direction, N m/m.
+    #[must_use]
+    pub fn bending_friction(&self) -> Rigidity {
+        Rigidity { warp: self.bending_friction_warp, weft: self.bending_friction_weft }
+    }
+
+    /// Whether bending has friction.
+    #[must_use]
+    pub fn has_bending_friction(&self) -> bool {
+        self.bending_friction_warp.max(self.bending_friction_weft) > 0.0
     }
 
     /// Tensile stiffness in use, N/m: the greater of warp and weft, as force over strain at [`IN_USE`].

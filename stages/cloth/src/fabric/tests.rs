@@ -28,6 +28,7 @@ fn kes_sheet_keeps_extension_work_and_units() {
         lt: [0.7, 0.8],
         g: 1.0,
         b: [0.1, 0.05],
+        hb: [0.08, 0.04],
         weight: 20.0,
         thickness: 0.5,
         miu: 0.2,
@@ -35,6 +36,9 @@ fn kes_sheet_keeps_extension_work_and_units() {
     let f = kes.fabric().unwrap();
     assert!((f.warp.force(0.04) - kes::TENSILE_LOAD).abs() < 1e-9);
     assert!((f.weft.energy(0.10) - 0.8 * 0.5 * 0.10 * kes::TENSILE_LOAD).abs() < 1e-9);
+    assert!(
+        (f.bending_friction_warp - 3.92e-4).abs() < 1e-6 && (f.bending_friction_weft - 1.96e-4).abs() < 1e-6
+    );
     assert!((f.shear.slope(0.0) - 56.19).abs() < 0.01);
     assert!((f.bending_warp - 9.80665e-6).abs() < 1e-15);
     assert!((f.density - 0.2).abs() < 1e-15);

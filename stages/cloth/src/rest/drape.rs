@@ -32,7 +32,8 @@ impl<'a> Work<'a> {
         let mut ready = plan.level(plan.pieces.len() - 1);
         for k in (0..plan.pieces.len()).rev() {
             let mut level = ready?;
-            level.begin(std::mem::take(&mut self.x), slides);
+            let is_handed = k + 1 < plan.pieces.len() || plan.rest.from_here;
+            level.begin(std::mem::take(&mut self.x), slides, is_handed);
             // Another thread makes the next finer level ready meanwhile; below the finest there is none, and nobody asks.
             ready = Err(ClothError::EmptyScene.into());
             rayon::in_place_scope(|scope| {

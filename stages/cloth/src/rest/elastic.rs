@@ -9,6 +9,7 @@
 
 mod assembly;
 mod border;
+mod hold;
 mod law;
 mod part;
 mod spring;
@@ -22,6 +23,7 @@ use crate::mesh::{Edge, Sheet, Side};
 use crate::scene::StrainLimit;
 use assembly::{Assembly, Local};
 use border::Border;
+use hold::Hold;
 use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
@@ -55,6 +57,10 @@ pub struct Elastic {
     borders: Vec<Border>,
     springs: Vec<Spring>,
     assembly: Assembly,
+    /// What friction between yarns may hold, hinge by hinge; empty where no cloth has any.
+    frictions: Vec<Hold>,
+    /// The angles at which it holds, as many; empty until it does.
+    held: Vec<f64>,
     /// Stress of each triangle as the last step foretold it: weft, warp, shear, N/m.
     foretold: Vec<[f64; 3]>,
 }
@@ -97,8 +103,10 @@ impl Elastic {
             true => (Vec::new(), Vec::new()),
             false => bending(&Calibration::of(cut), sheet, |t| &bends[of(t)]),
         };
+        let frictions = frictions(&hinges, sheet, |t| cloths[of(t)]);
+        let held = Vec::new();
         let (springs, assembly, foretold) = (Vec::new(), Assembly::default(), Vec::new());
-        Self { laws, triangles, hinges, borders, springs, assembly, foretold }
+        Self { laws, triangles, hinges, borders, springs, assembly, frictions, held, foretold }
     }
 
     /// The same with elastic bands.
@@ -123,7 +131,8 @@ impl Elastic {
     /// Looks up where its blocks go. The pattern must hold its couplings, but those of held nodes.
     pub fn bind(&mut self, pattern: &Pattern) {
         self.springs.iter_mut().for_each(|s| s.slot = pattern.slot(s.nodes[0], s.nodes[1]));
-        self.assembly = Assembly::new(pattern, &self.triangles, &self.hinges, &self.borders);
+        self.assembly =
+            Assembly::new(pattern, &self.triangles, &self.hinges, &self.borders, !self.frictions.is_empty());
     }
 
     /// Follows into a wider pattern, in which the slots of that of the last [`Self::bind`] are at `slots`.
@@ -172,6 +181,7 @@ impl Elastic {
         for (h, moment) in self.hinges.iter().zip(&moments) {
             h.nodes.iter().zip(&h.weights).for_each(|(&i, w)| gradient[i as usize] += moment * *w);
         }
+        self.add_gradient_of_holds(x, gradient);
         self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
         self.springs.iter().for_each(|s| s.add_gradient(x, gradient));
     }
@@ -182,7 +192,7 @@ impl Elastic {
         let local = |(k, t): (usize, &Triangle)| t.local(self, self.foretold.get(k), x, compression);
         let locals: Vec<Local> =
             self.triangles.par_iter().enumerate().with_min_len(TASK / 2).map(local).collect();
-        self.assembly.write(&self.triangles, &locals, values);
+        self.assembly.write(&self.triangles, &locals, &self.stiffness_of_holds(x), values);
         self.springs.iter().for_each(|s| s.add_matrix(x, values));
     }
 
@@ -297,6 +307,29 @@ fn bending<'r>(
     });
     let moment = |t: usize| -calibration.poisson * calibration.factor * 0.5 * (bend(t).warp + bend(t).weft);
     (hinges.collect(), border::borders(sheet, moment))
+}
+
+/// What friction between yarns may hold at each hinge; nothing where no cloth has any.
+fn frictions<'f>(hinges: &[Hinge], sheet: &Sheet, cloth: impl Fn(usize) -> &'f Fabric) -> Vec<Hold> {
+    if hinges.is_empty() || (0..sheet.triangles().len()).all(|t| !cloth(t).has_bending_friction()) {
+        return Vec::new();
+    }
+    // The couple over the rigidity of the side's cloth, across the edge.
+    let ratio = |side: &Side| {
+        let (r, k) = (&sheet.rest()[side.triangle as usize], side.corner as usize);
+        let e = (r[(k + 2) % 3] - r[(k + 1) % 3]).normalize();
+        let cloth = cloth(side.triangle as usize);
+        let along = |r: Rigidity| r.along(&Vector2::new(e.y, -e.x));
+        let rigidity = along(Rigidity::of(cloth));
+        if rigidity > 0.0 { along(cloth.bending_friction()) / rigidity } else { 0.0 }
+    };
+    let both = |e: &Edge| Some(0.5 * (ratio(&e.sides.0) + ratio(&e.sides.1?)));
+    let flaps = flaps(sheet, &Rigidity::uniform(1.0));
+    let inner = flaps.iter().zip(sheet.edges().iter().filter_map(both));
+    inner
+        .zip(hinges)
+        .map(|((f, ratio), h)| Hold::new(h.stiffness, (f.area / f.slenderness).sqrt(), ratio))
+        .collect()
 }
 
 #[cfg(test)]

@@ -20,11 +20,12 @@ pub(super) struct Level<'s> {
 }
 
 impl Level<'_> {
-    /// Puts its nodes where the level before left the cloth, held back by friction as there.
-    pub(super) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>) {
+    /// Puts its nodes where the level before left the cloth, held back by friction as there; `handed` where that was a coarser one.
+    pub(super) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, handed: bool) {
         if slides.len() == x.len() {
             self.system.slides = slides;
         }
+        self.system.elastic.hold(&x, handed);
         self.x = x;
     }
 

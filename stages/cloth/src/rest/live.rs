@@ -71,6 +71,8 @@ impl<'a> Live<'a> {
             let known = |g: &&Grip| g.nodes.iter().all(|&i| (i as usize) < x.len());
             layers.grips = state.grips.iter().filter(known).copied().collect();
         }
+        system.elastic.hold(&x, false);
+        system.elastic.hold_at(&state.folds);
         let layout = pieces.sew(&scene.positions, &even);
         let tree = scene.self_collision.then(|| ClothTree::new(&sheet, &layout));
         let descent = Descent::new(&mut system, &layout, tree, &x, FIRST);
@@ -139,6 +141,8 @@ impl<'a> Live<'a> {
         let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false)?;
         new.threads = kept_threads(&self.scene, &self.pieces, self.rest.join_gap);
         let old = &mut self.system;
+        new.elastic.hold(&self.x, false);
+        new.elastic.hold_at(old.elastic.held());
         std::mem::swap(&mut new.anchors, &mut old.anchors);
         std::mem::swap(&mut new.loads, &mut old.loads);
         std::mem::swap(&mut new.seen, &mut old.seen);
@@ -218,6 +222,7 @@ impl<'a> Live<'a> {
             outcome,
             residual: greatest(&self.system.gradient(&self.x)),
             slides: self.pieces.spread(&self.system.held_back(&self.x)),
+            folds: self.system.elastic.held().to_vec(),
             grips: self.system.layers.as_ref().map_or_else(Vec::new, |l| l.grips.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),

@@ -32,7 +32,10 @@ impl Work<'_> {
         let sheet = self.plan.pieces[coarsest].open_sheet(&self.plan.cloths)?;
         let mut x = self.plan.starts[coarsest].clone();
         let pairs = self.plan.pieces[coarsest].seam_pairs();
-        if pairs.is_empty() {
+        let here = self.plan.rest.from_here;
+        if here && widest(&x, &pairs) <= self.plan.rest.join_gap {
+            self.joined_at = (!pairs.is_empty()).then(|| widest(&x, &pairs));
+        } else if pairs.is_empty() {
             self.press(&sheet, &mut x, progress)?;
         } else {
             self.close(&sheet, &pairs, &mut x, progress)?;

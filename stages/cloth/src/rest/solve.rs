@@ -8,6 +8,8 @@
 //! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes through a triangle: see
 //! `pierce`), the garment is sewn again on the next finer one.
 //!
+//! With [`Rest::from_here`] there are no coarser levels: cloth that hangs already settles where it is.
+//!
 //! With [`Rest::graded`] bending starts stiff and is let go on the way (see `graded`), so that chance has less of a say.
 //!
 //! Cost: some 35 to 150 factorizations of the finest level (docs/performance.md). Limits: what the coarse level cannot see (a fold finer than its
@@ -48,6 +50,8 @@ pub struct Rest {
     /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
     /// cloth began.
     pub graded: bool,
+    /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a coarser mesh keeps its folds.
+    pub from_here: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
     /// Whether what rests sleeps while few nodes move, which settle by themselves.
@@ -64,6 +68,7 @@ impl Default for Rest {
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
             graded: false,
+            from_here: false,
             precision: Precision::default(),
             asleep: true,
         }
@@ -94,6 +99,8 @@ pub struct Rested {
     pub residual: f64,
     /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
     pub slides: Vec<Vec3>,
+    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what `Live` goes on from.
+    pub folds: Vec<f64>,
     /// Friction of every contact of cloth with cloth, by sewn points: what `Live` goes on from.
     pub grips: Vec<Grip>,
     /// Distance at which the body begins to press on each vertex, m; none without a body.
@@ -142,7 +149,7 @@ impl Rest {
         scene.check()?;
         scene.check_still()?;
         let pile = pile_of(scene);
-        let mut rest = Self { graded: self.graded && pile.is_none(), ..*self };
+        let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
         loop {
             let plan = Plan::new(&rest, coarsest, scene, wearer)?;
@@ -173,6 +180,9 @@ impl Rest {
 
     /// Most vertices of the coarsest mesh of the first try.
     fn first_coarsest(&self, pile: Option<usize>) -> usize {
+        if self.from_here {
+            return usize::MAX;
+        }
         let one = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
         // The limit is for each cloth of a pile: nine nodes cannot follow a body.
         one * pile.unwrap_or(1)
@@ -188,6 +198,8 @@ impl Rest {
 
 #[cfg(test)]
 mod graded_tests;
+#[cfg(test)]
+mod held_tests;
 #[cfg(test)]
 mod layer_friction_tests;
 #[cfg(test)]

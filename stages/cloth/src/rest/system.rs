@@ -159,7 +159,10 @@ impl System<'_> {
     #[must_use]
     pub fn visit(&self, x: &[Vec3]) -> Visit {
         let pull = || self.threads.iter().map(|t| t.value(x)).sum::<f64>();
-        let (lasting, sight) = rayon::join(|| self.stored(x) + self.pushed(x) + pull(), || self.looks(x));
+        let (lasting, sight) = rayon::join(
+            || self.stored(x) + self.elastic.value_of_holds(x) + self.pushed(x) + pull(),
+            || self.looks(x),
+        );
         let body: f64 = match &self.support {
             Some(s) => {
                 let press = |((n, o), k): ((&Sight, &f64), &f64)| {
@@ -261,6 +264,7 @@ impl System<'_> {
         let dragged: Vec<(usize, Vec3)> = self.rubs().map(|(i, r)| (i, r.dragged(&x[i]))).collect();
         dragged.into_iter().for_each(|(i, anchor)| self.anchors[i] = Some(anchor));
         self.layers.iter_mut().for_each(|l| l.drag(x));
+        self.elastic.drag(x);
     }
 
     /// How far each node has slid from its anchor at `x`, m; the same on a finer mesh.

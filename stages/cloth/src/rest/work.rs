@@ -127,6 +127,7 @@ impl<'a> Work<'a> {
             outcome,
             residual,
             slides,
+            folds: system.elastic.held().to_vec(),
             grips,
             offsets,
             energy,

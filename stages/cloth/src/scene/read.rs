@@ -94,6 +94,9 @@ struct RawMaterial {
     bend: Option<f64>,
     bend_warp: Option<f64>,
     bend_weft: Option<f64>,
+    bend_friction: Option<f64>,
+    bend_friction_warp: Option<f64>,
+    bend_friction_weft: Option<f64>,
     friction: f64,
     thickness: f64,
     damping: Option<f64>,
@@ -225,6 +228,16 @@ fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
         }
         None => Err(lacks("bend", "bend_warp", "bend_weft")),
     };
+    let friction = |own: Option<f64>, name| {
+        let couple = own.or(raw.bend_friction).unwrap_or(0.0);
+        check_parameter(
+            if own.is_some() { name } else { "bend_friction" },
+            couple,
+            |v| v >= 0.0,
+            "0 N m/m or more",
+        )?;
+        Ok::<_, SceneError>(couple)
+    };
     Ok(Fabric {
         density: raw.area_density,
         warp: tensile(raw.warp, "warp")?,
@@ -233,6 +246,8 @@ fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
         shear: curve(raw.shear, "shear", false)?,
         bending_warp: bending(raw.bend_warp, "bend_warp")?,
         bending_weft: bending(raw.bend_weft, "bend_weft")?,
+        bending_friction_warp: friction(raw.bend_friction_warp, "bend_friction_warp")?,
+        bending_friction_weft: friction(raw.bend_friction_weft, "bend_friction_weft")?,
         thickness: raw.thickness,
         friction: raw.friction,
         damping: raw.damping.unwrap_or(0.0),

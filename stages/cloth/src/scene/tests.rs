@@ -48,6 +48,10 @@ fn faults_are_named() {
         "bend_weft = -1 is out of range: 0 N m or more"
     );
     assert_eq!(
+        fault("\"bend\": 1e-5,", "\"bend\": 1e-5, \"bend_friction\": -1,"),
+        "bend_friction = -1 is out of range: 0 N m/m or more"
+    );
+    assert_eq!(
         fault("\"stretch\": 10,", "\"stretch\": [[0.1, 5], [0.2, 4]],"),
         "curve force = 4 is out of range: forces that never fall"
     );
@@ -90,7 +94,7 @@ fn the_air_of_a_phase_is_read_and_its_faults_are_named() {
 #[test]
 fn warp_and_weft_curves_and_panel_materials_are_read() {
     let own = r#""name": "one", "body_friction": 0.1, "material": {"area_density": 0.3, "warp": [[0.02, 1], [0.04, 9]], "weft": 20,
-        "poisson": 0.1, "shear": [[0.1, 2]], "bend_warp": 2e-5, "bend_weft": 1e-5, "damping": 0.01, "friction": 0.2,
+        "poisson": 0.1, "shear": [[0.1, 2]], "bend_warp": 2e-5, "bend_weft": 1e-5, "bend_friction": 3e-4, "bend_friction_weft": 2e-4, "damping": 0.01, "friction": 0.2,
         "thickness": 0.0005},"#;
     let text = SMALL.replace("\"name\": \"one\",", own);
     let scene = parse(&text, &|_| Ok(String::new())).unwrap();
@@ -98,6 +102,8 @@ fn warp_and_weft_curves_and_panel_materials_are_read() {
     let panel = scene.fabric_of(0);
     assert_eq!((panel.density, panel.warp.force(0.03), panel.weft.force(0.03)), (0.3, 5.0, 0.6));
     assert_eq!((panel.bending_warp, panel.bending_weft, panel.shear.slope(0.0)), (2e-5, 1e-5, 20.0));
+    assert_eq!((panel.bending_friction_warp, panel.bending_friction_weft), (3e-4, 2e-4));
+    assert_eq!(scene.material.bending_friction_warp, 0.0);
     assert_eq!(scene.panels[0].body_friction, Some(0.1));
 }
 

@@ -99,6 +99,8 @@ fn material(f: &Fabric) -> Value {
         "bend": f.bending_warp.max(f.bending_weft),
         "bend_warp": f.bending_warp,
         "bend_weft": f.bending_weft,
+        "bend_friction_warp": f.bending_friction_warp,
+        "bend_friction_weft": f.bending_friction_weft,
         "friction": f.friction,
         "thickness": f.thickness,
         "damping": f.damping,

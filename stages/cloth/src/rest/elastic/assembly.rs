@@ -22,10 +22,19 @@ struct Share {
     column: u8,
 }
 
+/// A hinge's share in a block: the product of the weights of its row and column.
+#[derive(Debug, Clone, Copy)]
+struct FoldShare {
+    hinge: u32,
+    weight: f64,
+}
+
 /// What each block is the sum of.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Assembly {
     shares: Vec<Share>,
+    /// Of hinges that friction may hold.
+    folds: Vec<FoldShare>,
     /// The blocks of the sheet alone.
     own: Blocks,
     /// The same among those of contacts.
@@ -37,6 +46,8 @@ pub(super) struct Assembly {
 struct Blocks {
     /// The first share of each.
     starts: Vec<u32>,
+    /// The first share of hinges of each; empty where friction holds none.
+    folds: Vec<u32>,
     /// What bending adds to the diagonal of each, N/m; it never changes.
     bending: Vec<f64>,
 }
@@ -44,14 +55,29 @@ struct Blocks {
 impl Blocks {
     /// The same at other slots, in the same order; between them are blocks without shares.
     fn at(&self, slots: &[u32], count: usize) -> Self {
-        let (mut starts, mut bending) = (Vec::with_capacity(count + 1), vec![0.0; count]);
-        for ((&slot, start), k) in slots.iter().zip(&self.starts).zip(&self.bending) {
-            starts.resize(slot as usize + 1, *start);
-            bending[slot as usize] = *k;
-        }
-        starts.resize(count + 1, self.starts.last().copied().unwrap_or(0));
-        Self { starts, bending }
+        let mut bending = vec![0.0; count];
+        slots.iter().zip(&self.bending).for_each(|(&slot, k)| bending[slot as usize] = *k);
+        Self { starts: moved(&self.starts, slots, count), folds: moved(&self.folds, slots, count), bending }
     }
+}
+
+/// First shares at other slots; nothing where there are none.
+fn moved(starts: &[u32], slots: &[u32], count: usize) -> Vec<u32> {
+    let Some(end) = starts.last() else { return Vec::new() };
+    let mut moved = Vec::with_capacity(count + 1);
+    slots.iter().zip(starts).for_each(|(&slot, start)| moved.resize(slot as usize + 1, *start));
+    moved.resize(count + 1, *end);
+    moved
+}
+
+/// Shares sorted by their blocks, and the first of each block.
+fn by_block<T: Copy>(entries: &[(u32, T)], blocks: usize) -> (Vec<u32>, Vec<T>) {
+    let mut sorted: Vec<&(u32, T)> = entries.iter().collect();
+    sorted.sort_by_key(|(slot, _)| *slot);
+    let mut starts = vec![0u32; blocks + 1];
+    entries.iter().for_each(|(slot, _)| starts[*slot as usize + 1] += 1);
+    (0..blocks).for_each(|k| starts[k + 1] += starts[k]);
+    (starts, sorted.into_iter().map(|(_, share)| *share).collect())
 }
 
 /// A deformed triangle: the images of the rest axes, and how its stress changes, times its area.
@@ -71,6 +97,7 @@ impl Assembly {
         triangles: &[Triangle],
         hinges: &[Hinge],
         borders: &[Border],
+        holds: bool,
     ) -> Self {
         let mut entries: Vec<(u32, Share)> = Vec::with_capacity(PAIRS.len() * triangles.len());
         for (t, triangle) in triangles.iter().enumerate() {
@@ -82,18 +109,13 @@ impl Assembly {
                 }
             }
         }
-        let mut starts = vec![0u32; pattern.blocks() + 1];
-        entries.iter().for_each(|(slot, _)| starts[*slot as usize + 1] += 1);
-        (0..pattern.blocks()).for_each(|k| starts[k + 1] += starts[k]);
-        let mut next = starts.clone();
-        let mut shares = vec![Share { triangle: 0, row: 0, column: 0 }; entries.len()];
-        for (slot, share) in entries {
-            let at = &mut next[slot as usize];
-            shares[*at as usize] = share;
-            *at += 1;
-        }
-        let own = Blocks { starts, bending: bending(pattern, hinges, borders) };
-        Self { shares, placed: own.clone(), own }
+        let (starts, shares) = by_block(&entries, pattern.blocks());
+        let (first_folds, folds) = match holds {
+            true => by_block(&fold_shares(pattern, hinges), pattern.blocks()),
+            false => (Vec::new(), Vec::new()),
+        };
+        let own = Blocks { starts, folds: first_folds, bending: bending(pattern, hinges, borders) };
+        Self { shares, folds, placed: own.clone(), own }
     }
 
     /// Goes to the `slots` that the blocks have in a wider pattern of so many blocks.
@@ -102,14 +124,25 @@ impl Assembly {
     }
 
     /// Writes all blocks of triangles in that state.
-    pub(super) fn write(&self, triangles: &[Triangle], locals: &[Local], values: &mut [Matrix3<f64>]) {
-        let Blocks { starts, bending } = &self.placed;
+    pub(super) fn write(
+        &self,
+        triangles: &[Triangle],
+        locals: &[Local],
+        holds: &[Matrix3<f64>],
+        values: &mut [Matrix3<f64>],
+    ) {
+        let Blocks { starts, folds, bending } = &self.placed;
         let write = |(k, value): (usize, &mut Matrix3<f64>)| {
             let mut sum = Matrix3::from_diagonal_element(bending[k]);
             for share in &self.shares[starts[k] as usize..starts[k + 1] as usize] {
                 let (t, local) = (share.triangle as usize, &locals[share.triangle as usize]);
                 let shape = &triangles[t].shape;
                 local.add_block(&shape[share.row as usize], &shape[share.column as usize], &mut sum);
+            }
+            if !holds.is_empty() {
+                for fold in &self.folds[folds[k] as usize..folds[k + 1] as usize] {
+                    sum += holds[fold.hinge as usize] * fold.weight;
+                }
             }
             *value = sum;
         };
@@ -134,6 +167,20 @@ impl Local {
             sum[(c, c)] += geometric;
         }
     }
+}
+
+/// The shares of hinges in the blocks that there are.
+fn fold_shares(pattern: &Pattern, hinges: &[Hinge]) -> Vec<(u32, FoldShare)> {
+    let mut entries = Vec::with_capacity(10 * hinges.len());
+    for (k, h) in hinges.iter().enumerate() {
+        for (a, b) in (0..4).flat_map(|a| (0..=a).map(move |b| (a, b))) {
+            if let Some(slot) = pattern.slot(h.nodes[a], h.nodes[b]) {
+                let weight = h.weights[a] * h.weights[b];
+                entries.push((slot.index, FoldShare { hinge: k as u32, weight }));
+            }
+        }
+    }
+    entries
 }
 
 /// What bending adds to the diagonal of each block.

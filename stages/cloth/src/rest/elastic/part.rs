@@ -20,20 +20,26 @@ impl Elastic {
             Triangle { nodes: cut.renamed(whole.nodes), ..whole.clone() }
         };
         let hinge = |h: &Hinge| Hinge { nodes: cut.renamed(h.nodes), ..h.clone() };
+        let woken: Vec<usize> =
+            (0..self.hinges.len()).filter(|&h| cut.wakes(&self.hinges[h].nodes)).collect();
         let spring = |s: &Spring| Spring { nodes: cut.renamed(s.nodes), ..s.clone() };
         Self {
             laws: self.laws.clone(),
             triangles: kept.iter().map(triangle).collect(),
-            hinges: self.hinges.iter().filter(|h| cut.wakes(&h.nodes)).map(hinge).collect(),
+            hinges: woken.iter().map(|&h| hinge(&self.hinges[h])).collect(),
             borders: self.borders.iter().filter_map(|b| Border::part(b, cut)).collect(),
             springs: self.springs.iter().filter(|s| cut.wakes(&s.nodes)).map(spring).collect(),
             assembly: Assembly::default(),
+            frictions: woken.iter().filter_map(|&h| self.frictions.get(h)).copied().collect(),
+            held: woken.iter().filter_map(|&h| self.held.get(h)).copied().collect(),
             foretold: kept.iter().filter_map(|&t| self.foretold.get(t)).copied().collect(),
         }
     }
 
-    /// Takes over what a part has foretold of its triangles.
+    /// Takes over what a part has foretold of its triangles, and where it holds its folds.
     pub(in crate::rest) fn learn(&mut self, cut: &Cut, part: &Self) {
+        let woken = self.hinges.iter().zip(&mut self.held).filter(|(h, _)| cut.wakes(&h.nodes));
+        woken.zip(&part.held).for_each(|((_, whole), new)| *whole = *new);
         if self.foretold.len() != self.triangles.len() {
             return;
         }
