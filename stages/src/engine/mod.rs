@@ -9,5 +9,5 @@ mod skin;
 
 pub use fault::{cloth_error, scene_error};
 pub use lost::lost;
-pub use scene::{Setting, garment_of, scene_of, weld_seams};
+pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSkin;

@@ -171,13 +171,20 @@ fn outline(triangles: &[[u32; 3]]) -> Vec<u32> {
 
 /// Marks every seam closed and joins its vertices: each names the least vertex at its place.
 pub fn weld_seams(garment: &mut Garment) {
-    let mut weld = garment.weld.clone();
-    for &[a, b] in garment.seams.iter().flat_map(|s| &s.pairs) {
-        let (a, b) = (root(&weld, a), root(&weld, b));
+    join_pairs(&mut garment.weld, garment.seams.iter().flat_map(|s| &s.pairs));
+    garment.seams.iter_mut().for_each(|s| s.state = SeamState::Closed);
+}
+
+/// Joins pairs of vertices: each vertex names the least of those that it is joined to.
+pub fn join_pairs<'a>(weld: &mut [u32], pairs: impl IntoIterator<Item = &'a [u32; 2]>) {
+    for &[a, b] in pairs {
+        let (a, b) = (root(weld, a), root(weld, b));
         weld[a.max(b) as usize] = a.min(b);
     }
-    garment.weld = (0..weld.len() as u32).map(|v| root(&weld, v)).collect();
-    garment.seams.iter_mut().for_each(|s| s.state = SeamState::Closed);
+    // What a vertex names is below it and has its root already.
+    for v in 0..weld.len() {
+        weld[v] = weld[weld[v] as usize];
+    }
 }
 
 fn root(weld: &[u32], mut v: u32) -> u32 {
