@@ -1,22 +1,29 @@
 //! What is turned where the user names no knob.
 //!
 //! The stages decide most of a garment's time and error in this order: edge length of the mesh, solver, when it stops,
-//! mesher. Their ranges are factors around the pipeline's own values.
+//! mesher. Where a draped garment is laid out finer and draped on, that mesh and the last solver are turned: the first mesh picks the
+//! folds, and another one would pick others. Their ranges are factors around the pipeline's own values.
 
 use crate::dial::{Form, is_spatial, numeric};
 use crate::knob::{KnobSpec, Number, Values};
 use crate::split::field;
 use toile_core::pipeline::{Node, Pipeline};
-use toile_core::{Registry, Role};
+use toile_core::{ParamDoc, Registry, Role};
 
 /// Factors around the pipeline's own edge length: from rough to four times the triangles.
 const EDGES: [f64; 2] = [0.5, 3.0];
+/// Factors around the parts of a finer mesh.
+const PARTS: [f64; 2] = [0.5, 2.0];
 /// Factors around any other resolution.
 const OTHERS: [f64; 2] = [0.1, 10.0];
 
 /// Knobs for a pipeline: edge length, choice of mesher and solver, and what ends the solver.
 pub fn default_knobs(pipeline: &Pipeline, registry: &Registry) -> Vec<KnobSpec> {
     let mut knobs = Vec::new();
+    if let Some(refiner) = pipeline.nodes.iter().rfind(|n| n.card.role == Role::Placement && is_turned(n)) {
+        let last = pipeline.nodes.iter().rfind(|n| n.card.role == Role::Draper);
+        return std::iter::once(refiner).chain(last).flat_map(|n| ends(n, PARTS)).collect();
+    }
     if let Some(mesher) = only(pipeline, Role::Mesher) {
         let edge = mesher.card.params.iter().find(|p| p.trades && is_spatial(p));
         knobs.extend(edge.and_then(|p| range(mesher, "mesher", p.name, EDGES)));
@@ -24,10 +31,21 @@ pub fn default_knobs(pipeline: &Pipeline, registry: &Registry) -> Vec<KnobSpec> 
     }
     if let Some(solver) = only(pipeline, Role::Draper) {
         knobs.extend(choice(solver, "solver", registry));
-        let ends = solver.card.params.iter().filter(|p| p.trades && p.finer.is_some());
-        knobs.extend(ends.filter_map(|p| range(solver, &solver.id, p.name, OTHERS)));
+        knobs.extend(ends(solver, OTHERS));
     }
     knobs
+}
+
+/// Whether a stage has a resolution that trades time for accuracy.
+fn is_turned(node: &Node) -> bool {
+    node.card.params.iter().any(|p| p.trades && p.finer.is_some())
+}
+
+/// The resolutions of a stage, by factors around its own; whole numbers by fewer.
+fn ends(node: &Node, factors: [f64; 2]) -> Vec<KnobSpec> {
+    let ends = node.card.params.iter().filter(|p| p.trades && p.finer.is_some());
+    let of = |p: &ParamDoc| if matches!(Form::of(p), Some(Form::Whole)) { factors } else { OTHERS };
+    ends.filter_map(|p| range(node, &node.id, p.name, of(p))).collect()
 }
 
 /// The only stage of a role.

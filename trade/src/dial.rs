@@ -128,10 +128,11 @@ pub(crate) fn way(doc: &ParamDoc) -> Option<f64> {
     })
 }
 
-/// True of a resolution in space, such as an edge length: the reference must have a finer one than what it judges. Steps and
-/// tolerances may be equal.
+/// True of a resolution in space, such as an edge length or the parts of an edge: the reference must have a finer one than what it
+/// judges. Steps and tolerances may be equal.
 pub(crate) fn is_spatial(doc: &ParamDoc) -> bool {
-    doc.finer.is_some() && Form::of(doc) == Some(Form::Length)
+    let parts = Form::of(doc) == Some(Form::Whole) && doc.unit == "parts";
+    doc.finer.is_some() && (Form::of(doc) == Some(Form::Length) || parts)
 }
 
 /// To three digits, so that settings that are alike become equal.

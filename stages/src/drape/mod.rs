@@ -6,7 +6,6 @@ mod implicit_euler;
 mod mixed_precision;
 mod motion;
 mod projective;
-mod refine;
 mod rest;
 mod spring;
 #[cfg(test)]
@@ -17,7 +16,6 @@ pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
 pub use mixed_precision::Precision;
 pub use projective::Projective;
-pub use refine::Refine;
 pub use rest::Rest;
 pub use spring::SpringDraper;
 use toile_core::Registry;
@@ -31,5 +29,4 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Projective>();
     registry.add::<CentralDifferences>();
     registry.add::<SpringDraper>();
-    registry.add::<Refine>();
 }

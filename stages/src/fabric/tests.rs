@@ -106,7 +106,8 @@ fn an_unknown_preset_names_the_nearest_and_all() {
 
 #[test]
 fn a_kes_sheet_comes_out_in_si_units() {
-    let kes: Kes = ron_from("(weight: 20.0, emt: (5.0, 10.0), lt: 1.0, g: 1.0, b: (0.1, 0.05), hb: (0.08, 0.0))");
+    let kes: Kes =
+        ron_from("(weight: 20.0, emt: (5.0, 10.0), lt: 1.0, g: 1.0, b: (0.1, 0.05), hb: (0.08, 0.0))");
     let f = kes.run(&Context::quiet()).unwrap();
     assert!((f.area_density - 0.2).abs() < 1e-12);
     assert!((f.warp.at(0.01).1 - 9806.65).abs() < 1e-6);

@@ -6,12 +6,14 @@ mod fit;
 mod lift;
 mod locate;
 mod panels;
+mod refine;
 mod sew;
 mod whole;
 
 pub use carry::Carry;
 pub use lift::Lift;
 pub use panels::Place;
+pub use refine::Refine;
 
 use toile_core::Registry;
 
@@ -19,6 +21,7 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<Place>();
     registry.add::<Carry>();
+    registry.add::<Refine>();
 }
 
 #[cfg(test)]

@@ -26,7 +26,10 @@ impl Search<'_> {
         let mut near = Neighbours { level, ..Neighbours::default() };
         for factor in NEAR {
             let setting = self.board.refined(RATIO.powi(level as i32) * factor);
-            if setting == levels[level].setting {
+            // Two parts of an edge are two, a fiftieth more or less.
+            if setting == levels[level].setting
+                || !self.board.differ_in_space(&setting, &levels[level].setting)
+            {
                 break;
             }
             let left = budget.saturating_sub(started.elapsed());

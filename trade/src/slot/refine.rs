@@ -36,6 +36,12 @@ impl Board {
         self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(pair).any(|too_fine| too_fine)
     }
 
+    /// True where two settings differ in a resolution in space, or there is none to differ in.
+    pub fn differ_in_space(&self, a: &Setting, b: &Setting) -> bool {
+        let mut spatial = self.knobs.iter().filter(|k| self.is_spatial(k)).peekable();
+        spatial.peek().is_none() || spatial.any(|k| a.get(&k.key) != b.get(&k.key))
+    }
+
     /// Direction, finest value of the dial and value in a setting, of every knob that is a resolution in space.
     fn resolutions<'b>(&'b self, setting: &'b Setting) -> impl Iterator<Item = (f64, f64, f64)> + 'b {
         self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(|k| {

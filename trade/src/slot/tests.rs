@@ -210,6 +210,39 @@ fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
     );
 }
 
+/// A vest whose folds one mesh finds and a finer one keeps.
+fn refined_vest() -> String {
+    VEST.replace("Rest(),", "Rest(), Refine(parts: 2), Rest(id: \"Settle\", from_here: true),")
+}
+
+#[test]
+fn where_a_draped_garment_is_refined_its_parts_are_turned_and_the_mesh_that_finds_the_folds_stays() {
+    let registry = registry();
+    let pipeline = source(&refined_vest(), &registry).load(&[]).unwrap();
+    let found = default_knobs(&pipeline, &registry);
+    assert_eq!(found.iter().map(KnobSpec::key).collect::<Vec<_>>(), ["Refine.parts", "Settle.speed"]);
+    let board = Board::new(&source(&refined_vest(), &registry), &pipeline, &found).unwrap();
+    // Half and twice the parts.
+    assert!(
+        board.setting(&[0.0, 0.5])["Refine.parts"] == "1"
+            && board.setting(&[1.0, 0.5])["Refine.parts"] == "4"
+    );
+}
+
+#[test]
+fn parts_of_an_edge_are_a_resolution_in_space_that_a_fiftieth_does_not_change() {
+    let registry = registry();
+    let text = refined_vest();
+    let source = source(&text, &registry);
+    let board = board(&source, &["Refine.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
+    let (own, near, far) = (board.own(), board.refined(1.02), board.refined(2.0));
+    assert_eq!((&*near["Refine.parts"], &*far["Refine.parts"]), ("2", "4"));
+    assert!(near != own && !board.differ_in_space(&near, &own) && board.differ_in_space(&far, &own));
+    // A reference of four parts may judge three, not four.
+    assert!(board.is_finer(&far, 1.3) && !board.is_finer(&own, 1.3));
+    assert!(board.is_too_fine(&far, &far, 1.3) && !board.is_too_fine(&own, &far, 1.3));
+}
+
 #[test]
 fn faults_word_for_word() {
     for (knob, message, hint) in [

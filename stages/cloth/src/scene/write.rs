@@ -89,7 +89,7 @@ fn panel(p: &Panel) -> Value {
 }
 
 fn material(f: &Fabric) -> Value {
-    json!({
+    let mut value = json!({
         "area_density": f.density,
         "stretch": f.stretch(),
         "warp": curve(&f.warp),
@@ -99,12 +99,18 @@ fn material(f: &Fabric) -> Value {
         "bend": f.bending_warp.max(f.bending_weft),
         "bend_warp": f.bending_warp,
         "bend_weft": f.bending_weft,
-        "bend_friction_warp": f.bending_friction_warp,
-        "bend_friction_weft": f.bending_friction_weft,
         "friction": f.friction,
         "thickness": f.thickness,
         "damping": f.damping,
-    })
+    });
+    for (key, couple) in
+        [("bend_friction_warp", f.bending_friction_warp), ("bend_friction_weft", f.bending_friction_weft)]
+    {
+        if couple != 0.0 {
+            value[key] = json!(couple);
+        }
+    }
+    value
 }
 
 /// A straight line as its stiffness, anything else as its points.
