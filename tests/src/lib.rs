@@ -34,12 +34,15 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A pipeline's text without its solver: no line of `Rest()`, and no qualities, which set it.
+/// A pipeline's text without its solver: no line of `Rest` or `Refine`, and no qualities, which set them.
 #[must_use]
 pub fn without_rest(text: &str) -> String {
     let (head, qualities) = text.split_once("    qualities: [").unwrap_or((text, ""));
     let tail = qualities.split_once("\n    ],\n").map_or("", |(_, tail)| tail);
-    let lines = head.lines().chain(tail.lines()).filter(|l| !l.contains("Rest()"));
+    let lines = head
+        .lines()
+        .chain(tail.lines())
+        .filter(|l| !["Rest(", "Refine("].iter().any(|s| l.trim().starts_with(s)));
     lines.collect::<Vec<_>>().join("\n")
 }
 
