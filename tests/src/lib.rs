@@ -52,4 +52,5 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 5] = ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron"];
+pub const PIPELINES: [&str; 6] =
+    ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron", "skirt.ron"];
