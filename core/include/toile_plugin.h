@@ -82,6 +82,7 @@ typedef struct toile_port {
 #define TOILE_PARAM_TRADES 1 /* trades accuracy for time */
 #define TOILE_PARAM_FINER_LESS 2 /* a resolution, less is finer: an edge length, a time step */
 #define TOILE_PARAM_FINER_MORE 4 /* a resolution, more is finer: a count of iterations */
+#define TOILE_PARAM_WAY 8 /* other work with another value than the default: its cost is told apart */
 
 typedef struct toile_param {
     toile_text name;

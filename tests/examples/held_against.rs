@@ -42,8 +42,8 @@ fn mm(s: Spread) -> String {
 
 /// The garment that a group's stage gives, and the processor seconds up to it.
 fn solve(group: &[String]) -> (Garment, f64) {
-    let [file, until, set @ ..] = group else { panic!("a group is a file, a stage and values") };
-    let set: Vec<Override> = set.iter().map(|s| s.parse().unwrap()).collect();
+    let (file, until) = (&group[0], &group[1]);
+    let set: Vec<Override> = group[2..].iter().map(|s| s.parse().unwrap()).collect();
     let text = std::fs::read_to_string(file).unwrap();
     let pipeline = load(&text, file, Path::new(file).parent().unwrap(), &toile::registry(), &set).unwrap();
     let listener: Arc<dyn Listener> = Arc::new(());

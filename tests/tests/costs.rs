@@ -9,6 +9,7 @@ use toile_core::cost::{Quantity, Size, foresee};
 use toile_core::pipeline::{Override, Pipeline, load};
 use toile_core::{Cancel, Listener, RunOptions, run};
 use toile_tests::{pipeline, root, toile};
+use toile_trade::cost::{Costs, note};
 
 fn loaded(name: &str, overrides: &[Override]) -> Pipeline {
     let text = std::fs::read_to_string(pipeline(name)).unwrap();
@@ -69,6 +70,30 @@ fn a_scene_is_foreseen_to_the_triangle() {
     for quantity in [Quantity::Triangles, Quantity::BodyTriangles] {
         assert_eq!(foreseen[0].made.get(quantity), fact.get(quantity), "{quantity:?}");
     }
+}
+
+#[test]
+fn a_refined_garment_is_foreseen_to_the_triangle() {
+    let parts = Override { path: "stages.Refine.parts".into(), value: "3".into() };
+    let pipeline = loaded("skirt.ron", &[parts]);
+    let foreseen = foresee(&pipeline, &|_, _| None);
+    let triangles = |stage: &str| foreseen[pipeline.find(stage).unwrap()].made.get(Quantity::Triangles);
+    for (stage, fact) in made(&pipeline, "Settle") {
+        assert_eq!(triangles(&stage), fact.get(Quantity::Triangles), "{stage}");
+    }
+    assert_eq!(triangles("GarmentObj"), Some(9.0 * triangles("Rest").unwrap()));
+}
+
+#[test]
+fn a_way_of_its_own_has_records_of_its_own() {
+    let pipeline = loaded("skirt.ron", &[]);
+    let meter: Arc<dyn Meter> = Arc::new(Still);
+    let options = RunOptions { meter: Some(meter), ..RunOptions::default() };
+    let listener: Arc<dyn Listener> = Arc::new(());
+    let costs = run(&pipeline, &options, &Cancel::new(), &listener).unwrap().costs;
+    let noted: Vec<String> =
+        note(&pipeline, &costs, &Costs::default(), 1).into_iter().map(|r| r.stage).collect();
+    assert_eq!(noted[1..4], ["Rest", "Refine", "Rest(from_here: true)"]);
 }
 
 #[test]
@@ -190,11 +215,11 @@ fn springs_are_measured_on_the_photo_pipelines_as_they_are() {
         let springs =
             load(&with_springs, &file, &root().join("tests/costs"), &toile::registry(), &[]).unwrap();
         assert!(springs.find("SpringDraper").is_some() && springs.find("Rest").is_none());
-        // All but how it is sewn, and its qualities, which are those of `Rest`.
+        // All but how it is sewn and refined, and its qualities, which are those of `Rest`.
         let photo = read(format!("pipelines/photo_{kind}.ron"));
         let (before, after) = photo.split_once("        Rest(),").unwrap();
         let before = before.split_once("(\n    name:").unwrap().1.split_once('\n').unwrap().1;
-        let after = after.split_once('\n').unwrap().1.split_once("    ],\n").unwrap().0;
+        let after = after.split_once("        PhotoTexturer(").unwrap().1.split_once("    ],\n").unwrap().0;
         let moved = before.replace("samples/", "../../pipelines/samples/");
         assert!(with_springs.contains(&moved) && with_springs.contains(after), "{kind}");
     }

@@ -26,6 +26,7 @@ struct ParamArgs {
     unit: Option<LitStr>,
     trades: bool,
     finer: Option<Ident>,
+    way: bool,
 }
 
 pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<TokenStream> {
@@ -129,7 +130,8 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
                 |e| quote!(::std::option::Option::Some((#e) as f64)),
             )
         };
-        let (min, max, trades) = (bound(args.min), bound(args.max), args.trades);
+        let (min, max) = (bound(args.min), bound(args.max));
+        let (trades, way) = (args.trades, args.way);
         let finer = args.finer.map_or(
             quote!(::std::option::Option::None),
             |way| quote!(::std::option::Option::Some(::toile_core::Finer::#way)),
@@ -147,6 +149,7 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
                 default: ::toile_core::param::ron_text(&default.#name),
                 trades: #trades,
                 finer: #finer,
+                way: #way,
                 check: ::toile_core::param::Check::of::<#ty>(),
             }
         });
@@ -162,13 +165,14 @@ fn param_args(field: &mut syn::Field) -> syn::Result<ParamArgs> {
         for meta in attr.parse_args_with(Punctuated::<Meta, Token![,]>::parse_terminated)? {
             match &meta {
                 Meta::Path(p) if p.is_ident("trades") => args.trades = true,
+                Meta::Path(p) if p.is_ident("way") => args.way = true,
                 Meta::NameValue(nv) if nv.path.is_ident("default") => args.default = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("min") => args.min = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("max") => args.max = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("unit") => args.unit = Some(expr_str(&nv.value)?),
                 Meta::NameValue(nv) if nv.path.is_ident("finer") => args.finer = Some(way(&nv.value)?),
                 _ => {
-                    let known = "expected default, min, max, unit, trades or finer";
+                    let known = "expected default, min, max, unit, trades, finer or way";
                     return Err(syn::Error::new_spanned(meta, known));
                 }
             }
@@ -239,6 +243,9 @@ mod tests {
         );
         assert_eq!(refused(quote!(default = 1.0, trades, finer = "both")), way);
         assert_eq!(refused(quote!(default = 1.0, finer = "less")), trades);
-        assert_eq!(refused(quote!(coarser = "less")), "expected default, min, max, unit, trades or finer");
+        assert_eq!(
+            refused(quote!(coarser = "less")),
+            "expected default, min, max, unit, trades, finer or way"
+        );
     }
 }

@@ -128,7 +128,7 @@ pub struct Param {
     pub min: f64,
     /// Its greatest value.
     pub max: f64,
-    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`; a host leaves bits alone that it does not know.
+    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`, `PARAM_WAY`; a host leaves bits alone that it does not know.
     pub flags: u32,
     /// Zero.
     pub reserved: u32,
@@ -140,6 +140,8 @@ pub const PARAM_TRADES: u32 = 1;
 pub const PARAM_FINER_LESS: u32 = 2;
 /// It is a resolution, and more is finer.
 pub const PARAM_FINER_MORE: u32 = 4;
+/// Another value than its default makes the stage do other work, whose cost is told apart.
+pub const PARAM_WAY: u32 = 8;
 
 /// One artifact that a stage is given.
 #[repr(C)]

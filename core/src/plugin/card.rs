@@ -72,7 +72,8 @@ fn flags(p: &ParamDoc) -> u32 {
         Some(Finer::More) => abi::PARAM_FINER_MORE,
         None => 0,
     };
-    finer | if p.trades { abi::PARAM_TRADES } else { 0 }
+    let (trades, way) = (u32::from(p.trades) * abi::PARAM_TRADES, u32::from(p.way) * abi::PARAM_WAY);
+    finer | trades | way
 }
 
 /// Which way a parameter is refined, by its flags.
@@ -205,6 +206,7 @@ unsafe fn read_param(p: &abi::Param, check: Option<Check>) -> Result<ParamDoc, S
         default: unsafe { text(p.default)? }.to_owned(),
         trades: p.flags & abi::PARAM_TRADES != 0,
         finer: finer(name, p.flags)?,
+        way: p.flags & abi::PARAM_WAY != 0,
         check: check.unwrap_or_else(|| Check::by(by_kind)),
     })
 }

@@ -67,7 +67,7 @@ pub struct Rest {
     pub graded: bool,
     /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came to rest on a coarser mesh (see
     /// `Refine`) and shall keep its folds. Nothing is graded then.
-    #[param(default = false)]
+    #[param(default = false, way)]
     pub from_here: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
     /// always double. The state that is found keeps `speed` either way.

@@ -14,6 +14,7 @@ mod tests;
 use crate::cloth::check_garment;
 use cut::Cut;
 use edges::Edges;
+use toile_core::cost::{Quantity, Size};
 use toile_core::prelude::*;
 
 /// A finer mesh would only run out of memory.
@@ -56,6 +57,12 @@ impl Refine {
         fine.seams = seams::seams(garment, &edges, &cut, cx)?;
         seams::join(&mut fine, &cut);
         Ok(fine)
+    }
+
+    /// As many triangles as every one is cut into.
+    pub(crate) fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+        let triangles = given.get(Quantity::Triangles)?;
+        Some(given.clone().with(Quantity::Triangles, triangles * (self.parts * self.parts) as f64))
     }
 
     fn too_many(&self, count: usize) -> StageError {

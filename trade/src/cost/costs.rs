@@ -39,7 +39,7 @@ pub struct Costs {
 pub struct Place<'a> {
     /// The pipeline's name.
     pub pipeline: &'a str,
-    /// The stage's name.
+    /// The stage's name, as in the records.
     pub stage: &'a str,
     /// Its role.
     pub role: &'a str,

@@ -29,6 +29,7 @@ mod store;
 mod sweep;
 mod terms;
 mod words;
+mod work;
 
 #[cfg(test)]
 mod tests;

@@ -3,6 +3,7 @@
 use super::Costs;
 use super::predict::key;
 use super::record::CostRecord;
+use super::work::work;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use toile_core::Role;
@@ -35,7 +36,7 @@ pub fn note(pipeline: &Pipeline, costs: &[StageCost], earlier: &Costs, threads: 
         Some(CostRecord {
             pipeline: pipeline.name.clone(),
             style: style(pipeline),
-            stage: node.card.name.to_owned(),
+            stage: work(node),
             role: node.card.role.as_str().to_owned(),
             key,
             threads,

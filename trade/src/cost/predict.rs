@@ -2,6 +2,7 @@
 
 use super::note::style;
 use super::record::Figure;
+use super::work::work;
 use super::{Costs, Place};
 use toile_core::artifact::Digester;
 use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
@@ -37,11 +38,11 @@ pub fn predict(pipeline: &Pipeline, costs: &Costs) -> Vec<Forecast> {
     let (rules, facts) = (foresee(pipeline, &|_, _| None), foresee(pipeline, &known));
     let style = style(pipeline);
     let forecast = |(node, (rules, facts)): (&Node, (Foreseen, Foreseen))| {
-        let (name, role) = (node.card.name, node.card.role.as_str());
-        let size = best(&costs.corrected(name, &style, &all(&rules)), &all(&rules), &all(&facts));
+        let (work, role) = (work(node), node.card.role.as_str());
+        let size = best(&costs.corrected(&work, &style, &all(&rules)), &all(&rules), &all(&facts));
         let predicted =
-            costs.predicted(&Place { pipeline: &pipeline.name, stage: name, role, style: &style }, &size);
-        Forecast { stage: node.id.clone(), size, predicted, known: costs.knows(name) }
+            costs.predicted(&Place { pipeline: &pipeline.name, stage: &work, role, style: &style }, &size);
+        Forecast { stage: node.id.clone(), size, predicted, known: costs.knows(&work) }
     };
     pipeline.nodes.iter().zip(rules.into_iter().zip(facts)).map(forecast).collect()
 }

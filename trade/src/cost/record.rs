@@ -95,7 +95,7 @@ pub struct CostRecord {
     /// The kind of garment: the name of the pipeline's first style.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub style: String,
-    /// The stage's name.
+    /// The stage's name, with what makes it do other work than by default.
     pub stage: String,
     /// Its role.
     pub role: String,

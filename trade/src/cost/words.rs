@@ -81,7 +81,7 @@ pub fn check_lines(check: &Check) -> Vec<String> {
     let mut lines = vec![
         format!("{}: prediction / fact on pipelines left out of the fit", check.figure.as_str()),
         format!(
-            "  {:<11} {:<20} {:>4} {:>10} {:>7} {:>7} {:>7}  within 30 %",
+            "  {:<11} {:<21} {:>4} {:>10} {:>7} {:>7} {:>7}  within 30 %",
             "pipeline", "stage", "runs", "fact", "least", "middle", "most"
         ),
     ];
@@ -103,7 +103,7 @@ fn verdict(v: &Verdict, fact: &str) -> String {
         v.ratios.get(i).map_or_else(|| "-".to_owned(), |r| format!("{r:.2}"))
     };
     format!(
-        "  {:<11} {:<20} {:>4} {fact:>10} {:>7} {:>7} {:>7}  {} of {}{}",
+        "  {:<11} {:<21} {:>4} {fact:>10} {:>7} {:>7} {:>7}  {} of {}{}",
         v.pipeline,
         v.stage,
         v.tally.count,
