@@ -17,9 +17,9 @@ fn a_check_is_told_in_words() {
         lines,
         [
             "wall time: prediction / fact on pipelines left out of the fit",
-            "  pipeline    stage                runs       fact   least  middle    most  within 30 %",
-            "  b           Cut                     1     100 ms    0.40    0.40    0.40  0 of 1  others of its role stand in",
-            "  b           Otsu                    1      50 ms    0.80    0.80    0.80  1 of 1",
+            "  pipeline    stage                 runs       fact   least  middle    most  within 30 %",
+            "  b           Cut                      1     100 ms    0.40    0.40    0.40  0 of 1  others of its role stand in",
+            "  b           Otsu                     1      50 ms    0.80    0.80    0.80  1 of 1",
             "within 30 %: 50 % (1 of 2) of all, 50 % (1 of 2) of those above 1 ms, 100 % (1 of 1) of these where other pipelines have the stage",
             "in the range of 80 %: 100 % of those above 1 ms",
         ]
