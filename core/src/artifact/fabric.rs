@@ -76,11 +76,11 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending stiffness along the weft, N m.
     pub bending_weft: f64,
-    #[serde(default)]
     /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. 0 where it is not known.
-    pub bending_friction_warp: f64,
     #[serde(default)]
+    pub bending_friction_warp: f64,
     /// The same along the weft.
+    #[serde(default)]
     pub bending_friction_weft: f64,
     /// Thickness, m.
     pub thickness: f64,

@@ -128,7 +128,7 @@ pub struct Param {
     pub min: f64,
     /// Its greatest value.
     pub max: f64,
-    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`, `PARAM_WAY`; a host leaves bits alone that it does not know.
+    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`, and `PARAM_WAY`; a host leaves bits alone that it does not know.
     pub flags: u32,
     /// Zero.
     pub reserved: u32,

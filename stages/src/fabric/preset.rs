@@ -65,7 +65,8 @@ struct Typical {
     /// Bending along warp and weft, 1e-6 N m.
     bending: [f64; 2],
     /// The frictional couple of bending (half of 2HB) over the stiffness, 1/m. Six cellulosic cloths of denim's weight measured by
-    /// KES have 23 to 54 (2HB / B of 0.46 to 1.07 per cm; Journal of Textiles 2016, 4614168); wool and filaments have less, knits more.
+    /// KES have 23 to 54 (2HB / B of 0.46 to 1.07 per cm; Journal of Textiles 2016, 4614168). That wool and filaments have less and
+    /// knits more is assumed: no sheet was found.
     held: f64,
     friction: f64,
 }
