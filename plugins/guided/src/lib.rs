@@ -29,7 +29,7 @@ pub enum Guide {
 )]
 pub struct Guided {
     /// What the filter follows.
-    #[param(default = Guide::Bilateral, trades)]
+    #[param(default = Guide::Bilateral, trades, way)]
     pub guide: Guide,
     /// Half the window's width.
     #[param(default = 4, min = 1, max = 100, unit = "px")]

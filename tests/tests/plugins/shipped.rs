@@ -28,7 +28,8 @@ fn every_stage_gives_the_same_bits_loaded_and_linked_in() {
         for card in linked.cards() {
             let [own, foreign] = [&linked, &loaded].map(|r| from_example(r, card, &dir).unwrap());
             assert_eq!(own.params(), foreign.params());
-            let turned = |c: &Card| c.params.iter().map(|p| (p.name, p.trades, p.finer)).collect::<Vec<_>>();
+            let turned =
+                |c: &Card| c.params.iter().map(|p| (p.name, p.trades, p.finer, p.way)).collect::<Vec<_>>();
             assert_eq!(turned(card), turned(loaded.card(card.name).unwrap()));
             let mut answers = 0;
             for case in cases(card).iter().take(CASES) {
@@ -40,6 +41,14 @@ fn every_stage_gives_the_same_bits_loaded_and_linked_in() {
             assert!(answers > 0, "{} answers nothing", card.name);
         }
     }
+}
+
+#[test]
+fn a_loaded_card_says_what_makes_a_stage_do_other_work() {
+    let mut loaded = Registry::new();
+    loaded.load_plugin(&library("toile_guided"), None).unwrap();
+    let ways = loaded.card("Guided").unwrap().params.iter().filter(|p| p.way).map(|p| p.name);
+    assert_eq!(ways.collect::<Vec<_>>(), ["guide"]);
 }
 
 /// Denoiser, mesher, collider and texturer of plugins in one pipeline.
