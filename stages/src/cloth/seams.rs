@@ -135,21 +135,24 @@ pub(super) fn join(garment: &mut Garment, cloth: &Cloth, state: &mut State, dist
     joined
 }
 
-/// Sets nodes whose vertices are welded to their mass-weighted mean.
+/// Sets nodes whose vertices are welded to their mass-weighted mean, or to that of those among them that are held.
 fn merge(weld: &[u32], cloth: &Cloth, state: &mut State) {
     let root_of = |i: usize| cloth.node_of[weld[i] as usize] as usize;
     let mut root = vec![usize::MAX; cloth.len()];
     for (i, &node) in cloth.node_of.iter().enumerate() {
         root[node as usize] = root_of(i);
     }
+    let is_held = |i: usize| cloth.inertia[i] > 0.0 && cloth.inverse_inertia[i] == 0.0;
+    let mut holds = vec![false; cloth.len()];
+    root.iter().enumerate().for_each(|(i, &r)| holds[r] |= is_held(i));
     let mut sums = vec![(0.0, Vector3::zeros(), Vector3::zeros()); cloth.len()];
-    for (i, &r) in root.iter().enumerate() {
+    for (i, &r) in root.iter().enumerate().filter(|(i, r)| is_held(*i) || !holds[**r]) {
         let (m, s) = (cloth.inertia[i], &mut sums[r]);
         *s = (s.0 + m, s.1 + state.x[i].coords * m, s.2 + state.v[i] * m);
     }
     for (i, &r) in root.iter().enumerate() {
         let (m, x, v) = sums[r];
-        if m > cloth.inertia[i] {
+        if m > cloth.inertia[i] || (holds[r] && !is_held(i)) {
             (state.x[i], state.v[i]) = (Point3::from(x / m), v / m);
         }
     }

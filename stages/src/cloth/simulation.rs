@@ -79,6 +79,15 @@ pub struct Simulation<'a> {
     pub time: f64,
 }
 
+/// The garment's springs, its pins held.
+fn held(garment: &Garment, softening: Softening) -> Cloth {
+    let mut cloth = Cloth::new(garment, softening);
+    for &v in &garment.pinned {
+        cloth.hold(cloth.node_of[v as usize] as usize);
+    }
+    cloth
+}
+
 impl<'a> Simulation<'a> {
     /// A garment that passed [`check_garment`](super::check_garment), at its start.
     pub fn new(
@@ -88,7 +97,7 @@ impl<'a> Simulation<'a> {
         settings: Settings,
     ) -> Self {
         let garment = garment.clone();
-        let cloth = Cloth::new(&garment, settings.softening);
+        let cloth = held(&garment, settings.softening);
         let state = cloth.gather(&garment);
         let seams = Seams::open(&garment, &cloth);
         let mut simulation = Simulation {
@@ -246,7 +255,7 @@ impl<'a> Simulation<'a> {
     }
 
     fn rebuild(&mut self) {
-        self.cloth = Cloth::new(&self.garment, self.settings.softening);
+        self.cloth = held(&self.garment, self.settings.softening);
         self.state = self.cloth.gather(&self.garment);
         self.kept.clone_from(&self.state);
         self.seams = Seams::open(&self.garment, &self.cloth);

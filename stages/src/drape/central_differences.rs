@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 /// seconds; else it sews without weight and drapes until rest.
 #[stage(
     role = Draper,
-    version = 3,
+    version = 4,
     source = "Fan et al. 1999; Desbrun et al. 1999",
     example = "CentralDifferences(drag: 4.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 /// sews without weight and drapes until rest.
 #[stage(
     role = Draper,
-    version = 3,
+    version = 4,
     source = "Baraff and Witkin 1998; Martin et al. 2011",
     example = "ImplicitEuler(tolerance: 1e-4)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

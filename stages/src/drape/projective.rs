@@ -15,7 +15,7 @@ use toile_core::prelude::*;
 /// else it sews without weight and drapes until rest.
 #[stage(
     role = Draper,
-    version = 3,
+    version = 4,
     source = "Bouaziz et al. 2014",
     example = "Projective(iterations: 10)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

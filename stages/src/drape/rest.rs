@@ -34,7 +34,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 12,
+    version = 13,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -58,7 +58,7 @@ pub struct Rest {
     /// Gap below which a seam is joined.
     #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
     pub join_gap: Length,
-    /// Wall time after which the drape stops as it is. A run that meets it is not repeatable.
+    /// Wall time after which it gives up, with an error. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
     /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a millimetre then ends in the same

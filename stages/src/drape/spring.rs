@@ -18,6 +18,7 @@ use toile_core::prelude::*;
 /// changes and every vertex is slow, or at its time limit with a warning.
 #[stage(
     role = Draper,
+    version = 2,
     source = "improved spring-mass model, 2003; Provot, 1995",
     example = "SpringDraper(max_strain: 0.02)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

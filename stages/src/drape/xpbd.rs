@@ -14,7 +14,7 @@ use toile_core::prelude::*;
 /// else it sews without weight and drapes until rest.
 #[stage(
     role = Draper,
-    version = 3,
+    version = 4,
     source = "Macklin et al. 2016, 2019",
     example = "Xpbd(substeps: 8)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -7,7 +7,7 @@ pub fn lost(scene: &Scene) -> Vec<String> {
     let seams = |is: fn(&toile_cloth::scene::Seam) -> bool| {
         names(scene.seams.iter().filter(|s| is(s)).map(|s| s.name.as_str()))
     };
-    let panels = |is: fn(&toile_cloth::scene::Panel) -> bool| {
+    let panels = |is: &dyn Fn(&toile_cloth::scene::Panel) -> bool| {
         names(scene.panels.iter().filter(|p| is(p)).map(|p| p.name.as_str()))
     };
     let bands = names(scene.bands.iter().map(|b| b.name.as_str()));
@@ -18,11 +18,14 @@ pub fn lost(scene: &Scene) -> Vec<String> {
         scene.strain_limit.map(|_| limit.to_owned()),
         seams(|s| !s.joined).map(|s| format!("its seams {s} are joined: a garment has no threads")),
         seams(|s| s.gather.is_some()).map(|s| format!("the gathers of its seams {s} are left out")),
-        panels(|p| p.layer != 0).map(|p| format!("the layers of its panels {p} are left out")),
-        panels(|p| p.body_friction.is_some()).map(|p| {
+        panels(&|p| p.layer != 0).map(|p| format!("the layers of its panels {p} are left out")),
+        panels(&|p| p.body_friction.is_some()).map(|p| {
             format!(
                 "its panels {p} slide on the body as all others do: a garment's collider has one friction"
             )
+        }),
+        panels(&|p| p.material.as_ref().is_some_and(|m| m.thickness != scene.material.thickness)).map(|p| {
+            format!("the thickness of its panels {p} is that of the scene: a garment's collider has one")
         }),
         poisson.then(|| "the Poisson's ratio of its fabric is left out".to_owned()),
     ];

@@ -9,7 +9,7 @@ use crate::engine::{garment_of, lost, scene_error};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_cloth::scene::{self, SceneError};
-use toile_core::artifact::Digester;
+use toile_core::artifact::{Artifact, Digester};
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
@@ -53,7 +53,10 @@ impl Scene {
         };
         let scene = scene::parse(&text, &beside).map_err(|e| scene_error(&e))?;
         lost(&scene).into_iter().for_each(|what| cx.warn(what));
+        let garment = garment_of(&scene);
+        self.check(&garment)?;
         let body = body_of(&scene);
+        self.check(&body)?;
         let collider = collider(&scene, &body, self.distances, cx)?;
         let phases = scene.phases.iter().map(|p| Phase {
             name: p.name.clone(),
@@ -61,7 +64,18 @@ impl Scene {
             gravity: p.gravity,
             air: p.air.map(air),
         });
-        Ok((garment_of(&scene), body, collider, Phases(phases.collect())))
+        let phases = Phases(phases.collect());
+        self.check(&collider)?;
+        self.check(&phases)?;
+        Ok((garment, body, collider, phases))
+    }
+
+    /// A file whose numbers the reader takes and no garment, body or motion can have.
+    fn check(&self, made: &impl Artifact) -> Result<(), StageError> {
+        made.check().map_err(|fault| {
+            StageError::invalid(format!("the {} of \"{}\" cannot be used: {fault}", made.kind(), self.file))
+                .hint("docs/scene.md describes the format")
+        })
     }
 
     pub(crate) fn decide(&self, known: &Known<'_>) -> Vec<Decision> {

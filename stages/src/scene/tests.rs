@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::Scene;
-use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, Xpbd};
+use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, SpringDraper, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
 use toile_cloth::force::Air;
@@ -75,6 +75,30 @@ fn rest_holds_what_is_pinned() {
         assert_eq!(draped.positions[p as usize], garment.positions[p as usize]);
     }
     assert!(draped.status.converged);
+}
+
+#[test]
+fn springs_hold_what_is_pinned() {
+    let (garment, _, collider, _) = through_files(&generate::hang(6)).unwrap();
+    let draper = SpringDraper { time_limit: 0.2, ..SpringDraper::default() };
+    let hung = draper.run(&garment, Some(&collider), &Context::quiet()).unwrap();
+    for &p in &garment.pinned {
+        assert_eq!(hung.positions[p as usize], garment.positions[p as usize]);
+    }
+    let lowest = |g: &Garment| g.positions.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    assert!(lowest(&hung) < lowest(&garment) - 0.05, "what is not pinned falls");
+}
+
+#[test]
+fn a_pin_on_a_seam_stays_where_it_is_and_the_other_side_comes_to_it() {
+    let mut scene = generate::tube(6, 8);
+    let [a, b] = scene.seams[0].pairs[0];
+    scene.pinned = vec![a];
+    let (garment, _, collider, phases) = through_files(&scene).unwrap();
+    let rest = Rest { join_gap: Length::mm(20.0), graded: false, ..Rest::default() };
+    let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
+    assert_eq!(draped.positions[a as usize], garment.positions[a as usize]);
+    assert_eq!(draped.positions[b as usize], garment.positions[a as usize]);
 }
 
 #[test]
@@ -181,6 +205,8 @@ fn what_a_garment_cannot_hold_is_named() {
     scene.panels[0].layer = 1;
     scene.panels[1].body_friction = Some(0.1);
     scene.material.poisson = 0.2;
+    scene.panels[1].material =
+        Some(toile_cloth::fabric::Fabric { thickness: 2e-3, ..scene.material.clone() });
     let (a, b) = (scene.seams[0].name.clone(), scene.seams[1].name.clone());
     let (p, q) = (scene.panels[0].name.clone(), scene.panels[1].name.clone());
     let whole = "the scene is not held whole:";
@@ -193,6 +219,9 @@ fn what_a_garment_cannot_hold_is_named() {
             format!("{whole} the layers of its panels \"{p}\" are left out"),
             format!(
                 "{whole} its panels \"{q}\" slide on the body as all others do: a garment's collider has one friction"
+            ),
+            format!(
+                "{whole} the thickness of its panels \"{q}\" is that of the scene: a garment's collider has one"
             ),
             format!("{whole} the Poisson's ratio of its fabric is left out"),
         ]
@@ -230,4 +259,21 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
     std::fs::write(dir.path().join("c.json"), to_json(&scene, "")).unwrap();
     let e = read(dir.path(), "c.json").unwrap_err();
     assert_eq!(e.message, "triangle 0 refers to vertex 99, but there are 9");
+    let refused = |scene: &toile_cloth::scene::Scene| {
+        let e = through_files(scene).unwrap_err();
+        (e.code, e.message, e.hint)
+    };
+    let mut scene = generate::tube(4, 5);
+    scene.body.as_mut().unwrap().triangles.clear();
+    let words = "the body has no triangles; leave it out where there is none".to_owned();
+    assert_eq!(refused(&scene), (ErrorCode::InvalidInput, words, None));
+    // The reader takes each number; no garment can have them all.
+    let mut scene = generate::hang(2);
+    scene.panels.clear();
+    let (code, message, hint) = refused(&scene);
+    assert!(message.starts_with("the garment of \"scene.json\" cannot be used: "), "{message}");
+    assert_eq!(
+        (code, hint.as_deref()),
+        (ErrorCode::InvalidInput, Some("docs/scene.md describes the format"))
+    );
 }

@@ -20,6 +20,7 @@ use toile_core::prelude::*;
 /// close is an error that names it.
 #[stage(
     role = Stitcher,
+    version = 2,
     source = "Fan, Zhou, Wang, Yuen, 1999; improved spring-mass model, 2003",
     example = "SpringStitcher(seam_distance: \"1 mm\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -182,7 +182,7 @@ impl Run<'_> {
             }
         }
         self.closed(&moving)?;
-        Ok(self.finish(&moving, true))
+        Ok(self.finish(&moving, !moving.is_jammed))
     }
 
     fn rest(

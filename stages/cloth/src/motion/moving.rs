@@ -177,12 +177,61 @@ impl Moving {
             let pairs = tree.pairs(start, moves, offset);
             off_itself(&pairs, start, moves, &self.inverse, offset, self.fabric.friction);
         }
+        let before = moves.to_vec();
         let pushed = match wearer {
             Some(wearer) => off_the_body(wearer, start, moves, offset),
             None => vec![Vec3::zeros(); moves.len()],
         };
+        let is_free = !self.model.fixed.contains(&true) && moves == before;
         moves.iter_mut().zip(&self.model.fixed).filter(|(_, f)| **f).for_each(|(m, _)| *m = Vec3::zeros());
-        let share = self.tree.as_ref().map_or(1.0, |tree| stop_short(tree, start, moves, offset));
+        let short = |moves: &mut [Vec3]| {
+            self.tree.as_ref().map_or(1.0, |tree| stop_short(tree, start, moves, offset))
+        };
+        let share = if is_free { among_themselves(&self.model.masses, moves, short) } else { short(moves) };
         (pushed, share)
+    }
+}
+
+/// Shortens the moves of what nothing else holds as `short` does, but against their common motion, which is kept: cloth that meets
+/// cloth in mid-air changes how it is folded, not how it flies.
+fn among_themselves(masses: &[f64], moves: &mut [Vec3], short: impl Fn(&mut [Vec3]) -> f64) -> f64 {
+    let common = |moves: &[Vec3]| {
+        let sum: Vec3 = moves.iter().zip(masses).map(|(m, w)| m * *w).sum();
+        sum / masses.iter().sum::<f64>().max(f64::MIN_POSITIVE)
+    };
+    let flight = common(moves);
+    let mut own: Vec<Vec3> = moves.iter().map(|m| m - flight).collect();
+    let wanted = own.clone();
+    let share = short(&mut own);
+    // What was not held back keeps its bits.
+    if own != wanted {
+        let shift = flight - common(&own);
+        moves.iter_mut().zip(&own).for_each(|(m, o)| *m = o + shift);
+    }
+    share
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cloth_that_holds_itself_back_in_mid_air_keeps_its_flight() {
+        let masses = [1.0, 2.0, 3.0];
+        let fall = [Vec3::new(0.3, -1.0, 0.0), Vec3::new(0.1, -1.0, 0.2), Vec3::new(-0.1, -1.0, 0.0)];
+        let sum = |moves: &[Vec3]| -> Vec3 { moves.iter().zip(&masses).map(|(m, w)| m * *w).sum() };
+        let mut moves = fall;
+        let share = among_themselves(&masses, &mut moves, |own| {
+            own[0] *= 0.25;
+            own[2] *= 0.5;
+            0.25
+        });
+        assert_eq!(share, 0.25);
+        assert!((sum(&moves) - sum(&fall)).norm() < 1e-12, "{moves:?}");
+        assert!(moves.iter().all(|m| (m.y + 1.0).abs() < 1e-12), "none falls slower: {moves:?}");
+        assert_ne!(moves, fall);
+        let mut free = fall;
+        assert_eq!(among_themselves(&masses, &mut free, |_| 1.0), 1.0);
+        assert_eq!(free, fall, "the same bits");
     }
 }

@@ -49,7 +49,9 @@ pub enum RestError {
         depth: f64,
     },
     /// Cloth that passes through cloth where it starts.
-    #[error("{pairs} pairs of an edge and a triangle cross at the start; lay the panels out so that none do")]
+    #[error(
+        "cloth touches or passes through cloth at the start: {pairs} pairs of an edge and a triangle cross or cannot be told apart; lay the panels out so that none do"
+    )]
     InitialCrossing {
         /// How many.
         pairs: usize,
@@ -73,7 +75,9 @@ pub enum RestError {
         state: Box<Rested>,
     },
     /// The budget of time is spent.
-    #[error("out of time after {seconds:.1} s on level {level} of {levels}")]
+    #[error(
+        "out of time after {seconds:.1} s on level {level} of {levels}; allow more time or take a coarser mesh"
+    )]
     Timeout {
         /// Wall time spent, s.
         seconds: f64,

@@ -24,7 +24,9 @@ const TASK_UNKNOWNS: usize = 400;
 
 /// The matrix is not positive definite at this node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("the stiffness matrix is not positive definite at node {node}")]
+#[error(
+    "the stiffness matrix is not positive definite at node {node}; look for vertices of no triangle, a start on a line, or numbers beyond those of cloth"
+)]
 pub struct NotPositive {
     /// The node whose pivot failed.
     pub node: u32,

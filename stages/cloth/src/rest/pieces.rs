@@ -181,11 +181,16 @@ impl Pieces {
         self.panel[self.triangles[triangle][0] as usize] as usize
     }
 
-    /// The mean of `values` over the vertices of each node, weighted.
+    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over these.
     #[must_use]
     pub fn sew(&self, values: &[Vector3<f64>], weights: &[f64]) -> Vec<Vector3<f64>> {
+        let mut is_held = vec![false; self.nodes];
+        self.node.iter().zip(&self.pinned).for_each(|(&p, &pinned)| is_held[p as usize] |= pinned);
         let mut sums = vec![(Vector3::zeros(), 0.0); self.nodes];
-        for ((v, w), &p) in values.iter().zip(weights).zip(&self.node) {
+        for (((v, w), &p), &pinned) in values.iter().zip(weights).zip(&self.node).zip(&self.pinned) {
+            if is_held[p as usize] && !pinned {
+                continue;
+            }
             let sum = &mut sums[p as usize];
             sum.0 += v * *w;
             sum.1 += w;

@@ -85,8 +85,7 @@ impl<'a> Work<'a> {
         pace: &Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        let pace =
-            Pace { first: CLEAR_STEP, steps: 2 * self.plan.rest.coarse_steps, one_by_one: false, ..*pace };
+        let pace = Pace { first: CLEAR_STEP, one_by_one: false, ..*pace };
         for _ in 0..CLEARINGS {
             let Some(Clearance { lacks, depth, .. }) = self.plan.body.map(|w| clearance(sheet, w.skin, x))
             else {

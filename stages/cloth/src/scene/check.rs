@@ -164,6 +164,9 @@ fn check_fabric(fabric: &Fabric) -> Result<(), ClothError> {
 fn check_body(scene: &Scene) -> Result<(), SceneError> {
     let Some(body) = &scene.body else { return Ok(()) };
     check_parameter("body.friction", body.friction, |v| v >= 0.0, "0 or more")?;
+    if body.triangles.is_empty() {
+        return Err(SceneError::EmptyBody);
+    }
     finite("body", body.vertices.iter().map(is_finite))?;
     Ok(refers("body triangle", body.triangles.iter().map(|t| &t[..]), body.vertices.len())?)
 }

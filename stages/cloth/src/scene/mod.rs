@@ -229,6 +229,9 @@ pub enum SceneError {
         /// What is wrong.
         why: &'static str,
     },
+    /// A body that is nothing.
+    #[error("the body has no triangles; leave it out where there is none")]
+    EmptyBody,
     /// A fault of the numbers.
     #[error(transparent)]
     Cloth(#[from] ClothError),
