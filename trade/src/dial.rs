@@ -81,16 +81,30 @@ impl Dial {
     pub fn place(&self, value: &str) -> Option<f64> {
         match self {
             Dial::Stage(list) | Dial::List(list) => {
-                let i = list.iter().position(|v| v == value)?;
+                let i = list.iter().position(|v| is_same(v, value))?;
                 Some((i as f64 + 0.5) / list.len() as f64)
             }
-            Dial::Range { lo, hi, log, .. } => {
-                let x = numeric(value)?;
-                let share = if *log { (x / lo).ln() / (hi / lo).ln() } else { (x - lo) / (hi - lo) };
-                share.is_finite().then(|| share.clamp(0.0, 1.0))
-            }
+            Dial::Range { .. } => self.share(value).map(|share| share.clamp(0.0, 1.0)),
         }
     }
+
+    /// Whether two values are one, or nearer to each other than a share of the range.
+    pub fn is_near(&self, a: &str, b: &str, share: f64) -> bool {
+        is_same(a, b) || matches!((self.share(a), self.share(b)), (Some(x), Some(y)) if (x - y).abs() < share)
+    }
+
+    /// The share of its range at which a number stands, below 0 or above 1 for one outside; none where there is no range.
+    fn share(&self, value: &str) -> Option<f64> {
+        let Dial::Range { lo, hi, log, .. } = self else { return None };
+        let x = numeric(value)?;
+        let share = if *log { (x / lo).ln() / (hi / lo).ln() } else { (x - lo) / (hi - lo) };
+        share.is_finite().then_some(share)
+    }
+}
+
+/// Whether two texts of a file stand for one value: `1e-3` and `0.001`.
+fn is_same(a: &str, b: &str) -> bool {
+    a == b || numeric(a).is_some_and(|x| numeric(b) == Some(x))
 }
 
 impl Form {

@@ -1,5 +1,6 @@
 //! What tells one pipeline, one garment, one file from another.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use toile_core::artifact::{Artifact, Digester, Garment};
 use toile_core::cache::Hash;
@@ -31,4 +32,9 @@ pub(crate) fn garment_digest(garment: &Garment) -> String {
 /// Names a file's content; none for one that cannot be read.
 pub(crate) fn content(path: impl AsRef<Path>) -> Option<String> {
     std::fs::read(path).ok().map(|bytes| Hash::of(&bytes).hex())
+}
+
+/// A file of these that is not as it was.
+pub(crate) fn changed(reads: &BTreeMap<String, Option<String>>) -> Option<&str> {
+    reads.iter().find(|(path, digest)| content(path) != **digest).map(|(path, _)| path.as_str())
 }

@@ -26,12 +26,15 @@ pub enum By {
     Spread,
     /// How far neighbouring resolutions end from it.
     Neighbours,
+    /// Nothing: it was never refined.
+    Nothing,
 }
 
 impl Floor {
     /// `the reference is known to 8.32 mm only: its last refinement moved it as far, and its levels show no order`.
     pub fn words(&self) -> String {
         let why = match self.by {
+            By::Nothing => return "nothing tells how well the reference is known: it was not refined".into(),
             By::Missing => "so much is missing from its finest level to the limit of its order",
             By::Moved => "its last refinement moved it as far, and its levels show no order",
             By::Spread => "starts moved by a little end so far apart, in other states of rest",
@@ -45,15 +48,24 @@ impl Floor {
     /// What can be done to lower it.
     pub fn remedy(&self) -> &'static str {
         match self.by {
-            By::Missing | By::Moved => "give `toile trade` a longer --budget, so that it is refined further",
+            By::Missing | By::Moved => {
+                "measure into another --out with a longer --budget, so that it is refined further"
+            }
+            By::Nothing => {
+                "give `toile trade` a knob that is a resolution, such as an edge length, and room to refine it"
+            }
             By::Spread | By::Neighbours => "no refinement lowers that: it is the garment's own",
         }
     }
 }
 
 impl Reference {
-    /// How well it is known; none where neither its levels nor moved starts tell.
+    /// How well it is known; none where neither its levels nor moved starts tell. Of a reference of one level nothing is
+    /// known, however well its moved starts agree: the floor is infinite.
     pub fn floor(&self) -> Option<Floor> {
+        if self.levels.len() == 1 {
+            return Some(Floor { mm: f64::INFINITY, by: By::Nothing });
+        }
         let spread = self.spread.as_ref().and_then(OwnSpread::p95).map(|mm| Floor { mm, by: By::Spread });
         let near = self.neighbours.as_ref().and_then(Neighbours::p95);
         let near = near.map(|mm| Floor { mm, by: By::Neighbours });
@@ -65,9 +77,9 @@ impl Reference {
         self.p95.map(|o| Floor { mm: o.missing_mm, by: By::Missing }).or_else(moved)
     }
 
-    /// [`Reference::floor`] in millimetres.
+    /// [`Reference::floor`] in millimetres, where it is finite.
     pub fn floor_mm(&self) -> Option<f64> {
-        self.floor().map(|f| f.mm)
+        self.floor().map(|f| f.mm).filter(|mm| mm.is_finite())
     }
 }
 
@@ -98,7 +110,10 @@ mod tests {
         assert_eq!(floor(Some(0.2), Some(0.0)), Some(Floor { mm: 0.2, by: By::Missing }));
         // Levels that do not come nearer: quiet starts do not make them a reference.
         assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 8.32, by: By::Moved }));
-        assert_eq!(reference(vec![moved(None)], None, None).floor(), None);
+        // Quiet starts of one level do not make it known.
+        let alone = reference(vec![moved(None)], None, Some(0.1));
+        assert_eq!(alone.floor(), Some(Floor { mm: f64::INFINITY, by: By::Nothing }));
+        assert_eq!((alone.floor_mm(), Reference::default().floor()), (None, None));
         // Levels that come nearer, while the mesh picks the state of rest.
         let apart_mm = [0.4, 6.9].map(|p95| Millimetres { p95, ..Millimetres::default() }).to_vec();
         let near = Some(Neighbours { apart_mm, ..Neighbours::default() });
@@ -117,6 +132,7 @@ mod tests {
             words(By::Missing),
             "the reference is known to 8.32 mm only: so much is missing from its finest level to the limit of its order"
         );
+        assert_eq!(words(By::Nothing), "nothing tells how well the reference is known: it was not refined");
         assert_eq!(
             words(By::Spread),
             "the reference is known to 8.32 mm only: starts moved by a little end so far apart, in other states of rest"

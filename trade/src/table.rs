@@ -43,7 +43,7 @@ const DIGITS: usize = 6;
 /// All settings as comma-separated values, a head line first; empty where a figure is not known.
 pub fn csv(trade: &Trade) -> String {
     let heads: Vec<&str> = COLUMNS.iter().map(|(head, _)| *head).collect();
-    let keys: Vec<&str> = trade.knobs.iter().map(|k| k.key.as_str()).collect();
+    let keys = keys(trade);
     let mut text = format!("point,front,outcome,sound,{},{}\n", heads.join(","), keys.join(","));
     for (i, p) in trade.points.iter().enumerate() {
         let m = p.measured();
@@ -67,6 +67,18 @@ pub fn csv(trade: &Trade) -> String {
         );
     }
     text
+}
+
+/// This session's knobs, then those that only settings of earlier ones have.
+fn keys(trade: &Trade) -> Vec<&str> {
+    let now = trade.knobs.iter().map(|k| &k.key);
+    let mut keys: Vec<&str> = Vec::new();
+    for key in now.chain(trade.points.iter().flat_map(|p| p.setting.keys())) {
+        if !keys.contains(&key.as_str()) {
+            keys.push(key);
+        }
+    }
+    keys
 }
 
 fn quoted(value: Option<&String>) -> String {
@@ -122,7 +134,10 @@ pub fn reference(trade: &Trade) -> Vec<String> {
     lines.push(format!("refined no further: {}", r.stopped));
     lines.extend(r.spread.as_ref().map(spread));
     lines.extend(r.neighbours.as_ref().map(neighbours));
-    let floor = |f: Floor| format!("errors below {:.2} mm mean nothing: {}", f.mm, f.words());
+    let floor = |f: Floor| match f.mm.is_finite() {
+        true => format!("errors below {:.2} mm mean nothing: {}", f.mm, f.words()),
+        false => format!("errors mean nothing: {}", f.words()),
+    };
     lines.extend(r.floor().map(floor));
     lines
 }

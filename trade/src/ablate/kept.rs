@@ -51,6 +51,11 @@ impl Came {
         }
     }
 
+    /// Whether it was stopped at a limit, which says nothing of the pipeline.
+    pub(super) fn is_cut(&self) -> bool {
+        matches!(self, Came::OverLimit { .. })
+    }
+
     /// Whether a run with that limit would end no later.
     pub(super) fn stands(&self, limit: Option<Duration>) -> bool {
         match self {
@@ -115,6 +120,11 @@ impl Kept {
     fn add(&mut self, done: Done) -> Result<(), StageError> {
         self.0.head.on = Last::now();
         self.0.add(done)
+    }
+
+    /// Files that the pipeline read, with the digests of their contents.
+    pub(super) fn reads(&self) -> &BTreeMap<String, Option<String>> {
+        &self.0.head.reads
     }
 
     /// When and where the last run was.

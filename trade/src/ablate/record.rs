@@ -1,9 +1,10 @@
 //! What an ablation found, as it is written to `ablation.json`.
 
-use crate::digest::digest;
+use crate::digest::{changed, digest};
 use crate::errors::Millimetres;
 use crate::record::Machine;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use toile_core::decide::{Decided, Tolerance};
 use toile_core::pipeline::Pipeline;
 
@@ -30,6 +31,9 @@ pub struct Ablation {
     pub machine: Machine,
     /// The stage that runs ended at; none for the whole pipeline.
     pub until: Option<String>,
+    /// Files that the pipeline read, with the digests of their contents.
+    #[serde(default)]
+    pub reads: BTreeMap<String, Option<String>>,
     /// Processor time of each run as decided, seconds.
     pub cpu_s: Vec<f64>,
     /// A row a decision that was turned round.
@@ -61,9 +65,9 @@ pub struct Unmeasured {
 }
 
 impl Ablation {
-    /// Whether it is of that very pipeline: the same stages, versions and parameters.
+    /// Whether it is of that very pipeline: the same stages, versions and parameters, and the same files.
     pub fn is_of(&self, pipeline: &Pipeline) -> bool {
-        self.scheme == SCHEME && self.base == digest(pipeline, &[])
+        self.scheme == SCHEME && self.base == digest(pipeline, &[]) && changed(&self.reads).is_none()
     }
 }
 
@@ -159,6 +163,8 @@ pub enum Verdict {
     SavesNothing,
     /// Turned round, the pipeline fails.
     Needed,
+    /// Turned round, it was stopped at the limit.
+    Cut,
 }
 
 impl Verdict {
@@ -179,6 +185,7 @@ impl Verdict {
             Verdict::ChangesMore => "NOT borne out: changes more than its tolerance",
             Verdict::SavesNothing => "NOT borne out: saves nothing that can be measured",
             Verdict::Needed => "borne out: turned round, the pipeline fails",
+            Verdict::Cut => "not decided: turned round, the run was stopped at the limit",
         }
     }
 }

@@ -27,6 +27,7 @@ pub(super) fn ablation(
         date: kept.last().date.clone(),
         machine: kept.last().machine.clone(),
         until,
+        reads: kept.reads().clone(),
         cpu_s: kept.own().into_values().collect(),
         rows: rows.into_iter().flatten().collect(),
         cut: (done < all).then_some(Cut { done, all, not_measured }),
@@ -40,6 +41,7 @@ fn row(turned: &Turned, kept: &Kept) -> Option<Row> {
         return None;
     }
     let (mut cpu_s, mut saved_s, mut change, mut failed) = (Vec::new(), Vec::new(), None, None);
+    let is_cut = came.values().any(|c| c.is_cut());
     for came in came.into_values() {
         if let Came::Ran { cpu_s: cpu, saved_s: saved, change: found } = came {
             cpu_s.push(*cpu);
@@ -49,7 +51,10 @@ fn row(turned: &Turned, kept: &Kept) -> Option<Row> {
         failed = failed.or(came.failed());
     }
     let change = change.filter(|_| failed.is_none());
-    let verdict = Verdict::of(change.as_ref(), turned.decided.decision.tolerance, &saved_s);
+    let verdict = match is_cut {
+        true => Verdict::Cut,
+        false => Verdict::of(change.as_ref(), turned.decided.decision.tolerance, &saved_s),
+    };
     Some(Row {
         decided: turned.decided.clone(),
         turned: turned.by.clone(),

@@ -41,6 +41,12 @@ fn row(tolerance: Tolerance, change: Option<Change>, saved_s: &[f64]) -> Row {
 }
 
 #[test]
+fn a_run_that_was_stopped_at_its_limit_bears_nothing_out() {
+    let cut = Row { verdict: Verdict::Cut, ..row(Tolerance::SameBits, None, &[]) };
+    assert_eq!(cut.verdict.as_str(), "not decided: turned round, the run was stopped at the limit");
+}
+
+#[test]
 fn a_rule_is_borne_out_by_time_beyond_chance_and_by_its_tolerance() {
     let verdict = |tolerance, change: Option<Change>, saved: &[f64]| row(tolerance, change, saved).verdict;
     let (same, moved) = (Some(change(0.0, true)), Some(change(3.0, false)));
@@ -78,6 +84,7 @@ fn ablation() -> Ablation {
         date: "2026-11-22".into(),
         machine: Machine::here(),
         until: None,
+        reads: std::collections::BTreeMap::new(),
         cpu_s: vec![2.0, 1.9, 2.2],
         rows: vec![
             row(Tolerance::Outline(1e-3), Some(change(3.0, false)), &[0.4, 0.5, 0.3]),

@@ -107,7 +107,7 @@ fn watch(done: &Receiver<()>, cancel: &Cancel, end: Option<Instant>) -> Result<(
 }
 
 /// A process that ended by itself without an answer.
-fn broken_off(status: ExitStatus, words: &[u8], cancel: &Cancel) -> Missed {
+pub(super) fn broken_off(status: ExitStatus, words: &[u8], cancel: &Cancel) -> Missed {
     let signal = signal(status);
     if signal == Some(INTERRUPT) || cancel.is_cancelled() {
         return Missed::Cancelled;

@@ -11,7 +11,7 @@ mod tests;
 
 pub(crate) use damaged::Damaged;
 
-use crate::digest::content;
+use crate::digest::changed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -62,8 +62,8 @@ impl<H> Head<H> {
         if self.base != base {
             return Err(kind.changed.into());
         }
-        match self.reads.iter().find(|(path, digest)| content(path) != **digest) {
-            Some((path, _)) => Err(format!("\"{path}\" has changed")),
+        match changed(&self.reads) {
+            Some(path) => Err(format!("\"{path}\" has changed")),
             None => Ok(()),
         }
     }

@@ -1,6 +1,7 @@
 //! Records that are gone on with, damaged, or of something else.
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::digest::content;
 
 const KIND: Kind = Kind { name: "steps", scheme: 3, changed: "the pipeline has changed" };
 

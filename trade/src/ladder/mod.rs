@@ -1,8 +1,8 @@
 //! The reference: the pipeline refined level by level until its garment stops moving.
 //!
 //! Level k divides every knob whose card says that less is finer (edge length, time step, tolerance) by sqrt(2)^k and multiplies
-//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. What is no knob is part of the
-//! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
+//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. A power at which rounding
+//! leaves every resolution in space where it was is no level. What is no knob is part of the problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
 //! surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than any setting to be judged by it; or with the
 //! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
 //!
@@ -19,7 +19,7 @@ pub(crate) use spread::moved_start;
 use crate::errors::{compare, ease};
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::{Level, Order, Reference};
-use crate::richardson::convergence;
+use crate::richardson::{Step, convergence};
 use crate::slot::{Board, Setting, setting_words};
 use crate::source::Source;
 use std::sync::Arc;
@@ -35,6 +35,10 @@ pub const CLOSE_ENOUGH: f64 = 0.25;
 pub const FINER: f64 = 1.3;
 /// Levels at most: 2^9 times the triangles.
 const MOST_LEVELS: usize = 10;
+/// Powers of the ratio among which levels are looked for: a single part of an edge takes two to become another number.
+const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
+/// Said where a finer level there is not.
+const NO_FINER: &str = "no knob can be refined further";
 /// Time of a level in times of the level before it, where only one is known.
 const GROWTH: f64 = 3.0;
 
@@ -78,7 +82,7 @@ impl Search<'_> {
             if let Some(why) = self.enough(&levels, self.budget.saturating_sub(started.elapsed())) {
                 break why;
             }
-            let setting = self.board.refined(RATIO.powi(k as i32));
+            let Some(setting) = self.setting(k) else { break NO_FINER.into() };
             // The pipeline's own setting is run to its end whatever the budget: without it there is nothing to say.
             let left = (k > 0).then(|| self.budget.saturating_sub(started.elapsed()));
             let ran = match self.level(&setting, left) {
@@ -101,7 +105,7 @@ impl Search<'_> {
         let ease_mm = ease(&ran);
         let reference =
             Reference { ratio: RATIO, levels, stopped, spread, neighbours, ease_mm, ..Reference::default() };
-        Ok(Found { reference: with_orders(reference), ran })
+        Ok(Found { reference: self.with_orders(reference), ran })
     }
 
     /// The reference of an earlier session: its finest level again, from the cache where it is still there.
@@ -111,7 +115,43 @@ impl Search<'_> {
         let finest =
             reference.levels.last().ok_or_else(|| StageError::invalid("the record holds no reference"))?;
         let ran = self.level(&finest.setting, None)?;
-        Ok(Found { ran, reference: with_orders(reference) })
+        Ok(Found { ran, reference: self.with_orders(reference) })
+    }
+
+    /// The setting of a level; none where no knob can be refined so far.
+    fn setting(&self, level: usize) -> Option<Setting> {
+        let powers = (0..MOST_POWERS).map(|k| self.board.refined(RATIO.powi(k)));
+        let own = self.board.refined(1.0);
+        let is_spatial = powers.clone().any(|s| self.board.differ_in_space(&s, &own));
+        let differ = |a: &Setting, b: &Setting| a != b && (!is_spatial || self.board.differ_in_space(a, b));
+        let mut levels: Vec<Setting> = vec![own];
+        for setting in powers {
+            if levels.last().is_some_and(|last| differ(&setting, last)) {
+                levels.push(setting);
+            }
+        }
+        levels.into_iter().nth(level)
+    }
+
+    /// The reference with the orders that its levels show.
+    fn with_orders(&self, reference: Reference) -> Reference {
+        let order = |figure: fn(&Level) -> Option<f64>| self.order(&reference.levels, figure);
+        Reference {
+            mean: order(|l| Some(l.moved_mm?.mean)),
+            p95: order(|l| Some(l.moved_mm?.p95)),
+            displacement: order(|l| Some(l.displaced_mm?.mean)),
+            ..reference.clone()
+        }
+    }
+
+    fn order(&self, levels: &[Level], figure: fn(&Level) -> Option<f64>) -> Option<Order> {
+        let step = |w: &[Level]| {
+            let ratio = self.board.ratio(&w[1].setting, &w[0].setting);
+            Some(Step { distance: figure(&w[1])?, ratio })
+        };
+        let steps: Vec<Step> = levels.windows(2).filter_map(step).collect();
+        let c = convergence(&steps)?;
+        Some(Order { order: c.order.is_finite().then_some(c.order), missing_mm: c.missing })
     }
 
     fn level(&self, setting: &Setting, limit: Option<Duration>) -> Result<Ran, Missed> {
@@ -124,10 +164,10 @@ impl Search<'_> {
     fn enough(&self, levels: &[Level], left: Duration) -> Option<String> {
         let k = levels.len();
         let last = levels.last()?;
-        if self.board.refined(RATIO.powi(k as i32)) == last.setting {
-            return Some("no knob can be refined further".into());
+        if self.setting(k).is_none() {
+            return Some(NO_FINER.into());
         }
-        let missing = order(levels, |l| Some(l.moved_mm?.p95)).map(|o| o.missing_mm);
+        let missing = self.order(levels, |l| Some(l.moved_mm?.p95)).map(|o| o.missing_mm);
         if missing.is_some_and(|m| m <= CLOSE_ENOUGH) && self.board.is_finer(&last.setting, FINER) {
             return Some(format!("it stopped moving: less than {CLOSE_ENOUGH} mm is missing"));
         }
@@ -174,23 +214,6 @@ fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Re
         ease_mm: ease(ran),
         strain_p99: strain * 1e2,
     })
-}
-
-/// The reference with the orders that its levels show.
-fn with_orders(reference: Reference) -> Reference {
-    let order = |figure: fn(&Level) -> Option<f64>| order(&reference.levels, figure);
-    Reference {
-        mean: order(|l| Some(l.moved_mm?.mean)),
-        p95: order(|l| Some(l.moved_mm?.p95)),
-        displacement: order(|l| Some(l.displaced_mm?.mean)),
-        ..reference.clone()
-    }
-}
-
-fn order(levels: &[Level], figure: fn(&Level) -> Option<f64>) -> Option<Order> {
-    let distances: Vec<f64> = levels.iter().filter_map(figure).collect();
-    let c = convergence(&distances, RATIO)?;
-    Some(Order { order: c.order.is_finite().then_some(c.order), missing_mm: c.missing })
 }
 
 fn words(k: usize, level: &Level) -> String {

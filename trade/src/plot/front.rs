@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::mark::{Anchor, GRID, INK, Mark, PALE, line, plain, text};
+use crate::front::Cost;
 use crate::record::{Measured, Trade};
 use std::collections::BTreeSet;
 
@@ -10,17 +11,20 @@ const FRAME: [f64; 4] = [84.0, 56.0, 936.0, 574.0];
 /// Settings beyond which only those of the front are numbered: more numbers hide each other.
 const MOST_NUMBERS: usize = 12;
 
+/// Errors below it are drawn there, mm: a setting that is the reference's own has none but rounding.
+const LEAST: f64 = 1e-3;
+
+fn drawn(m: &Measured, trade: &Trade) -> Cost {
+    let cost = m.cost(trade.clock);
+    Cost { error: cost.error.max(LEAST), ..cost }
+}
+
 /// The picture of a measurement.
 pub(crate) fn marks(trade: &Trade) -> Vec<Mark> {
-    let shown: Vec<(usize, &Measured)> = trade
-        .points
-        .iter()
-        .enumerate()
-        .filter_map(|(i, p)| Some((i, p.measured()?)))
-        .filter(|(_, m)| m.cost(trade.clock).error > 0.0)
-        .collect();
-    let floor = trade.reference.floor_mm().filter(|f| *f > 0.0);
-    let cost = |m: &Measured| m.cost(trade.clock);
+    let shown: Vec<(usize, &Measured)> =
+        trade.points.iter().enumerate().filter_map(|(i, p)| Some((i, p.measured()?))).collect();
+    let floor = trade.reference.floor_mm().map(|f| f.max(LEAST));
+    let cost = |m: &Measured| drawn(m, trade);
     let times: Vec<f64> = shown.iter().map(|(_, m)| cost(m).time).collect();
     let errors: Vec<f64> = shown.iter().map(|(_, m)| cost(m).error).chain(floor).collect();
     let (x, y) = (Axis::over(&times, FRAME[0], FRAME[2]), Axis::over(&errors, FRAME[3], FRAME[1]));
@@ -81,8 +85,8 @@ fn axes(x: &Axis, y: &Axis, trade: &Trade) -> Vec<Mark> {
 /// The front as a stair: what can be had for a time.
 fn steps(trade: &Trade, x: &Axis, y: &Axis) -> Vec<Mark> {
     let at = |i: &usize| {
-        let cost = trade.points[*i].measured()?.cost(trade.clock);
-        (cost.error > 0.0).then(|| [x.at(cost.time), y.at(cost.error)])
+        let cost = drawn(trade.points[*i].measured()?, trade);
+        Some([x.at(cost.time), y.at(cost.error)])
     };
     let places: Vec<[f64; 2]> = trade.front.iter().filter_map(at).collect();
     let mut marks = Vec::new();

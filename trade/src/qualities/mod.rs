@@ -109,7 +109,7 @@ pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Resu
 fn quality(prover: &Prover<'_>, asked: &Asked, proof: &Proof, date: &str) -> Quality {
     let set = overrides(&prover.trade.points[proof.point].overrides);
     let floor = prover.trade.reference.floor_mm();
-    let measured = words(proof, floor, &prover.trade.toile, &prover.trade.machine, date);
+    let measured = words(proof, floor, env!("CARGO_PKG_VERSION"), &Machine::here(), date);
     Quality::new(asked.name.clone(), asked.max_error, set, Some(measured))
 }
 

@@ -15,6 +15,7 @@ pub use reference::{Level, Neighbours, Order, OwnSpread, Reference};
 
 use crate::front::{Cost, front};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The version of this form; raised when old files cannot be read any more.
 pub const SCHEME: u32 = 1;
@@ -50,6 +51,9 @@ pub struct Trade {
     /// Whether each run had a process of its own, so that memory is that of the run.
     #[serde(default)]
     pub apart: bool,
+    /// Files that the pipeline read, with the digests of their contents.
+    #[serde(default)]
+    pub reads: BTreeMap<String, Option<String>>,
     /// What was turned.
     pub knobs: Vec<KnobRecord>,
     /// What the errors are against.

@@ -6,6 +6,7 @@ use crate::front::Cost;
 use crate::slot::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// A setting and what came of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -48,6 +49,13 @@ pub enum Outcome {
         /// Seconds.
         seconds: f64,
     },
+}
+
+impl Outcome {
+    /// Whether a run with that limit would end no later.
+    pub(crate) fn stands(&self, limit: Duration) -> bool {
+        !matches!(self, Outcome::OverLimit { seconds } if *seconds < 0.99 * limit.as_secs_f64())
+    }
 }
 
 /// The figures of a setting.

@@ -22,6 +22,10 @@ impl Board {
                 return Err(fault(format!("there are two knobs `{}`", knob.key))
                     .hint("give the second another range, or leave it out"));
             }
+            if let Some(same) = board.knobs.iter().find(|k| k.turns_what(&knob)) {
+                return Err(fault(format!("the knobs `{}` and `{}` turn the same", same.key, knob.key))
+                    .hint("leave one of them out"));
+            }
             board.knobs.push(knob);
         }
         Ok(board)
@@ -141,6 +145,17 @@ impl Board {
 
     pub(super) fn card(&self, role: Role, name: &str) -> Option<&Card> {
         self.cards.iter().find(|c| c.role == role && c.name == name)
+    }
+}
+
+impl Knob {
+    /// Whether it turns what another does: the choice of one slot's stage, or one parameter of one stage.
+    fn turns_what(&self, other: &Knob) -> bool {
+        let is_of =
+            |only: &Option<String>, name: &Option<String>| only.is_none() || name.is_none() || only == name;
+        self.slot == other.slot
+            && self.param == other.param
+            && (self.param.is_none() || is_of(&self.only, &other.only))
     }
 }
 

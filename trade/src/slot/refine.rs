@@ -36,6 +36,19 @@ impl Board {
         self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(pair).any(|too_fine| too_fine)
     }
 
+    /// By which factor a setting is finer than another: by the resolution in space that is refined the least of those that are, or
+    /// by any where none is; 1 where nothing is finer.
+    pub fn ratio(&self, fine: &Setting, coarse: &Setting) -> f64 {
+        let finer = |k: &Knob| {
+            let (way, _) = self.resolution(k)?;
+            let (own, other) = (numeric(fine.get(&k.key)?)?, numeric(coarse.get(&k.key)?)?);
+            Some((other / own).powf(way)).filter(|r| *r > 1.0 && r.is_finite())
+        };
+        let least = |knobs: &mut dyn Iterator<Item = &Knob>| knobs.filter_map(finer).reduce(f64::min);
+        let spatial = least(&mut self.knobs.iter().filter(|k| self.is_spatial(k)));
+        spatial.or_else(|| least(&mut self.knobs.iter())).unwrap_or(1.0)
+    }
+
     /// True where two settings differ in a resolution in space, or there is none to differ in.
     pub fn differ_in_space(&self, a: &Setting, b: &Setting) -> bool {
         let mut spatial = self.knobs.iter().filter(|k| self.is_spatial(k)).peekable();

@@ -55,6 +55,34 @@ fn overrides(text: &str, knobs: &[&str], at: &[f64]) -> String {
     all.iter().map(|o| format!("{}={}", o.path, o.value)).collect::<Vec<_>>().join("; ")
 }
 
+#[test]
+fn parts_of_an_edge_are_refined_by_what_they_are() {
+    let registry = registry();
+    let text = VEST.replace("Rest(),", "Rest(), Refine(parts: 1), Rest(id: \"Settle\", from_here: true),");
+    let source = source(&text, &registry);
+    let board = board(&source, &["Refine.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
+    let at = |power: i32| board.refined(f64::sqrt(2.0).powi(power));
+    let parts = |power| at(power)["Refine.parts"].clone();
+    assert_eq!([0, 1, 2, 3, 4, 5].map(parts), ["1", "1", "2", "3", "4", "6"]);
+    // By the edge, where that is refined; else by what is.
+    assert!((board.ratio(&at(1), &at(0)) - f64::sqrt(2.0)).abs() < 1e-2);
+    assert_eq!(board.ratio(&at(3), &at(2)), 1.5);
+    assert_eq!(board.ratio(&at(2), &at(2)), 1.0);
+}
+
+#[test]
+fn one_number_written_twice_is_one_and_one_outside_a_range_is_near_nothing_in_it() {
+    let registry = registry();
+    let source = source(FILE, &registry);
+    let board = board(&source, &["Rest.speed=1e-3,3e-3,1e-2"]).unwrap();
+    let dial = &board.knobs[0].dial;
+    assert!(dial.is_near("0.001", "1e-3", 0.1) && !dial.is_near("0.002", "3e-3", 0.1));
+    assert_eq!(dial.place("0.003"), Some(0.5));
+    let board = self::board(&source, &["Rest.speed=1e-2..1e-1"]).unwrap();
+    let dial = &board.knobs[0].dial;
+    assert!(dial.is_near("0.0101", "0.01", 0.03) && !dial.is_near("0.002", "0.01", 0.03));
+}
+
 fn board(source: &Source<'_>, knobs: &[&str]) -> Result<Board, StageError> {
     let specs: Vec<KnobSpec> = knobs.iter().map(|k| k.parse().unwrap()).collect();
     Board::new(source, &source.load(&[]).unwrap(), &specs)
@@ -273,4 +301,13 @@ fn faults_word_for_word() {
         refused(VEST, &["solver=Rest,Xpbd", "solver=Rest,Projective"]).0,
         "there are two knobs `solver`"
     );
+    for (knobs, message) in [
+        (["Rest=Rest,Xpbd", "solver=Rest,Projective"], "the knobs `Rest` and `solver` turn the same"),
+        (
+            ["Rest.speed=1e-3..1e-2", "solver.speed=1e-2..1e-1"],
+            "the knobs `Rest.speed` and `solver.speed` turn the same",
+        ),
+    ] {
+        assert_eq!(refused(VEST, &knobs), (message.to_owned(), "leave one of them out".to_owned()));
+    }
 }

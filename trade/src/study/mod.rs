@@ -30,6 +30,9 @@ use toile_core::{Length, StageError};
 /// The reference's share of the budget, and that of its moved starts.
 const REFERENCE_SHARE: [f64; 2] = [0.35, 0.15];
 
+/// A setting may take this share of the budget where no limit is given.
+const LIMIT_SHARE: f64 = 0.1;
+
 /// What is asked.
 #[derive(Clone)]
 pub struct Options {
@@ -53,6 +56,13 @@ pub struct Options {
     pub clock: Clock,
     /// How runs are made.
     pub bench: Bench,
+}
+
+impl Options {
+    /// Longest run of a setting.
+    fn limit(&self) -> Duration {
+        self.limit.unwrap_or_else(|| self.budget.mul_f64(LIMIT_SHARE))
+    }
 }
 
 /// A study that has its reference.
@@ -140,6 +150,7 @@ impl<'a> Study<'a> {
             reference: self.found.reference.clone(),
             front: front_of(&points, self.options.clock),
             apart: self.options.bench.apart.is_some(),
+            reads: self.store.head.reads.clone(),
             points,
         }
     }
@@ -168,8 +179,13 @@ fn found(
     tell: &mut dyn FnMut(String),
 ) -> Result<(Found, Store), StageError> {
     let base = base(pipeline, search.board, options);
-    if let Some(store) = Store::taken_up(&options.out, KIND, &base, tell) {
-        tell(format!("goes on from {} settings in {}", store.lines.len(), options.out.display()));
+    if let Some(mut store) = Store::taken_up(&options.out, KIND, &base, tell) {
+        store.lines.retain(|p| p.outcome.stands(options.limit()));
+        tell(format!(
+            "goes on from {} settings in {}, and from the reference that is there",
+            store.lines.len(),
+            options.out.display()
+        ));
         return Ok((search.again(store.head.on.reference.clone())?, store));
     }
     let found = search.run(tell)?;
@@ -179,10 +195,11 @@ fn found(
     Ok((found, store))
 }
 
-/// What must be the same for a later session: the pipeline, what is refined, the stage that ends runs. Knobs that are not
+/// What must be the same for a later session: the pipeline, what is refined, the stage that ends runs, the number of threads. Knobs that are not
 /// refined may change.
 fn base(pipeline: &Pipeline, board: &Board, options: &Options) -> String {
     let own = board.own();
     let finer = board.refined(RATIO).into_iter().filter(|(key, value)| own.get(key) != Some(value)).collect();
-    digest(pipeline, &[&setting_words(&finer), options.bench.until.as_deref().unwrap_or("")])
+    let threads = Machine::here().threads.to_string();
+    digest(pipeline, &[&setting_words(&finer), options.bench.until.as_deref().unwrap_or(""), &threads])
 }

@@ -5,7 +5,7 @@ use crate::front::Cost;
 use crate::ladder::FINER;
 use crate::record::{Clock, Outcome, front_of};
 use crate::sample::{candidates, halton};
-use crate::slot::Setting;
+use crate::slot::{Knob, Setting};
 
 /// Space-filling settings a knob, before the front is refined.
 const START: usize = 4;
@@ -61,9 +61,11 @@ impl Study<'_> {
 
     /// True where two settings differ in no choice and hardly in numbers.
     fn is_beside(&self, a: &Setting, b: &Setting) -> bool {
-        let (p, q) = (self.board.place(a), self.board.place(b));
-        let same_knobs = a.keys().eq(b.keys());
-        same_knobs && p.iter().zip(&q).all(|(x, y)| (x - y).abs() < LEAST_STEP)
+        let is_near = |k: &Knob| match (a.get(&k.key), b.get(&k.key)) {
+            (Some(x), Some(y)) => k.dial.is_near(x, y, LEAST_STEP),
+            (x, y) => x == y,
+        };
+        self.board.knobs.iter().all(is_near)
     }
 
     fn is_hopeless(&self, setting: &Setting) -> bool {

@@ -11,9 +11,6 @@ use toile_core::artifact::Digester;
 use toile_core::pipeline::Pipeline;
 use toile_core::{StageError, write_files};
 
-/// A setting may take this share of the budget where no limit is given.
-const LIMIT_SHARE: f64 = 0.1;
-
 impl Study<'_> {
     /// Measures a setting; none where it makes a pipeline that was measured already, which is then noted as known.
     pub(super) fn measure(&mut self, setting: Setting) -> Result<Option<Point>, StageError> {
@@ -57,8 +54,8 @@ impl Study<'_> {
 
     /// Runs a setting as often as asked, fewer times where the budget ends.
     fn runs(&self, pipeline: &Pipeline) -> Result<(Ran, Measured), Missed> {
-        let limit = self.options.limit.unwrap_or_else(|| self.options.budget.mul_f64(LIMIT_SHARE));
-        let first = self.options.bench.run(pipeline, Some(limit.min(self.left())), None)?;
+        let limit = self.options.limit().min(self.left());
+        let first = self.options.bench.run(pipeline, Some(limit), None)?;
         let mut measured = measured(&first, &self.found.ran).map_err(Missed::Failed)?;
         let digest = garment_digest(&first.garment);
         for _ in 1..self.options.repeats {

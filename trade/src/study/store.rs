@@ -5,8 +5,11 @@ use crate::record::{Point, Reference, SCHEME};
 use serde::{Deserialize, Serialize};
 
 /// The record's kind.
-pub(super) const KIND: Kind =
-    Kind { name: "trade", scheme: SCHEME, changed: "the pipeline or what is refined has changed" };
+pub(super) const KIND: Kind = Kind {
+    name: "trade",
+    scheme: SCHEME,
+    changed: "the pipeline, what is refined or the number of threads has changed",
+};
 
 /// What the settings are measured against.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

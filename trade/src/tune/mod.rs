@@ -23,21 +23,32 @@ pub use prover::Prover;
 pub use wish::Wish;
 pub use written::MARK;
 
-use crate::digest::digest;
+use crate::digest::{changed, digest};
 use crate::record::Trade;
 use toile_core::StageError;
 use toile_core::pipeline::{Override, Pipeline};
 
 /// Holds a record against the pipeline that it is to be used for.
 ///
-/// Errors: it was measured on another pipeline, or before a stage or parameter changed.
+/// Errors: it holds no setting; it was measured by another version or on another pipeline, or before a stage, a parameter or a file
+/// changed.
 pub fn check(trade: &Trade, pipeline: &Pipeline) -> Result<(), StageError> {
-    let own = digest(pipeline, &[]);
-    match trade.points.first().is_some_and(|p| p.key == own) {
-        true => Ok(()),
-        false => {
-            Err(StageError::invalid(format!("the measurement is of another state of \"{}\"", trade.file))
-                .hint("run `toile trade` again: the pipeline, a stage's version or a `--set` has changed"))
+    let refused = |why: String, hint: &str| Err(StageError::invalid(why).hint(hint));
+    let Some(first) = trade.points.first() else {
+        let why = format!("the measurement of \"{}\" holds no setting", trade.file);
+        return refused(why, "give `toile trade` more --points or a longer --budget");
+    };
+    if first.key != digest(pipeline, &[]) || trade.toile != env!("CARGO_PKG_VERSION") {
+        let why = format!("the measurement is of another state of \"{}\"", trade.file);
+        return refused(
+            why,
+            "run `toile trade` again: the pipeline, a stage's version or a `--set` has changed",
+        );
+    }
+    match changed(&trade.reads) {
+        None => Ok(()),
+        Some(path) => {
+            refused(format!("\"{path}\" has changed since it was measured"), "run `toile trade` again")
         }
     }
 }

@@ -48,7 +48,10 @@ fn below_floor(trade: &Trade, wish: &Wish) -> Option<StageError> {
     let message = format!("an error of at most {asked} mm cannot be proved: {}", floor.words());
     // What is printed is what can be asked for.
     let least = (floor.mm * 100.0).ceil() / 100.0;
-    let hint = format!("ask for {least:.2} mm or more; {}", floor.remedy());
+    let hint = match least.is_finite() {
+        true => format!("ask for {least:.2} mm or more; {}", floor.remedy()),
+        false => floor.remedy().to_owned(),
+    };
     Some(StageError::new(ErrorCode::StaticEquilibrium, message).hint(hint))
 }
 

@@ -44,6 +44,7 @@ fn trade(floor: Option<f64>) -> Trade {
         clock: Clock::Wall,
         until: None,
         apart: true,
+        reads: BTreeMap::new(),
         knobs: Vec::new(),
         reference,
         front: front_of(&points, Clock::Wall),
@@ -53,6 +54,32 @@ fn trade(floor: Option<f64>) -> Trade {
 
 fn wish(max_error_mm: Option<f64>, max_time_s: Option<f64>) -> Wish {
     Wish { max_error_mm, max_time_s }
+}
+
+#[test]
+fn a_measurement_of_another_state_is_refused() {
+    let registry = {
+        let mut registry = toile_core::Registry::new();
+        toile_stages::register(&mut registry);
+        registry
+    };
+    let text = "(scene: Scene(file: \"a.json\"), stages: [Rest(), GarmentObj()])";
+    let pipeline =
+        toile_core::pipeline::load(text, "a.ron", std::path::Path::new("."), &registry, &[]).unwrap();
+    let refused = |trade: &Trade| check(trade, &pipeline).unwrap_err().message;
+    let mut now = trade(None);
+    (now.file, now.toile) = ("a.ron".into(), env!("CARGO_PKG_VERSION").into());
+    assert_eq!(refused(&now), "the measurement is of another state of \"a.ron\"");
+    now.points[0].key = digest(&pipeline, &[]);
+    assert_eq!(check(&now, &pipeline), Ok(()));
+    let dir = tempfile::tempdir().unwrap();
+    let read = dir.path().join("a.json").display().to_string();
+    now.reads = BTreeMap::from([(read.clone(), Some("digest".into()))]);
+    assert_eq!(refused(&now), format!("\"{read}\" has changed since it was measured"));
+    let old = Trade { toile: "0.0.1".into(), ..now.clone() };
+    assert_eq!(refused(&old), "the measurement is of another state of \"a.ron\"");
+    now.points.clear();
+    assert_eq!(refused(&now), "the measurement of \"a.ron\" holds no setting");
 }
 
 #[test]
@@ -103,7 +130,7 @@ fn an_error_below_what_the_reference_is_known_to_is_refused_though_settings_keep
     );
     assert_eq!(
         e.hint.unwrap(),
-        "ask for 1.71 mm or more; give `toile trade` a longer --budget, so that it is refined further"
+        "ask for 1.71 mm or more; measure into another --out with a longer --budget, so that it is refined further"
     );
     assert_eq!(refused(Some(1.71), None), None);
     assert_eq!(refused(None, Some(5.0)), None, "a time alone is judged by the clock");

@@ -1,7 +1,7 @@
 //! The tuned pipeline file: the proved setting in its place, and what was measured in lines of comment on top.
 
 use super::{Proof, Prover, Wish, overrides};
-use crate::record::{Clock, Point};
+use crate::record::{Clock, Machine, Point};
 use crate::slot::setting_words;
 use toile_core::StageError;
 use toile_core::pipeline::without_qualities;
@@ -22,18 +22,19 @@ impl Prover<'_> {
     }
 
     fn comments(&self, wish: &Wish, proof: &Proof, point: &Point, date: &str) -> Vec<String> {
-        let (m, d, machine) = (&proof.fresh, &proof.fresh.errors.distance_mm, &self.trade.machine);
+        let (m, d, machine) = (&proof.fresh, &proof.fresh.errors.distance_mm, Machine::here());
         let mut lines = vec![
             format!(
                 "{date}, toile {}, {}, {} cores: {}.",
-                self.trade.toile,
+                env!("CARGO_PKG_VERSION"),
                 machine.system,
                 machine.cores,
                 wish.words()
             ),
             format!("set {}.", setting_words(&point.setting)),
             format!(
-                "a fresh run took {:.2} s ({:.2} s of processor time); 95 % of its surface within {:.2} mm of the reference, mean {:.2} mm, worst {:.2} mm.",
+                "a fresh run{} took {:.2} s ({:.2} s of processor time); 95 % of its surface within {:.2} mm of the reference, mean {:.2} mm, worst {:.2} mm.",
+                self.trade.until.as_ref().map_or_else(String::new, |stage| format!(" up to {stage}")),
                 m.time(Clock::Wall),
                 m.time(Clock::Cpu),
                 d.p95,
