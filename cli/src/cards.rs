@@ -76,8 +76,7 @@ pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut St
             Some(near) => format!("; did you mean `{near}`?"),
             None => String::from("; `toile stages` lists them"),
         };
-        streams.tell(format!("error: there is no stage `{name}`{hint}"));
-        return exit::INVALID;
+        return streams.refuse(json, format!("there is no stage `{name}`{hint}"));
     }
     match json {
         true => streams.say(json!({ "stages": cards.into_iter().map(card_json).collect::<Vec<_>>() })),

@@ -6,12 +6,13 @@
 use crate::args::{GoldenArgs, Overrides};
 use crate::run::{fail_run, run_quietly};
 use crate::validate::open;
-use crate::{Streams, exit};
+use crate::{Streams, exit, interrupt};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
 use toile_core::golden::{Comparison, Sheet, compare, parse};
 use toile_core::pipeline::Pipeline;
-use toile_core::{Artifact, Cancel, Registry, write_files};
+use toile_core::{Artifact, Registry, write_files};
 use toile_stages::render::{Form, Picture, pictures_of};
 
 /// The places of a pipeline's golden.
@@ -36,9 +37,16 @@ impl Places {
 pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(args, registry, streams, |args, pipeline, path, streams| {
         let places = Places::of(path);
-        let Ok(text) = std::fs::read_to_string(places.sheet()) else {
-            streams.say(format!("{}: skipped, it has no golden yet", path.display()));
-            return Ok(exit::DONE);
+        let text = match std::fs::read_to_string(places.sheet()) {
+            Ok(text) => text,
+            Err(e) if e.kind() == ErrorKind::NotFound => {
+                streams.say(format!("{}: skipped, it has no golden yet", path.display()));
+                return Ok(exit::DONE);
+            }
+            Err(e) => {
+                streams.tell(format!("error: cannot read the golden \"{}\": {e}", places.sheet().display()));
+                return Ok(exit::INVALID);
+            }
         };
         let golden = match parse(&text) {
             Ok(golden) => golden,
@@ -47,7 +55,7 @@ pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Stream
                 return Ok(exit::INVALID);
             }
         };
-        let log = run_quietly(pipeline, &Cancel::new())?.log;
+        let log = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
         let found = compare(&golden, &Sheet::of(&log));
         Ok(report(path, &found, &log, &places, &args.out, streams))
     })
@@ -56,8 +64,8 @@ pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Stream
 /// Records new goldens, each from two equal runs.
 pub(crate) fn accept(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(args, registry, streams, |_, pipeline, path, streams| {
-        let first = run_quietly(pipeline, &Cancel::new())?.log;
-        let second = run_quietly(pipeline, &Cancel::new())?.log;
+        let first = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
+        let second = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
         let (sheet, again) = (Sheet::of(&first), Sheet::of(&second));
         if sheet != again {
             let stage = compare(&sheet, &again);

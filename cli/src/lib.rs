@@ -77,6 +77,18 @@ impl Streams<'_> {
         self.tell(text.trim_end());
     }
 
+    /// Says why a command is refused: to a program that asked for JSON in its answer, else to the person at the terminal.
+    pub(crate) fn refuse(&mut self, json: bool, words: impl std::fmt::Display) -> u8 {
+        match json {
+            true => {
+                let code = toile_core::ErrorCode::InvalidInput.as_str();
+                self.say(serde_json::json!({ "error": code, "message": words.to_string() }));
+            }
+            false => self.tell(format!("error: {words}")),
+        }
+        exit::INVALID
+    }
+
     /// Writes a line for the person at the terminal.
     pub(crate) fn tell(&mut self, line: impl std::fmt::Display) {
         let _ = writeln!(self.err, "{line}");

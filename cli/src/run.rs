@@ -13,7 +13,7 @@ use toile_core::cache::Cache;
 use toile_core::pipeline::{Fault, Faults, Pipeline};
 use toile_core::{
     Cancel, ErrorCode, Listener, Metrics, Reads, Registry, RunError, RunOptions, RunResult, StageError,
-    run as run_stages, write_files,
+    check_folder, run as run_stages, write_files,
 };
 
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
@@ -29,11 +29,11 @@ pub(crate) fn once(
     };
     let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
         Ok(lock) => lock,
-        Err(e) => {
-            streams.tell(format!("error: {e}"));
-            return exit::INVALID;
-        }
+        Err(e) => return streams.refuse(args.json, e),
     };
+    if let Err(e) = check_folder(&folder(args)) {
+        return unwritable(&pipeline, e, args.json, streams);
+    }
     let cache = cache::chosen(&args.cache, streams);
     // A lock is compared by digests, which a cache takes.
     let cache = cache.or_else(|| lock.as_ref().map(|_| Arc::new(Cache::nowhere())));
@@ -98,13 +98,12 @@ pub(crate) fn run_quietly(pipeline: &Pipeline, cancel: &Cancel) -> Result<RunRes
 }
 
 fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut Streams<'_>) -> u8 {
-    let dir = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem(args)));
+    let dir = folder(args);
     let mut files = result.files;
     files.push(OutputFile { path: "metrics.json".into(), bytes: result.metrics.to_json().into_bytes() });
     interrupt::begin_writing();
     if let Err(error) = write_files(&dir, &files) {
-        let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
-        return fail_run(pipeline, &e, args.json, streams);
+        return unwritable(pipeline, error, args.json, streams);
     }
     match args.json {
         true => streams.say(result.metrics.to_json()),
@@ -119,6 +118,16 @@ fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut 
         streams.tell(format!("quality: {code}: {message}"));
     }
     if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY }
+}
+
+/// Where the files go.
+fn folder(args: &RunArgs) -> PathBuf {
+    args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem(args)))
+}
+
+fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
+    let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
+    fail_run(pipeline, &e, json, streams)
 }
 
 fn stem(args: &RunArgs) -> String {

@@ -1,6 +1,7 @@
 //! `toile why`: what a run would do again and why, and where a triangle of a result comes from.
 
 use crate::args::WhyArgs;
+use crate::run::fail_load;
 use crate::validate::open;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
@@ -23,10 +24,7 @@ pub(crate) fn why(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>
 fn why_face(args: &WhyArgs, face: usize, streams: &mut Streams<'_>) -> u8 {
     let traced = traced(&args.target, face);
     match traced {
-        Err(e) => {
-            streams.tell(format!("error: {}: {e}", args.target.display()));
-            return exit::INVALID;
-        }
+        Err(e) => return streams.refuse(args.json, format!("{}: {e}", args.target.display())),
         Ok(t) if args.json => streams.say(json!({
             "face": face, "panel": t.panel, "triangle": t.triangle, "place_m": t.place,
             "edge": t.edge.as_ref().map(|(name, _)| name), "edge_distance_m": t.edge.as_ref().map(|(_, d)| d),
@@ -69,20 +67,13 @@ fn face_lines(face: usize, t: &Trace) -> Vec<String> {
 fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     let pipeline = match open(&args.target, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
-        Err(faults) => {
-            streams.fault(&faults);
-            return exit::INVALID;
-        }
+        Err(faults) => return fail_load(&faults, args.json, streams),
     };
     let Some(cache) = cache::at(args.cache_dir.clone()).map(Arc::new) else {
-        streams.tell("error: there is no place for a cache; set TOILE_CACHE to a folder");
-        return exit::INVALID;
+        return streams.refuse(args.json, "there is no place for a cache; set TOILE_CACHE to a folder");
     };
     match explained(args, &pipeline, &cache) {
-        Err(e) => {
-            streams.tell(format!("error: {e}"));
-            exit::INVALID
-        }
+        Err(e) => streams.refuse(args.json, e),
         Ok((outlooks, roots)) if args.json => {
             let records = |all: &[Outlook]| all.iter().map(record).collect::<Vec<_>>();
             streams.say(json!({ "stages": records(&outlooks), "since": records(&roots) }));

@@ -60,7 +60,7 @@ pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
 pub use metrics::{Metrics, StageMetrics};
-pub use output::write_files;
+pub use output::{check_folder, write_files};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
 pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};

@@ -2,6 +2,7 @@
 
 use crate::artifact::OutputFile;
 use crate::{ErrorCode, StageError};
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
 use std::path::{Component, Path, PathBuf};
@@ -10,8 +11,14 @@ use tempfile::NamedTempFile;
 /// Writes files below `dir`: every one first beside its place, then all are renamed, so that a
 /// stop or a full disk leaves no half file and, short of a failing rename, no half set.
 ///
-/// Errors: a path that leaves `dir`, or the system's refusal, with the path named.
+/// A file that was there keeps its permissions.
+///
+/// Errors: a path that leaves `dir` or stands twice, or the system's refusal, with the path named.
 pub fn write_files(dir: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, StageError> {
+    let mut paths = BTreeSet::new();
+    if let Some(twice) = files.iter().find(|f| !paths.insert(&f.path)) {
+        return Err(StageError::invalid(format!("two files would be written as \"{}\"", twice.path)));
+    }
     let staged = files.iter().map(|f| stage_file(dir, f)).collect::<Result<Vec<_>, _>>()?;
     staged
         .into_iter()
@@ -32,20 +39,30 @@ fn stage_file(dir: &Path, file: &OutputFile) -> Result<(NamedTempFile, PathBuf),
     fs::create_dir_all(folder).map_err(|e| refused(folder, &e))?;
     let mut temp = NamedTempFile::new_in(folder).map_err(|e| refused(folder, &e))?;
     temp.write_all(&file.bytes).map_err(|e| refused(&path, &e))?;
-    readable_by_all(temp.as_file()).map_err(|e| refused(&path, &e))?;
+    permit(temp.as_file(), &path).map_err(|e| refused(&path, &e))?;
     Ok((temp, path))
 }
 
-/// Temporary files are private to the user; finished ones are not.
+/// Temporary files are private to the user; finished ones are not: as the file was, or readable by all.
 #[cfg(unix)]
-fn readable_by_all(file: &fs::File) -> std::io::Result<()> {
+fn permit(file: &fs::File, path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
-    file.set_permissions(fs::Permissions::from_mode(0o644))
+    let was = fs::metadata(path).map(|m| m.permissions());
+    file.set_permissions(was.unwrap_or_else(|_| fs::Permissions::from_mode(0o644)))
 }
 
 #[cfg(not(unix))]
-fn readable_by_all(_file: &fs::File) -> std::io::Result<()> {
+fn permit(_file: &fs::File, _path: &Path) -> std::io::Result<()> {
     Ok(())
+}
+
+/// That files can be written below `dir`, without making it: a run is refused before it has begun.
+///
+/// Errors: as [`write_files`].
+pub fn check_folder(dir: &Path) -> Result<(), StageError> {
+    let there = dir.ancestors().map(|a| if a.as_os_str().is_empty() { Path::new(".") } else { a });
+    let there = there.into_iter().find(|a| a.exists()).unwrap_or(Path::new("."));
+    NamedTempFile::new_in(there).map(|_| ()).map_err(|e| refused(dir, &e))
 }
 
 fn refused(path: &Path, e: &std::io::Error) -> StageError {
@@ -68,6 +85,38 @@ mod tests {
         write_files(dir.path(), &[file("a.txt"), file("deep/er/b.txt")]).unwrap();
         assert_eq!(fs::read(dir.path().join("deep/er/b.txt")).unwrap(), b"content");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn a_path_that_stands_twice_is_refused() {
+        let dir = tempfile::tempdir().unwrap();
+        let e = write_files(dir.path(), &[file("a.txt"), file("b.txt"), file("a.txt")]).unwrap_err();
+        assert_eq!(e.message, "two files would be written as \"a.txt\"");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_file_that_was_there_keeps_its_permissions() {
+        use std::os::unix::fs::PermissionsExt;
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.txt");
+        fs::write(&path, "before").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+        write_files(dir.path(), &[file("a.txt"), file("b.txt")]).unwrap();
+        let mode = |name: &str| fs::metadata(dir.path().join(name)).unwrap().permissions().mode() & 0o777;
+        assert_eq!((mode("a.txt"), mode("b.txt")), (0o600, 0o644));
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_is_refused_before_anything_is_made() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join("file"), "x").unwrap();
+        check_folder(&dir.path().join("new/er")).unwrap();
+        let e = check_folder(&dir.path().join("file/out")).unwrap_err();
+        let name = dir.path().join("file/out").display().to_string();
+        assert!(e.message.starts_with(&format!("cannot write \"{name}\": ")), "{}", e.message);
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
     }
 
     #[test]

@@ -123,7 +123,7 @@ pub fn run(
         }
     }
     let files = files(&mut run, options)?;
-    let judged: Vec<Figures> = run.all()?;
+    let judged: Vec<Figures> = run.all()?.into_iter().map(|(_, f)| f).collect();
     if let Some(cache) = cache {
         cache.tidy();
     }
@@ -135,7 +135,7 @@ pub fn run(
 
 /// The writers' files and those of stages whose artifacts were asked for.
 fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
-    let mut files: Vec<OutputFile> = run.all::<OutputFiles>()?.into_iter().flat_map(|f| f.0).collect();
+    let mut files: Vec<OutputFile> = written(run)?.into_iter().flat_map(|(_, f)| f.0).collect();
     let nodes = run.pipeline.nodes.iter().enumerate();
     let kept = |id: &str| options.keep || options.until.as_deref() == Some(id);
     let kept: Vec<usize> = nodes.filter(|(_, n)| kept(&n.id)).map(|(i, _)| i).collect();
@@ -146,6 +146,29 @@ fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, Run
     let log = run.log(run.steps.len());
     files.extend(log.stages.iter().filter(|r| ids.contains(&r.id.as_str())).flat_map(exports));
     Ok(files)
+}
+
+/// The writers' files, each with the index of its writer.
+///
+/// Errors: two stages write a file of the same name; the second is named.
+fn written(run: &mut Run<'_>) -> Result<Vec<(usize, OutputFiles)>, RunError> {
+    let all = run.all::<OutputFiles>()?;
+    let mut first: BTreeMap<&str, usize> = BTreeMap::new();
+    for (node, files) in &all {
+        for file in &files.0 {
+            if let Some(other) = first.insert(&file.path, *node) {
+                return Err(twice(run.pipeline, &file.path, other, *node));
+            }
+        }
+    }
+    Ok(all)
+}
+
+fn twice(pipeline: &Pipeline, path: &str, first: usize, second: usize) -> RunError {
+    let (a, b) = (&pipeline.nodes[first], &pipeline.nodes[second]);
+    let error = StageError::invalid(format!("it writes \"{path}\", as `{}` does", a.id))
+        .hint("give one of them another `name`, or leave one out");
+    RunError { stage: b.id.clone(), entry: String::new(), span: b.span.clone(), error }
 }
 
 /// What a run would do: for every stage `None` where it runs, or the reason why it is left out.

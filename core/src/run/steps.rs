@@ -188,8 +188,8 @@ impl Run<'_> {
         Ok(names)
     }
 
-    /// All artifacts of a type, which are brought into memory first.
-    pub(super) fn all<T: ArtifactType + Clone>(&mut self) -> Result<Vec<T>, RunError> {
+    /// All artifacts of a type with the index of their stage, which are brought into memory first.
+    pub(super) fn all<T: ArtifactType + Clone>(&mut self) -> Result<Vec<(usize, T)>, RunError> {
         let mut all = Vec::new();
         for index in 0..self.steps.len() {
             let outputs = &self.pipeline.nodes[index].card.outputs;
@@ -197,7 +197,7 @@ impl Run<'_> {
                 self.ensure(index, port, None)?;
                 let value = self.held(index, port).and_then(|held| held.value(None));
                 let made = value.iter().flat_map(PortValue::entries).filter_map(|(_, a)| typed::<T>(a));
-                all.extend(made.cloned());
+                all.extend(made.map(|a| (index, a.clone())));
             }
         }
         Ok(all)

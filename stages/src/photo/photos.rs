@@ -57,7 +57,7 @@ impl Photos {
 /// Reads all photos in parallel; a file that is named twice is decoded once.
 ///
 /// # Errors
-/// For no photos at all, a width or scale that cannot be, a mirror of nothing or of itself, and what
+/// For no photos at all, a name that no file could have, a width or scale that cannot be, a mirror of nothing or of itself, and what
 /// [`decode`] refuses.
 pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Result<Set<Photo>, StageError> {
     if entries.is_empty() {
@@ -65,6 +65,7 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
             .hint("add `photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\")}`")
             .at("photos"));
     }
+    entries.keys().try_for_each(|name| named(name))?;
     let sides = entries
         .keys()
         .map(|name| resolve(entries, name).map(|side| (name, side)))
@@ -80,6 +81,17 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
         Some((name.clone(), picture.photo(file, mirrored)))
     };
     Ok(sides.into_iter().filter_map(photo).collect())
+}
+
+/// A side's name stands in the names of files: textures, kept artifacts, goldens.
+fn named(name: &str) -> Result<(), StageError> {
+    let is_apart = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
+    match name.is_empty() || name.starts_with('.') || name.contains(is_apart) {
+        true => Err(StageError::invalid(format!("a photo is named {name:?}, as no file can be"))
+            .hint("name it after the garment's side: \"front\", \"back\"")
+            .at("photos")),
+        false => Ok(()),
+    }
 }
 
 /// Decoded pixels that several photos may share.

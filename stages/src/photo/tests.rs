@@ -129,6 +129,10 @@ fn wrong_sets_are_refused() {
     let error = text(r#"{"back": MirrorOf("fornt"), "front": (file: "a.png")}"#);
     assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which there is not");
     assert_eq!(error.hint.unwrap(), "the photos are \"back\", \"front\"");
+    let error = text(r#"{"../front": (file: "a.png")}"#);
+    assert_eq!(error.to_string(), "a photo is named \"../front\", as no file can be");
+    assert_eq!(error.hint.unwrap(), "name it after the garment's side: \"front\", \"back\"");
+    assert_eq!(text(r#"{"": (file: "a.png")}"#).to_string(), "a photo is named \"\", as no file can be");
     let error = text(r#"{"back": MirrorOf("front"), "front": MirrorOf("back")}"#);
     assert_eq!(error.to_string(), "photo \"back\" mirrors itself");
     assert_eq!(error.hint.unwrap(), "one of the photos must be a file");
