@@ -38,6 +38,29 @@ fn the_cause_is_the_field_that_changed() {
 }
 
 #[test]
+fn a_triangle_of_a_refined_garment_is_followed_to_its_outline_edge() {
+    let dir = tempfile::tempdir().unwrap();
+    let ron = dir.path().join("vest.ron");
+    let text = without_rest(&fs::read_to_string(pipeline("vest.ron")).unwrap());
+    let text = text.replace("samples/", &format!("{}/samples/", pipeline("")));
+    let text =
+        text.replace("PhotoTexturer(light: Modulate),", "Refine(parts: 3), PhotoTexturer(light: Modulate),");
+    fs::write(&ron, text.replace("Glb(), Obj(), Preview(), Report(),", "Obj(),")).unwrap();
+    let out = dir.path().join("out").display().to_string();
+    let run = toile(&["run", &ron.display().to_string(), "--out", &out]);
+    assert_eq!(run.code, 4, "{}", run.err);
+    let result = format!("{out}/garment.obj");
+    let edge = |face: usize| {
+        let why = toile(&["why", &result, "--face", &face.to_string(), "--json"]);
+        let found: Value = serde_json::from_str(&why.out).unwrap();
+        (found["edge"].as_str().unwrap().to_owned(), found["edge_distance_m"].as_f64().unwrap())
+    };
+    let found: Vec<(String, f64)> = (0..40).map(|i| edge(i * 100)).collect();
+    assert!(found.iter().all(|(_, far)| (0.0..0.4).contains(far)), "{found:?}");
+    assert!(found.iter().any(|(name, _)| name != &found[0].0), "{found:?}");
+}
+
+#[test]
 fn a_triangle_is_followed_to_its_panel_edge_and_pixel() {
     let dir = tempfile::tempdir().unwrap();
     let ron = dir.path().join("vest.ron");
@@ -105,6 +128,10 @@ fn a_triangle_is_followed_to_its_panel_edge_and_pixel() {
             path("metrics.json")
         )
     );
+    let json = why("garment.glb", "9999999", &["--json"]);
+    let refused: Value = serde_json::from_str(&json.out).unwrap();
+    assert_eq!((json.code, &refused["error"]), (3, &"invalid_input".into()));
+    assert!(refused["message"].as_str().unwrap().contains(": face 9999999 is out of range: "), "{refused}");
     fs::remove_file(out.join("origin.json")).unwrap();
     let lost = why("garment.glb", "0", &[]);
     assert_eq!(lost.code, 3);

@@ -19,7 +19,13 @@ pub const FILE: &str = "origin.json";
 /// Writes where every triangle comes from: panel, place in the panel, outline edge and photo pixel.
 ///
 /// Every pipeline that makes a garment has it; `toile why out/vest/garment.glb --face 100` reads it.
-#[stage(role = Writer, source = "none", example = "Origin()", contracts(Deterministic, ThreadInvariant))]
+#[stage(
+    role = Writer,
+    version = 2,
+    source = "none",
+    example = "Origin()",
+    contracts(Deterministic, ThreadInvariant)
+)]
 pub struct Origin {}
 
 #[stage]
@@ -54,8 +60,8 @@ pub(super) struct PanelOrigin {
     /// Pixels in the photo, one a vertex, or none.
     pub(super) pixels: Vec<[f64; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Named edges of the outline, as vertices.
-    pub(super) edges: Vec<(String, Vec<u32>)>,
+    /// Named edges of the outline as chains of flat places, metres: the garment's mesh may be a finer one than the panel's.
+    pub(super) edges: Vec<(String, Vec<[f64; 2]>)>,
 }
 
 /// A photo.
@@ -72,26 +78,30 @@ fn rounded(x: f64, unit: f64) -> f64 {
     (x / unit).round() / (1.0 / unit).round()
 }
 
+fn place(v: &Point2) -> [f64; 2] {
+    [v.x, v.y].map(|c| rounded(c, 1e-5))
+}
+
+fn chains(panel: &Panel) -> Vec<(String, Vec<[f64; 2]>)> {
+    let at = |&i: &u32| panel.positions.get(i as usize).map(place);
+    panel.edges.iter().map(|e| (e.name.clone(), e.vertices.iter().filter_map(at).collect())).collect()
+}
+
 fn origins(garment: &Garment, panels: Option<&Set<Panel>>, photos: Option<&Set<Photo>>) -> Origins {
     let of = |p: &GarmentPanel| {
         let first = p.vertices.start as u32;
-        let flat = panels.and_then(|set| set.get(&p.name)).filter(|f| f.positions.len() == p.vertices.len());
+        let flat = panels.and_then(|set| set.get(&p.name));
         let photo = photos.and_then(|set| set.get(&p.name)).filter(|_| !p.photo_px.is_empty());
         PanelOrigin {
             name: p.name.clone(),
             photo: photo.map(|f| PhotoOrigin { file: f.file.clone(), mirrored: f.mirrored }),
-            positions: garment.rest[p.vertices.clone()]
-                .iter()
-                .map(|v| [v.x, v.y].map(|c| rounded(c, 1e-5)))
-                .collect(),
+            positions: garment.rest[p.vertices.clone()].iter().map(place).collect(),
             pixels: p.photo_px.iter().map(|v| [v.x, v.y].map(|c| rounded(c, 1e-2))).collect(),
             triangles: garment.triangles[p.triangles.clone()]
                 .iter()
                 .map(|t| t.map(|i| i.saturating_sub(first)))
                 .collect(),
-            edges: flat
-                .map(|f| f.edges.iter().map(|e| (e.name.clone(), e.vertices.clone())).collect())
-                .unwrap_or_default(),
+            edges: flat.map(chains).unwrap_or_default(),
         }
     };
     Origins { panels: garment.panels.iter().map(of).collect() }

@@ -92,10 +92,8 @@ impl PanelOrigin {
     }
 
     fn nearest_edge(&self, place: [f64; 2]) -> Option<(String, f64)> {
-        let at = |i: u32| self.positions.get(i as usize).copied();
-        let distance = |chain: &Vec<u32>| {
-            let spans = chain.windows(2).filter_map(|w| Some(to_segment(place, at(w[0])?, at(w[1])?)));
-            spans.fold(f64::INFINITY, f64::min)
+        let distance = |chain: &Vec<[f64; 2]>| {
+            chain.windows(2).map(|w| to_segment(place, w[0], w[1])).fold(f64::INFINITY, f64::min)
         };
         let edges = self.edges.iter().map(|(name, chain)| (name, distance(chain)));
         let nearest = edges.filter(|(_, d)| d.is_finite()).min_by(|a, b| a.1.total_cmp(&b.1));
@@ -126,7 +124,10 @@ mod tests {
             positions: vec![[0.0, 0.0], [0.1, 0.0], [0.1, 0.1], [0.0, 0.1]],
             pixels: vec![[10.0, 110.0], [110.0, 110.0], [110.0, 10.0], [10.0, 10.0]],
             triangles: vec![[0, 1, 2], [0, 2, 3]],
-            edges: vec![("hem".into(), vec![0, 1]), ("side_left".into(), vec![1, 2])],
+            edges: vec![
+                ("hem".into(), vec![[0.0, 0.0], [0.1, 0.0]]),
+                ("side_left".into(), vec![[0.1, 0.0], [0.1, 0.1]]),
+            ],
         }
     }
 
