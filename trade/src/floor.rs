@@ -1,10 +1,15 @@
 //! The error below which figures against a reference mean nothing.
 //!
 //! It is the greatest of what is known of the reference's own fault: what its finest level still lacks (Richardson), or, where its
-//! levels show no order, how far the last refinement moved it, for a next one may move it as far; and how far its own moved
+//! levels show no order, what it would lack if its last refinement were one of first order; and how far its own moved
 //! starts and its neighbours, a little finer and coarser, end from it.
+//!
+//! Why first order: the last move alone says too little. A vest whose last refinement, of 4 to 6 parts of an edge, moved it by
+//! 0.39 mm lay 0.84 mm from one of 16 parts (0.78 at first order), and one whose last refinement by a root of two moved it by
+//! 3.9 mm went on by 20 mm (9.4).
 
 use crate::record::{Neighbours, OwnSpread, Reference};
+use crate::richardson::{Step, at_first_order};
 
 /// How well a reference is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,8 +25,8 @@ pub struct Floor {
 pub enum By {
     /// What the finest level still lacks.
     Missing,
-    /// How far the last refinement moved it, without an order.
-    Moved,
+    /// What it would lack at first order by its last refinement, for its levels show none.
+    Unordered,
     /// The spread of its moved starts.
     Spread,
     /// How far neighbouring resolutions end from it.
@@ -31,12 +36,12 @@ pub enum By {
 }
 
 impl Floor {
-    /// `the reference is known to 8.32 mm only: its last refinement moved it as far, and its levels show no order`.
+    /// `the reference is known to 8.32 mm only: its levels show no order, and at first order so much is missing`.
     pub fn words(&self) -> String {
         let why = match self.by {
             By::Nothing => return "nothing tells how well the reference is known: it was not refined".into(),
             By::Missing => "so much is missing from its finest level to the limit of its order",
-            By::Moved => "its last refinement moved it as far, and its levels show no order",
+            By::Unordered => "its levels show no order, and at first order so much is missing",
             By::Spread => "starts moved by a little end so far apart, in other states of rest",
             By::Neighbours => {
                 "meshes a fiftieth finer or coarser end so far from it, in other states of rest"
@@ -48,7 +53,7 @@ impl Floor {
     /// What can be done to lower it.
     pub fn remedy(&self) -> &'static str {
         match self.by {
-            By::Missing | By::Moved => {
+            By::Missing | By::Unordered => {
                 "measure into another --out with a longer --budget, so that it is refined further"
             }
             By::Nothing => {
@@ -73,8 +78,14 @@ impl Reference {
     }
 
     fn lacks(&self) -> Option<Floor> {
-        let moved = || Some(Floor { mm: self.levels.last()?.moved_mm?.p95, by: By::Moved });
-        self.p95.map(|o| Floor { mm: o.missing_mm, by: By::Missing }).or_else(moved)
+        let unordered = || Some(Floor { mm: self.missing_at_first_order()?, by: By::Unordered });
+        self.p95.map(|o| Floor { mm: o.missing_mm, by: By::Missing }).or_else(unordered)
+    }
+
+    fn missing_at_first_order(&self) -> Option<f64> {
+        let level = self.levels.last()?;
+        let finer = level.finer.unwrap_or(self.ratio);
+        Some(at_first_order(Step { distance: level.moved_mm?.p95, ratio: finer }))
     }
 
     /// [`Reference::floor`] in millimetres, where it is finite.
@@ -91,7 +102,7 @@ mod tests {
 
     fn moved(p95: Option<f64>) -> Level {
         let moved_mm = p95.map(|p95| Millimetres { p95, ..Millimetres::default() });
-        Level { moved_mm, ..Level::default() }
+        Level { moved_mm, finer: moved_mm.map(|_| 1.5), ..Level::default() }
     }
 
     fn reference(levels: Vec<Level>, missing: Option<f64>, start: Option<f64>) -> Reference {
@@ -108,8 +119,9 @@ mod tests {
         let floor = |missing, start| reference(levels(), missing, start).floor();
         assert_eq!(floor(Some(0.2), Some(5.8)), Some(Floor { mm: 5.8, by: By::Spread }));
         assert_eq!(floor(Some(0.2), Some(0.0)), Some(Floor { mm: 0.2, by: By::Missing }));
-        // Levels that do not come nearer: quiet starts do not make them a reference.
-        assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 8.32, by: By::Moved }));
+        // Levels that do not come nearer: quiet starts do not make them a reference. Half as fine again would be a third of
+        // the way to the limit at first order.
+        assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 2.0 * 8.32, by: By::Unordered }));
         // Quiet starts of one level do not make it known.
         let alone = reference(vec![moved(None)], None, Some(0.1));
         assert_eq!(alone.floor(), Some(Floor { mm: f64::INFINITY, by: By::Nothing }));
@@ -125,8 +137,8 @@ mod tests {
     fn words_and_remedies() {
         let words = |by| Floor { mm: 8.321, by }.words();
         assert_eq!(
-            words(By::Moved),
-            "the reference is known to 8.32 mm only: its last refinement moved it as far, and its levels show no order"
+            words(By::Unordered),
+            "the reference is known to 8.32 mm only: its levels show no order, and at first order so much is missing"
         );
         assert_eq!(
             words(By::Missing),

@@ -58,6 +58,11 @@ pub fn convergence(steps: &[Step]) -> Option<Convergence> {
     is_sound.then(|| Convergence { order, missing: missing() })
 }
 
+/// What the finest result lacks if its error falls with the first power of the resolution.
+pub fn at_first_order(last: Step) -> f64 {
+    last.distance / (last.ratio - 1.0)
+}
+
 /// The order at which two refinements by these factors move a result by distances of that quotient; between 0 and
 /// [`MOST_ORDER`].
 fn order(quotient: f64, [first, second]: [f64; 2]) -> f64 {
@@ -114,6 +119,12 @@ mod tests {
                 assert!((found.missing - rest).abs() < 1e-9, "{found:?}, {rest}");
             }
         }
+    }
+
+    #[test]
+    fn one_step_of_first_order_tells_the_rest() {
+        let (steps, rest) = meshes(5.0, 1.0, &[4.0, 6.0]);
+        assert!((at_first_order(steps[0]) - rest).abs() < 1e-12);
     }
 
     #[test]

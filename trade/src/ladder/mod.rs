@@ -89,7 +89,8 @@ impl Search<'_> {
                 Ok(ran) => ran,
                 Err(missed) => break self.after_miss(missed, k)?,
             };
-            let level = level(self.board, setting, &ran, last.as_ref())?;
+            let mut level = level(self.board, setting, &ran, last.as_ref())?;
+            level.finer = levels.last().map(|before| self.board.ratio(&level.setting, &before.setting));
             tell(words(k, &level));
             levels.push(level);
             before = last.replace(ran);
@@ -209,6 +210,7 @@ fn level(board: &Board, setting: Setting, ran: &Ran, before: Option<&Ran>) -> Re
         triangles: ran.garment.triangles.len(),
         wall_s: ran.wall_s,
         cpu_s: ran.cpu_s,
+        finer: None,
         moved_mm: moved.as_ref().map(|e| e.distance_mm),
         displaced_mm: moved.as_ref().map(|e| e.displacement_mm),
         ease_mm: ease(ran),

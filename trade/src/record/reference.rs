@@ -42,6 +42,9 @@ pub struct Level {
     pub wall_s: f64,
     /// Seconds.
     pub cpu_s: f64,
+    /// By which factor it is finer than the level before; none in the first, and in records of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finer: Option<f64>,
     /// Distance from the level before.
     pub moved_mm: Option<Millimetres>,
     /// Displacement from the level before.
