@@ -234,7 +234,7 @@ fn explain_gives_one_json_object() {
     assert_eq!((all["pipeline"].as_str(), &all["quality"]), (Some("vest"), &Value::Null));
     let qualities = all["qualities"].as_array().unwrap().iter();
     let named: Vec<_> = qualities.map(|q| (q["name"].as_str(), q["max_error_m"].as_f64())).collect();
-    let want = [("Draft", 0.002), ("Standard", 0.0007), ("Fine", 0.0005)].map(|(n, e)| (Some(n), Some(e)));
+    let want = [("Draft", 0.002), ("Standard", 0.001), ("Fine", 0.0007)].map(|(n, e)| (Some(n), Some(e)));
     assert_eq!(named, want);
     let stages = all["stages"].as_array().unwrap();
     let stage = |id: &str| stages.iter().find(|s| s["id"] == id).unwrap();
