@@ -10,10 +10,11 @@
 //!
 //! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
 //! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
-//! picture whose rim is transparent has its mask already.
+//! picture whose ground was cut away has its mask already (`cut_out`).
 
 mod background;
 mod cut;
+mod cut_out;
 mod finish;
 mod global;
 mod graph_cut;
@@ -29,7 +30,7 @@ mod tests;
 mod tone;
 
 pub use background::Background;
-pub use finish::{Finish, cut_out, fill_holes, finish, no_garment};
+pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
 pub use graph_cut::GraphCut;
 pub use local::{Local, LocalMethod, local};
