@@ -15,7 +15,9 @@ pub(crate) fn chosen(choice: &CacheChoice, streams: &mut Streams<'_>) -> Option<
     }
     let cache = at(choice.cache_dir.clone());
     if cache.is_none() {
-        streams.warn("there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it");
+        streams.warn(
+            "there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it",
+        );
     }
     cache.map(|cache| Arc::new(cache.with_limit(limit(streams))))
 }

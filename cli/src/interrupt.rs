@@ -93,8 +93,16 @@ fn cut_off(after: Duration) -> ! {
         let stage = AT_WORK.lock().unwrap_or_else(PoisonError::into_inner).clone();
         who.push(if stage.is_empty() { "what was under way".to_owned() } else { format!("stage {stage}") });
     }
-    let message = format!("stopped: {} did not stop within {:.1} s of being asked", who.join("; "), after.as_secs_f64());
-    last_words::say(ErrorCode::Cancelled, &message, "the program was ended there; files that were written before are whole");
+    let message = format!(
+        "stopped: {} did not stop within {:.1} s of being asked",
+        who.join("; "),
+        after.as_secs_f64()
+    );
+    last_words::say(
+        ErrorCode::Cancelled,
+        &message,
+        "the program was ended there; files that were written before are whole",
+    );
     last_words::leave(exit::STOPPED)
 }
 

@@ -33,7 +33,8 @@ fn one(path: &Path, args: &LockArgs, registry: &Registry, streams: &mut Streams<
     let options = RunOptions { cache: Some(cache.clone()), ..RunOptions::default() };
     let listener: Arc<dyn Listener> = Arc::new(());
     let pool = threads::pool(None, streams);
-    let outcome = threads::in_pool(pool, || run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener));
+    let outcome =
+        threads::in_pool(pool, || run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener));
     for warning in cache.take_warnings() {
         streams.warn(warning);
     }

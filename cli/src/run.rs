@@ -77,7 +77,8 @@ fn under_a_bar(
     let pool = threads::pool(threads, streams);
     let bar = Arc::new(Bar::new(pipeline, streams));
     let listener: Arc<dyn Listener> = bar.clone();
-    let outcome = threads::in_pool(pool, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
+    let outcome =
+        threads::in_pool(pool, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
     let of_cache = options.cache.iter().flat_map(|c| c.take_warnings());
     for warning in bar.finish().into_iter().chain(of_cache) {
         streams.warn(warning);

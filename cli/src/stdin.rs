@@ -54,7 +54,10 @@ fn read(from: &mut dyn Read) -> io::Result<String> {
     let mut bytes = Vec::new();
     from.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(io::Error::new(ErrorKind::InvalidData, format!("it has more than {MAX_FILE_BYTES} bytes")));
+        return Err(io::Error::new(
+            ErrorKind::InvalidData,
+            format!("it has more than {MAX_FILE_BYTES} bytes"),
+        ));
     }
     String::from_utf8(bytes).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8 text"))
 }

@@ -24,12 +24,14 @@ pub(crate) fn in_pool<T: Send>(pool: Pool, work: impl FnOnce() -> T + Send) -> T
     }
 }
 
-/// As [`pool`], for work that has no threads of its own until it takes those of the whole program.
+/// Sets up the threads of the whole program, for commands that take those: as many as the system gives, else the present one.
 pub(crate) fn for_the_program() {
-    let all = halves(cores()).find(|n| ThreadPoolBuilder::new().num_threads(*n).build_global().is_ok());
-    if all.is_none() {
-        let _ = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global();
-    }
+    // That pool can be tried once only, so others are tried before.
+    let given = halves(cores()).find(|n| ThreadPoolBuilder::new().num_threads(*n).build().is_ok());
+    let _ = match given {
+        Some(n) => ThreadPoolBuilder::new().num_threads(n).build_global(),
+        None => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
+    };
 }
 
 /// The machine's cores that this program may use.
@@ -42,7 +44,10 @@ pub(crate) fn pool_of(asked: Option<u16>, cores: usize) -> (Pool, Vec<String>) {
     let mut told = Vec::new();
     let most = asked.map_or(cores, usize::from);
     if most > cores {
-        told.push(format!("{most} threads are asked for and this machine has {}; it works on {cores}", cores_in_words(cores)));
+        told.push(format!(
+            "{most} threads are asked for and this machine has {}; it works on {cores}",
+            cores_in_words(cores)
+        ));
     }
     let wanted = most.min(cores);
     for n in halves(wanted) {

@@ -69,7 +69,9 @@ fn a_reader_that_has_enough_is_no_failure() {
     let dir = folder();
     let script = "\"$0\" stages; echo $? >code";
     let mut shell = Command::new("sh");
-    shell.args(["-c", &format!("({script}) | head -n 1"), env!("CARGO_BIN_EXE_toile")]).current_dir(dir.path());
+    shell
+        .args(["-c", &format!("({script}) | head -n 1"), env!("CARGO_BIN_EXE_toile")])
+        .current_dir(dir.path());
     assert!(shell.output().unwrap().stderr.is_empty());
     assert_eq!(fs::read_to_string(dir.path().join("code")).unwrap(), "0\n");
 }
@@ -80,7 +82,8 @@ fn more_threads_than_cores_are_bounded_and_that_is_told() {
     let (code, _, err) = said(dir.path(), &["run", "sheet.ron", "--no-cache", "--threads", "1024"]);
     let cores = std::thread::available_parallelism().unwrap().get();
     let has = if cores == 1 { "1 core".to_owned() } else { format!("{cores} cores") };
-    let told = format!("warning: 1024 threads are asked for and this machine has {has}; it works on {cores}\n");
+    let told =
+        format!("warning: 1024 threads are asked for and this machine has {has}; it works on {cores}\n");
     assert_eq!((code, err), (Some(0), told));
     let metrics = fs::read_to_string(dir.path().join("out/sheet/metrics.json")).unwrap();
     assert!(metrics.contains(&format!("\"threads\": {cores}")), "{metrics}");
@@ -90,11 +93,17 @@ fn more_threads_than_cores_are_bounded_and_that_is_told() {
 #[test]
 fn without_threads_the_work_is_done_all_the_same() {
     let dir = folder();
-    for arguments in [&["run", "sheet.ron", "--no-cache"][..], &["run", "sheet.ron", "--no-cache", "--threads", "2"]] {
+    for arguments in
+        [&["run", "sheet.ron", "--no-cache"][..], &["run", "sheet.ron", "--no-cache", "--threads", "2"]]
+    {
         let output = toile(dir.path(), arguments).env("RUST_MIN_STACK", "70000000000000").output().unwrap();
         let (code, _, err) = words(&output);
         assert_eq!(code, Some(0), "{err}");
         assert_eq!(err, "warning: the system gives no threads; one does all the work\n");
+    }
+    for arguments in [&["explain", "sheet.ron"][..], &["validate", "sheet.ron"], &["why", "sheet.ron"]] {
+        let output = toile(dir.path(), arguments).env("RUST_MIN_STACK", "70000000000000").output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", words(&output).2);
     }
     let output = toile(dir.path(), &["doctor"]).env("RUST_MIN_STACK", "70000000000000").output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", words(&output).2);
@@ -179,14 +188,20 @@ fn shells_and_the_manual_know_every_command_that_users_have() {
     for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
         let (code, out, err) = said(dir.path(), &["completions", shell]);
         assert_eq!((code, err.as_str()), (Some(0), ""));
-        assert!(out.contains("validate") && out.contains("--no-cache") || out.contains("no-cache"), "{shell}");
+        assert!(
+            out.contains("validate") && out.contains("--no-cache") || out.contains("no-cache"),
+            "{shell}"
+        );
         assert!(!out.contains("run-apart"), "{shell}");
     }
     let syntax = format!("{} completions bash | bash -n", env!("CARGO_BIN_EXE_toile"));
     assert!(Command::new("bash").args(["-c", &syntax]).status().map_or(true, |s| s.success()));
     let (code, page, _) = said(dir.path(), &["man"]);
     assert_eq!(code, Some(0));
-    assert!(page.contains(".TH toile 1") && page.contains("toile\\-golden") && !page.contains("apart"), "{page}");
+    assert!(
+        page.contains(".TH toile 1") && page.contains("toile\\-golden") && !page.contains("apart"),
+        "{page}"
+    );
     let (_, page, _) = said(dir.path(), &["man", "golden", "check"]);
     assert!(page.contains("name the first stage that differs"), "{page}");
     let (code, _, err) = said(dir.path(), &["man", "fly"]);
@@ -298,7 +313,11 @@ fn what_a_killed_run_left_behind_is_swept_by_the_next() {
     let dir = folder();
     assert_eq!(said(dir.path(), &["run", "sheet.ron"]).0, Some(0));
     let shelf = files(&dir.path().join("cache/v1/blobs"))[0].parent().unwrap().to_owned();
-    let left = [dir.path().join("out/sheet/.toile-a1B2c3.tmp"), shelf.join(".toile-a1B2c3.tmp"), shelf.join(".tmpa1B2c3")];
+    let left = [
+        dir.path().join("out/sheet/.toile-a1B2c3.tmp"),
+        shelf.join(".toile-a1B2c3.tmp"),
+        shelf.join(".tmpa1B2c3"),
+    ];
     left.iter().for_each(|path| fs::write(path, "half").unwrap());
     assert_eq!(said(dir.path(), &["run", "sheet.ron", "--set", "stages.Rest.speed=0.02"]).0, Some(0));
     assert!(left.iter().all(|path| !path.exists()));

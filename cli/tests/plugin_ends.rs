@@ -32,7 +32,12 @@ fn bad(case: &str, dir: &Path) -> PathBuf {
 
 fn toile(dir: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_toile"));
-    command.current_dir(dir).args(arguments).stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command
+        .current_dir(dir)
+        .args(arguments)
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped());
     command
 }
 
@@ -63,7 +68,8 @@ fn a_plugin_that_ends_the_program_is_named_with_code_70() {
     for command in [&["stages"][..], &["doctor"], &["validate", "p.ron"]] {
         let named = toile(dir.path(), command).args(["--plugin", "libbad.so"]).output().unwrap();
         let (code, _, err) = answer(&named);
-        let said = format!("error: the plugin \"{}\" ended the program from within, by `exit`\n{help}", "libbad.so");
+        let said =
+            format!("error: the plugin \"{}\" ended the program from within, by `exit`\n{help}", "libbad.so");
         assert_eq!((code, err), (Some(70), said), "{}", library.display());
     }
 }
@@ -127,7 +133,9 @@ fn a_plugin_that_loops_while_it_makes_a_stage_is_named() {
     bad("SPINS_IN_CREATE", dir.path());
     let (code, _, err) = signalled(dir.path(), &["validate", "p.ron"], &["-INT"]);
     assert_eq!(code, Some(5));
-    let head = format!("error: stopped: {BAD}, while it makes its stage `Passes` did not stop within 0.4 s of being asked\n");
+    let head = format!(
+        "error: stopped: {BAD}, while it makes its stage `Passes` did not stop within 0.4 s of being asked\n"
+    );
     assert!(err.starts_with(&head), "{err}");
 }
 

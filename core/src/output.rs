@@ -20,7 +20,8 @@ pub fn write_files(dir: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, Sta
     if let Some(twice) = files.iter().find(|f| !paths.insert(&f.path)) {
         return Err(StageError::invalid(format!("two files would be written as \"{}\"", twice.path)));
     }
-    let folders: BTreeSet<PathBuf> = files.iter().filter_map(|f| Some(dir.join(&f.path).parent()?.to_owned())).collect();
+    let folders: BTreeSet<PathBuf> =
+        files.iter().filter_map(|f| Some(dir.join(&f.path).parent()?.to_owned())).collect();
     folders.iter().for_each(|folder| beside::sweep(folder));
     let staged = files.iter().map(|f| stage_file(dir, f)).collect::<Result<Vec<_>, _>>()?;
     staged

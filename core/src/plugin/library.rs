@@ -1,9 +1,9 @@
 //! Loading a plugin: the file, the handshake, the stage tables.
 
 use super::abi;
-use super::inside::long;
 use super::card::{Strides, read};
 use super::foreign::ForeignType;
+use super::inside::long;
 use super::view::text;
 use super::whole::check_whole;
 use crate::artifact::Digest;

@@ -99,7 +99,8 @@ fn elf(bytes: &[u8]) -> Result<(), String> {
     let word = layout.word;
     let [programs, sections] = [n.at(layout.programs, word)?, n.at(layout.sections, word)?];
     let count = |k: u64| n.at(layout.counts + 2 * k, 2);
-    let (program_size, program_count, section_size, section_count) = (count(0)?, count(1)?, count(2)?, count(3)?);
+    let (program_size, program_count, section_size, section_count) =
+        (count(0)?, count(1)?, count(2)?, count(3)?);
     n.holds(programs, program_size * program_count)?;
     n.holds(sections, section_size * section_count)?;
     let mut mapped = Vec::new();
@@ -126,7 +127,12 @@ fn elf(bytes: &[u8]) -> Result<(), String> {
 }
 
 /// Fields of a header at `at`.
-fn field<const N: usize>(n: &Numbers<'_>, at: u64, offsets: &[u64; N], word: u64) -> Result<[u64; N], String> {
+fn field<const N: usize>(
+    n: &Numbers<'_>,
+    at: u64,
+    offsets: &[u64; N],
+    word: u64,
+) -> Result<[u64; N], String> {
     let mut found = [0; N];
     for (value, offset) in found.iter_mut().zip(offsets) {
         *value = n.at(at.saturating_add(*offset), word)?;
@@ -135,7 +141,12 @@ fn field<const N: usize>(n: &Numbers<'_>, at: u64, offsets: &[u64; N], word: u64
 }
 
 /// The tables that the loader follows lie in what it maps, and those without which it cannot work are there.
-fn tables(n: &Numbers<'_>, (offset, size): (u64, u64), word: u64, mapped: &[(u64, u64)]) -> Result<(), String> {
+fn tables(
+    n: &Numbers<'_>,
+    (offset, size): (u64, u64),
+    word: u64,
+    mapped: &[(u64, u64)],
+) -> Result<(), String> {
     let mut entries = Vec::new();
     for i in 0..size / (2 * word) {
         let at = offset + i * 2 * word;
@@ -152,7 +163,9 @@ fn tables(n: &Numbers<'_>, (offset, size): (u64, u64), word: u64, mapped: &[(u64
         let Some(from) = value(table) else { continue };
         let to = from.saturating_add(length.and_then(value).unwrap_or(1));
         if !mapped.iter().any(|(a, b)| *a <= from && to <= *b) {
-            return Err(format!("its dynamic section is damaged: table {table:#x} lies at {from:#x}, where nothing is"));
+            return Err(format!(
+                "its dynamic section is damaged: table {table:#x} lies at {from:#x}, where nothing is"
+            ));
         }
     }
     Ok(())
@@ -222,8 +235,12 @@ mod tests {
         entries.iter().for_each(|(t, v)| b.extend([t.to_le_bytes(), v.to_le_bytes()].concat()));
         let sections = b.len() as u64;
         b.extend([0; 64]);
-        let put = |b: &mut Vec<u8>, at: usize, v: u64, size: usize| b[at..at + size].copy_from_slice(&v.to_le_bytes()[..size]);
-        for (at, v, size) in [(32, 64, 8), (40, sections, 8), (54, 56, 2), (56, 2, 2), (58, 64, 2), (60, 1, 2)] {
+        let put = |b: &mut Vec<u8>, at: usize, v: u64, size: usize| {
+            b[at..at + size].copy_from_slice(&v.to_le_bytes()[..size])
+        };
+        for (at, v, size) in
+            [(32, 64, 8), (40, sections, 8), (54, 56, 2), (56, 2, 2), (58, 64, 2), (60, 1, 2)]
+        {
             put(&mut b, at, v, size);
         }
         let length = b.len() as u64;
@@ -287,7 +304,10 @@ mod tests {
         windows[0x46] = 1;
         windows[0x40 + 24 + 21] = 2;
         windows[0x40 + 24 + 17] = 1;
-        assert_eq!(check_whole(&windows).unwrap_err(), "it is cut short: its tables name 768 bytes, it has 128");
+        assert_eq!(
+            check_whole(&windows).unwrap_err(),
+            "it is cut short: its tables name 768 bytes, it has 128"
+        );
         windows.resize(768, 0);
         assert_eq!(check_whole(&windows), Ok(()));
         let mut mac = vec![0; 32 + 72];

@@ -43,9 +43,7 @@ pub struct Global {
 impl Global {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
         let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
-        mask_of(photo, settings, cx, || {
-            Ok(global(&luma(&photo.pixels), photo, self.threshold, self.garment))
-        })
+        mask_of(photo, settings, cx, || Ok(global(&luma(&photo.pixels), photo, self.threshold, self.garment)))
     }
 }
 

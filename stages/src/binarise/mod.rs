@@ -37,6 +37,7 @@ pub use local::{Local, LocalMethod, local};
 pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
 pub use otsu::{Otsu, Split, otsu};
 pub use regions::{Piece, Regions};
+pub(crate) use tone::OPAQUE;
 pub use tone::{Polarity, histogram, luma};
 
 use toile_core::Registry;

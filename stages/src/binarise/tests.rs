@@ -253,7 +253,12 @@ fn a_garment_that_was_cut_out_may_fill_its_frame() {
     let skirt = |x: u32, y: u32| 15 + y / 4 >= 30_u32.abs_diff(x);
     for is_garment in [&tee as &dyn Fn(u32, u32) -> bool, &skirt] {
         let mask = GrayImage::from_fn(60, 60, |x, y| Luma([if is_garment(x, y) { 255 } else { 0 }]));
-        let cloth = RgbImage::from_fn(60, 60, |x, y| if is_garment(x, y) { noisy([128; 3], x, y) } else { Rgb([255; 3]) });
+        let cloth =
+            RgbImage::from_fn(
+                60,
+                60,
+                |x, y| if is_garment(x, y) { noisy([128; 3], x, y) } else { Rgb([255; 3]) },
+            );
         let mut photo = of(cloth);
         photo.alpha = Some(mask.clone().into());
         let cx = Context::quiet();

@@ -52,7 +52,9 @@ pub(super) fn form(bytes: &[u8]) -> Option<Form> {
         [_, _, _, _, b'f', b't', b'y', b'p', ..] => return brand(bytes).map(Form::Other),
         _ => {}
     }
-    let begins = |(at, signature, _): &&(usize, &[u8], &str)| bytes.get(*at..).is_some_and(|b| b.starts_with(signature));
+    let begins = |(at, signature, _): &&(usize, &[u8], &str)| {
+        bytes.get(*at..).is_some_and(|b| b.starts_with(signature))
+    };
     OTHERS.iter().find(begins).map(|(_, _, words)| Form::Other(words))
 }
 
@@ -63,7 +65,9 @@ fn brand(bytes: &[u8]) -> Option<&'static str> {
     // The second is the version of the first.
     let brands = list.chunks_exact(4).enumerate().filter(|(i, _)| *i != 1).map(|(_, brand)| brand);
     let named = brands.filter_map(|brand| match brand {
-        b"heic" | b"heix" | b"heim" | b"heis" | b"hevc" | b"hevx" | b"hevm" | b"hevs" => Some("a HEIC picture"),
+        b"heic" | b"heix" | b"heim" | b"heis" | b"hevc" | b"hevx" | b"hevm" | b"hevs" => {
+            Some("a HEIC picture")
+        }
         b"avif" | b"avis" => Some("an AVIF picture"),
         b"crx " => Some(RAW),
         _ => None,

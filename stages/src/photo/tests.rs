@@ -205,7 +205,11 @@ fn what_is_no_photo_gets_a_clear_error() {
     let png = encode(red_blue(200, 100), ImageFormat::Png);
     let cases: [(&[u8], ErrorCode, &str); 9] = [
         (b"", ErrorCode::PatternLoading, "photo \"a.jpg\" is empty"),
-        (b"a recipe for soup", ErrorCode::PatternLoading, "photo \"a.jpg\" is not a JPEG, PNG, WebP or TIFF picture"),
+        (
+            b"a recipe for soup",
+            ErrorCode::PatternLoading,
+            "photo \"a.jpg\" is not a JPEG, PNG, WebP or TIFF picture",
+        ),
         (&jpeg[..jpeg.len() / 2], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
         (&jpeg[..20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
         (&png[..png.len() - 20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
@@ -241,13 +245,25 @@ fn kinds_that_are_not_read_are_named_with_what_to_do() {
     assert_eq!(avif.message, "photo \"a\" is an AVIF picture, which is not read");
     // The thumbnail at the head of a raw file is not the photo.
     let raw = tiff(&[(254, 1)]);
-    assert_eq!(decode(&raw, "a").unwrap_err().message, "photo \"a\" is a camera's raw picture, which is not read");
+    assert_eq!(
+        decode(&raw, "a").unwrap_err().message,
+        "photo \"a\" is a camera's raw picture, which is not read"
+    );
 }
 
 /// A TIFF of 3 x 2 pixels, red at its top left, black else, with these tags besides.
 fn tiff(more: &[(u16, u16)]) -> Vec<u8> {
-    let mut tags: Vec<(u16, u16, u32)> =
-        vec![(256, 3, 3), (257, 3, 2), (258, 3, 8), (259, 3, 1), (262, 3, 2), (273, 4, 8), (277, 3, 3), (278, 3, 2), (279, 4, 18)];
+    let mut tags: Vec<(u16, u16, u32)> = vec![
+        (256, 3, 3),
+        (257, 3, 2),
+        (258, 3, 8),
+        (259, 3, 1),
+        (262, 3, 2),
+        (273, 4, 8),
+        (277, 3, 3),
+        (278, 3, 2),
+        (279, 4, 18),
+    ];
     tags.extend(more.iter().map(|(tag, value)| (*tag, 3, u32::from(*value))));
     tags.sort_unstable();
     let mut bytes = b"II*\0\x1A\0\0\0".to_vec();

@@ -37,7 +37,8 @@ impl<'a> Directory<'a> {
     pub(super) fn read(bytes: &'a [u8]) -> Option<Self> {
         let big_endian = bytes.starts_with(b"MM");
         let none = Directory { bytes, big_endian, word: 4, first: 0, count: 0 };
-        let (word, at) = if none.number(2, 2)? == 43 { (8, none.number(8, 8)?) } else { (4, none.number(4, 4)?) };
+        let (word, at) =
+            if none.number(2, 2)? == 43 { (8, none.number(8, 8)?) } else { (4, none.number(4, 4)?) };
         let counted = if word == 8 { 8 } else { 2 };
         let count = none.number(at, counted)?.min(MAX_ENTRIES);
         Some(Directory { word, first: at.checked_add(counted)?, count, ..none })
@@ -52,7 +53,8 @@ impl<'a> Directory<'a> {
 
     fn values(&self, tag: u64) -> Option<Values> {
         let length = 4 + 2 * self.word;
-        let at = (0..self.count).map(|i| self.first + i * length).find(|at| self.number(*at, 2) == Some(tag))?;
+        let at =
+            (0..self.count).map(|i| self.first + i * length).find(|at| self.number(*at, 2) == Some(tag))?;
         let size = match self.number(at + 2, 2)? {
             1 | 7 => 1,
             3 => 2,

@@ -60,10 +60,7 @@ fn what_is_no_library_is_never_loaded() {
     assert_eq!(registry.load_plugin(dir.path(), None).unwrap_err().reason, "it is not a file");
     let pipe = dir.path().join("pipe.so");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    assert_eq!(
-        registry.load_plugin(&pipe, None).unwrap_err().reason,
-        "it is a pipe or a device, not a file"
-    );
+    assert_eq!(registry.load_plugin(&pipe, None).unwrap_err().reason, "it is a pipe or a device, not a file");
     let gone = registry.load_plugin(&dir.path().join("gone.so"), None).unwrap_err();
     assert_eq!(gone.reason, "there is no such file");
     assert_eq!(registry.refused().len(), 7, "a refused plugin stays listed");

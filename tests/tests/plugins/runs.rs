@@ -113,7 +113,8 @@ fn a_garment_with_a_triangle_turned_over_is_not_taken() {
     two.velocities.push(two.velocities[0]);
     two.weld.push(3);
     two.triangles.push([1, 3, 2]);
-    (two.panels[0].vertices, two.panels[0].triangles, two.panels[0].boundary) = (0..4, 0..2, vec![0, 1, 3, 2]);
+    (two.panels[0].vertices, two.panels[0].triangles, two.panels[0].boundary) =
+        (0..4, 0..2, vec![0, 1, 3, 2]);
     let stage = make(&registry_with(&["toile_faulty"]), "TurnsCloth", "()");
     assert_eq!(
         run(stage.as_ref(), vec![Arc::new(two)]).unwrap_err().message,
