@@ -1,6 +1,6 @@
 //! One run of a measurement in a process of its own: the hidden `toile run-apart`.
 
-use crate::{Streams, exit};
+use crate::{Streams, exit, last_words};
 use std::ffi::OsString;
 use std::io::{BufRead, BufReader, Read, stdin};
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ pub(crate) fn run(registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     }
     std::thread::spawn(move || {
         let _ = input.read(&mut [0]);
-        std::process::exit(i32::from(exit::STOPPED));
+        last_words::leave(exit::STOPPED);
     });
     let written = answer(&line, registry).and_then(|bytes| {
         streams.out.write_all(&bytes).and_then(|()| streams.out.flush()).map_err(|e| e.to_string())

@@ -2,8 +2,9 @@
 
 use crate::args::{AccuracyArgs, StabilityArgs};
 use crate::interrupt::on_ctrl_c;
+use crate::progress::drawn;
 use crate::{Streams, exit};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use std::ops::ControlFlow;
 use toile_cloth::bench::accuracy::Options as Accuracy;
 use toile_cloth::bench::solvers::Way;
@@ -27,7 +28,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs, streams: &mut Streams<'_>) -> u8 {
     let mut resolutions = args.along.clone();
     resolutions.sort_unstable();
     let options = Accuracy { tests, layouts, resolutions, models };
-    let bar = bar();
+    let bar = bar(streams);
     let report = bench::accuracy(&options, &mut |share, what| tell(&bar, share, what));
     bar.finish_and_clear();
     streams.say(if args.json { report.to_json() } else { report.to_string() });
@@ -36,7 +37,7 @@ pub(crate) fn accuracy(args: &AccuracyArgs, streams: &mut Streams<'_>) -> u8 {
 
 /// Runs every solver on the same problems.
 pub(crate) fn solvers(json: bool, streams: &mut Streams<'_>) -> u8 {
-    let bar = bar();
+    let bar = bar(streams);
     let report = bench::solvers(&Way::ALL, &mut |share, what| tell(&bar, share, what));
     bar.finish_and_clear();
     match report {
@@ -53,7 +54,7 @@ pub(crate) fn solvers(json: bool, streams: &mut Streams<'_>) -> u8 {
 
 /// Runs the diagnostics.
 pub(crate) fn diagnostics(json: bool, streams: &mut Streams<'_>) -> u8 {
-    let bar = bar();
+    let bar = bar(streams);
     let report = bench::diagnostics(&mut |share, what| tell(&bar, share, what));
     bar.finish_and_clear();
     streams.say(if json { report.to_json() } else { report.to_string() });
@@ -69,7 +70,7 @@ pub(crate) fn stability(args: &StabilityArgs, streams: &mut Streams<'_>) -> u8 {
         Err(message) => return usage(&message, streams),
     };
     let options = Stability { axes, pairs: args.pairs, large: args.large };
-    let bar = bar();
+    let bar = bar(streams);
     let report = bench::stability(&options, &mut |share, what| tell(&bar, share, what));
     bar.finish_and_clear();
     streams.say(if args.json { report.to_json() } else { report.to_string() });
@@ -106,12 +107,8 @@ fn verdict(stopped: bool, pass: bool) -> u8 {
 }
 
 /// The bar of a bench.
-pub(crate) fn bar() -> ProgressBar {
-    let bar = ProgressBar::new(STEPS);
-    if let Ok(style) = ProgressStyle::with_template("{elapsed:>4} [{bar:28}] {wide_msg}") {
-        bar.set_style(style.progress_chars("=> "));
-    }
-    bar
+pub(crate) fn bar(streams: &Streams<'_>) -> ProgressBar {
+    drawn(STEPS, "{elapsed:>4} [{bar:28}] {wide_msg}", streams)
 }
 
 /// Moves the bar, and stops at Ctrl-C.

@@ -3,7 +3,7 @@
 use crate::args::{CostsArgs, Overrides};
 use crate::run::fail_run;
 use crate::validate::open;
-use crate::{Streams, apart, costs, exit, interrupt};
+use crate::{Streams, apart, costs, exit, interrupt, stdin, threads};
 use rayon::ThreadPool;
 use std::path::Path;
 use std::sync::Arc;
@@ -53,19 +53,20 @@ fn measure(
     registry: &Registry,
     streams: &mut Streams<'_>,
 ) -> Result<Vec<CostRecord>, u8> {
+    stdin::refused(file, "is not measured").map_err(|e| refused(&e, streams))?;
     let pipeline = load(file, args, &[], registry, streams)?;
     let settings = match args.one_run {
         true => vec![Variation { words: "one run".into(), overrides: Vec::new() }],
         false => variations(&pipeline, &args.work).map_err(|e| refused(&e.to_string(), streams))?,
     };
     // One pool for all runs: threads that end give memory back in the midst of the next run.
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build();
+    let pool = threads::pool(args.threads, streams);
     let pool = pool.map_err(|e| refused(&format!("there are no threads: {e}"), streams))?;
     let mut records = Vec::new();
     for setting in &settings {
         let mut runs = Vec::new();
         for _ in 0..args.repeats {
-            streams.tell(format!("{}: {}", pipeline.name, setting.words));
+            streams.notice(format!("{}: {}", pipeline.name, setting.words));
             runs.push(match args.one_run || streams.apart.is_none() {
                 true => here(&load(file, args, &setting.overrides, registry, streams)?, &pool, streams)?,
                 false => alone(file, args, &setting.overrides, streams)?,
@@ -128,7 +129,7 @@ fn once(pipeline: &Pipeline) -> Result<Vec<CostRecord>, RunError> {
 
 fn read(path: &Path) -> Result<Collection, String> {
     let name = path.display();
-    let text = std::fs::read_to_string(path).map_err(|e| format!("cannot read \"{name}\": {e}"))?;
+    let text = toile_core::read_text(path).map_err(|e| format!("cannot read \"{name}\": {e}"))?;
     parse_collection(&text).map_err(|why| format!("\"{name}\" {why}"))
 }
 

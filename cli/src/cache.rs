@@ -15,7 +15,9 @@ pub(crate) fn chosen(choice: &CacheChoice, streams: &mut Streams<'_>) -> Option<
     }
     let cache = at(choice.cache_dir.clone());
     if cache.is_none() {
-        streams.tell("warning: there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it");
+        streams.warn(
+            "there is no place for a cache (neither TOILE_CACHE nor HOME is set); the run goes on without it",
+        );
     }
     cache.map(|cache| Arc::new(cache.with_limit(limit(streams))))
 }
@@ -32,7 +34,7 @@ fn limit(streams: &mut Streams<'_>) -> u64 {
     match text.to_string_lossy().parse::<Bytes>() {
         Ok(bytes) => bytes.0,
         Err(e) => {
-            streams.tell(format!("warning: TOILE_CACHE_LIMIT: {e}"));
+            streams.warn(format!("TOILE_CACHE_LIMIT: {e}"));
             DEFAULT_LIMIT
         }
     }

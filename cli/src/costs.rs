@@ -30,7 +30,7 @@ impl Known {
         let store = cache.map(|c| CostStore::new(c.folder()));
         let (host, shipped) = (Host::here(), shipped());
         let Opened { records, warning } = store.as_ref().map_or_else(Opened::default, |s| s.open(&host));
-        let threads = threads.map_or(host.cores, usize::from);
+        let threads = threads.map_or(host.cores, usize::from).min(host.cores);
         let costs = Costs::fit(&records, &shipped.records, threads);
         Known { costs, warning, store, host, shipped, threads }
     }

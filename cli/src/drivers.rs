@@ -18,7 +18,7 @@ pub(crate) fn run(args: &DriversArgs, streams: &mut Streams<'_>) -> u8 {
     };
     let (longest, stop) = (args.limit.as_secs_f64(), || on_ctrl_c().is_cancelled());
     let options = Options { ways, longest, clock: processor_seconds, stop };
-    let bar = bar();
+    let bar = bar(streams);
     // Ctrl-C waits for the step under way, and then for the files.
     begin_writing();
     let report = drivers(&options, &mut |share, what| tell(&bar, share, what));

@@ -46,7 +46,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
         Err(e) => return failed(&e, streams),
     };
     let known = Known::open(&args.cache, args.threads);
-    known.warning.iter().for_each(|warning| streams.tell(format!("warning: {warning}")));
+    known.warning.iter().for_each(|warning| streams.warn(warning));
     let (costs, ablation) = (&known.costs, ablation.as_ref());
     let told = told(&Evidence { source: &source, pipeline: &pipeline, costs, ablation }, decided);
     let (forecasts, source) = (predict(&pipeline, costs), known.source());
@@ -88,7 +88,7 @@ fn read(folder: &Path, pipeline: &Pipeline) -> Result<Ablation, StageError> {
         StageError::invalid(format!("\"{}\" is not taken: {why}", path.display()))
             .hint("`toile trade PIPELINE --ablate` measures again")
     };
-    let text = std::fs::read_to_string(&path).map_err(|e| refuse(e.to_string()))?;
+    let text = toile_core::read_text(&path).map_err(|e| refuse(e.to_string()))?;
     let ablation: Ablation = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;
     match ablation.is_of(pipeline) {
         true => Ok(ablation),

@@ -6,13 +6,13 @@
 use crate::args::{GoldenArgs, Overrides};
 use crate::run::{fail_run, run_quietly};
 use crate::validate::open;
-use crate::{Streams, exit, interrupt};
+use crate::{Streams, exit, interrupt, stdin};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
 use toile_core::golden::{Comparison, Sheet, compare, parse};
 use toile_core::pipeline::Pipeline;
-use toile_core::{Artifact, Registry, write_files};
+use toile_core::{Artifact, Registry, read_file, read_text, write_files};
 use toile_stages::render::{Form, Picture, pictures_of};
 
 /// The places of a pipeline's golden.
@@ -37,7 +37,7 @@ impl Places {
 pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(args, registry, streams, |args, pipeline, path, streams| {
         let places = Places::of(path);
-        let text = match std::fs::read_to_string(places.sheet()) {
+        let text = match read_text(&places.sheet()) {
             Ok(text) => text,
             Err(e) if e.kind() == ErrorKind::NotFound => {
                 streams.say(format!("{}: skipped, it has no golden yet", path.display()));
@@ -55,7 +55,7 @@ pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Stream
                 return Ok(exit::INVALID);
             }
         };
-        let log = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
+        let log = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
         let found = compare(&golden, &Sheet::of(&log));
         Ok(report(path, &found, &log, &places, &args.out, streams))
     })
@@ -64,8 +64,8 @@ pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Stream
 /// Records new goldens, each from two equal runs.
 pub(crate) fn accept(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     each(args, registry, streams, |_, pipeline, path, streams| {
-        let first = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
-        let second = run_quietly(pipeline, &interrupt::on_ctrl_c())?.log;
+        let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
+        let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
         let (sheet, again) = (Sheet::of(&first), Sheet::of(&second));
         if sheet != again {
             let stage = compare(&sheet, &again);
@@ -107,6 +107,10 @@ fn each(
 ) -> u8 {
     let mut worst = exit::DONE;
     for path in &args.pipelines {
+        if let Err(e) = stdin::refused(path, "has no goldens beside it") {
+            worst = worst.max(streams.refuse(false, e));
+            continue;
+        }
         let code = match open(path, &Overrides::default(), registry) {
             Ok(pipeline) => match work(args, &pipeline, path, streams) {
                 Ok(code) => code,
@@ -156,7 +160,7 @@ fn both_pictures(found: &Comparison, log: &RunLog, places: &Places) -> Vec<Outpu
     let was: Vec<OutputFile> = files
         .iter()
         .filter_map(|f| {
-            let bytes = std::fs::read(places.folder.join(&f.path)).ok()?;
+            let bytes = read_file(&places.folder.join(&f.path)).ok()?;
             let (stem, extension) = f.path.rsplit_once('.')?;
             Some(OutputFile { path: format!("{stem}.golden.{extension}"), bytes })
         })

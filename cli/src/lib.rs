@@ -18,6 +18,7 @@ mod explain;
 mod explain_json;
 mod golden;
 mod interrupt;
+mod last_words;
 mod lock;
 mod migrate;
 mod new_stage;
@@ -25,7 +26,11 @@ mod progress;
 mod qualities;
 mod run;
 mod schema;
+mod shell;
 mod stability_map;
+mod stdin;
+mod streams;
+mod threads;
 mod trade;
 mod tune;
 mod validate;
@@ -34,11 +39,12 @@ mod why;
 
 use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
+use last_words::Alive;
 use std::ffi::OsString;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::PathBuf;
+use streams::Streams;
 use toile_core::Registry;
-use toile_core::pipeline::Faults;
 use toile_trade::apart::Apart;
 
 /// Exit codes of the command.
@@ -57,44 +63,6 @@ pub mod exit {
     pub const BUG: u8 = 70;
 }
 
-/// Where a command writes: `out` for its answer, `err` for progress and messages; and how the program starts itself.
-pub(crate) struct Streams<'a> {
-    /// Starts a process for a run that is measured; none where the command is called as a function.
-    pub(crate) apart: Option<Apart>,
-    pub(crate) out: &'a mut dyn Write,
-    pub(crate) err: &'a mut dyn Write,
-}
-
-impl Streams<'_> {
-    /// Writes a line of the answer. A closed pipe is the reader's choice, not an error.
-    pub(crate) fn say(&mut self, line: impl std::fmt::Display) {
-        let _ = writeln!(self.out, "{line}");
-    }
-
-    /// Shows what is wrong with a pipeline file.
-    pub(crate) fn fault(&mut self, faults: &Faults) {
-        let text = faults.render(std::io::stderr().is_terminal());
-        self.tell(text.trim_end());
-    }
-
-    /// Says why a command is refused: to a program that asked for JSON in its answer, else to the person at the terminal.
-    pub(crate) fn refuse(&mut self, json: bool, words: impl std::fmt::Display) -> u8 {
-        match json {
-            true => {
-                let code = toile_core::ErrorCode::InvalidInput.as_str();
-                self.say(serde_json::json!({ "error": code, "message": words.to_string() }));
-            }
-            false => self.tell(format!("error: {words}")),
-        }
-        exit::INVALID
-    }
-
-    /// Writes a line for the person at the terminal.
-    pub(crate) fn tell(&mut self, line: impl std::fmt::Display) {
-        let _ = writeln!(self.err, "{line}");
-    }
-}
-
 /// Runs the command with its arguments (the program's name first) and the built-in stages; returns the
 /// exit code.
 pub fn command<A, T>(arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
@@ -111,37 +79,32 @@ where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    started(registry, arguments, Streams { apart: None, out, err })
+    started(registry, arguments, Streams::new(None, out, err), false)
 }
 
 /// As [`command_with`], for a program whose `main` does nothing else: it starts itself for each run that it measures, so that
-/// memory is the run's own, and a run that the system ends is one lost setting.
+/// memory is the run's own, and a run that the system ends is one lost setting. A signal that asks it to end and a plugin that
+/// ends it are told.
 pub fn program<A, T>(registry: &Registry, arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
 where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    started(registry, arguments, Streams { apart: Apart::this_program(Vec::new()), out, err })
+    let _alive = Alive::new();
+    started(registry, arguments, Streams::new(Apart::this_program(Vec::new()), out, err), true)
 }
 
-fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>) -> u8
+fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>, is_program: bool) -> u8
 where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
-    match Arguments::try_parse_from(arguments) {
-        Ok(Arguments { command: Command::Run(args), plugins }) if args.watch => {
-            watch::watch(&args, &plugins, registry, &mut streams)
-        }
-        Ok(Arguments { command, plugins }) => {
-            // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
-            let (registry, all) = with_plugins(registry, &plugins);
-            streams.apart = streams.apart.map(|program| apart::with_plugins(program, &plugins));
-            match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
-                true => dispatch(command, &registry, &mut streams),
-                false => refused(&registry, &mut streams),
-            }
-        }
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    if is_program {
+        last_words::as_json(arguments.iter().any(|a| a == "--json"));
+    }
+    let code = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => asked(arguments, registry, &mut streams, is_program),
         Err(e) if e.use_stderr() => {
             streams.tell(e.render());
             exit::USAGE
@@ -149,6 +112,28 @@ where
         Err(e) => {
             streams.say(e.render());
             exit::DONE
+        }
+    };
+    streams.ended(code)
+}
+
+fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, is_program: bool) -> u8 {
+    let Arguments { command, plugins, color, quiet } = arguments;
+    streams.behave(color, quiet);
+    // A run in a process of its own is ended by the one that waits for it.
+    if is_program && !matches!(command, Command::RunApart) {
+        interrupt::on_ctrl_c();
+    }
+    match command {
+        Command::Run(args) if args.watch => watch::watch(&args, &plugins, registry, streams),
+        command => {
+            // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
+            let (registry, all) = with_plugins(registry, &plugins);
+            streams.apart = streams.apart.take().map(|program| apart::with_plugins(program, &plugins));
+            match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
+                true => dispatch(command, &registry, streams),
+                false => refused(&registry, streams),
+            }
         }
     }
 }
@@ -179,12 +164,17 @@ pub fn registry() -> Registry {
 }
 
 fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if matches!(command, Command::Doctor { .. } | Command::Bench { .. }) {
+        threads::for_the_program();
+    }
     match command {
         Command::Run(args) => run::once(&args, registry, None, streams),
         Command::Validate(args) => validate::validate(&args, registry, streams),
         Command::Stages { schema: true, .. } => cards::schema(registry, streams),
         Command::Stages { json, .. } => cards::list(json, registry, streams),
         Command::Doctor { json } => doctor::doctor(json, registry, streams),
+        Command::Completions { shell } => shell::completions(shell, streams),
+        Command::Man { command } => shell::man(&command, streams),
         Command::NewStage(args) => {
             let (name, role) = (args.name.as_str(), args.role.as_str());
             let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };

@@ -1,9 +1,9 @@
 //! `toile lock` and `toile run --locked`: what a pipeline was made of, kept beside it as `PIPELINE.lock`.
 
 use crate::args::{LockArgs, Overrides};
-use crate::run::{fail_run, on_threads};
+use crate::run::fail_run;
 use crate::validate::open;
-use crate::{Streams, cache, exit, interrupt};
+use crate::{Streams, cache, exit, interrupt, stdin, threads};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
@@ -19,6 +19,9 @@ pub(crate) fn lock(args: &LockArgs, registry: &Registry, streams: &mut Streams<'
 }
 
 fn one(path: &Path, args: &LockArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if let Err(e) = stdin::refused(path, "has no place for a lock beside it") {
+        return streams.refuse(false, e);
+    }
     let pipeline = match open(path, &Overrides::default(), registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => {
@@ -29,9 +32,11 @@ fn one(path: &Path, args: &LockArgs, registry: &Registry, streams: &mut Streams<
     let cache = cache::chosen(&args.cache, streams).unwrap_or_else(|| Arc::new(Cache::nowhere()));
     let options = RunOptions { cache: Some(cache.clone()), ..RunOptions::default() };
     let listener: Arc<dyn Listener> = Arc::new(());
-    let outcome = on_threads(None, || run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener));
+    let pool = threads::pool(None, streams);
+    let outcome =
+        threads::in_pool(pool, || run_stages(&pipeline, &options, &interrupt::on_ctrl_c(), &listener));
     for warning in cache.take_warnings() {
-        streams.tell(format!("warning: {warning}"));
+        streams.warn(warning);
     }
     match outcome {
         Err(e) => fail_run(&pipeline, &e, false, streams),
@@ -68,7 +73,7 @@ fn beside(pipeline: &Path) -> PathBuf {
 pub(crate) fn read(pipeline: &Path) -> Result<Lock, String> {
     let path = beside(pipeline);
     let name = path.display();
-    let text = std::fs::read_to_string(&path).map_err(|e| {
+    let text = toile_core::read_text(&path).map_err(|e| {
         format!("cannot read the lock \"{name}\": {e}; `toile lock {}` writes one", pipeline.display())
     })?;
     Lock::from_text(&text).map_err(|e| format!("cannot use the lock \"{name}\": {e}"))

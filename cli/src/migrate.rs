@@ -1,11 +1,11 @@
 //! `toile migrate`: rewrites old pipeline files to the names that stages and parameters have now.
 
 use crate::args::MigrateArgs;
-use crate::{Streams, exit};
+use crate::{Streams, exit, stdin};
 use std::path::Path;
 use toile_core::artifact::OutputFile;
 use toile_core::pipeline::migrate;
-use toile_core::{Registry, write_files};
+use toile_core::{Registry, read_text, write_files};
 
 /// Rewrites every file that needs it, and says what was changed.
 pub(crate) fn run(args: &MigrateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -14,8 +14,11 @@ pub(crate) fn run(args: &MigrateArgs, registry: &Registry, streams: &mut Streams
 }
 
 fn one(path: &Path, check: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if let Err(e) = stdin::refused(path, "has no file to rewrite") {
+        return streams.refuse(false, e);
+    }
     let name = path.display().to_string();
-    let text = match std::fs::read_to_string(path) {
+    let text = match read_text(path) {
         Ok(text) => text,
         Err(e) => {
             streams.tell(format!("error: cannot read the pipeline \"{name}\": {e}"));

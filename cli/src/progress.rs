@@ -2,8 +2,8 @@
 
 use crate::Streams;
 use crate::args::StudyArgs;
-use crate::run::on_threads;
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::{interrupt, threads};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::mpsc::channel;
@@ -23,15 +23,11 @@ pub(crate) struct Bar {
 }
 
 impl Bar {
-    pub(crate) fn new(pipeline: &Pipeline) -> Self {
+    pub(crate) fn new(pipeline: &Pipeline, streams: &Streams<'_>) -> Self {
         let ids: Vec<String> = pipeline.nodes.iter().map(|n| n.id.clone()).collect();
-        let bar = ProgressBar::new(ids.len() as u64 * STEPS);
-        if let Ok(style) =
-            ProgressStyle::with_template("{spinner} {elapsed:>4} [{bar:28}] {prefix}: {wide_msg}")
-        {
-            bar.set_style(style.progress_chars("=> "));
-        }
-        bar.enable_steady_tick(Duration::from_millis(120));
+        let template = "{spinner} {elapsed:>4} [{bar:28}] {prefix}: {wide_msg}";
+        let bar = drawn(ids.len() as u64 * STEPS, template, streams);
+        tick(&bar, 120);
         Bar { bar, ids, warnings: Mutex::default() }
     }
 
@@ -49,6 +45,7 @@ impl Listener for Bar {
             Event::Progress { share, text } => {
                 let before = self.ids.iter().position(|id| id == stage).unwrap_or(0) as u64;
                 self.bar.set_position(before * STEPS + (share * STEPS as f64) as u64);
+                interrupt::at_work(&who);
                 self.bar.set_prefix(who);
                 self.bar.set_message(text.clone());
             }
@@ -66,7 +63,7 @@ pub(crate) fn with_budget<T: Send>(
     work: impl FnOnce(&mut dyn FnMut(String)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
     let length = study.budget().as_secs().max(1);
-    let bar = measuring(length, "{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}");
+    let bar = measuring(length, "{spinner} {elapsed:>4} of the budget [{bar:28}] {wide_msg}", streams);
     let told = |bar: &ProgressBar, line: String| {
         bar.set_position(bar.elapsed().as_secs());
         line
@@ -80,7 +77,7 @@ pub(crate) fn with_runs<T: Send>(
     streams: &mut Streams<'_>,
     work: impl FnOnce(&mut dyn FnMut(Progress)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
-    let bar = measuring(1, "{spinner} {elapsed:>4} {pos} of {len} runs [{bar:28}] {wide_msg}");
+    let bar = measuring(1, "{spinner} {elapsed:>4} {pos} of {len} runs [{bar:28}] {wide_msg}", streams);
     shown(&bar, threads, streams, at, work)
 }
 
@@ -96,13 +93,27 @@ fn at(bar: &ProgressBar, progress: Progress) -> String {
     }
 }
 
-fn measuring(length: u64, template: &str) -> ProgressBar {
-    let bar = ProgressBar::new(length);
+fn measuring(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar {
+    let bar = drawn(length, template, streams);
+    tick(&bar, 200);
+    bar
+}
+
+/// A bar on standard error, of no colour; silent where that is no terminal, a dumb one, or nothing but errors is to be said.
+pub(crate) fn drawn(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar {
+    let target = if streams.is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
+    let bar = ProgressBar::with_draw_target(Some(length), target);
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style.progress_chars("=> "));
     }
-    bar.enable_steady_tick(Duration::from_millis(200));
     bar
+}
+
+/// Has a bar that is seen drawn by itself, which takes a thread: where there is none, it is drawn as work goes on.
+fn tick(bar: &ProgressBar, milliseconds: u64) {
+    if !bar.is_hidden() && std::thread::Builder::new().spawn(|| {}).is_ok() {
+        bar.enable_steady_tick(Duration::from_millis(milliseconds));
+    }
 }
 
 /// Works on a thread of its own, and shows what it tells.
@@ -114,16 +125,28 @@ fn shown<T: Send, M: Send>(
     work: impl FnOnce(&mut dyn FnMut(M)) -> Result<T, StageError> + Send,
 ) -> Result<T, StageError> {
     let (send, receive) = channel::<M>();
-    let result = std::thread::scope(|scope| {
-        let worker = scope.spawn(move || on_threads(threads, || work(&mut |m| drop(send.send(m)))));
+    let (result, of_threads) = std::thread::scope(|scope| {
+        let work = move || {
+            let (pool, told) = threads::pool_of(threads, threads::cores());
+            (threads::in_pool(pool, || work(&mut |m| drop(send.send(m)))), told)
+        };
+        let worker = std::thread::Builder::new().spawn_scoped(scope, work);
+        let worker = match worker {
+            Ok(worker) => worker,
+            Err(e) => {
+                let message = format!("there is no thread for a measurement: {e}");
+                return (Err(StageError::internal(message)), Vec::new());
+            }
+        };
         for message in receive {
             let line = told(bar, message);
-            bar.suspend(|| streams.tell(&line));
+            bar.suspend(|| streams.notice(&line));
         }
-        worker.join()
+        worker.join().unwrap_or_else(|_| (Err(StageError::internal("the measurement broke off")), Vec::new()))
     });
     bar.finish_and_clear();
-    result.unwrap_or_else(|_| Err(StageError::internal("the measurement broke off")))
+    of_threads.into_iter().for_each(|words| streams.warn(words));
+    result
 }
 
 #[cfg(test)]

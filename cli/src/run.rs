@@ -4,7 +4,7 @@ use crate::args::RunArgs;
 use crate::costs::{self, Known};
 use crate::progress::Bar;
 use crate::validate::open;
-use crate::{Streams, cache, exit, interrupt, lock, watch};
+use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
 use serde_json::json;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -23,6 +23,11 @@ pub(crate) fn once(
     reads: Option<&Reads>,
     streams: &mut Streams<'_>,
 ) -> u8 {
+    if args.locked
+        && let Err(e) = stdin::refused(&args.pipeline, "has no lock beside it")
+    {
+        return streams.refuse(args.json, e);
+    }
     let pipeline = match open(&args.pipeline, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams),
@@ -69,32 +74,27 @@ fn under_a_bar(
     threads: Option<u16>,
     streams: &mut Streams<'_>,
 ) -> Result<RunResult, RunError> {
-    let bar = Arc::new(Bar::new(pipeline));
+    let pool = threads::pool(threads, streams);
+    let bar = Arc::new(Bar::new(pipeline, streams));
     let listener: Arc<dyn Listener> = bar.clone();
-    let outcome = on_threads(threads, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
+    let outcome =
+        threads::in_pool(pool, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
     let of_cache = options.cache.iter().flat_map(|c| c.take_warnings());
     for warning in bar.finish().into_iter().chain(of_cache) {
-        streams.tell(format!("warning: {warning}"));
+        streams.warn(warning);
     }
     outcome
 }
 
-/// Runs `work` in a pool of so many threads.
-pub(crate) fn on_threads<T: Send, E: Send>(
-    threads: Option<u16>,
-    work: impl FnOnce() -> Result<T, E> + Send,
-) -> Result<T, E> {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build();
-    match pool {
-        Ok(pool) => pool.install(work),
-        Err(_) => work(),
-    }
-}
-
 /// Runs a pipeline without a progress line, for commands that look at the record of the run.
-pub(crate) fn run_quietly(pipeline: &Pipeline, cancel: &Cancel) -> Result<RunResult, RunError> {
+pub(crate) fn run_quietly(
+    pipeline: &Pipeline,
+    cancel: &Cancel,
+    streams: &mut Streams<'_>,
+) -> Result<RunResult, RunError> {
     let listener: Arc<dyn Listener> = Arc::new(());
-    on_threads(None, || run_stages(pipeline, &RunOptions::default(), cancel, &listener))
+    let pool = threads::pool(None, streams);
+    threads::in_pool(pool, || run_stages(pipeline, &RunOptions::default(), cancel, &listener))
 }
 
 fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut Streams<'_>) -> u8 {
@@ -107,6 +107,7 @@ fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut 
     }
     match args.json {
         true => streams.say(result.metrics.to_json()),
+        false if streams.is_quiet() => {}
         false => {
             summary(&result.metrics, &dir, &files, streams);
             if args.verbose {
@@ -122,16 +123,12 @@ fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut 
 
 /// Where the files go.
 fn folder(args: &RunArgs) -> PathBuf {
-    args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stem(args)))
+    args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.pipeline)))
 }
 
 fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut Streams<'_>) -> u8 {
     let e = RunError { stage: "writing".into(), entry: String::new(), span: 0..0, error };
     fail_run(pipeline, &e, json, streams)
-}
-
-fn stem(args: &RunArgs) -> String {
-    args.pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned())
 }
 
 fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {

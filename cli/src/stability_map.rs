@@ -18,7 +18,7 @@ pub(crate) fn run(args: &StabilityArgs, streams: &mut Streams<'_>) -> u8 {
         Err(message) => return usage(&message, streams),
     };
     let options = options(args, schemes);
-    let bar = bar();
+    let bar = bar(streams);
     // Ctrl-C waits for the step under way, and then for the files.
     begin_writing();
     let made = map(&options, &mut |share, what| tell(&bar, share, what));

@@ -4,7 +4,7 @@ use crate::args::{Overrides, StudyArgs, TradeArgs};
 use crate::progress::with_budget;
 use crate::run::fail_load;
 use crate::validate::open;
-use crate::{Streams, ablate, at_hand, exit, interrupt};
+use crate::{Streams, ablate, at_hand, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
@@ -108,14 +108,14 @@ pub(crate) fn opened<'a>(
 ) -> Result<(Source<'a>, Pipeline), u8> {
     let opened = open(path, overrides, registry);
     let pipeline = opened.map_err(|faults| fail_load(&faults, json, streams))?;
-    let text = std::fs::read_to_string(path).map_err(|e| {
-        streams.tell(format!("error: cannot read the pipeline \"{}\": {e}", path.display()));
+    let text = stdin::text(path).map_err(|why| {
+        streams.tell(format!("error: cannot read the pipeline \"{}\": {why}", stdin::name(path)));
         exit::INVALID
     })?;
     let source = Source {
         text,
-        file: path.display().to_string(),
-        base: path.parent().unwrap_or(Path::new(".")).to_owned(),
+        file: stdin::name(path),
+        base: stdin::folder(path).to_owned(),
         quality: overrides.quality.clone(),
         set: at_hand::found(&overrides.set),
         registry,
@@ -149,7 +149,7 @@ pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
 
 /// Where a measurement of a pipeline lies; each quality, which is another pipeline, has a folder of its own.
 pub(crate) fn default_folder(pipeline: &Path, quality: Option<&str>, what: &str) -> PathBuf {
-    let stem = pipeline.file_stem().map_or_else(|| "run".into(), |s| s.to_string_lossy().into_owned());
+    let stem = stdin::stem(pipeline);
     let quality = quality.map_or_else(String::new, |q| format!("-{q}"));
     PathBuf::from("out").join(format!("{stem}{quality}-{what}"))
 }

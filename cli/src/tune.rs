@@ -3,7 +3,7 @@
 use crate::args::{Overrides, TuneArgs};
 use crate::progress::with_budget;
 use crate::trade::{Asked, bench, default_folder, failed, measured, opened};
-use crate::{Streams, exit, interrupt, qualities};
+use crate::{Streams, exit, interrupt, qualities, stdin};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
@@ -17,6 +17,9 @@ use toile_trade::tune::{Proof, Prover, Wish, check, refusal};
 
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    if let Err(e) = stdin::refused(&args.pipeline, "cannot be tuned") {
+        return streams.refuse(false, e);
+    }
     let overrides = Overrides { set: args.set.clone(), ..Overrides::default() };
     let (source, pipeline) = match opened(&args.pipeline, &overrides, registry, false, streams) {
         Ok(opened) => opened,
@@ -77,7 +80,7 @@ pub(crate) fn front(
             StageError::invalid(format!("cannot read \"{}\": {why}", path.display()))
                 .hint("--from is the folder of a `toile trade`")
         };
-        let text = std::fs::read_to_string(&path).map_err(|e| refuse(e.to_string()))?;
+        let text = toile_core::read_text(&path).map_err(|e| refuse(e.to_string()))?;
         let trade: Trade = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;
         check(&trade, pipeline)?;
         return Ok((trade, folder.clone()));

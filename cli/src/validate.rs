@@ -1,7 +1,7 @@
 //! `toile validate`, and the loading that all commands share.
 
 use crate::args::{Overrides, ValidateArgs};
-use crate::{Streams, exit};
+use crate::{Streams, exit, stdin};
 use serde_json::json;
 use std::path::Path;
 use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, load_with};
@@ -9,10 +9,9 @@ use toile_core::{Registry, add_implicit};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
 pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> Result<Pipeline, Box<Faults>> {
-    let file = path.display().to_string();
-    let text = std::fs::read(path).map_err(|e| unreadable(&file, &e.to_string()))?;
-    let text = String::from_utf8(text).map_err(|_| unreadable(&file, "it is not UTF-8 text"))?;
-    let base = path.parent().unwrap_or(Path::new("."));
+    let file = stdin::name(path);
+    let text = stdin::text(path).map_err(|why| unreadable(&file, &why))?;
+    let base = stdin::folder(path);
     let set = crate::at_hand::found(&overrides.set);
     let changes = Changes { quality: overrides.quality.as_deref(), set: &set, ..Changes::default() };
     let mut pipeline = load_with(&text, &file, base, registry, &changes).map_err(Box::new)?;
@@ -32,8 +31,8 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
         match open(path, &args.overrides, registry) {
             Ok(_) if args.json => {}
             Ok(p) => {
-                let line = format!("{}: valid, {} stages", path.display(), p.nodes.len());
-                streams.say(format!("{line}{}", qualities(&p)));
+                let line = format!("{}: valid, {} stages", stdin::name(path), p.nodes.len());
+                streams.report(format!("{line}{}", qualities(&p)));
             }
             Err(e) => faults.push(e),
         }

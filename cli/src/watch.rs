@@ -7,7 +7,7 @@
 
 use crate::args::RunArgs;
 use crate::run::once;
-use crate::{Streams, exit, interrupt, refused, with_plugins};
+use crate::{Streams, exit, interrupt, refused, stdin, with_plugins};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -27,6 +27,9 @@ pub(crate) fn watch(
     registry: &Registry,
     streams: &mut Streams<'_>,
 ) -> u8 {
+    if let Err(e) = stdin::refused(&args.pipeline, "cannot be watched") {
+        return streams.refuse(false, e);
+    }
     let cancel = interrupt::on_ctrl_c();
     let mut base = registry.clone();
     // Plugins are built anew while their former selves are loaded.
@@ -45,7 +48,7 @@ pub(crate) fn watch(
         }
         // What was edited while the stages ran has another content than they read.
         let used = reads.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        streams.tell(format!(
+        streams.notice(format!(
             "{} in {:.2} s; watching {} files, Ctrl-C ends it",
             if code == exit::DONE { "done" } else { "not done" },
             started.elapsed().as_secs_f64(),
@@ -53,7 +56,7 @@ pub(crate) fn watch(
         ));
         let Some(changed) = wait(&used, || cancel.is_cancelled()) else { return exit::DONE };
         let names: Vec<String> = changed.iter().map(|p| p.display().to_string()).collect();
-        streams.tell(format!("changed: {}", names.join(", ")));
+        streams.notice(format!("changed: {}", names.join(", ")));
     }
 }
 
@@ -61,7 +64,7 @@ pub(crate) fn watch(
 /// be read.
 fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
     note(reads, pipeline);
-    let text = std::fs::read_to_string(pipeline).unwrap_or_default();
+    let text = toile_core::read_text(pipeline).unwrap_or_default();
     let folder = pipeline.parent().unwrap_or(Path::new(""));
     let asked = plugins_asked(&text).into_iter().map(|p| folder.join(p.file));
     asked.chain(plugins.iter().cloned()).flat_map(|p| plugin_files(&p)).for_each(|p| note(reads, &p));
@@ -125,7 +128,7 @@ fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
     let same = was.filter(|w| w.modified == modified && w.size == size);
     let content = match same {
         Some(was) => was.content,
-        None => std::fs::read(path).ok().map(|bytes| Hash::of(&bytes)),
+        None => toile_core::read_file(path).ok().map(|bytes| Hash::of(&bytes)),
     };
     Some(Look { modified, size, content })
 }

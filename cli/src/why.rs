@@ -37,10 +37,10 @@ fn why_face(args: &WhyArgs, face: usize, streams: &mut Streams<'_>) -> u8 {
 }
 
 fn traced(result: &Path, face: usize) -> Result<Trace, String> {
-    let bytes = std::fs::read(result).map_err(|e| format!("cannot read it: {e}"))?;
+    let bytes = toile_core::read_file(result).map_err(|e| format!("cannot read it: {e}"))?;
     let extension = result.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
     let folder = result.parent().unwrap_or(Path::new("."));
-    let origin = std::fs::read(folder.join(FILE)).map_err(|e| {
+    let origin = toile_core::read_file(&folder.join(FILE)).map_err(|e| {
         format!("there is no \"{FILE}\" beside it ({e}); `toile run` writes one with every garment")
     })?;
     trace(&origin, &bytes, &extension, face)

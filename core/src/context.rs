@@ -237,14 +237,7 @@ impl Context {
             StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
                 .hint("paths are relative to the pipeline file")
         };
-        let meta = std::fs::metadata(&full).map_err(|e| fail(io_words(&e)))?;
-        if !meta.is_file() {
-            return Err(fail("it is not a file".into()));
-        }
-        if meta.len() > MAX_FILE_BYTES {
-            return Err(fail(format!("it has {} bytes, the limit is {MAX_FILE_BYTES}", meta.len())));
-        }
-        std::fs::read(&full).map_err(|e| fail(io_words(&e)))
+        crate::read_file(&full).map_err(|e| fail(io_words(&e)))
     }
 
     /// The files that the stage has read so far, with the digests of their contents; `None` for one that could

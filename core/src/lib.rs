@@ -36,11 +36,13 @@
 extern crate self as toile_core;
 
 pub mod artifact;
+mod beside;
 pub mod cache;
 mod context;
 pub mod cost;
 pub mod decide;
 mod error;
+mod files;
 pub mod golden;
 pub mod lock;
 mod metrics;
@@ -59,6 +61,7 @@ mod text;
 pub use artifact::{Artifact, ArtifactType, Kind};
 pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
 pub use error::{ErrorCode, StageError};
+pub use files::{NoFile, ordinary, read_file, read_text};
 pub use metrics::{Metrics, StageMetrics};
 pub use output::{check_folder, write_files};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};

@@ -1,7 +1,7 @@
 //! Writing finished files: all or none, each one whole.
 
 use crate::artifact::OutputFile;
-use crate::{ErrorCode, StageError};
+use crate::{ErrorCode, StageError, beside};
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Write;
@@ -9,7 +9,8 @@ use std::path::{Component, Path, PathBuf};
 use tempfile::NamedTempFile;
 
 /// Writes files below `dir`: every one first beside its place, then all are renamed, so that a
-/// stop or a full disk leaves no half file and, short of a failing rename, no half set.
+/// stop or a full disk leaves no half file and, short of a failing rename, no half set. What a program that was killed meanwhile
+/// has left in these folders is swept.
 ///
 /// A file that was there keeps its permissions.
 ///
@@ -19,6 +20,9 @@ pub fn write_files(dir: &Path, files: &[OutputFile]) -> Result<Vec<PathBuf>, Sta
     if let Some(twice) = files.iter().find(|f| !paths.insert(&f.path)) {
         return Err(StageError::invalid(format!("two files would be written as \"{}\"", twice.path)));
     }
+    let folders: BTreeSet<PathBuf> =
+        files.iter().filter_map(|f| Some(dir.join(&f.path).parent()?.to_owned())).collect();
+    folders.iter().for_each(|folder| beside::sweep(folder));
     let staged = files.iter().map(|f| stage_file(dir, f)).collect::<Result<Vec<_>, _>>()?;
     staged
         .into_iter()
@@ -37,7 +41,7 @@ fn stage_file(dir: &Path, file: &OutputFile) -> Result<(NamedTempFile, PathBuf),
     let path = dir.join(relative);
     let folder = path.parent().unwrap_or(dir);
     fs::create_dir_all(folder).map_err(|e| refused(folder, &e))?;
-    let mut temp = NamedTempFile::new_in(folder).map_err(|e| refused(folder, &e))?;
+    let mut temp = beside::new_in(folder).map_err(|e| refused(folder, &e))?;
     temp.write_all(&file.bytes).map_err(|e| refused(&path, &e))?;
     permit(temp.as_file(), &path).map_err(|e| refused(&path, &e))?;
     Ok((temp, path))
@@ -62,7 +66,7 @@ fn permit(_file: &fs::File, _path: &Path) -> std::io::Result<()> {
 pub fn check_folder(dir: &Path) -> Result<(), StageError> {
     let there = dir.ancestors().map(|a| if a.as_os_str().is_empty() { Path::new(".") } else { a });
     let there = there.into_iter().find(|a| a.exists()).unwrap_or(Path::new("."));
-    NamedTempFile::new_in(there).map(|_| ()).map_err(|e| refused(dir, &e))
+    tempfile::tempfile_in(there).map(drop).map_err(|e| refused(dir, &e))
 }
 
 fn refused(path: &Path, e: &std::io::Error) -> StageError {
@@ -84,6 +88,17 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         write_files(dir.path(), &[file("a.txt"), file("deep/er/b.txt")]).unwrap();
         assert_eq!(fs::read(dir.path().join("deep/er/b.txt")).unwrap(), b"content");
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_a_killed_program_left_is_swept() {
+        let dir = tempfile::tempdir().unwrap();
+        let left = [".toile-a1B2c3.tmp", "deep/.toile-a1B2c3.tmp"].map(|name| dir.path().join(name));
+        fs::create_dir(dir.path().join("deep")).unwrap();
+        left.iter().for_each(|path| fs::write(path, "half").unwrap());
+        write_files(dir.path(), &[file("a.txt"), file("deep/b.txt")]).unwrap();
+        assert!(left.iter().all(|path| !path.exists()));
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
     }
 

@@ -2,14 +2,34 @@
 #include "toile_plugin.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 #define TEXT(s) {s, sizeof(s) - 1}
 #define NONE {NULL, 0}
 
 static int stage_object;
 
+#ifdef CASE_EXITS_ON_LOAD
+__attribute__((constructor)) static void on_load(void) { exit(0); }
+#endif
+
+__attribute__((unused)) static void spin(void) {
+    for (volatile int turns = 0;; turns = 1 - turns) {
+    }
+}
+
+__attribute__((unused)) static void ends(void *data, size_t i) {
+    (void)data;
+    if (i == 3) exit(0);
+}
+
 static int32_t create(toile_text arguments, const toile_host *host, void **stage) {
     (void)arguments, (void)host;
+#if defined(CASE_EXITS_IN_CREATE)
+    exit(0);
+#elif defined(CASE_SPINS_IN_CREATE)
+    spin();
+#endif
     *stage = &stage_object;
     return TOILE_OK;
 }
@@ -46,6 +66,14 @@ __attribute__((unused)) static int32_t run(const void *stage, const toile_host *
     return host->give(host->ctx, 3, whole, photo);
 #elif defined(CASE_NO_OUTPUT)
     return TOILE_OK;
+#elif defined(CASE_EXITS)
+    exit(0);
+#elif defined(CASE_QUICK_EXITS)
+    quick_exit(0);
+#elif defined(CASE_EXITS_IN_LOOP)
+    host->parallel_for(host->ctx, 8, NULL, ends);
+#elif defined(CASE_SPINS)
+    spin();
 #endif
     return host->give(host->ctx, 0, whole, photo);
 }

@@ -74,7 +74,7 @@ fn a_text_in_place_of_a_photo() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("photo.jpg");
     std::fs::write(&path, "hello").unwrap();
-    assert_says(&refused(&with_front(&path)), "is not a JPEG or PNG picture");
+    assert_says(&refused(&with_front(&path)), "is not a JPEG, PNG, WebP or TIFF picture");
 }
 
 /// A PNG header that claims a size and holds no pixels.

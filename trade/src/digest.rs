@@ -31,7 +31,7 @@ pub(crate) fn garment_digest(garment: &Garment) -> String {
 
 /// Names a file's content; none for one that cannot be read.
 pub(crate) fn content(path: impl AsRef<Path>) -> Option<String> {
-    std::fs::read(path).ok().map(|bytes| Hash::of(&bytes).hex())
+    toile_core::read_file(path.as_ref()).ok().map(|bytes| Hash::of(&bytes).hex())
 }
 
 /// A file of these that is not as it was.

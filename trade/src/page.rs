@@ -130,7 +130,7 @@ fn why(outcome: &Outcome) -> Option<String> {
 fn entry(trade: &Trade, i: usize, m: &Measured, folder: &Path) -> Entry {
     let point = &trade.points[i];
     let inline = |name: &str| {
-        let bytes = std::fs::read(folder.join(picture(&point.key, name))).ok()?;
+        let bytes = toile_core::read_file(&folder.join(picture(&point.key, name))).ok()?;
         Some(format!("data:image/jpeg;base64,{}", STANDARD.encode(bytes)))
     };
     Entry {

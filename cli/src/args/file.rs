@@ -18,7 +18,7 @@ pub(crate) struct Overrides {
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {
-    /// Pipeline files
+    /// Pipeline files; `-` reads one from standard input
     #[arg(required = true)]
     pub(crate) pipelines: Vec<PathBuf>,
     #[command(flatten)]

@@ -10,18 +10,26 @@ pub(crate) use file::{GoldenArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides
 pub(crate) use run::{CacheArgs, CacheChoice, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 
+use crate::streams::Color;
 use clap::{Parser, Subcommand};
+use clap_complete::Shell;
 use std::path::PathBuf;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.
 #[derive(Debug, Parser)]
-#[command(name = "toile", version, arg_required_else_help = true)]
+#[command(name = "toile", version = env!("TOILE_VERSION"), arg_required_else_help = true)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
     /// Load a plugin's stages: a library, like target/release/libtoile_sdf.so; may be given again
     #[arg(long = "plugin", value_name = "PATH", global = true)]
     pub(crate) plugins: Vec<PathBuf>,
+    /// Colour messages: on a terminal unless NO_COLOR is set or TERM is dumb, always, or never
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = Color::Auto, global = true)]
+    pub(crate) color: Color,
+    /// Say nothing but errors and the answer that is asked for: no progress, no warnings, no summary
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -76,6 +84,16 @@ pub(crate) enum Command {
     Golden {
         #[command(subcommand)]
         verb: Verb,
+    },
+    /// Print what a shell needs to complete the arguments
+    Completions {
+        /// The shell
+        shell: Shell,
+    },
+    /// Print the manual's page, or that of one command, like `man golden check`
+    Man {
+        /// The command
+        command: Vec<String>,
     },
     /// Hold the cloth engine against exact references and extremes
     Bench {

@@ -7,9 +7,9 @@ use toile_core::cache::Bytes;
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// The pipeline file
+    /// The pipeline file; `-` reads it from standard input, with paths relative to the current folder
     pub(crate) pipeline: PathBuf,
-    /// Folder for the results [default: out/NAME]
+    /// Folder for the results [default: out/NAME, of standard input out/stdin]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Stop after this stage and write what it made
@@ -23,7 +23,7 @@ pub(crate) struct RunArgs {
     pub(crate) keep: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
-    /// Number of threads [default: one for each core]; the result is the same for any number
+    /// Number of threads, at most one for each core, which is the default; the result is the same for any number
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Print the metrics as one JSON object on standard output and nothing else
@@ -44,7 +44,7 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct ExplainArgs {
-    /// The pipeline file
+    /// The pipeline file; `-` reads it from standard input
     pub(crate) pipeline: PathBuf,
     /// Explain a run that stops after this stage
     #[arg(long, value_name = "STAGE")]

@@ -108,10 +108,33 @@ impl Garment {
                 length("photo pixels", panel.photo_px.len(), panel.vertices.len())?;
                 finite("photo pixel", panel.photo_px.iter().map(|p| &p.coords))?;
             }
+            self.check_sides(panel)?;
             panel.fabric.check().map_err(|e| format!("the fabric of panel \"{}\": {e}", panel.name))?;
         }
         let all = vertices == self.positions.len() && triangles == self.triangles.len();
         ensure(all, || "some of it belongs to no panel".to_owned())
+    }
+
+    /// Two triangles of a panel that share an edge run along it in opposite ways: both have the same side up.
+    fn check_sides(&self, panel: &GarmentPanel) -> Result<(), String> {
+        let own = self.triangles.iter().enumerate().skip(panel.triangles.start).take(panel.triangles.len());
+        let mut sides: Vec<([u32; 2], usize)> = own
+            .flat_map(|(i, t)| (0..3).map(move |k| ([t[k], t[(k + 1) % 3]], i)))
+            .filter(|([a, b], _)| a != b)
+            .collect();
+        sides.sort_unstable();
+        let Some(alike) = sides.windows(2).find(|w| w[0].0 == w[1].0) else { return Ok(()) };
+        let (one, other) = (alike[0].1, alike[1].1);
+        let sorted = |i: usize| {
+            let mut t = self.triangles[i];
+            t.sort_unstable();
+            t
+        };
+        let what = match sorted(one) == sorted(other) {
+            true => "are one and the same",
+            false => "disagree on which side is up",
+        };
+        Err(format!("triangles {one} and {other} of panel \"{}\" {what}", panel.name))
     }
 
     /// The panel that owns a vertex.

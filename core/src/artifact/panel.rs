@@ -87,6 +87,19 @@ impl Panel {
         self.edges.iter().find(|e| e.name == name)
     }
 
+    /// No triangle lies with its back up. One without area lies neither way, and rounding may turn it.
+    fn check_sides(&self) -> Result<(), String> {
+        let turned = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| self.positions[i as usize]);
+            let longest = (b - a).norm_squared().max((c - b).norm_squared()).max((a - c).norm_squared());
+            self.triangle_area(*t) < -1e-9 * longest
+        };
+        match self.triangles.iter().position(turned) {
+            Some(i) => Err(format!("triangle {i} is turned over: its vertices run clockwise")),
+            None => Ok(()),
+        }
+    }
+
     fn bounds(&self) -> (Point2, Point2) {
         let mut lo = Point2::new(f64::INFINITY, f64::INFINITY);
         let mut hi = -lo;
@@ -146,6 +159,7 @@ impl Artifact for Panel {
         let n = self.positions.len();
         finite("vertex", self.positions.iter().map(|p| &p.coords))?;
         indices("a triangle", n, self.triangles.iter().flatten())?;
+        self.check_sides()?;
         ensure(self.triangles.is_empty() || self.boundary.len() >= 3, || {
             format!("its boundary has {} vertices", self.boundary.len())
         })?;

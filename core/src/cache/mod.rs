@@ -33,6 +33,7 @@ pub use space::Usage;
 
 use crate::PortValue;
 use crate::artifact::{Artifact, Digester, Kind, stored};
+use crate::read_file;
 use crate::run::Made;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -248,7 +249,7 @@ impl Cache {
     /// A manifest counts only while all that it names is still there.
     fn whole(&self, manifest: Manifest) -> Found {
         let blobs = manifest.outputs.iter().flat_map(Kept::blobs);
-        let there = |b: Blob| !b.stored || self.store.path(Shelf::Blobs, &b.digest).exists();
+        let there = |b: Blob| !b.stored || self.store.path(Shelf::Blobs, &b.digest).is_file();
         match blobs.into_iter().all(there) {
             true => Found::Hit(manifest),
             false => Found::Miss(Miss::Pruned),
@@ -266,7 +267,7 @@ impl Cache {
         let path = self.store.path(Shelf::Blobs, &digest);
         // Equal content has the same name: it is written once.
         match std::fs::metadata(&path) {
-            Ok(there) if there.len() == bytes.len() as u64 => self.store.touch(&path),
+            Ok(there) if there.is_file() && there.len() == bytes.len() as u64 => self.store.touch(&path),
             _ => self.write(&path, &bytes),
         }
         Blob { digest, stored: true }
@@ -291,10 +292,7 @@ impl Cache {
 
 /// The digest of a file's content; `None` where it cannot be read.
 pub(crate) fn file_hash(path: &Path) -> Option<Hash> {
-    if !path.is_file() {
-        return None;
-    }
-    std::fs::read(path).ok().map(|bytes| Hash::of(&bytes))
+    read_file(path).ok().map(|bytes| Hash::of(&bytes))
 }
 
 /// The folder of the cache where nothing else is said: `XDG_CACHE_HOME`, else `.cache` in the home folder.

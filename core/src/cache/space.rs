@@ -4,6 +4,7 @@
 //! loses a file to pruning makes its content anew.
 
 use super::Cache;
+use crate::beside;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -35,9 +36,12 @@ impl Cache {
         Ok(Usage { runs: count("runs")?, artifacts: count("blobs")?, bytes })
     }
 
-    /// Deletes what was used longest ago until at most `limit` bytes are left; returns the bytes freed.
+    /// Deletes what was used longest ago until at most `limit` bytes are left, and what programs that were killed have left;
+    /// returns the bytes freed.
     pub fn prune(&self, limit: u64) -> io::Result<u64> {
         let mut entries = files(self.folder())?;
+        let left = |e: &&Entry| e.path.file_name().and_then(|n| n.to_str()).is_some_and(is_left);
+        entries.iter().filter(left).for_each(|e| beside::remove_if_left(&e.path));
         entries.sort_by(|a, b| (a.used, &a.path).cmp(&(b.used, &b.path)));
         let total: u64 = entries.iter().map(|e| e.bytes).sum();
         let mut freed = 0;
@@ -72,6 +76,11 @@ impl Cache {
             self.warn(format!("cannot prune the cache \"{}\": {e}", self.folder().display()));
         }
     }
+}
+
+/// Whether a file was on its way; versions before the first release named them `.tmp` and six letters.
+fn is_left(name: &str) -> bool {
+    beside::is_on_its_way(name) || name.starts_with(".tmp")
 }
 
 /// All files below a folder; none where it does not exist.

@@ -3,14 +3,14 @@
 //! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>` manifests, `parts/ab/<key>` parts of stages' work,
 //! `last/<pipeline>/<stage>` what a pipeline's stages were last made from. A file is written beside
 //! its place and renamed, so that two runs at once can share the folder. The time of a file's last
-//! use is its modification time.
+//! use is its modification time. Only ordinary files are opened: a pipe in the place of one would be waited for.
 
 use super::Hash;
+use crate::{beside, ordinary, read_file};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use tempfile::NamedTempFile;
 
 /// What a file of the store is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -47,7 +47,7 @@ impl Store {
 
     /// The bytes under that name; `None` where there is no such file.
     pub(super) fn read(&self, path: &Path) -> io::Result<Option<Vec<u8>>> {
-        match fs::read(path) {
+        match read_file(path) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(e) if matches!(e.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => Ok(None),
             Err(e) => Err(e),
@@ -58,7 +58,7 @@ impl Store {
     pub(super) fn write(&self, path: &Path, bytes: &[u8]) -> io::Result<()> {
         let folder = path.parent().unwrap_or(&self.root);
         fs::create_dir_all(folder)?;
-        let mut temp = NamedTempFile::new_in(folder)?;
+        let mut temp = beside::new_in(folder)?;
         temp.write_all(bytes)?;
         temp.persist(path).map_err(|e| e.error)?;
         Ok(())
@@ -66,7 +66,9 @@ impl Store {
 
     /// Says that a file was used now. One that cannot be touched is only forgotten earlier.
     pub(super) fn touch(&self, path: &Path) {
-        if let Ok(file) = File::open(path) {
+        if ordinary(path).is_ok()
+            && let Ok(file) = File::open(path)
+        {
             let _ = file.set_modified(SystemTime::now());
         }
     }

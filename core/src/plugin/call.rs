@@ -211,7 +211,7 @@ impl Call {
         let library: Arc<dyn Send + Sync> = self.library.clone();
         let owner = self.library.words();
         // Taken first, so that it is destroyed where it is not wanted.
-        let collider = unsafe { collide::take(collider, &owner, Some(library)) };
+        let collider = unsafe { collide::take(collider, owner, Some(library)) };
         let collider = collider.map_err(|e| format!("its collider cannot be used: {e}"))?;
         let kind = self.port(port, "")?.kind;
         if kind != Collider::KIND {

@@ -7,6 +7,7 @@
 
 use super::abi::{self, Cloth, Sink, Text};
 use super::guard::{guarded, last_failure, meaning};
+use super::inside::inside;
 use super::view::{list, text};
 use crate::artifact::{BodyContact, Collide, Collider, ColliderCard, Point3, SelfContact};
 use crate::{ErrorCode, StageError};
@@ -160,7 +161,7 @@ pub(super) struct Foreign {
     table: abi::ColliderTable,
     card: ColliderCard,
     /// Who made it, for messages.
-    owner: String,
+    owner: &'static str,
     /// Keeps the code of the table loaded.
     _library: Option<Arc<dyn Send + Sync>>,
 }
@@ -178,6 +179,7 @@ impl std::fmt::Debug for Foreign {
 impl Drop for Foreign {
     fn drop(&mut self) {
         if let Some(destroy) = self.table.destroy {
+            let _inside = inside(self.owner);
             unsafe { destroy(self.collider.this) };
         }
     }
@@ -191,7 +193,7 @@ impl Drop for Foreign {
 /// The collider obeys the rules of the border.
 pub(super) unsafe fn take(
     collider: *const abi::Collider,
-    owner: &str,
+    owner: &'static str,
     library: Option<Arc<dyn Send + Sync>>,
 ) -> Result<Collider, String> {
     let collider = unsafe { list::<abi::Collider>(collider.cast(), 1, "the collider")? }[0];
@@ -218,7 +220,7 @@ pub(super) unsafe fn take(
         self_collision: card.self_collision != 0,
         penalty: (!card.penalty.is_nan()).then_some(card.penalty),
     };
-    let foreign = Foreign { collider, table, card, owner: owner.to_owned(), _library: library };
+    let foreign = Foreign { collider, table, card, owner, _library: library };
     Ok(Collider { scheme: Arc::new(foreign), signature })
 }
 
@@ -226,7 +228,7 @@ pub(super) unsafe fn take(
 ///
 /// # Safety
 /// As for [`take`].
-pub(super) unsafe fn shared(collider: *const abi::Collider, owner: &str) -> Result<Collider, String> {
+pub(super) unsafe fn shared(collider: *const abi::Collider, owner: &'static str) -> Result<Collider, String> {
     let lent = unsafe { list::<abi::Collider>(collider.cast(), 1, "the collider")? }[0];
     let table = unsafe { list::<abi::ColliderTable>(lent.table.cast(), 1, "the collider's table")? }[0];
     let share = table.share.ok_or("the collider cannot be shared")?;
@@ -301,6 +303,7 @@ impl Collide for Foreign {
     fn body_contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>) {
         let (from, cloth) = (out.len(), cloth(positions, &[]));
         let Some(ask) = self.table.body_contacts else { return };
+        let _inside = inside(self.owner);
         let status = unsafe { ask(self.collider.this, &cloth, reach, &sink(out)) };
         self.ensure(status, "body_contacts");
         self.ensure_contacts(&out[from..], positions.len());
@@ -309,6 +312,7 @@ impl Collide for Foreign {
     fn body_hits(&self, from: &[Point3], to: &[Point3], out: &mut Vec<BodyContact>) {
         let start = out.len();
         let Some(ask) = self.table.body_hits else { return };
+        let _inside = inside(self.owner);
         let status = unsafe { ask(self.collider.this, &cloth(from, &[]), &cloth(to, &[]), &sink(out)) };
         self.ensure(status, "body_hits");
         self.ensure_contacts(&out[start..], from.len());
@@ -317,6 +321,7 @@ impl Collide for Foreign {
     fn self_contacts(&self, positions: &[Point3], tris: &[[u32; 3]], reach: f64, out: &mut Vec<SelfContact>) {
         let start = out.len();
         let Some(ask) = self.table.self_contacts else { return };
+        let _inside = inside(self.owner);
         let status = unsafe { ask(self.collider.this, &cloth(positions, tris), reach, &sink(out)) };
         self.ensure(status, "self_contacts");
         let sound = |c: &SelfContact| {
@@ -332,6 +337,7 @@ impl Collide for Foreign {
     fn conservative_bounds(&self, positions: &[Point3], tris: &[[u32; 3]], reach: f64) -> Vec<f64> {
         let mut bounds = vec![0.0; positions.len()];
         let Some(ask) = self.table.conservative_bounds else { return bounds };
+        let _inside = inside(self.owner);
         let status = unsafe { ask(self.collider.this, &cloth(positions, tris), reach, bounds.as_mut_ptr()) };
         self.ensure(status, "conservative_bounds");
         if let Some(bad) = bounds.iter().find(|b| !(b.is_finite() && **b >= 0.0)) {
@@ -343,6 +349,7 @@ impl Collide for Foreign {
     fn self_crossings(&self, positions: &[Point3], tris: &[[u32; 3]]) -> Vec<[u32; 2]> {
         let mut found: Vec<[u32; 2]> = Vec::new();
         let Some(ask) = self.table.self_crossings else { return found };
+        let _inside = inside(self.owner);
         let status = unsafe { ask(self.collider.this, &cloth(positions, tris), &sink(&mut found)) };
         self.ensure(status, "self_crossings");
         if let Some(bad) = found.iter().flatten().find(|t| **t as usize >= tris.len()) {

@@ -5,6 +5,7 @@
 
 use super::abi::{self, Text};
 use super::call::{Call, Failure, Loop, Message};
+use super::inside::{inside, long};
 use super::library::Loaded;
 use super::view::Lent;
 use super::{card, collide};
@@ -16,6 +17,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::any::Any;
 use std::ffi::c_void;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
@@ -25,6 +27,31 @@ const GRACE: Duration = Duration::from_secs(2);
 const LOOK: Duration = Duration::from_millis(10);
 /// Stack of a plugin's thread, bytes: that of a main thread.
 const STACK: usize = 8 << 20;
+
+/// Runs of plugins' stages that are waited for.
+static WAITED_FOR: AtomicUsize = AtomicUsize::new(0);
+
+/// How long a program that asks everything to stop has to wait until it is told which plugin does not; nothing while no plugin
+/// is at work.
+pub fn patience() -> Duration {
+    if WAITED_FOR.load(Ordering::SeqCst) > 0 { GRACE } else { Duration::ZERO }
+}
+
+/// A run is waited for until this is dropped.
+struct Waiting;
+
+impl Waiting {
+    fn new() -> Self {
+        WAITED_FOR.fetch_add(1, Ordering::SeqCst);
+        Waiting
+    }
+}
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        WAITED_FOR.fetch_sub(1, Ordering::SeqCst);
+    }
+}
 
 /// A stage type of a plugin.
 #[derive(Debug, Clone)]
@@ -46,6 +73,7 @@ unsafe impl Sync for Object {}
 impl Drop for Object {
     fn drop(&mut self) {
         if let Some(destroy) = self.of.table.destroy {
+            let _inside = inside(self.of.library.words());
             unsafe { destroy(self.stage) };
         }
     }
@@ -72,6 +100,7 @@ impl ForeignType {
         let create = self.table.create.ok_or("the plugin cannot make it")?;
         let (call, _) = Call::new(&self.library, &[], &Cancel::new());
         let mut stage = std::ptr::null_mut();
+        let _inside = long(self.library.words(), &format!("while it makes its stage `{}`", card.name));
         let status = unsafe { create(Text::of(arguments), &call.host(), &mut stage) };
         self.done(status, &call).map_err(|e| e.message)?;
         let object = Arc::new(Object { of: self.clone(), stage });
@@ -84,6 +113,7 @@ impl ForeignType {
         let Some(check) = self.table.check else { return Ok(()) };
         let (call, _) = Call::new(&self.library, &[], &Cancel::new());
         let mut offset = -1;
+        let _inside = long(self.library.words(), &format!("while it checks `{}`", doc.name));
         let status = unsafe { check(param, Text::of(value), &call.host(), &mut offset) };
         if status == abi::OK {
             return Ok(());
@@ -141,6 +171,7 @@ impl Object {
     fn describe(&self) -> Result<String, StageError> {
         let Some(describe) = self.of.table.describe else { return Ok("()".into()) };
         let (call, _) = Call::new(&self.of.library, &[], &Cancel::new());
+        let _inside = inside(self.of.library.words());
         let status = unsafe { describe(self.stage, &call.host()) };
         self.of.done(status, &call)?;
         Ok(call.take_answer())
@@ -254,8 +285,12 @@ impl Stage for Foreign {
             threads: rayon::current_num_threads() as u32,
         };
         let (object, inputs, own) = (self.object.clone(), inputs.clone(), call.clone());
+        let (plugin, stage) = (of.library.words(), format!("its stage `{}`", self.card.name));
         let work = move || {
-            let status = object.run(&own, &inputs, &names);
+            let status = {
+                let _inside = long(plugin, &stage);
+                object.run(&own, &inputs, &names)
+            };
             // Nothing of the plugin's may be freed by this thread after the program was told.
             drop((object, inputs));
             own.tell_done(status);
@@ -272,6 +307,7 @@ impl Stage for Foreign {
 impl Foreign {
     /// Serves the plugin's thread until it is done.
     fn serve(&self, messages: &Receiver<Message>, cx: &Context) -> Result<i32, StageError> {
+        let _waiting = Waiting::new();
         let mut asked: Option<Instant> = None;
         loop {
             match messages.recv_timeout(LOOK) {
@@ -279,7 +315,7 @@ impl Foreign {
                 Ok(Message::Warning(text)) => cx.warn(text),
                 Ok(Message::Figure(name, value, unit)) => cx.figure(&name, value, intern(&unit)),
                 Ok(Message::Read(path, digest)) => cx.note_read(&path, digest),
-                Ok(Message::Loop(work)) => serve_loop(&work),
+                Ok(Message::Loop(work)) => serve_loop(&work, self.object.of.library.words()),
                 Ok(Message::Done(status)) => return Ok(status),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
@@ -301,9 +337,12 @@ impl Foreign {
     }
 }
 
-fn serve_loop(work: &Loop) {
+fn serve_loop(work: &Loop, plugin: &'static str) {
     let (body, data) = (work.body, Data(work.data));
-    (0..work.count).into_par_iter().for_each(|i| unsafe { body(data.get(), i) });
+    (0..work.count).into_par_iter().for_each(|i| {
+        let _inside = inside(plugin);
+        unsafe { body(data.get(), i) }
+    });
     let _ = work.done.send(());
 }
 

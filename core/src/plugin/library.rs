@@ -3,11 +3,13 @@
 use super::abi;
 use super::card::{Strides, read};
 use super::foreign::ForeignType;
+use super::inside::long;
 use super::view::text;
+use super::whole::check_whole;
 use crate::artifact::Digest;
 use crate::param::Check;
 use crate::text::intern;
-use crate::{Card, PluginId};
+use crate::{Card, NoFile, PluginId, read_file};
 use libloading::Library;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -18,8 +20,6 @@ use tempfile::NamedTempFile;
 
 /// What every entry symbol begins with.
 const SYMBOL: &[u8] = b"toile_plugin";
-/// The longest file that may be a plugin, bytes.
-const MAX_BYTES: u64 = 1 << 30;
 /// The most stages of one plugin.
 const MAX_STAGES: usize = 1000;
 
@@ -30,13 +30,14 @@ const MAX_STAGES: usize = 1000;
 #[derive(Debug)]
 pub(crate) struct Loaded {
     id: PluginId,
+    words: &'static str,
     _library: ManuallyDrop<Library>,
 }
 
 impl Loaded {
     /// The plugin in words: `plugin "sdf" 0.1.0`.
-    pub(super) fn words(&self) -> String {
-        format!("plugin \"{}\" {}", self.id.name, self.id.version)
+    pub(super) fn words(&self) -> &'static str {
+        self.words
     }
 }
 
@@ -85,7 +86,7 @@ fn found(path: &Path) -> PathBuf {
 ///
 /// With `apart` a copy is loaded, so that the file may be replaced or written over while this program goes on.
 ///
-/// Errors: why it is refused. A file that is no library, or not the pinned one, is never loaded.
+/// Errors: why it is refused. A file that is no whole library, or not the pinned one, is never loaded.
 pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Refused> {
     let file = found(path);
     let refused =
@@ -93,6 +94,10 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     let bytes = bytes(&file).map_err(refused)?;
     let digest = Digest(*blake3::hash(&bytes).as_bytes());
     check_pin(&digest, pinned).map_err(refused)?;
+    check_whole(&bytes).map_err(|why| {
+        let hint = "an interrupted build or copy leaves such a file: build it again".to_owned();
+        refused((format!("the system cannot load it: {why}"), Some(hint)))
+    })?;
     let symbols = symbols(&bytes);
     if symbols.is_empty() {
         let hint = "a plugin exports `toile_plugin`; see docs/plugin-abi.md".to_owned();
@@ -102,6 +107,7 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     let full = std::fs::canonicalize(&file).map_err(|e| refused(plain(words(&e))))?;
     let copy = (replaced(&full, digest) || apart).then(|| copy(&bytes)).transpose().map_err(refused)?;
     drop(bytes);
+    let _inside = long(intern(&format!("the plugin \"{}\"", path.display())), "while it is loaded");
     let from = copy.as_ref().map_or(full.as_path(), |copy| copy.path());
     let mut plugin = unsafe { open(from, &symbols, digest) }.map_err(refused)?;
     plugin.file = full;
@@ -138,14 +144,10 @@ fn plain(reason: impl Into<String>) -> Why {
 fn bytes(file: &Path) -> Result<Vec<u8>, Why> {
     let hint =
         || Some("build it first, and name the library, like target/release/libtoile_sdf.so".to_owned());
-    let meta = std::fs::metadata(file).map_err(|e| (words(&e), hint()))?;
-    if !meta.is_file() {
-        return Err(("it is not a file".into(), hint()));
-    }
-    if meta.len() > MAX_BYTES {
-        return Err(plain(format!("it has {} bytes, the limit is {MAX_BYTES}", meta.len())));
-    }
-    std::fs::read(file).map_err(|e| plain(words(&e)))
+    read_file(file).map_err(|e| {
+        let no_file = e.get_ref().is_some_and(|inner| inner.is::<NoFile>());
+        (words(&e), (no_file || e.kind() == std::io::ErrorKind::NotFound).then(hint).flatten())
+    })
 }
 
 fn words(e: &std::io::Error) -> String {
@@ -219,7 +221,8 @@ unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugi
         )));
     }
     let id = PluginId { name: intern(name), version: intern(version), digest };
-    let loaded = Arc::new(Loaded { id, _library: ManuallyDrop::new(library) });
+    let words = intern(&format!("plugin \"{}\" {}", id.name, id.version));
+    let loaded = Arc::new(Loaded { id, words, _library: ManuallyDrop::new(library) });
     let (cards, types) = unsafe { stages(&declaration, &loaded)? };
     Ok(Plugin { id, file: file.to_owned(), abi: (declaration.major, declaration.minor), cards, types })
 }

@@ -2,9 +2,10 @@
 //!
 //! - `abi` holds the types that cross; docs/plugin-abi.md is their specification and
 //!   `core/include/toile_plugin.h` their C form.
-//! - The program's side: `library` loads and checks a plugin, `foreign` is its stage behind the
+//! - The program's side: `whole` looks whether a library is one, `library` loads and checks a plugin, `foreign` is its stage behind the
 //!   [`Stage`](crate::Stage) trait, `call` what the program offers during a call.
 //! - The plugin's side: `sdk`, behind the macro [`plugin!`](crate::plugin).
+//!   `inside` knows which plugin the program is in.
 //! - Both sides: `view` (records), `collide` (colliders), `card` (stage cards), `guard` (panics).
 //!
 //! Architecture invariant: this folder holds all the `unsafe` code of the project. Nothing but
@@ -16,12 +17,16 @@ mod card;
 mod collide;
 mod foreign;
 mod guard;
+mod inside;
 mod lending;
 mod library;
 pub mod sdk;
 mod view;
+mod whole;
 
 pub use call::MAX_OUTPUT_BYTES;
 pub(crate) use foreign::ForeignType;
+pub use foreign::patience;
+pub use inside::{LastWords, end, name_who_exits, under_way};
 pub use lending::Lending;
 pub use library::{Plugin, Refused, load, plugin_files};

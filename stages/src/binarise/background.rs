@@ -15,7 +15,7 @@
 //! ground's colour; a hard cast shadow is mostly taken for garment, as it borders on it and the models
 //! are fitted again. `GraphCut`, which also looks at edges, goes on from here.
 
-use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
+use super::finish::{Finish, mask_of, no_garment};
 use super::mixture::Mixture;
 use super::morphology::{close, open};
 use super::refine::refine;
@@ -30,6 +30,7 @@ use toile_core::prelude::*;
 /// levels fail. The frame's rim must show ground, its middle the garment. Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Orchard and Bouman, 1991; CIE Lab, 1976",
     example = "Background(modes: 6)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -58,17 +59,15 @@ pub struct Background {
 #[stage]
 impl Background {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        has_pixels(photo)?;
         let settings = Finish { open: 0, close: 0, holes: self.holes, touch: self.touch };
-        if let Some(mask) = cut_out(photo) {
-            return finish(mask, photo, settings, cx);
-        }
-        let small = Small::of(photo, self.size);
-        cx.check()?;
-        let mask = background(&small, self.modes as usize, self.rim, self.shadow)
-            .ok_or_else(|| no_garment(photo, "it has the colours of the frame's rim all over"))?;
-        cx.progress(0.5, "ground and garment parted");
-        finish(refine(photo, &small, &mask, cx)?, photo, settings, cx)
+        mask_of(photo, settings, cx, || {
+            let small = Small::of(photo, self.size);
+            cx.check()?;
+            let mask = background(&small, self.modes as usize, self.rim, self.shadow)
+                .ok_or_else(|| no_garment(photo, "it has the colours of the frame's rim all over"))?;
+            cx.progress(0.5, "ground and garment parted");
+            refine(photo, &small, &mask, cx)
+        })
     }
 }
 

@@ -1,9 +1,10 @@
 //! What every binariser does at its end: clean the mask, keep one garment, and say so when there is
 //! none, more than one, or half of one.
 
+use super::cut_out::{Opacity, opacity};
 use super::morphology::{close, open};
 use super::regions::{Piece, Regions};
-use super::tone::{OPAQUE, rim_share};
+use super::tone::OPAQUE;
 use image::GrayImage;
 use rayon::prelude::*;
 use toile_core::prelude::*;
@@ -26,8 +27,28 @@ pub struct Finish {
 const LEAST_AREA: f64 = 0.005;
 /// From this share of the largest piece on, a second piece is a second garment and not a stain.
 const SECOND_GARMENT: f64 = 0.5;
-/// A picture whose rim is transparent to this share has had its ground cut away.
-const CUT_OUT_RIM: f64 = 0.9;
+
+/// The mask of a photo: its opacity where that is a mask already, else what `method` finds, finished.
+///
+/// # Errors
+/// Those of [`finish`] and of the method; a garment whose ground was cut away is not cut by the frame.
+pub fn mask_of(
+    photo: &Photo,
+    settings: Finish,
+    cx: &Context,
+    method: impl FnOnce() -> Result<GrayImage, StageError>,
+) -> Result<Mask, StageError> {
+    has_pixels(photo)?;
+    let cut_out = |mask| finish(mask, photo, Finish { touch: f64::INFINITY, ..settings }, cx);
+    match opacity(photo) {
+        Opacity::Mask(mask) => cut_out(mask),
+        Opacity::Nothing => finish(method()?, photo, settings, cx),
+        Opacity::Perhaps(mask) => {
+            let found = method().and_then(|raw| finish(raw, photo, settings, cx));
+            found.or_else(|e| if e.code == ErrorCode::Cancelled { Err(e) } else { cut_out(mask) })
+        }
+    }
+}
 
 /// Cleans a raw mask and checks that it shows one whole garment.
 ///
@@ -109,18 +130,9 @@ pub fn no_garment(photo: &Photo, reason: &str) -> StageError {
 }
 
 /// Refuses photos of no pixels, which no method can work on.
-pub(super) fn has_pixels(photo: &Photo) -> Result<(), StageError> {
+fn has_pixels(photo: &Photo) -> Result<(), StageError> {
     match photo.pixels.dimensions() {
         (0, _) | (_, 0) => Err(StageError::invalid(format!("photo \"{}\" has no pixels", photo.file))),
         _ => Ok(()),
     }
-}
-
-/// The garment of a picture whose ground has been cut away already: what is opaque.
-///
-/// `None` for an ordinary photo, and where the rim is opaque (a transparent corner is no cut-out).
-pub fn cut_out(photo: &Photo) -> Option<GrayImage> {
-    let alpha = photo.alpha.as_deref()?;
-    let transparent_rim = rim_share(alpha, None, |a| a < OPAQUE);
-    (transparent_rim >= CUT_OUT_RIM).then(|| super::tone::mark(alpha, |_, a| a >= OPAQUE))
 }

@@ -3,7 +3,7 @@
 //! Cost: two looks at every pixel, about 10 ms for 12 megapixels on two cores. Limits: the threshold
 //! holds for one light and one ground; `Otsu` finds it by itself.
 
-use super::finish::{Finish, cut_out, finish, has_pixels};
+use super::finish::{Finish, mask_of};
 use super::tone::{Polarity, by_polarity, luma, mark};
 use image::GrayImage;
 use toile_core::prelude::*;
@@ -13,6 +13,7 @@ use toile_core::prelude::*;
 /// For a studio whose light and ground never change. Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Prewitt and Mendelsohn, 1966",
     example = "Global(threshold: 140)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -41,13 +42,8 @@ pub struct Global {
 #[stage]
 impl Global {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        has_pixels(photo)?;
-        let raw = match cut_out(photo) {
-            Some(mask) => mask,
-            None => global(&luma(&photo.pixels), photo, self.threshold, self.garment),
-        };
         let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
-        finish(raw, photo, settings, cx)
+        mask_of(photo, settings, cx, || Ok(global(&luma(&photo.pixels), photo, self.threshold, self.garment)))
     }
 }
 

@@ -17,7 +17,7 @@
 
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};
 use super::cut::{Grid, STEPS};
-use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
+use super::finish::{Finish, mask_of, no_garment};
 use super::mixture::Mixture;
 use super::morphology::{dilate, erode};
 use super::refine::refine;
@@ -31,6 +31,7 @@ use toile_core::prelude::*;
 /// frame's rim must show ground, its middle the garment. Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Boykov and Jolly, 2001; Rother, Kolmogorov and Blake, 2004",
     example = "GraphCut(rounds: 4)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -62,15 +63,13 @@ pub struct GraphCut {
 #[stage]
 impl GraphCut {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        has_pixels(photo)?;
         let settings = Finish { open: 0, close: 0, holes: self.holes, touch: self.touch };
-        if let Some(mask) = cut_out(photo) {
-            return finish(mask, photo, settings, cx);
-        }
-        let mask = self.coarse(photo, cx)?;
-        let small = Small::of(photo, self.size);
-        let mask = self.fine(&small, &mask, cx)?;
-        finish(refine(photo, &small, &mask, cx)?, photo, settings, cx)
+        mask_of(photo, settings, cx, || {
+            let mask = self.coarse(photo, cx)?;
+            let small = Small::of(photo, self.size);
+            let mask = self.fine(&small, &mask, cx)?;
+            refine(photo, &small, &mask, cx)
+        })
     }
 
     /// Rounds of fitting and cutting at half the size, until nothing changes.

@@ -8,7 +8,7 @@
 //! made for uneven light. The window must be wider than what it parts: inside a garment that is wider
 //! than the window only its edge is found, and the inside is closed as a hole.
 
-use super::finish::{Finish, cut_out, finish, has_pixels};
+use super::finish::{Finish, mask_of};
 use super::tone::{Polarity, histogram, luma, rim_share};
 use image::GrayImage;
 use rayon::prelude::*;
@@ -35,6 +35,7 @@ pub enum LocalMethod {
 /// For a plain ground under uneven light. Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Sauvola and Pietikainen, 2000",
     example = "Local(method: Sauvola(k: 0.1), radius: 0.4)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -69,17 +70,15 @@ const MAX_RADIUS_PX: u32 = 2000;
 #[stage]
 impl Local {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        has_pixels(photo)?;
         let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
-        if let Some(mask) = cut_out(photo) {
-            return finish(mask, photo, settings, cx);
-        }
-        let grey = luma(&photo.pixels);
-        let dark = is_dark(&grey, photo, self.garment);
-        let (w, h) = grey.dimensions();
-        let radius = ((f64::from(w.min(h)) * self.radius).round() as u32).clamp(1, MAX_RADIUS_PX);
-        let grey = if dark { grey } else { negative(grey) };
-        finish(local(&grey, self.method, radius as usize, cx)?, photo, settings, cx)
+        mask_of(photo, settings, cx, || {
+            let grey = luma(&photo.pixels);
+            let dark = is_dark(&grey, photo, self.garment);
+            let (w, h) = grey.dimensions();
+            let radius = ((f64::from(w.min(h)) * self.radius).round() as u32).clamp(1, MAX_RADIUS_PX);
+            let grey = if dark { grey } else { negative(grey) };
+            local(&grey, self.method, radius as usize, cx)
+        })
     }
 }
 

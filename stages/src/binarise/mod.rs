@@ -10,10 +10,11 @@
 //!
 //! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
 //! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
-//! picture whose rim is transparent has its mask already.
+//! picture whose ground was cut away has its mask already (`cut_out`).
 
 mod background;
 mod cut;
+mod cut_out;
 mod finish;
 mod global;
 mod graph_cut;
@@ -29,13 +30,14 @@ mod tests;
 mod tone;
 
 pub use background::Background;
-pub use finish::{Finish, cut_out, fill_holes, finish, no_garment};
+pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
 pub use graph_cut::GraphCut;
 pub use local::{Local, LocalMethod, local};
 pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
 pub use otsu::{Otsu, Split, otsu};
 pub use regions::{Piece, Regions};
+pub(crate) use tone::OPAQUE;
 pub use tone::{Polarity, histogram, luma};
 
 use toile_core::Registry;

@@ -9,9 +9,10 @@
 //! for the whole photo, on grey levels alone: fails on patterned grounds, strong shadows and garments of
 //! the ground's tone. `Background` and `GraphCut` look at colour.
 
-use super::finish::{Finish, cut_out, finish, has_pixels, no_garment};
+use super::finish::{Finish, mask_of, no_garment};
 use super::global::global;
 use super::tone::{Polarity, histogram, luma};
+use image::GrayImage;
 use toile_core::prelude::*;
 
 /// Splits the photo at the grey level that parts garment and ground best.
@@ -19,6 +20,7 @@ use toile_core::prelude::*;
 /// For a garment on a plain ground that is clearly lighter or darker. Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Otsu, 1979",
     example = "Otsu(bias: 3)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -50,11 +52,12 @@ const LEAST_CONTRAST: f64 = 10.0;
 #[stage]
 impl Otsu {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        has_pixels(photo)?;
         let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
-        if let Some(mask) = cut_out(photo) {
-            return finish(mask, photo, settings, cx);
-        }
+        mask_of(photo, settings, cx, || self.raw(photo, cx))
+    }
+
+    /// What lies on the garment's side of the threshold.
+    fn raw(&self, photo: &Photo, cx: &Context) -> Result<GrayImage, StageError> {
         let grey = luma(&photo.pixels);
         cx.check()?;
         let split = otsu(&histogram(&grey, photo.alpha.as_deref()));
@@ -69,7 +72,7 @@ impl Otsu {
         cx.figure("threshold", threshold, "grey levels");
         cx.figure("contrast", split.contrast, "grey levels");
         cx.figure("separability", split.separability, "");
-        finish(global(&grey, photo, threshold as u8, self.garment), photo, settings, cx)
+        Ok(global(&grey, photo, threshold as u8, self.garment))
     }
 }
 

@@ -246,6 +246,36 @@ fn transparent_pixels_are_ground() {
     assert_eq!(*Otsu::default().run(&corner, &Context::quiet()).unwrap().pixels, truth(60, 60));
 }
 
+/// Programs that remove the ground crop what is left: the garment touches the frame and is not cut.
+#[test]
+fn a_garment_that_was_cut_out_may_fill_its_frame() {
+    let tee = |x: u32, y: u32| (18..42).contains(&x) || y < 20;
+    let skirt = |x: u32, y: u32| 15 + y / 4 >= 30_u32.abs_diff(x);
+    for is_garment in [&tee as &dyn Fn(u32, u32) -> bool, &skirt] {
+        let mask = GrayImage::from_fn(60, 60, |x, y| Luma([if is_garment(x, y) { 255 } else { 0 }]));
+        let cloth =
+            RgbImage::from_fn(
+                60,
+                60,
+                |x, y| if is_garment(x, y) { noisy([128; 3], x, y) } else { Rgb([255; 3]) },
+            );
+        let mut photo = of(cloth);
+        photo.alpha = Some(mask.clone().into());
+        let cx = Context::quiet();
+        for result in [
+            Otsu::default().run(&photo, &cx),
+            Background::default().run(&photo, &cx),
+            GraphCut::default().run(&photo, &cx),
+        ] {
+            assert_eq!(*result.unwrap().pixels, mask);
+        }
+        // The same picture without its opacity is a photo, in which the garment is cut.
+        photo.alpha = None;
+        let error = Otsu::default().run(&photo, &cx).unwrap_err().to_string();
+        assert!(error.starts_with("the garment in \"front.jpg\" is cut by the frame"), "{error}");
+    }
+}
+
 #[test]
 fn a_photo_of_no_pixels_is_refused() {
     let error = GraphCut::default().run(&of(RgbImage::new(0, 7)), &Context::quiet()).unwrap_err();

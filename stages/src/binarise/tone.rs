@@ -33,7 +33,7 @@ pub fn luma(image: &RgbImage) -> GrayImage {
 pub(super) const CHUNK: usize = 1 << 16;
 
 /// Opacity from which on a pixel belongs to the picture: half, so that the boundary is not shifted.
-pub(super) const OPAQUE: u8 = 128;
+pub(crate) const OPAQUE: u8 = 128;
 
 /// How many pixels have each level, transparent ones left out.
 pub fn histogram(grey: &GrayImage, alpha: Option<&GrayImage>) -> [u64; 256] {

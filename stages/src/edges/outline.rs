@@ -10,6 +10,7 @@ use super::curve::{self, Closed, Smoothing};
 use super::operator::Operator;
 use super::refine::refine;
 use super::trace::{CrackLoop, loops};
+use crate::binarise::OPAQUE;
 use toile_core::prelude::*;
 
 /// Parts of the garment's size; the millimetres are those of a vest (size 0.5 m).
@@ -47,6 +48,8 @@ const LEAST_TURN: f64 = 32.0 * std::f64::consts::PI / 180.0;
 const TINY_HOLE: f64 = 4e-4;
 /// A second piece above this share of the first is another garment.
 const SECOND_PIECE: f64 = 0.2;
+/// A mask that is the photo's opacity differs from it by this share at most, after clean-up: holes that were filled, specks.
+const MOST_BESIDE: f64 = 0.1;
 /// Fewer pixels than this have no outline to speak of.
 const LEAST_AREA: f64 = 400.0;
 
@@ -103,6 +106,7 @@ fn check_frame(photo: &Photo, mask: &Mask) -> Result<(), StageError> {
         [(left == 0, "left"), (top == 0, "upper"), (right + 1 == m.0, "right"), (bottom + 1 == m.1, "lower")];
     match touched.iter().find(|t| t.0) {
         None => Ok(()),
+        Some(_) if is_opacity(photo, mask) => Ok(()),
         Some((_, side)) => Err(StageError::invalid(format!(
             "the garment is cut off by the photo's {side} border"
         ))
@@ -110,6 +114,17 @@ fn check_frame(photo: &Photo, mask: &Mask) -> Result<(), StageError> {
             "the photo must show ground on all four sides; if it does, the binariser took ground for garment",
         )),
     }
+}
+
+/// Whether a mask is the photo's opacity: a garment whose ground was cut away ends where it is seen to end, at the frame too.
+fn is_opacity(photo: &Photo, mask: &Mask) -> bool {
+    let Some(alpha) = photo.alpha.as_deref().filter(|a| a.dimensions() == mask.pixels.dimensions()) else {
+        return false;
+    };
+    let both = || mask.pixels.as_raw().iter().zip(alpha.as_raw());
+    let differ = both().filter(|(m, a)| (**m != 0) != (**a >= OPAQUE)).count();
+    let garment = both().filter(|(m, _)| **m != 0).count();
+    differ as f64 <= MOST_BESIDE * garment as f64
 }
 
 /// Takes the largest piece out of the loops and refuses a second garment.

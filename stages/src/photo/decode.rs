@@ -1,15 +1,16 @@
-//! Bytes of a JPEG or PNG to upright 8-bit sRGB pixels.
+//! Bytes of a JPEG, PNG, WebP or TIFF to upright 8-bit sRGB pixels.
 //!
 //! The size is read from the header and checked first, so that a small file cannot claim more memory
 //! than the machine has. Then: decode, 16 bits down to 8, grey to RGB, turn upright by the EXIF
 //! orientation. An alpha channel that is opaque everywhere is dropped.
 //!
 //! Cost: 12 megapixels of JPEG take about 0.1 s. Limits: no colour management (the pixels are taken as
-//! sRGB); JPEG and PNG only.
+//! sRGB); of an animation and of a file of several pictures the first counts.
 
+use super::form::{Form, form};
 use super::header::{self, Header};
-use image::{DynamicImage, GrayImage, ImageDecoder, ImageReader, RgbImage};
-use std::io::Cursor;
+use image::{DynamicImage, GrayImage, ImageDecoder, ImageError, ImageFormat, ImageReader, RgbImage};
+use std::io::{Cursor, ErrorKind};
 use toile_core::{ErrorCode, StageError};
 
 /// The longest side of a photo, pixels. Phones and cameras give up to 12,000, scanners 20,000.
@@ -34,13 +35,15 @@ pub struct Decoded {
 /// [`ErrorCode::PatternLoading`] for what is no picture, is damaged or ends early;
 /// [`ErrorCode::InvalidInput`] for a picture of no pixels or beyond the limits.
 pub fn decode(bytes: &[u8], name: &str) -> Result<Decoded, StageError> {
-    let head = check_header(bytes, name)?;
-    let fail = |e: image::ImageError| {
-        damaged(name, &format!("is damaged ({})", plain(&e.to_string())))
-            .hint("export it again as JPEG or PNG")
+    let (kind, head) = check_header(bytes, name)?;
+    let fail = |e: ImageError| match &e {
+        ImageError::IoError(io) if io.kind() == ErrorKind::UnexpectedEof => ends_early(name),
+        ImageError::Limits(_) => too_large(name, &head),
+        ImageError::Unsupported(_) => unreadable(name, "is of a kind that is not read", &e),
+        _ => unreadable(name, "is damaged", &e),
     };
-    let mut reader =
-        ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| fail(e.into()))?;
+    let bytes = header::without_extras(kind, bytes);
+    let mut reader = reader(kind, &bytes);
     let mut limits = image::Limits::default();
     limits.max_alloc = Some(MAX_DECODED_BYTES);
     reader.limits(limits);
@@ -57,8 +60,9 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<Decoded, StageError> {
 
 /// Pixels across and down once it is upright, from the header alone; none for what [`decode`] would refuse.
 pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
-    check_header(bytes, "").ok()?;
-    let mut decoder = ImageReader::new(Cursor::new(bytes)).with_guessed_format().ok()?.into_decoder().ok()?;
+    let (kind, _) = check_header(bytes, "").ok()?;
+    let bytes = header::without_extras(kind, bytes);
+    let mut decoder = reader(kind, &bytes).into_decoder().ok()?;
     let (w, h) = decoder.dimensions();
     use image::metadata::Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
     match decoder.orientation() {
@@ -67,17 +71,29 @@ pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
     }
 }
 
-fn check_header(bytes: &[u8], name: &str) -> Result<Header, StageError> {
+/// A reader of a kind that is read.
+fn reader(kind: Form, bytes: &[u8]) -> ImageReader<Cursor<&[u8]>> {
+    let format = match kind {
+        Form::Png => ImageFormat::Png,
+        Form::WebP => ImageFormat::WebP,
+        Form::Tiff => ImageFormat::Tiff,
+        Form::Jpeg | Form::Other(_) => ImageFormat::Jpeg,
+    };
+    ImageReader::with_format(Cursor::new(bytes), format)
+}
+
+fn check_header(bytes: &[u8], name: &str) -> Result<(Form, Header), StageError> {
     if bytes.is_empty() {
         return Err(damaged(name, "is empty"));
     }
-    if !header::is_known(bytes) {
-        return Err(
-            damaged(name, "is not a JPEG or PNG picture").hint("photos are read from JPEG and PNG files")
-        );
-    }
-    let early = || damaged(name, "ends before its picture does").hint("copy it again: it was cut short");
-    let head = header::read(bytes).ok_or_else(early)?;
+    let kind = match form(bytes) {
+        Some(Form::Other(words)) => {
+            return Err(damaged(name, &format!("is {words}, which is not read")).hint(EXPORT));
+        }
+        Some(kind) => kind,
+        None => return Err(damaged(name, "is not a JPEG, PNG, WebP or TIFF picture").hint(EXPORT)),
+    };
+    let head = header::read(kind, bytes).ok_or_else(|| ends_early(name))?;
     let Header { width, height, complete } = head;
     if width == 0 || height == 0 {
         return Err(StageError::invalid(format!("photo \"{name}\" has no pixels ({width} x {height})")));
@@ -86,9 +102,20 @@ fn check_header(bytes: &[u8], name: &str) -> Result<Header, StageError> {
         return Err(too_large(name, &head));
     }
     if !complete {
-        return Err(early());
+        return Err(ends_early(name));
     }
-    Ok(head)
+    Ok((kind, head))
+}
+
+/// What to do with a picture of another kind.
+const EXPORT: &str = "photos are read from JPEG, PNG, WebP and TIFF files; export it as JPEG";
+
+fn ends_early(name: &str) -> StageError {
+    damaged(name, "ends before its picture does").hint("copy it again: it was cut short")
+}
+
+fn unreadable(name: &str, what: &str, e: &ImageError) -> StageError {
+    damaged(name, &format!("{what} ({})", plain(&e.to_string()))).hint("export it again as JPEG or PNG")
 }
 
 fn damaged(name: &str, what: &str) -> StageError {

@@ -1,11 +1,18 @@
-//! Size and completeness of a JPEG or PNG file, read from its structure alone.
+//! Size and completeness of a picture, read from its file's structure alone.
 //!
 //! Decoders are lenient: a JPEG that was cut short comes back with its lower part grey, and a
 //! header that claims 60,000 x 60,000 px makes them reserve memory first. So the structure is walked
-//! before anything is decoded (ITU-T T.81 annex B for JPEG; ISO/IEC 15948 for PNG).
+//! before anything is decoded (ITU-T T.81 annex B for JPEG; ISO/IEC 15948 for PNG; RFC 9649 for WebP; `tiff`).
+//!
+//! A PNG may hold texts and a colour profile, packed. Nothing here uses them, and unpacked they may be a thousand times as large
+//! as the file, so they are left out before a decoder sees them.
 //!
 //! Cost: one pass over the bytes, about 1 ms a megabyte. Limits: markers after a JPEG's end of
 //! image (thumbnails, videos of phones) are not looked at.
+
+use super::form::Form;
+use super::tiff::Directory;
+use std::borrow::Cow;
 
 /// What a file's structure tells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,18 +25,33 @@ pub(super) struct Header {
     pub complete: bool,
 }
 
-/// The header of a JPEG or PNG; `None` where the bytes are neither, or end before the size.
-pub(super) fn read(bytes: &[u8]) -> Option<Header> {
-    match bytes {
-        [0xFF, 0xD8, ..] => jpeg(bytes),
-        [0x89, b'P', b'N', b'G', ..] => png(bytes),
-        _ => None,
+/// The header of a picture of a kind that is read; `None` where the bytes are of another, or end before the size.
+pub(super) fn read(form: Form, bytes: &[u8]) -> Option<Header> {
+    match form {
+        Form::Jpeg => jpeg(bytes),
+        Form::Png => png(bytes),
+        Form::WebP => webp(bytes),
+        Form::Tiff => {
+            let directory = Directory::read(bytes)?;
+            let (width, height) = directory.size()?;
+            Some(Header { width, height, complete: directory.is_complete() })
+        }
+        Form::Other(_) => None,
     }
 }
 
-/// True where the bytes begin like a JPEG or PNG.
-pub(super) fn is_known(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0xFF, 0xD8]) || bytes.starts_with(&[0x89, b'P', b'N', b'G'])
+/// The bytes without what is packed in them and not used.
+pub(super) fn without_extras(form: Form, bytes: &[u8]) -> Cow<'_, [u8]> {
+    let is_extra = |kind: &[u8]| matches!(kind, b"iCCP" | b"zTXt" | b"iTXt" | b"tEXt");
+    if form != Form::Png || !chunks(bytes).any(|(kind, _)| is_extra(kind)) {
+        return Cow::Borrowed(bytes);
+    }
+    let signature = bytes.get(..8).unwrap_or(bytes).to_vec();
+    let kept = chunks(bytes).filter(|(kind, _)| !is_extra(kind));
+    Cow::Owned(kept.fold(signature, |mut all, (_, chunk)| {
+        all.extend_from_slice(chunk);
+        all
+    }))
 }
 
 fn be(bytes: &[u8], at: usize, count: usize) -> Option<u64> {
@@ -42,16 +64,46 @@ fn png(bytes: &[u8]) -> Option<Header> {
     Some(Header { width, height, complete: png_is_complete(bytes) })
 }
 
-/// Walks the chunks to `IEND`.
 fn png_is_complete(bytes: &[u8]) -> bool {
-    let mut at = 8;
-    while let (Some(length), Some(kind)) = (be(bytes, at, 4), bytes.get(at + 4..at + 8)) {
-        if kind == b"IEND" {
-            return true;
+    chunks(bytes).any(|(kind, _)| kind == b"IEND")
+}
+
+/// The chunks of a PNG up to `IEND`, each with its kind; the last may be cut short.
+fn chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8], &[u8])> {
+    let mut at = Some(8);
+    std::iter::from_fn(move || {
+        let from = at?;
+        let (length, kind) = (be(bytes, from, 4)?, bytes.get(from + 4..from + 8)?);
+        let to = from + 12 + length as usize;
+        at = (kind != b"IEND").then_some(to);
+        Some((kind, &bytes[from..to.min(bytes.len())]))
+    })
+}
+
+/// A WebP is a RIFF file: a first chunk that tells the size, and others. All must lie in the file, which says how long it is.
+fn webp(bytes: &[u8]) -> Option<Header> {
+    let le = |at: usize, count: usize| {
+        let slice = bytes.get(at..at.checked_add(count)?)?;
+        Some(slice.iter().rev().fold(0, |n, &b| n << 8 | u64::from(b)))
+    };
+    let (width, height) = match bytes.get(12..16)? {
+        b"VP8 " => (le(26, 2)? & 0x3FFF, le(28, 2)? & 0x3FFF),
+        b"VP8L" => {
+            let both = le(21, 4)?;
+            ((both & 0x3FFF) + 1, (both >> 14 & 0x3FFF) + 1)
         }
-        at += 12 + length as usize;
+        b"VP8X" => (le(24, 3)? + 1, le(27, 3)? + 1),
+        _ => return None,
+    };
+    let end = 8 + le(4, 4)?;
+    let mut at = 12;
+    while at + 8 <= end {
+        let length = le(at as usize + 4, 4)?;
+        at += 8 + length + length % 2;
     }
-    false
+    // The last byte fills up to an even number, and some writers leave it out.
+    let complete = at.max(end) <= bytes.len() as u64 + 1;
+    Some(Header { width, height, complete })
 }
 
 fn jpeg(bytes: &[u8]) -> Option<Header> {

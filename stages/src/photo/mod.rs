@@ -6,15 +6,18 @@
 //! | `entry` | how a photo is written in a pipeline file |
 //! | `decode` | bytes to upright 8-bit sRGB pixels, with limits against decompression bombs |
 //! | `expected` | how much the photos are, for what a run will take |
-//! | `header` | size and completeness of a JPEG or PNG before anything is decoded |
+//! | `form`, `tiff` | what kind of picture a file is |
+//! | `header` | size and completeness of a picture before anything is decoded |
 
 mod decode;
 mod entry;
 mod expected;
+mod form;
 mod header;
 mod photos;
 #[cfg(test)]
 mod tests;
+mod tiff;
 
 pub use decode::{Decoded, MAX_DECODED_BYTES, MAX_PIXELS, MAX_SIDE_PX, decode};
 pub use entry::{MAX_PX_PER_METRE, MAX_WIDTH_M, MIN_PX_PER_METRE, MIN_WIDTH_M, PhotoEntry, PhotoFile};

@@ -10,8 +10,8 @@ use toile_core::prelude::*;
 
 /// Reads the photos of the garment's sides.
 ///
-/// JPEG and PNG, 8 or 16 bits, grey or colour, turned upright by their EXIF orientation. `width` is
-/// the real width of the garment's bounding box; the scale is worked out once its mask is known.
+/// JPEG, PNG, WebP and TIFF, 8 or 16 bits, grey or colour, turned upright by their EXIF orientation. HEIC, AVIF and
+/// cameras' raw files are not read: export them as JPEG. `width` is the real width of the garment's bounding box; the scale is worked out once its mask is known.
 /// Where only one side was taken, `MirrorOf("front")` stands in: its pattern is the mirror image of
 /// that photo.
 ///
@@ -21,7 +21,7 @@ use toile_core::prelude::*;
 /// At most 30,000 px a side, 200 megapixels and 1 GiB decoded.
 #[stage(
     role = Reader,
-    source = "ITU-T T.81, 1992; ISO/IEC 15948, 2004",
+    source = "ITU-T T.81, 1992; ISO/IEC 15948, 2004; RFC 9649, 2024; TIFF 6.0, 1992",
     example = "Photos(photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\"), \"back\": MirrorOf(\"front\")})",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
 )]

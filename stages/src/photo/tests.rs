@@ -205,7 +205,11 @@ fn what_is_no_photo_gets_a_clear_error() {
     let png = encode(red_blue(200, 100), ImageFormat::Png);
     let cases: [(&[u8], ErrorCode, &str); 9] = [
         (b"", ErrorCode::PatternLoading, "photo \"a.jpg\" is empty"),
-        (b"a recipe for soup", ErrorCode::PatternLoading, "photo \"a.jpg\" is not a JPEG or PNG picture"),
+        (
+            b"a recipe for soup",
+            ErrorCode::PatternLoading,
+            "photo \"a.jpg\" is not a JPEG, PNG, WebP or TIFF picture",
+        ),
         (&jpeg[..jpeg.len() / 2], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
         (&jpeg[..20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
         (&png[..png.len() - 20], ErrorCode::PatternLoading, "photo \"a.jpg\" ends before its picture does"),
@@ -231,6 +235,114 @@ fn what_is_no_photo_gets_a_clear_error() {
 }
 
 #[test]
+fn kinds_that_are_not_read_are_named_with_what_to_do() {
+    let heic = b"\0\0\0\x18ftypheic\0\0\0\0mif1heic";
+    let error = decode(heic, "a.jpg").unwrap_err();
+    assert_eq!(error.message, "photo \"a.jpg\" is a HEIC picture, which is not read");
+    let hint = "photos are read from JPEG, PNG, WebP and TIFF files; export it as JPEG";
+    assert_eq!((error.code, error.hint.as_deref()), (ErrorCode::PatternLoading, Some(hint)));
+    let avif = decode(b"\0\0\0\x1Cftypavif\0\0\0\0mif1avif", "a").unwrap_err();
+    assert_eq!(avif.message, "photo \"a\" is an AVIF picture, which is not read");
+    // The thumbnail at the head of a raw file is not the photo.
+    let raw = tiff(&[(254, 1)]);
+    assert_eq!(
+        decode(&raw, "a").unwrap_err().message,
+        "photo \"a\" is a camera's raw picture, which is not read"
+    );
+}
+
+/// A TIFF of 3 x 2 pixels, red at its top left, black else, with these tags besides.
+fn tiff(more: &[(u16, u16)]) -> Vec<u8> {
+    let mut tags: Vec<(u16, u16, u32)> = vec![
+        (256, 3, 3),
+        (257, 3, 2),
+        (258, 3, 8),
+        (259, 3, 1),
+        (262, 3, 2),
+        (273, 4, 8),
+        (277, 3, 3),
+        (278, 3, 2),
+        (279, 4, 18),
+    ];
+    tags.extend(more.iter().map(|(tag, value)| (*tag, 3, u32::from(*value))));
+    tags.sort_unstable();
+    let mut bytes = b"II*\0\x1A\0\0\0".to_vec();
+    bytes.extend([255, 0, 0]);
+    bytes.extend([0; 15]);
+    bytes.extend((tags.len() as u16).to_le_bytes());
+    for (tag, kind, value) in tags {
+        bytes.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+        bytes.extend([1_u32.to_le_bytes(), value.to_le_bytes()].concat());
+    }
+    bytes.extend([0; 4]);
+    bytes
+}
+
+#[test]
+fn a_tiff_is_read_and_turned_upright() {
+    let upright = decode(&tiff(&[]), "a.tif").unwrap().pixels;
+    assert_eq!((upright.dimensions(), upright.get_pixel(0, 0).0), ((3, 2), [255, 0, 0]));
+    // 6: turned by 90 degrees clockwise.
+    let turned = decode(&tiff(&[(274, 6)]), "a.tif").unwrap().pixels;
+    assert_eq!((turned.dimensions(), turned.get_pixel(1, 0).0), ((2, 3), [255, 0, 0]));
+    assert_eq!(super::decode::upright_size(&tiff(&[(274, 6)])), Some((2, 3)));
+    let encoded = encode(red_blue(40, 30), ImageFormat::Tiff);
+    assert_eq!(decode(&encoded, "a.tif").unwrap().pixels, red_blue(40, 30));
+    for length in [9, 20, 30, 100] {
+        let error = decode(&tiff(&[])[..length.min(tiff(&[]).len() - 1)], "a.tif").unwrap_err();
+        assert_eq!(error.message, "photo \"a.tif\" ends before its picture does");
+    }
+}
+
+/// A WebP with the EXIF orientation `value`.
+fn webp_turned(webp: &[u8], (w, h): (u32, u32), value: u8) -> Vec<u8> {
+    let chunk = |kind: &[u8; 4], data: &[u8]| {
+        let mut bytes = [&kind[..], &(data.len() as u32).to_le_bytes(), data].concat();
+        bytes.resize(bytes.len().next_multiple_of(2), 0);
+        bytes
+    };
+    let mut head = vec![8, 0, 0, 0];
+    head.extend(&(w - 1).to_le_bytes()[..3]);
+    head.extend(&(h - 1).to_le_bytes()[..3]);
+    let mut exif = b"MM\0*\0\0\0\x08\0\x01\x01\x12\0\x03\0\0\0\x01\0".to_vec();
+    exif.extend([value, 0, 0, 0, 0, 0, 0]);
+    let body = [b"WEBP".to_vec(), chunk(b"VP8X", &head), webp[12..].to_vec(), chunk(b"EXIF", &exif)].concat();
+    chunk(b"RIFF", &body)
+}
+
+#[test]
+fn a_webp_is_read_and_turned_upright() {
+    let plain = encode(red_blue(40, 30), ImageFormat::WebP);
+    assert_eq!(decode(&plain, "a.webp").unwrap().pixels, red_blue(40, 30));
+    let turned = webp_turned(&plain, (40, 30), 6);
+    let pixels = decode(&turned, "a.webp").unwrap().pixels;
+    assert_eq!(pixels.dimensions(), (30, 40));
+    // What was left is on top.
+    assert_eq!((pixels.get_pixel(15, 2).0, pixels.get_pixel(15, 38).0), ([255, 0, 0], [0, 0, 255]));
+    for length in [13, 25, plain.len() / 2, plain.len() - 2] {
+        let error = decode(&plain[..length], "a.webp").unwrap_err();
+        assert_eq!(error.message, "photo \"a.webp\" ends before its picture does", "{length}");
+    }
+    let opaque_half = RgbaImage::from_fn(8, 4, |x, _| Rgba([9, 9, 9, if x < 4 { 255 } else { 0 }]));
+    let alpha = decode(&encode(opaque_half, ImageFormat::WebP), "a.webp").unwrap().alpha.unwrap();
+    assert_eq!((alpha.get_pixel(0, 0).0, alpha.get_pixel(7, 3).0), ([255], [0]));
+}
+
+#[test]
+fn a_profile_that_is_packed_in_a_png_is_not_unpacked() {
+    use image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+    let picture = red_blue(20, 10);
+    let mut bytes = Vec::new();
+    let mut encoder = PngEncoder::new(&mut bytes);
+    encoder.set_icc_profile(vec![0; 1 << 20]).unwrap();
+    encoder.write_image(&picture, 20, 10, ExtendedColorType::Rgb8).unwrap();
+    let has_profile = |bytes: &[u8]| bytes.windows(4).any(|w| w == b"iCCP");
+    assert!(has_profile(&bytes));
+    assert!(!has_profile(&super::header::without_extras(super::form::Form::Png, &bytes)));
+    assert_eq!(decode(&bytes, "a.png").unwrap().pixels, picture);
+}
+
+#[test]
 fn a_damaged_picture_is_an_error() {
     let mut png = encode(red_blue(200, 100), ImageFormat::Png);
     let middle = png.len() / 2;
@@ -246,11 +358,10 @@ proptest! {
 
     #[test]
     fn no_bytes_make_the_reader_panic(
-        jpeg in any::<bool>(),
+        format in prop::sample::select(&[ImageFormat::Jpeg, ImageFormat::Png, ImageFormat::WebP, ImageFormat::Tiff][..]),
         cut in 0usize..900,
         changes in prop::collection::vec((0usize..900, any::<u8>()), 0..8),
     ) {
-        let format = if jpeg { ImageFormat::Jpeg } else { ImageFormat::Png };
         let mut bytes = encode(red_blue(24, 17), format);
         for (at, value) in changes {
             let length = bytes.len();

@@ -10,7 +10,7 @@ pub use collider::{PushesOut, Sphere, TrapCollider};
 pub use param::{PanicsInCreate, Trap};
 pub use run::{
     Forgets, GivesBadTriangles, GivesNan, Loops, NeverStops, PanicsInDrop, PanicsInLoop, PanicsInRun, Shades,
-    Tints,
+    Tints, TurnsCloth, TurnsOver,
 };
 
 toile_core::plugin!(
@@ -20,6 +20,8 @@ toile_core::plugin!(
     PanicsInLoop,
     GivesNan,
     GivesBadTriangles,
+    TurnsOver,
+    TurnsCloth,
     NeverStops,
     Forgets,
     Loops,

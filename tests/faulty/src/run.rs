@@ -76,6 +76,38 @@ impl GivesBadTriangles {
     }
 }
 
+/// Makes a square of two triangles, of which the second lies with its back up.
+#[stage(role = Mesher)]
+pub struct TurnsOver;
+
+#[stage]
+impl TurnsOver {
+    fn run(&self, _outline: &Outline, _: &Context) -> Result<Panel, StageError> {
+        let at = Point2::new;
+        Ok(Panel {
+            positions: vec![at(0.0, 0.0), at(1.0, 0.0), at(1.0, 1.0), at(0.0, 1.0)],
+            triangles: vec![[0, 1, 2], [0, 3, 2]],
+            boundary: vec![0, 1, 2, 3],
+            ..triangle()
+        })
+    }
+}
+
+/// Turns a triangle of a garment over.
+#[stage(role = Draper)]
+pub struct TurnsCloth;
+
+#[stage]
+impl TurnsCloth {
+    fn run(&self, garment: &Garment, _: &Context) -> Result<Garment, StageError> {
+        let mut out = garment.clone();
+        if let Some(last) = out.triangles.last_mut() {
+            last.swap(0, 1);
+        }
+        Ok(out)
+    }
+}
+
 fn triangle() -> Panel {
     Panel {
         positions: vec![Point2::new(0.0, 0.0), Point2::new(1.0, 0.0), Point2::new(0.0, 1.0)],

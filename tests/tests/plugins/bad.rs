@@ -58,9 +58,32 @@ fn what_is_no_library_is_never_loaded() {
     let torn = refused("torn.so", b"\x7fELF\0toile_plugin\0 and no more");
     assert!(torn.starts_with("the system cannot load it: "), "{torn}");
     assert_eq!(registry.load_plugin(dir.path(), None).unwrap_err().reason, "it is not a file");
+    let pipe = dir.path().join("pipe.so");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    assert_eq!(registry.load_plugin(&pipe, None).unwrap_err().reason, "it is a pipe or a device, not a file");
     let gone = registry.load_plugin(&dir.path().join("gone.so"), None).unwrap_err();
     assert_eq!(gone.reason, "there is no such file");
-    assert_eq!(registry.refused().len(), 6, "a refused plugin stays listed");
+    assert_eq!(registry.refused().len(), 7, "a refused plugin stays listed");
+}
+
+/// An interrupted link or copy leaves a part of a library, which the system would map as if it were whole.
+#[test]
+fn a_library_that_was_cut_short_is_refused_wherever_it_ends() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = std::fs::read(toile_tests::plugins::library("toile_faulty")).unwrap();
+    let mut registry = toile::registry();
+    for share in 1..40 {
+        let path = dir.path().join(format!("{share}.so"));
+        std::fs::write(&path, &whole[..whole.len() * share / 40]).unwrap();
+        let refused = registry.load_plugin(&path, None).unwrap_err();
+        let head = "the system cannot load it: it is cut short: its tables name ";
+        assert!(refused.reason.starts_with(head), "{share}: {}", refused.reason);
+        assert!(refused.reason.ends_with(&format!("it has {}", whole.len() * share / 40)));
+        let hint = "an interrupted build or copy leaves such a file: build it again";
+        assert_eq!(refused.hint.as_deref(), Some(hint));
+    }
+    std::fs::write(dir.path().join("whole.so"), &whole).unwrap();
+    registry.load_plugin(&dir.path().join("whole.so"), None).unwrap();
 }
 
 /// What a run of the plugin says.

@@ -23,7 +23,7 @@ fn body() -> Body {
     }
 }
 
-fn garment() -> Garment {
+pub(crate) fn garment() -> Garment {
     let positions =
         vec![Point3::new(0.05, 0.0, 0.0), Point3::new(0.0, 0.3, 0.0), Point3::new(0.02, 0.02, 0.01)];
     let rest = vec![Point2::new(0.0, 0.0), Point2::new(0.1, 0.0), Point2::new(0.0, 0.1)];

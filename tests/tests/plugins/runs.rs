@@ -97,6 +97,31 @@ fn what_cannot_be_is_not_taken() {
         message("GivesBadTriangles"),
         format!("{FAULTY}: its panel cannot be used: a triangle names vertex 7 of 3")
     );
+    assert_eq!(
+        message("TurnsOver"),
+        format!("{FAULTY}: its panel cannot be used: triangle 1 is turned over: its vertices run clockwise")
+    );
+}
+
+/// A garment as a stage that drapes gives it on: the stage is named, not the one that solves it next.
+#[test]
+fn a_garment_with_a_triangle_turned_over_is_not_taken() {
+    let mut two = crate::colliders::garment();
+    let (p, r) = (two.positions[2], two.rest[2]);
+    two.positions.push(p + (two.positions[1] - two.positions[0]));
+    two.rest.push(r + (two.rest[1] - two.rest[0]));
+    two.velocities.push(two.velocities[0]);
+    two.weld.push(3);
+    two.triangles.push([1, 3, 2]);
+    (two.panels[0].vertices, two.panels[0].triangles, two.panels[0].boundary) =
+        (0..4, 0..2, vec![0, 1, 3, 2]);
+    let stage = make(&registry_with(&["toile_faulty"]), "TurnsCloth", "()");
+    assert_eq!(
+        run(stage.as_ref(), vec![Arc::new(two)]).unwrap_err().message,
+        format!(
+            "{FAULTY}: its garment cannot be used: triangles 0 and 1 of panel \"front\" disagree on which side is up"
+        )
+    );
 }
 
 #[test]

@@ -50,7 +50,7 @@ impl CostStore {
             Ok(meta) if meta.len() > LONGEST as u64 => return refused("is longer than 8 MB"),
             _ => {}
         }
-        let text = match std::fs::read(&path) {
+        let text = match toile_core::read_file(&path) {
             Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(e) if is_missing(&e) => return Opened::default(),
             Err(e) => return refused(&format!("cannot be read ({e})")),

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
-use toile_core::{StageError, write_files};
+use toile_core::{StageError, read_file, write_files};
 
 /// What kind of record it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -99,7 +99,7 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
     /// not gone on from.
     pub(crate) fn open(folder: &Path, kind: Kind, base: &str) -> Result<Option<Self>, String> {
         let path = folder.join(kind.file());
-        let bytes = match std::fs::read(&path) {
+        let bytes = match read_file(&path) {
             Ok(bytes) => bytes,
             Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
             Err(e) => return Err(format!("it cannot be read: {e}")),
