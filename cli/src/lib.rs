@@ -11,6 +11,7 @@ mod bench;
 mod bench_costs;
 mod cache;
 mod cards;
+mod contracts;
 mod costs;
 mod doctor;
 mod drivers;
@@ -137,7 +138,7 @@ where
             // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
             let (registry, all) = with_plugins(registry, &plugins);
             streams.apart = streams.apart.map(|program| apart::with_plugins(program, &plugins));
-            match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
+            match matches!(command, Command::Stages { .. } | Command::Doctor(_)) || all {
                 true => dispatch(command, &registry, &mut streams),
                 false => refused(&registry, &mut streams),
             }
@@ -184,13 +185,13 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Validate(args) => validate::validate(&args, registry, streams),
         Command::Stages { schema: true, .. } => cards::schema(registry, streams),
         Command::Stages { json, .. } => cards::list(json, registry, streams),
-        Command::Doctor { json } => doctor::doctor(json, registry, streams),
+        Command::Doctor(args) => doctor::doctor(&args, registry, streams),
         Command::NewStage(args) => {
             let (name, role) = (args.name.as_str(), args.role.as_str());
             let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
             new_stage::new_stage(&asked, registry, streams)
         }
-        Command::Stage { name, json } => cards::show(&name, json, registry, streams),
+        Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
         Command::Cache(args) => cache::cache(&args, streams),
