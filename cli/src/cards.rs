@@ -1,15 +1,17 @@
 //! `toile stages` and `toile stage NAME`: what the registry knows.
 
-use crate::{Streams, exit};
+use crate::contracts::Contracts;
+use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
+use std::path::PathBuf;
 use toile_core::plugin::{Plugin, Refused};
-use toile_core::testkit::{checked, is_checked};
 use toile_core::{Arity, Card, Contract, Finer, InPort, ParamDoc, Registry, Role};
 
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if json {
-        let cards: Vec<Value> = registry.cards().map(card_json).collect();
+        let contracts = known(None);
+        let cards: Vec<Value> = registry.cards().map(|card| card_json(card, &contracts)).collect();
         let mut listing = json!({ "stages": cards });
         if !registry.plugins().is_empty() || !registry.refused().is_empty() {
             listing["plugins"] = registry.plugins().iter().map(plugin_json).collect();
@@ -68,7 +70,13 @@ fn refused_json(r: &Refused) -> Value {
 }
 
 /// Shows one card.
-pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+pub(crate) fn show(
+    name: &str,
+    cache_dir: Option<PathBuf>,
+    json: bool,
+    registry: &Registry,
+    streams: &mut Streams<'_>,
+) -> u8 {
     let cards: Vec<&Card> = registry.named(name).collect();
     if cards.is_empty() {
         let names: Vec<&str> = registry.cards().map(|c| c.name).collect();
@@ -78,14 +86,21 @@ pub(crate) fn show(name: &str, json: bool, registry: &Registry, streams: &mut St
         };
         return streams.refuse(json, format!("there is no stage `{name}`{hint}"));
     }
+    let contracts = known(cache_dir);
+    let as_json = |card| card_json(card, &contracts);
     match json {
-        true => streams.say(json!({ "stages": cards.into_iter().map(card_json).collect::<Vec<_>>() })),
-        false => cards.into_iter().for_each(|card| streams.say(card_text(card))),
+        true => streams.say(json!({ "stages": cards.into_iter().map(as_json).collect::<Vec<_>>() })),
+        false => cards.into_iter().for_each(|card| streams.say(card_text(card, &contracts))),
     }
     exit::DONE
 }
 
-fn card_text(card: &Card) -> String {
+/// What the doctor found of contracts, beside the cache in a folder or that of the environment.
+fn known(cache_dir: Option<PathBuf>) -> Contracts {
+    Contracts::open(cache::at(cache_dir).map(|c| c.folder().to_owned()))
+}
+
+fn card_text(card: &Card, contracts: &Contracts) -> String {
     let mut s = format!("{} ({}, version {})\n\n{}\n", card.name, card.role.as_str(), card.version, card.doc);
     if !card.source.is_empty() {
         s += &format!("\nSource: {}\n", card.source);
@@ -107,8 +122,10 @@ fn card_text(card: &Card) -> String {
         s += "\nPromises:\n";
     }
     for contract in &card.contracts {
-        let word = if is_checked(card, *contract) { "checked" } else { "not checked" };
-        s += &format!("  {:<24} {word}\n", format!("{contract:?}"));
+        s += &format!("  {:<24} {}\n", format!("{contract:?}"), contracts.word(card, *contract));
+    }
+    if card.contracts.iter().any(|c| contracts.word(card, *c) == "declared") {
+        s += &format!("  (declared: nobody ran it here; `toile doctor {} --contracts` does)\n", card.name);
     }
     if let Some(p) = card.plugin {
         s += &format!("\nFrom: plugin \"{}\" {}\n", p.name, p.version);
@@ -144,7 +161,7 @@ fn range(p: &ParamDoc) -> String {
     p.range().map_or(String::new(), |words| format!(", {words}"))
 }
 
-fn card_json(card: &Card) -> Value {
+fn card_json(card: &Card, known: &Contracts) -> Value {
     let params: Vec<Value> = card
         .params
         .iter()
@@ -163,7 +180,9 @@ fn card_json(card: &Card) -> Value {
         .collect();
     let outputs: Vec<Value> = card.outputs.iter().map(|p| json!({ "kind": p.kind.0 })).collect();
     let names = |all: &[Contract]| all.iter().map(|c| format!("{c:?}")).collect::<Vec<_>>();
-    let (contracts, checked) = (names(&card.contracts), names(&checked(card)));
+    let is_checked = |c: &Contract| known.word(card, *c) == "checked";
+    let checked: Vec<Contract> = card.contracts.iter().copied().filter(is_checked).collect();
+    let (contracts, checked) = (names(&card.contracts), names(&checked));
     json!({ "name": card.name, "role": card.role.as_str(), "doc": card.doc, "source": card.source,
         "version": card.version, "example": card.example, "contracts": contracts, "checked": checked, "params": params,
         "inputs": inputs, "outputs": outputs })

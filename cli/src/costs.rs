@@ -3,57 +3,81 @@
 use crate::args::CacheChoice;
 use crate::cache;
 use peak_alloc::PeakAlloc;
-use std::collections::BTreeMap;
+use std::sync::OnceLock;
 use toile_core::Metrics;
-use toile_core::cost::{Predicted, StageCost};
+use toile_core::cost::{Expect, Predicted, Size, StageCost};
 use toile_core::pipeline::Pipeline;
 use toile_trade::cost::{
-    Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, note, predict,
-    shipped,
+    Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, forecast, note,
+    shipped, sizes,
 };
 
-/// What is known of this machine's runs.
+/// What is known of this machine's runs; read, and fitted, when it is first asked for.
+#[derive(Debug)]
 pub(crate) struct Known {
-    pub(crate) costs: Costs,
-    /// What is wrong with the store.
-    pub(crate) warning: Option<String>,
     store: Option<CostStore>,
     host: Host,
-    shipped: Collection,
     threads: usize,
+    opened: OnceLock<Opened>,
+    shipped: OnceLock<Collection>,
+    costs: OnceLock<Costs>,
+    /// How much the stages of the pipeline that is run will be given and make.
+    sizes: OnceLock<Vec<Size>>,
 }
 
 impl Known {
-    /// Reads the store in the cache's folder and fits; without a cache what is shipped counts alone.
-    pub(crate) fn open(choice: &CacheChoice, threads: Option<u16>) -> Self {
+    /// Of the store in the cache's folder; without a cache what is shipped counts alone.
+    pub(crate) fn of(choice: &CacheChoice, threads: Option<u16>) -> Self {
         let cache = if choice.no_cache { None } else { cache::at(choice.cache_dir.clone()) };
-        let store = cache.map(|c| CostStore::new(c.folder()));
-        let (host, shipped) = (Host::here(), shipped());
-        let Opened { records, warning } = store.as_ref().map_or_else(Opened::default, |s| s.open(&host));
+        let host = Host::here();
         let threads = threads.map_or(host.cores, usize::from).min(host.cores);
-        let costs = Costs::fit(&records, &shipped.records, threads);
-        Known { costs, warning, store, host, shipped, threads }
+        let store = cache.map(|c| CostStore::new(c.folder()));
+        let (opened, shipped) = (OnceLock::new(), OnceLock::new());
+        Known { store, host, threads, opened, shipped, costs: OnceLock::new(), sizes: OnceLock::new() }
+    }
+
+    /// What is wrong with the store.
+    pub(crate) fn warning(&self) -> Option<&str> {
+        self.opened().warning.as_deref()
+    }
+
+    /// The laws.
+    pub(crate) fn costs(&self) -> &Costs {
+        let fit = || Costs::fit(&self.opened().records, &self.shipped().records, self.threads);
+        self.costs.get_or_init(fit)
     }
 
     /// What the laws rest on, in words.
     pub(crate) fn source(&self) -> String {
-        let shipped = format!("the shipped figures of {}", self.shipped.host);
-        match self.costs.own_runs() {
+        let shipped = format!("the shipped figures of {}", self.shipped().host);
+        match self.costs().own_runs() {
             0 => format!("from {shipped}; none of this machine's runs is known yet"),
             1 => format!("from one run of a stage on this machine and {shipped}"),
             n => format!("from {n} runs of stages on this machine and {shipped}"),
         }
     }
 
-    /// What each stage is expected to take.
-    pub(crate) fn by_stage(&self, pipeline: &Pipeline) -> BTreeMap<String, Predicted> {
-        predict(pipeline, &self.costs).into_iter().map(|f| (f.stage, f.predicted)).collect()
-    }
-
     /// Keeps what a run took for later forecasts. A store that cannot be written does not touch the run.
     pub(crate) fn keep(&self, pipeline: &Pipeline, costs: &[StageCost]) {
         let Some(store) = self.store.as_ref().filter(|_| !costs.is_empty()) else { return };
-        let _ = store.add(&self.host, note(pipeline, costs, &self.costs, self.threads));
+        // What stages made before; nothing is fitted for that.
+        let earlier = Costs::fit(&self.opened().records, &[], self.threads);
+        let _ = store.add(&self.host, note(pipeline, costs, &earlier, self.threads));
+    }
+
+    fn opened(&self) -> &Opened {
+        self.opened.get_or_init(|| self.store.as_ref().map_or_else(Opened::default, |s| s.open(&self.host)))
+    }
+
+    fn shipped(&self) -> &Collection {
+        self.shipped.get_or_init(shipped)
+    }
+}
+
+impl Expect for Known {
+    fn expected(&self, pipeline: &Pipeline, node: usize) -> Option<Predicted> {
+        let sizes = self.sizes.get_or_init(|| sizes(pipeline, self.costs()));
+        Some(forecast(pipeline, self.costs(), node, sizes.get(node)?.clone())?.predicted)
     }
 }
 
@@ -67,8 +91,14 @@ pub(crate) fn stopwatch() -> Stopwatch {
 }
 
 /// Prediction beside fact, for people.
-pub(crate) fn beside(metrics: &Metrics) -> Vec<String> {
+pub(crate) fn beside(metrics: &Metrics, known: &Known) -> Vec<String> {
     let both = |s: &toile_core::StageMetrics| Some((s.id.clone(), s.used?, s.predicted?));
     let stages: Vec<_> = metrics.stages.iter().filter_map(both).collect();
-    lines(&stages.iter().map(|(id, used, predicted)| (id.as_str(), *used, *predicted)).collect::<Vec<_>>())
+    let mut lines = lines(
+        &stages.iter().map(|(id, used, predicted)| (id.as_str(), *used, *predicted)).collect::<Vec<_>>(),
+    );
+    if !lines.is_empty() && known.costs().own_runs() == 0 {
+        lines.push(format!("not measured here: what was expected is {}", known.source()));
+    }
+    lines
 }

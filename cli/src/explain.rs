@@ -5,10 +5,11 @@ use crate::costs::Known;
 use crate::explain_json::json;
 use crate::run::fail_run;
 use crate::trade::{default_folder, failed, opened, quality};
+use crate::validate::{quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::decide::{Decided, decisions};
-use toile_core::pipeline::{Feed, Node, Pipeline, Quality};
+use toile_core::pipeline::{Feed, Node, Pipeline, Quality, Standing};
 use toile_core::{Registry, RunError, RunOptions, StageError, plan};
 use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
@@ -18,6 +19,8 @@ use toile_trade::saving::Evidence;
 /// What is said of a pipeline.
 pub(crate) struct Explained<'a> {
     pub(crate) pipeline: &'a Pipeline,
+    /// Its qualities with what their claims are worth.
+    pub(crate) qualities: Vec<(Quality, Standing)>,
     /// For each stage `None` where it runs, or why it is left out.
     pub(crate) plan: Vec<Option<String>>,
     /// What each stage is expected to take.
@@ -45,12 +48,13 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
         Ok(ablation) => ablation,
         Err(e) => return failed(&e, streams),
     };
-    let known = Known::open(&args.cache, args.threads);
-    known.warning.iter().for_each(|warning| streams.warn(warning));
-    let (costs, ablation) = (&known.costs, ablation.as_ref());
+    let known = Known::of(&args.cache, args.threads);
+    known.warning().iter().for_each(|warning| streams.warn(warning));
+    let (costs, ablation) = (known.costs(), ablation.as_ref());
     let told = told(&Evidence { source: &source, pipeline: &pipeline, costs, ablation }, decided);
     let (forecasts, source) = (predict(&pipeline, costs), known.source());
-    let explained = Explained { pipeline: &pipeline, plan, forecasts, source, told };
+    let qualities = standings(&args.pipeline, &args.overrides, &pipeline, registry);
+    let explained = Explained { pipeline: &pipeline, qualities, plan, forecasts, source, told };
     match args.json {
         true => streams.say(json(&explained)),
         false => lines(&explained).iter().for_each(|line| streams.say(line)),
@@ -97,19 +101,23 @@ fn read(folder: &Path, pipeline: &Pipeline) -> Result<Ablation, StageError> {
 }
 
 fn lines(explained: &Explained<'_>) -> Vec<String> {
-    let Explained { pipeline, plan, forecasts, source, told } = explained;
+    let Explained { pipeline, qualities, plan, forecasts, source, told } = explained;
     let stages = pipeline.nodes.iter().zip(plan).map(|(n, skipped)| line(pipeline, n, skipped.as_deref()));
     let runs: Vec<&Forecast> =
         forecasts.iter().zip(plan).filter(|(_, s)| s.is_none()).map(|(f, _)| f).collect();
     let expected = forecast_lines(&runs, source);
-    std::iter::once(title(pipeline)).chain(stages).chain(expected).chain(decided::lines(told)).collect()
+    std::iter::once(title(pipeline, qualities))
+        .chain(stages)
+        .chain(expected)
+        .chain(decided::lines(told))
+        .collect()
 }
 
 /// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
-fn title(pipeline: &Pipeline) -> String {
+fn title(pipeline: &Pipeline, qualities: &[(Quality, Standing)]) -> String {
     let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
-    let words: Vec<String> = pipeline.qualities.iter().map(Quality::words).collect();
-    let known = if words.is_empty() { String::new() } else { format!("; qualities: {}", words.join(", ")) };
+    let words = quality_words(qualities);
+    let known = if words.is_empty() { words } else { format!("; qualities: {words}") };
     format!("{}: {} stages{chosen}{known}", pipeline.name, pipeline.nodes.len())
 }
 

@@ -3,13 +3,13 @@
 use crate::explain::Explained;
 use serde_json::{Value, json};
 use toile_core::cost::Predicted;
-use toile_core::pipeline::{Feed, Node, Pipeline, Quality};
+use toile_core::pipeline::{Feed, Node, Pipeline, Quality, Standing};
 use toile_trade::cost::{Forecast, total};
 use toile_trade::decided::Told;
 
 /// All that is said, for programs. SI units.
 pub(crate) fn json(explained: &Explained<'_>) -> Value {
-    let Explained { pipeline, plan, forecasts, source, told } = explained;
+    let Explained { pipeline, qualities, plan, forecasts, source, told } = explained;
     let each = pipeline.nodes.iter().zip(plan).zip(forecasts);
     let stages: Vec<Value> =
         each.map(|((node, skipped), forecast)| stage(pipeline, node, skipped.as_deref(), forecast)).collect();
@@ -19,7 +19,7 @@ pub(crate) fn json(explained: &Explained<'_>) -> Value {
         "pipeline": pipeline.name,
         "file": pipeline.file,
         "quality": pipeline.quality,
-        "qualities": pipeline.qualities.iter().map(quality).collect::<Vec<_>>(),
+        "qualities": qualities.iter().map(quality).collect::<Vec<_>>(),
         "stages": stages,
         "predicted": total(&runs),
         "predicted_from": source,
@@ -44,12 +44,14 @@ fn stage(pipeline: &Pipeline, node: &Node, skipped: Option<&str>, forecast: &For
         "takes": takes.collect::<Vec<_>>(),
         "predicted": skipped.is_none().then_some(&forecast.predicted),
         "predicted_by_own_record": forecast.known,
+        "measured_here": forecast.measured_here,
     })
 }
 
-fn quality(quality: &Quality) -> Value {
+fn quality((quality, standing): &(Quality, Standing)) -> Value {
     let set: Vec<String> = quality.set.iter().map(|o| format!("{}={}", o.path, o.value)).collect();
-    json!({ "name": quality.name, "max_error_m": quality.max_error.metres(), "set": set, "measured": quality.measured })
+    json!({ "name": quality.name, "max_error_m": quality.max_error.metres(), "set": set, "measured": quality.measured,
+        "doubt": standing.words() })
 }
 
 fn decision(told: &Told) -> Value {

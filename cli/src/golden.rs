@@ -3,17 +3,20 @@
 //! The golden of `pipelines/vest.ron` is `pipelines/goldens/vest.txt` with its pictures in
 //! `pipelines/goldens/vest/`.
 
-use crate::args::{GoldenArgs, Overrides};
+use crate::args::{AcceptArgs, CheckArgs, Overrides};
 use crate::run::{fail_run, run_quietly};
 use crate::validate::open;
 use crate::{Streams, exit, interrupt, stdin};
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
-use toile_core::golden::{Comparison, Sheet, compare, parse};
+use toile_core::golden::{Arithmetic, Comparison, Sheet, compare, parse};
 use toile_core::pipeline::Pipeline;
-use toile_core::{Artifact, Registry, read_file, read_text, write_files};
+use toile_core::{Artifact, Registry, RunError, read_file, read_text, write_files};
+use toile_stages::engine::arithmetic;
 use toile_stages::render::{Form, Picture, pictures_of};
+
+/// The longest golden sheet, bytes.
+const LONGEST: u64 = 64 << 20;
 
 /// The places of a pipeline's golden.
 struct Places {
@@ -34,60 +37,69 @@ impl Places {
 }
 
 /// Runs every pipeline and names the first stage that differs from its golden.
-pub(crate) fn check(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    each(args, registry, streams, |args, pipeline, path, streams| {
+pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    each(&args.pipelines, &args.overrides, registry, streams, |pipeline, path, streams| {
         let places = Places::of(path);
-        let text = match read_text(&places.sheet()) {
-            Ok(text) => text,
-            Err(e) if e.kind() == ErrorKind::NotFound => {
+        let golden = match read(&places.sheet()) {
+            Ok(Some(golden)) => golden,
+            Ok(None) if args.allow_missing => {
                 streams.say(format!("{}: skipped, it has no golden yet", path.display()));
                 return Ok(exit::DONE);
             }
-            Err(e) => {
-                streams.tell(format!("error: cannot read the golden \"{}\": {e}", places.sheet().display()));
+            Ok(None) => {
+                let path = path.display();
+                streams.tell(format!("error: {path}: it has no golden"));
+                streams.tell(format!(
+                    "  help: `toile golden accept {path}` records one, `--allow-missing` goes on without"
+                ));
                 return Ok(exit::INVALID);
             }
-        };
-        let golden = match parse(&text) {
-            Ok(golden) => golden,
             Err(e) => {
-                streams.tell(format!("error: {}: {e}", places.sheet().display()));
+                streams.tell(format!("error: {e}"));
                 return Ok(exit::INVALID);
             }
         };
         let log = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-        let found = compare(&golden, &Sheet::of(&log));
+        let found = compare(&golden, &Sheet::against(&golden, &log, &arithmetic()));
         Ok(report(path, &found, &log, &places, &args.out, streams))
     })
 }
 
+/// The golden in a file; none where there is no such file.
+///
+/// Errors: it cannot be read, or a line of it is wrong.
+fn read(sheet: &Path) -> Result<Option<Sheet>, String> {
+    let unread = |why: String| format!("cannot read the golden \"{}\": {why}", sheet.display());
+    match std::fs::metadata(sheet) {
+        Err(e) if e.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Ok(meta) if meta.len() > LONGEST => return Err(unread("it is longer than 64 MB".into())),
+        _ => {}
+    }
+    let text = read_text(sheet).map_err(|e| unread(e.to_string()))?;
+    parse(&text).map(Some).map_err(|e| format!("{}: {e}", sheet.display()))
+}
+
 /// Records new goldens, each from two equal runs.
-pub(crate) fn accept(args: &GoldenArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    each(args, registry, streams, |_, pipeline, path, streams| {
-        let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-        let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-        let (sheet, again) = (Sheet::of(&first), Sheet::of(&second));
-        if sheet != again {
-            let stage = compare(&sheet, &again);
-            let name =
-                stage.first_stage().or(stage.moved.first().map(String::as_str)).unwrap_or("?").to_owned();
-            streams.tell(format!(
-                "error: {}: two runs differ, first at {name}; no golden is recorded",
-                path.display()
-            ));
-            return Ok(exit::QUALITY);
-        }
+pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
+    each(&args.pipelines, &Overrides::default(), registry, streams, |pipeline, path, streams| {
         let places = Places::of(path);
+        let (log, sheet) = match twice(pipeline, streams)? {
+            Ok(recorded) => recorded,
+            Err(why) => {
+                streams.tell(format!("error: {}: {why}; no golden is recorded", path.display()));
+                return Ok(exit::QUALITY);
+            }
+        };
         let head = format!("# Golden of {}. Accept a new one with `toile golden accept`.\n\n", pipeline.name);
         let text = OutputFile {
             path: format!("{}.txt", places.stem),
             bytes: (head + &sheet.to_string()).into_bytes(),
         };
-        let mut files = pictures(&first, &sheet, None, &places.stem);
+        let mut files = pictures(&log, &sheet, None, &places.stem);
         files.push(text);
         match write_files(&places.folder, &files) {
             Ok(_) => {
-                streams.say(format!("{}: {} artifacts recorded", path.display(), sheet.0.len()));
+                streams.say(format!("{}: {} artifacts recorded", path.display(), sheet.sections.len()));
                 Ok(exit::DONE)
             }
             Err(e) => {
@@ -98,21 +110,42 @@ pub(crate) fn accept(args: &GoldenArgs, registry: &Registry, streams: &mut Strea
     })
 }
 
+/// The record and the sheet of two equal runs, or why there is none that a later run could be held against.
+fn twice(pipeline: &Pipeline, streams: &mut Streams<'_>) -> Result<Result<(RunLog, Sheet), String>, RunError> {
+    let arithmetic = arithmetic();
+    let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
+    let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
+    let (sheet, again) = (Sheet::of(&first, &arithmetic), Sheet::of(&second, &arithmetic));
+    if sheet != again {
+        let stage = compare(&sheet, &again);
+        let name = stage.first_stage().or(stage.moved.first().map(String::as_str)).unwrap_or("?");
+        return Ok(Err(format!("two runs differ, first at {name}")));
+    }
+    if let Some((section, measure)) = sheet.endless() {
+        return Ok(Err(format!("{section}: its {measure} is no finite number")));
+    }
+    Ok(match parse(&sheet.to_string()) {
+        Ok(_) => Ok((first, sheet)),
+        Err(e) => Err(format!("its sheet could not be read back: {e}")),
+    })
+}
+
 /// Opens every pipeline and keeps the worst exit code.
 fn each(
-    args: &GoldenArgs,
+    pipelines: &[PathBuf],
+    overrides: &Overrides,
     registry: &Registry,
     streams: &mut Streams<'_>,
-    work: impl Fn(&GoldenArgs, &Pipeline, &Path, &mut Streams<'_>) -> Result<u8, toile_core::RunError>,
+    work: impl Fn(&Pipeline, &Path, &mut Streams<'_>) -> Result<u8, RunError>,
 ) -> u8 {
     let mut worst = exit::DONE;
-    for path in &args.pipelines {
+    for path in pipelines {
         if let Err(e) = stdin::refused(path, "has no goldens beside it") {
             worst = worst.max(streams.refuse(false, e));
             continue;
         }
-        let code = match open(path, &Overrides::default(), registry) {
-            Ok(pipeline) => match work(args, &pipeline, path, streams) {
+        let code = match open(path, overrides, registry) {
+            Ok(pipeline) => match work(&pipeline, path, streams) {
                 Ok(code) => code,
                 Err(e) => fail_run(&pipeline, &e, false, streams),
             },
@@ -124,6 +157,15 @@ fn each(
         worst = worst.max(code);
     }
     worst
+}
+
+/// What may have moved bits.
+fn cause(arithmetic: Arithmetic) -> &'static str {
+    match arithmetic {
+        Arithmetic::Same => "by other code: the golden was recorded with this machine's arithmetic",
+        Arithmetic::Other => "the golden was recorded with other arithmetic: another processor or C library",
+        Arithmetic::Unknown => "the golden does not say with which arithmetic it was recorded",
+    }
 }
 
 fn report(
@@ -138,6 +180,9 @@ fn report(
         streams.say(format!("{}: {title}: bits moved within tolerance", path.display()));
     }
     let Some(first) = found.first_stage() else {
+        if !found.moved.is_empty() {
+            streams.say(format!("{}: {}", path.display(), cause(found.arithmetic)));
+        }
         streams.say(format!("{}: agrees with its golden", path.display()));
         return exit::DONE;
     };
@@ -145,6 +190,7 @@ fn report(
     for d in &found.differences {
         streams.tell(format!("  {}: {}", d.section, d.message));
     }
+    streams.tell(format!("  {}", cause(found.arithmetic)));
     let files = both_pictures(found, log, places);
     match write_files(out, &files) {
         Ok(_) => streams.tell(format!("  pictures of both in {}", out.join(&places.stem).display())),
@@ -156,7 +202,7 @@ fn report(
 /// The golden's picture and today's for every artifact that differs.
 fn both_pictures(found: &Comparison, log: &RunLog, places: &Places) -> Vec<OutputFile> {
     let differing: Vec<&str> = found.differences.iter().map(|d| d.section.as_str()).collect();
-    let mut files = pictures(log, &Sheet::of(log), Some(&differing), &places.stem);
+    let mut files = pictures(log, &Sheet::of(log, ""), Some(&differing), &places.stem);
     let was: Vec<OutputFile> = files
         .iter()
         .filter_map(|f| {
@@ -174,7 +220,7 @@ fn pictures(log: &RunLog, sheet: &Sheet, only: Option<&[&str]>, stem: &str) -> V
     let made = log.stages.iter().flat_map(|r| &r.outputs).flat_map(|v| v.entries());
     let drawn = made.filter(|(_, a)| a.kind().0 != "files");
     let chosen = sheet
-        .0
+        .sections
         .iter()
         .zip(drawn)
         .filter(|(section, _)| only.is_none_or(|names| names.contains(&section.title().as_str())));

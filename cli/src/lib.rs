@@ -11,6 +11,7 @@ mod bench;
 mod bench_costs;
 mod cache;
 mod cards;
+mod contracts;
 mod costs;
 mod doctor;
 mod drivers;
@@ -172,7 +173,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Validate(args) => validate::validate(&args, registry, streams),
         Command::Stages { schema: true, .. } => cards::schema(registry, streams),
         Command::Stages { json, .. } => cards::list(json, registry, streams),
-        Command::Doctor { json } => doctor::doctor(json, registry, streams),
+        Command::Doctor(args) => doctor::doctor(&args, registry, streams),
         Command::Completions { shell } => shell::completions(shell, streams),
         Command::Man { command } => shell::man(&command, streams),
         Command::NewStage(args) => {
@@ -180,7 +181,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
             let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
             new_stage::new_stage(&asked, registry, streams)
         }
-        Command::Stage { name, json } => cards::show(&name, json, registry, streams),
+        Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
         Command::Cache(args) => cache::cache(&args, streams),

@@ -28,10 +28,11 @@ pub(crate) fn once(
     {
         return streams.refuse(args.json, e);
     }
-    let pipeline = match open(&args.pipeline, &args.overrides, registry) {
+    let mut pipeline = match open(&args.pipeline, &args.overrides, registry) {
         Ok(pipeline) => pipeline,
         Err(faults) => return fail_load(&faults, args.json, streams),
     };
+    tell_doubt(args, &mut pipeline, streams);
     let lock = match args.locked.then(|| lock::read(&args.pipeline)).transpose() {
         Ok(lock) => lock,
         Err(e) => return streams.refuse(args.json, e),
@@ -45,10 +46,10 @@ pub(crate) fn once(
     if let Some(reads) = reads {
         watch::note_plugins(&pipeline, reads);
     }
-    let known = Known::open(&args.cache, args.threads);
+    let known = Arc::new(Known::of(&args.cache, args.threads));
     let options = RunOptions {
         meter: Some(Arc::new(costs::stopwatch())),
-        predicted: Arc::new(known.by_stage(&pipeline)),
+        expect: Some(known.clone()),
         until: args.until.clone(),
         also: args.also.clone(),
         keep: args.keep,
@@ -62,8 +63,24 @@ pub(crate) fn once(
             known.keep(&pipeline, &result.costs);
             let locked =
                 lock.map_or(exit::DONE, |l| lock::compare(&l, &pipeline, registry, &result, streams));
-            finish(args, &pipeline, result, streams).max(locked)
+            finish(args, &pipeline, result, &known, streams).max(locked)
         }
+    }
+}
+
+/// Says of the quality that is asked for if its claim was not measured for the pipeline as it is; so do metrics and report, but
+/// where they say already that `--set` changed it.
+fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>) {
+    let asked = args.overrides.quality.as_deref();
+    let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked);
+    let Some((quality, words)) = quality.and_then(|q| Some((q, q.standing(pipeline).words()?))) else {
+        return;
+    };
+    let (name, error) = (&quality.name, quality.max_error);
+    streams.tell(format!("warning: quality {name}: {words}; whether it keeps {error} here is not known"));
+    streams.tell(format!("  help: `toile tune PIPELINE --quality \"{name}={error}\"` measures it"));
+    if args.overrides.set.is_empty() {
+        pipeline.quality = Some(format!("{name}, {words}"));
     }
 }
 
@@ -97,7 +114,13 @@ pub(crate) fn run_quietly(
     threads::in_pool(pool, || run_stages(pipeline, &RunOptions::default(), cancel, &listener))
 }
 
-fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut Streams<'_>) -> u8 {
+fn finish(
+    args: &RunArgs,
+    pipeline: &Pipeline,
+    result: RunResult,
+    known: &Known,
+    streams: &mut Streams<'_>,
+) -> u8 {
     let dir = folder(args);
     let mut files = result.files;
     files.push(OutputFile { path: "metrics.json".into(), bytes: result.metrics.to_json().into_bytes() });
@@ -111,7 +134,7 @@ fn finish(args: &RunArgs, pipeline: &Pipeline, result: RunResult, streams: &mut 
         false => {
             summary(&result.metrics, &dir, &files, streams);
             if args.verbose {
-                costs::beside(&result.metrics).iter().for_each(|line| streams.say(line));
+                costs::beside(&result.metrics, known).iter().for_each(|line| streams.say(line));
             }
         }
     }

@@ -4,7 +4,7 @@ use crate::args::{Overrides, ValidateArgs};
 use crate::{Streams, exit, stdin};
 use serde_json::json;
 use std::path::Path;
-use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, load_with};
+use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, Standing, load_with};
 use toile_core::{Registry, add_implicit};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
@@ -32,7 +32,9 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
             Ok(_) if args.json => {}
             Ok(p) => {
                 let line = format!("{}: valid, {} stages", stdin::name(path), p.nodes.len());
-                streams.report(format!("{line}{}", qualities(&p)));
+                let words = quality_words(&standings(path, &args.overrides, &p, registry));
+                let words = if words.is_empty() { words } else { format!(", qualities {words}") };
+                streams.report(format!("{line}{words}"));
             }
             Err(e) => faults.push(e),
         }
@@ -47,8 +49,22 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
     if faults.is_empty() { exit::DONE } else { exit::INVALID }
 }
 
-/// The named qualities of a pipeline: `, qualities Draft (10 mm), Fine (2 mm)`; empty where it has none.
-fn qualities(pipeline: &Pipeline) -> String {
-    let words: Vec<String> = pipeline.qualities.iter().map(Quality::words).collect();
-    if words.is_empty() { String::new() } else { format!(", qualities {}", words.join(", ")) }
+/// The named qualities of a pipeline, each with what its claim is worth for the file with the overrides of the command line.
+pub(crate) fn standings(
+    path: &Path,
+    overrides: &Overrides,
+    pipeline: &Pipeline,
+    registry: &Registry,
+) -> Vec<(Quality, Standing)> {
+    let standing = |quality: &Quality| {
+        let with = Overrides { quality: Some(quality.name.clone()), set: overrides.set.clone() };
+        // A file that loads without its qualities loads with each of them; one that changed meanwhile is not known.
+        open(path, &with, registry).map_or(Standing::Unknown, |p| quality.standing(&p))
+    };
+    pipeline.qualities.iter().map(|q| (q.clone(), standing(q))).collect()
+}
+
+/// Qualities in words: `Draft (10 mm), Fine (2 mm, measured for another pipeline)`.
+pub(crate) fn quality_words(standings: &[(Quality, Standing)]) -> String {
+    standings.iter().map(|(quality, standing)| quality.words(*standing)).collect::<Vec<_>>().join(", ")
 }

@@ -80,7 +80,7 @@ fn the_reports_views_are_those_of_the_preview_where_there_is_one() {
 
 #[test]
 fn factors_are_of_single_precision_where_that_solves_the_step() {
-    let told = decisions(&[&pipeline("scene.ron")]);
+    let told = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.graded=false"]);
     let words = "
   Rest                 simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
       by      about 1024 triangles, whose matrix tells at each step how well it is solved
@@ -88,7 +88,7 @@ fn factors_are_of_single_precision_where_that_solves_the_step() {
 ";
     assert!(told.contains(words), "{told}");
     assert!(told.contains("      else    --set 'stages.Rest.precision=Double'"), "{told}");
-    let graded = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.graded=true"]);
+    let graded = decisions(&[&pipeline("scene.ron")]);
     assert!(graded.contains("      within  surface 8 mm\n"), "{graded}");
     let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.precision=Double"]);
     assert!(!turned.contains("mixed-precision"), "{turned}");
@@ -100,7 +100,7 @@ fn regions_at_rest_sleep_unless_they_may_not() {
     let words = "
   Rest                 simplified steps of all vertices: while few of them move, only these (regions-at-rest)
       by      about 1024 triangles, most of which rest before the last ones do
-      within  surface 20 mm
+      within  surface 8 mm
 ";
     assert!(told.contains(words), "{told}");
     assert!(told.contains("      else    --set 'stages.Rest.asleep=false'"), "{told}");

@@ -84,3 +84,46 @@ fn a_plugin_that_is_none_is_refused_with_its_reason() {
     assert!(text.ends_with("0 stages, none fails; 1 plugin was refused\n"), "{text}");
     assert_eq!(code, 70);
 }
+
+#[test]
+fn contracts_are_tried_when_that_is_asked_for() {
+    let answer = toile(&["doctor", "Otsu", "PlaneSmoother", "--contracts"]);
+    assert_eq!(answer.code, 0, "{}", answer.out);
+    let line = answer.out.lines().find(|l| l.trim_start().starts_with("ScaleEquivariant")).unwrap();
+    assert!(line.contains(" kept     ") && line.ends_with(" cases answered"), "{line}");
+    let last = answer.out.lines().last().unwrap();
+    assert!(
+        last.starts_with("2 stages, none fails; contracts: ") && last.ends_with(" kept, 0 broken, 0 untried"),
+        "{last}"
+    );
+    let unknown = toile(&["doctor", "Otzu"]);
+    assert_eq!(
+        (unknown.code, unknown.err.as_str()),
+        (3, "error: there is no stage `Otzu`; did you mean `Otsu`?\n")
+    );
+}
+
+/// Promises what it does not keep.
+#[stage(role = Denoiser, source = "none", example = "Fickle()", contracts(RefusesEmpty))]
+pub struct Fickle;
+
+#[stage]
+impl Fickle {
+    fn run(&self, photo: &Photo, _cx: &Context) -> Result<Photo, StageError> {
+        Ok(photo.clone())
+    }
+}
+
+#[test]
+fn a_promise_of_a_strange_stage_is_declared_and_one_that_is_broken_is_told() {
+    let mut registry = Registry::new();
+    registry.add::<Fickle>();
+    let (mut out, mut err) = (Vec::new(), Vec::new());
+    toile::command_with(&registry, ["toile", "stage", "Fickle"], &mut out, &mut err);
+    let card = String::from_utf8(out).unwrap();
+    assert!(card.contains("\n  RefusesEmpty             declared\n  (declared: nobody ran it here; `toile doctor Fickle --contracts` does)\n"), "{card}");
+    let (code, text) = doctor(&registry, &["--contracts"]);
+    assert!(text.contains("\n    RefusesEmpty             broken   "), "{text}");
+    assert!(text.ends_with("1 stages, none fails; contracts: 0 kept, 1 broken, 0 untried\n"), "{text}");
+    assert_eq!(code, 70);
+}

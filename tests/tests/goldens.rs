@@ -1,8 +1,10 @@
 //! Every shipped pipeline agrees with its golden, and every golden can fail.
 #![allow(clippy::unwrap_used)]
 
+use std::fs;
+use std::path::Path;
 use toile_core::golden::{compare, parse};
-use toile_tests::{pipeline, root, toile};
+use toile_tests::{Answer, napkin, pipeline, root, toile};
 
 #[test]
 fn the_shipped_pipelines_agree_with_their_goldens() {
@@ -19,14 +21,139 @@ fn every_measure_of_every_golden_can_fail() {
     for name in toile_tests::PIPELINES {
         let sheet = root().join("pipelines/goldens").join(name.replace(".ron", ".txt"));
         let golden = parse(&std::fs::read_to_string(sheet).unwrap()).unwrap();
-        assert!(golden.0.len() > 5, "{name}");
-        for s in 0..golden.0.len() {
-            for m in 0..golden.0[s].measures.len() {
+        assert!(golden.sections.len() > 5, "{name}");
+        for s in 0..golden.sections.len() {
+            for m in 0..golden.sections[s].measures.len() {
                 let mut now = golden.clone();
-                let measure = &mut now.0[s].measures[m];
+                let measure = &mut now.sections[s].measures[m];
                 measure.value += 1.01 * measure.tolerance + 1e-5;
-                assert_eq!(compare(&golden, &now).first_stage(), Some(golden.0[s].stage.as_str()));
+                assert_eq!(compare(&golden, &now).first_stage(), Some(golden.sections[s].stage.as_str()));
             }
         }
     }
+}
+
+/// Checks the vest against its golden with something changed.
+fn changed_vest(set: &str) -> Answer {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().display().to_string();
+    toile(&["golden", "check", &pipeline("vest.ron"), "--set", set, "--out", &out])
+}
+
+#[test]
+fn the_vests_golden_sees_another_fabric() {
+    let answer = changed_vest("fabric=Preset(name: \"denim\", hysteresis: true)");
+    assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
+    assert!(answer.err.contains(": first stage that differs: Preset\n"), "{}", answer.err);
+    assert!(answer.err.contains("\n  Settle garment: its surface moved by "), "{}", answer.err);
+}
+
+#[test]
+fn the_vests_golden_sees_a_smoother_that_smooths_less() {
+    let answer = changed_vest("stages.PlaneSmoother.lambda=0.4");
+    assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
+    assert!(answer.err.contains(": first stage that differs: PlaneSmoother\n"), "{}", answer.err);
+    assert!(answer.err.contains("\n  Rest garment: its surface moved by "), "{}", answer.err);
+}
+
+#[test]
+fn the_vests_golden_sees_a_thinner_body() {
+    let thinner = "body=Mannequin(height: \"172 cm\", bust: \"87 cm\", waist: \"69 cm\", hip: \"95 cm\")";
+    let answer = changed_vest(thinner);
+    assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
+    assert!(answer.err.contains(": first stage that differs: Mannequin\n"), "{}", answer.err);
+    assert!(answer.err.contains("\n  Settle garment: its surface moved by "), "{}", answer.err);
+}
+
+/// The napkin with a golden of its own; gives the pipeline file and its sheet's text.
+fn recorded(dir: &Path) -> (String, String) {
+    napkin::write(dir).unwrap();
+    let file = dir.join("napkin.ron").display().to_string();
+    let answer = toile(&["golden", "accept", &file]);
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    let sheet = fs::read_to_string(dir.join("goldens/napkin.txt")).unwrap();
+    (file, sheet)
+}
+
+/// Checks the napkin against an edited sheet.
+fn against(dir: &Path, file: &str, sheet: &str) -> Answer {
+    fs::write(dir.join("goldens/napkin.txt"), sheet).unwrap();
+    toile(&["golden", "check", file, "--out", &dir.join("out").display().to_string()])
+}
+
+#[test]
+fn a_pipeline_without_a_golden_fails_unless_that_is_allowed() {
+    let dir = tempfile::tempdir().unwrap();
+    napkin::write(dir.path()).unwrap();
+    let file = dir.path().join("napkin.ron").display().to_string();
+    let answer = toile(&["golden", "check", &file]);
+    let words = format!(
+        "error: {file}: it has no golden\n  help: `toile golden accept {file}` records one, `--allow-missing` goes on without\n"
+    );
+    assert_eq!((answer.code, answer.err), (3, words));
+    let answer = toile(&["golden", "check", &file, "--allow-missing"]);
+    assert_eq!((answer.code, answer.out), (0, format!("{file}: skipped, it has no golden yet\n")));
+}
+
+#[test]
+fn the_same_program_gives_the_same_bits_and_others_are_told_apart() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, sheet) = recorded(dir.path());
+    let same = against(dir.path(), &file, &sheet);
+    assert_eq!((same.code, same.out), (0, format!("{file}: agrees with its golden\n")));
+
+    let (head, digest) = sheet.rsplit_once("digest = ").unwrap();
+    let other = format!("{head}digest = 0{}", &digest[1..]);
+    let other = if other == sheet { format!("{head}digest = 1{}", &digest[1..]) } else { other };
+    let moved = against(dir.path(), &file, &other);
+    let words = format!("{file}: by other code: the golden was recorded with this machine's arithmetic\n");
+    assert!(moved.code == 0 && moved.out.contains(": bits moved within tolerance\n"), "{}", moved.out);
+    assert!(moved.out.contains(&words), "{}", moved.out);
+
+    let line = other.lines().find(|l| l.starts_with("arithmetic = ")).unwrap();
+    let elsewhere = against(dir.path(), &file, &other.replace(line, "arithmetic = 0123456789abcdef"));
+    let words = "the golden was recorded with other arithmetic: another processor or C library\n";
+    assert!(elsewhere.code == 0 && elsewhere.out.contains(words), "{}", elsewhere.out);
+    let nowhere = against(dir.path(), &file, &other.replace(line, ""));
+    assert!(nowhere.out.contains("the golden does not say with which arithmetic it was recorded\n"));
+}
+
+#[test]
+fn a_sheet_that_sees_nothing_is_refused_with_its_line() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, sheet) = recorded(dir.path());
+    let number = 1 + sheet.lines().position(|l| l.starts_with("area = ")).unwrap();
+    let area = sheet.lines().nth(number - 1).unwrap();
+    let (value, _) = area.split_once(" +- ").unwrap();
+    for (tolerance, why) in [
+        ("inf", "is so wide that nothing would be seen; the widest here is "),
+        ("1e308", "is so wide that nothing would be seen; the widest here is "),
+        ("-1", "is negative, so nothing would agree"),
+        ("NaN", "is no number"),
+    ] {
+        let answer = against(dir.path(), &file, &sheet.replacen(area, &format!("{value} +- {tolerance}"), 1));
+        assert_eq!(answer.code, 3, "{}", answer.out);
+        let words = format!("napkin.txt: line {number}: `area`: the tolerance {tolerance} {why}");
+        assert!(answer.err.contains(&words), "{}", answer.err);
+    }
+}
+
+#[test]
+fn a_surface_that_moved_is_told_with_its_stage_figure_and_place() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, _) = recorded(dir.path());
+    // The cloth comes to rest elsewhere, by more than the tolerance and less than its box shows.
+    let out = dir.path().join("out").display().to_string();
+    let set = "scene.file=\"moved.json\"";
+    let mut scene = napkin::scene();
+    scene["material"]["bend"] = serde_json::json!(2e-5);
+    fs::write(dir.path().join("moved.json"), scene.to_string()).unwrap();
+    let answer = toile(&["golden", "check", &file, "--set", set, "--out", &out]);
+    assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
+    assert!(answer.err.contains(": first stage that differs: Rest\n"), "{}", answer.err);
+    let line = answer.err.lines().find(|l| l.starts_with("  Rest garment: its surface moved by ")).unwrap();
+    assert!(
+        line.contains(" mm at 95 % (tolerance 0.2) and by ") && line.contains("panel \"napkin\" at ("),
+        "{line}"
+    );
 }

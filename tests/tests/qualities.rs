@@ -4,8 +4,9 @@
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
+use toile_core::pipeline::{Basis, Changes, Quality, fill_qualities, load_with};
 use toile_tests::napkin::{self, PIPELINE};
-use toile_tests::{Answer, toile};
+use toile_tests::{Answer, PIPELINES, pipeline, toile};
 
 fn on(dir: &Path, command: &str, file: &str, more: &[&str]) -> Answer {
     let file = dir.join(file).display().to_string();
@@ -69,6 +70,7 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
     assert!(valid.out.ends_with("valid, 4 stages, qualities Rough (20 cm), Mid (10 cm)\n"), "{}", valid.out);
     run(dir);
     explained(dir);
+    edited(dir);
     again(dir, &from);
 }
 
@@ -102,6 +104,114 @@ fn explained(dir: &Path) {
     let explained = on(dir, "explain", "napkin-tuned.ron", &["--quality", "Mid"]);
     let title = "napkin: 4 stages, quality Mid; qualities: Rough (20 cm), Mid (10 cm)\n";
     assert!(explained.out.starts_with(title), "{}", explained.out);
+}
+
+/// A claim holds for what it was measured for, and no longer.
+fn edited(dir: &Path) {
+    let out = dir.join("edited").display().to_string();
+    let with = |more: &[&str]| {
+        on(dir, "run", "napkin-tuned.ron", &[&["--quality", "Mid", "--out", &out], more].concat())
+    };
+    assert_eq!(with(&[]).err, "");
+    // What acts on the garment: the cloth, in the scene's own file.
+    let mut stiffer = napkin::scene();
+    stiffer["material"]["bend"] = 2e-5.into();
+    fs::write(dir.join("napkin.json"), stiffer.to_string()).unwrap();
+    let words = "Rough (20 cm, measured for another pipeline), Mid (10 cm, measured for another pipeline)";
+    let valid = on(dir, "validate", "napkin-tuned.ron", &[]);
+    assert!(valid.code == 0 && valid.out.ends_with(&format!(", qualities {words}\n")), "{}", valid.out);
+    let explained = on(dir, "explain", "napkin-tuned.ron", &[]);
+    assert!(
+        explained.out.starts_with(&format!("napkin: 4 stages; qualities: {words}\n")),
+        "{}",
+        explained.out
+    );
+    let told = with(&[]);
+    let warning = "warning: quality Mid: measured for another pipeline; whether it keeps 10 cm here is not known\n  \
+                   help: `toile tune PIPELINE --quality \"Mid=10 cm\"` measures it\n";
+    assert_eq!((told.code, told.err.as_str()), (0, warning));
+    assert!(told.out.contains("\nquality Mid, measured for another pipeline\n"), "{}", told.out);
+    napkin::write(dir).unwrap();
+    // A copy under another name is the same scene; a setting that acts is another pipeline.
+    fs::copy(dir.join("napkin.json"), dir.join("copy.json")).unwrap();
+    let copy = dir.join("copy.json").display().to_string();
+    assert_eq!(with(&["--set", &format!("scene.file={copy:?}")]).err, "");
+    assert!(
+        with(&["--set", "stages.Rest.steps=400"])
+            .err
+            .starts_with("warning: quality Mid: measured for another pipeline; ")
+    );
+    // Without the digest nobody knows.
+    let tuned = fs::read_to_string(dir.join("napkin-tuned.ron")).unwrap();
+    let line = |l: &&str| !l.trim_start().starts_with("measured_for: ");
+    let bare: Vec<String> =
+        tuned.lines().filter(line).map(|l| l.replace("cores)\",", "cores)\"),")).collect();
+    fs::write(dir.join("bare.ron"), bare.join("\n")).unwrap();
+    let valid = on(dir, "validate", "bare.ron", &[]);
+    assert!(
+        valid.out.contains("Rough (20 cm, not known what it was measured for)"),
+        "{}{}",
+        valid.out,
+        valid.err
+    );
+}
+
+/// A shipped pipeline's text with each quality measured for the pipeline as it is.
+fn stamped(name: &str) -> (String, String) {
+    let (file, registry) = (pipeline(name), toile::registry());
+    let base = Path::new(&file).parent().unwrap();
+    let text = fs::read_to_string(&file).unwrap();
+    let load = |quality: Option<&str>| {
+        load_with(&text, name, base, &registry, &Changes { quality, ..Changes::default() }).unwrap()
+    };
+    let stamp = |q: &Quality| q.clone().measured_for(Basis::of(&load(Some(&q.name))));
+    let qualities: Vec<Quality> = load(None).qualities.iter().map(stamp).collect();
+    let stamped = fill_qualities(&text, &qualities).unwrap();
+    (text, stamped)
+}
+
+/// Where a pipeline or its stages changed and the measurement still holds (the golden's bits are the same, or it was made anew):
+/// `UPDATE_QUALITIES=1 cargo test --release -p toile-tests --test qualities the_shipped`.
+#[test]
+fn the_shipped_qualities_were_measured_for_their_pipelines() {
+    for name in PIPELINES {
+        let (text, stamped) = stamped(name);
+        if std::env::var_os("UPDATE_QUALITIES").is_some() {
+            fs::write(pipeline(name), &stamped).unwrap();
+        } else {
+            assert_eq!(
+                text, stamped,
+                "{name}: its qualities were measured for another pipeline; see the head of this test"
+            );
+        }
+    }
+}
+
+#[test]
+fn an_edit_of_a_shipped_pipeline_voids_its_claims() {
+    let valid = |set: &[&str]| toile(&[&["validate", &pipeline("vest.ron")], set].concat());
+    let plain = valid(&[]);
+    assert!(
+        plain.out.ends_with(", qualities Draft (2 mm), Standard (1 mm), Fine (0.7 mm)\n"),
+        "{}",
+        plain.out
+    );
+    for set in [
+        "fabric=Preset(name: \"denim\", hysteresis: true)",
+        "stages.GridMesher.edge=\"30 mm\"",
+        "stages.GridMesher=DelaunayMesher(edge: \"16 mm\")",
+        "photos.front.width=\"53 cm\"",
+    ] {
+        let edited = valid(&["--set", set]);
+        assert!(
+            edited.out.contains("Draft (2 mm, measured for another pipeline), Standard (1 mm, measured "),
+            "{set}: {}",
+            edited.out
+        );
+    }
+    for set in ["name=\"mine\"", "stages.PhotoTexturer.light=Replace", "stages.Refine.parts=5"] {
+        assert_eq!(valid(&["--set", set]).out, plain.out, "{set}");
+    }
 }
 
 /// Measured anew, one takes its own place; a tuned file, which is another, has none.

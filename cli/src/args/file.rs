@@ -29,6 +29,21 @@ pub(crate) struct ValidateArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct DoctorArgs {
+    /// Stages to examine [default: all]
+    pub(crate) stages: Vec<String>,
+    /// Hold them to the contracts that they promise, too; what is found of plugins is kept for `toile stage`
+    #[arg(long)]
+    pub(crate) contracts: bool,
+    /// Folder of the cache, beside which that is kept [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) cache_dir: Option<PathBuf>,
+    /// Print one JSON object and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct LockArgs {
     /// Pipeline files; the lock of `vest.ron` is `vest.ron.lock`
     #[arg(required = true)]
@@ -65,17 +80,29 @@ pub(crate) struct NewStageArgs {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Verb {
     /// Run pipelines and name the first stage that differs from the golden
-    Check(GoldenArgs),
+    Check(CheckArgs),
     /// Record new goldens, each from two equal runs
-    Accept(GoldenArgs),
+    Accept(AcceptArgs),
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct GoldenArgs {
+pub(crate) struct CheckArgs {
     /// Pipeline files
     #[arg(required = true)]
     pub(crate) pipelines: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) overrides: Overrides,
+    /// Skip a pipeline that has no golden instead of failing
+    #[arg(long)]
+    pub(crate) allow_missing: bool,
     /// Folder for the pictures of what differs
     #[arg(long, default_value = "out/goldens")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AcceptArgs {
+    /// Pipeline files
+    #[arg(required = true)]
+    pub(crate) pipelines: Vec<PathBuf>,
 }

@@ -6,7 +6,9 @@ mod run;
 mod trade;
 
 pub(crate) use bench::{AccuracyArgs, Bench, CostsArgs, DriversArgs, StabilityArgs};
-pub(crate) use file::{GoldenArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides, ValidateArgs, Verb};
+pub(crate) use file::{
+    AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides, ValidateArgs, Verb,
+};
 pub(crate) use run::{CacheArgs, CacheChoice, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 
@@ -48,17 +50,16 @@ pub(crate) enum Command {
         schema: bool,
     },
     /// Make every stage and plugin, run each on tiny input, and say what fails
-    Doctor {
-        /// Print one JSON object and nothing else
-        #[arg(long)]
-        json: bool,
-    },
+    Doctor(DoctorArgs),
     /// Write a crate with a stage of one's own: it builds, loads, has a test and a benchmark
     NewStage(NewStageArgs),
     /// Show one stage's card: what it does, its ports, parameters and promises
     Stage {
         /// The stage's name, like Otsu
         name: String,
+        /// Folder of the cache, where `toile doctor --contracts` keeps what it found [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+        #[arg(long, value_name = "DIR")]
+        cache_dir: Option<PathBuf>,
         /// Print one JSON object and nothing else
         #[arg(long)]
         json: bool,

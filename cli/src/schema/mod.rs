@@ -80,6 +80,8 @@ fn qualities() -> Value {
         "set": { "type": "array", "maxItems": MAX_SETTINGS, "items": { "type": "string", "pattern": "^[^=]+=" },
             "description": "What it sets, each PATH=VALUE as for --set." },
         "measured": { "type": "string", "description": "The measurement that it rests on." },
+        "measured_for": { "type": "string", "pattern": "^[0-9a-f]{16}-[0-9a-f]{16}$",
+            "description": "What it was measured for: digests of the pipeline up to the garment and of its stages' versions." },
     });
     let quality = json!({ "type": "object", "properties": fields, "required": ["name", "max_error", "set"],
         "additionalProperties": false });

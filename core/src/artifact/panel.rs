@@ -82,6 +82,16 @@ impl Panel {
             .fold(180.0, f64::min)
     }
 
+    /// Root mean square of the edges' lengths, each counted for each of its triangles, metres; 0 for an empty mesh.
+    pub fn edge_rms(&self) -> f64 {
+        let square = |t: &[u32; 3]| -> f64 {
+            let p = t.map(|i| self.positions[i as usize]);
+            (0..3).map(|k| (p[(k + 1) % 3] - p[k]).norm_squared()).sum()
+        };
+        let sum: f64 = self.triangles.iter().map(square).sum();
+        (sum / (3 * self.triangles.len()).max(1) as f64).sqrt()
+    }
+
     /// The edge of that name.
     pub fn edge(&self, name: &str) -> Option<&PanelEdge> {
         self.edges.iter().find(|e| e.name == name)
@@ -152,6 +162,8 @@ impl Artifact for Panel {
         m.push("box_height", (hi.y - lo.y) * 1e3, "mm", 0.5);
         m.count("boundary_loops", 1 + self.holes.len());
         m.push("least_angle", self.least_angle(), "deg", 2.0);
+        // How the vertices lie within the outline, which all else hardly tells: a mesher's or a smoother's own work.
+        m.push("edge_rms", self.edge_rms() * 1e3, "mm", 0.001);
         m
     }
 

@@ -22,4 +22,4 @@ pub use fact::size_of;
 pub use foresee::{Foreseen, foresee, given};
 pub use rules::{EDGE_LENGTHS, garment_area, usual};
 pub use size::{Quantity, Size};
-pub use used::{Meter, StageCost, Used};
+pub use used::{Expect, Meter, StageCost, Used};

@@ -1,6 +1,7 @@
 //! What a stage took.
 
-use super::Size;
+use super::{Predicted, Size};
+use crate::pipeline::Pipeline;
 use serde::{Deserialize, Serialize};
 
 /// What a stage took for its own work: without finding, reading and keeping results of the cache.
@@ -26,6 +27,12 @@ pub trait Meter: std::fmt::Debug + Send + Sync {
     fn start(&self);
     /// The stage that began last is done.
     fn stop(&self) -> Used;
+}
+
+/// Says what stages will take. A run asks it for those stages alone that it had to run whole, and not before they have.
+pub trait Expect: std::fmt::Debug + Send + Sync {
+    /// What the stage of that index is expected to take; none where nothing is known of it.
+    fn expected(&self, pipeline: &Pipeline, node: usize) -> Option<Predicted>;
 }
 
 /// A stage that ran whole, with what it took and how much it made.

@@ -13,9 +13,23 @@ pub struct Difference {
     pub message: String,
 }
 
+/// Whether a golden was recorded by the arithmetic of this machine: equal arithmetic gives equal bits to equal code.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// By the same.
+    Same,
+    /// By another: another processor, or another C library.
+    Other,
+    /// The golden does not say, or this machine's is not known.
+    #[default]
+    Unknown,
+}
+
 /// What a comparison found.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Comparison {
+    /// Whose bits the golden has.
+    pub arithmetic: Arithmetic,
     /// Differences beyond tolerance, in the order of the pipeline.
     pub differences: Vec<Difference>,
     /// Titles of the sections whose bits moved within tolerance.
@@ -31,19 +45,27 @@ impl Comparison {
 
 /// Compares a run with its golden.
 pub fn compare(golden: &Sheet, now: &Sheet) -> Comparison {
-    let mut found = Comparison::default();
-    for new in &now.0 {
-        match golden.0.iter().find(|old| old.title() == new.title()) {
+    let mut found = Comparison { arithmetic: arithmetic(golden, now), ..Comparison::default() };
+    for new in &now.sections {
+        match golden.sections.iter().find(|old| old.title() == new.title()) {
             Some(old) => compare_sections(old, new, &mut found),
             None => found.differences.push(difference(new, "it is not in the golden sheet".into())),
         }
     }
-    for old in &golden.0 {
-        if !now.0.iter().any(|new| new.title() == old.title()) {
+    for old in &golden.sections {
+        if !now.sections.iter().any(|new| new.title() == old.title()) {
             found.differences.push(difference(old, "the pipeline does not make it any more".into()));
         }
     }
     found
+}
+
+fn arithmetic(golden: &Sheet, now: &Sheet) -> Arithmetic {
+    match (golden.arithmetic.as_str(), now.arithmetic.as_str()) {
+        ("", _) | (_, "") => Arithmetic::Unknown,
+        (was, is) if was == is => Arithmetic::Same,
+        _ => Arithmetic::Other,
+    }
 }
 
 fn difference(section: &Section, message: String) -> Difference {
@@ -63,8 +85,19 @@ fn compare_sections(old: &Section, new: &Section, found: &mut Comparison) {
             found.differences.push(difference(new, format!("{} is not in the golden sheet", is.name)));
         }
     }
+    found.differences.extend(surfaces(old, new).map(|m| difference(old, m)));
     if found.differences.len() == before && old.digest != new.digest {
         found.moved.push(new.title());
+    }
+}
+
+/// Why the surfaces of two sections differ; `None` within tolerance.
+fn surfaces(old: &Section, new: &Section) -> Option<String> {
+    match (&old.surface, &new.surface) {
+        (Some(was), Some(is)) => was.apart(is),
+        (None, Some(_)) => Some("its surface is not in the golden sheet".into()),
+        (Some(_), None) => Some("it has no surface any more".into()),
+        (None, None) => None,
     }
 }
 
@@ -119,18 +152,50 @@ mod tests {
             against("[Mesh panel front]\narea = 10 cm2 +- 1\ndigest = aa\n").first_stage(),
             Some("Place")
         );
-        assert_eq!(against(&GOLDEN.replace("= 5 ", "= NaN ")).first_stage(), Some("Place"));
+        let mut nan = parse(GOLDEN).unwrap();
+        nan.sections[1].measures[0].value = f64::NAN;
+        assert_eq!(compare(&parse(GOLDEN).unwrap(), &nan).first_stage(), Some("Place"));
+    }
+
+    #[test]
+    fn bits_are_told_to_be_of_another_program_or_of_another_machine() {
+        let here = format!("arithmetic = aa11\n{GOLDEN}");
+        let on = |golden: &str, now: &str| compare(&parse(golden).unwrap(), &parse(now).unwrap()).arithmetic;
+        assert_eq!(on(&here, &here), Arithmetic::Same);
+        assert_eq!(on(&here, &here.replace("aa11", "bb22")), Arithmetic::Other);
+        assert_eq!(on(GOLDEN, &here), Arithmetic::Unknown);
+    }
+
+    const DRAPE: &str = "[Rest garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most\npanel front\n\
+                         1 2 10 20 30\n3 4 11 20 30\ndigest = bb\n";
+
+    #[test]
+    fn a_surface_that_moves_is_a_difference_of_its_stage() {
+        let on = |now: &str| compare(&parse(DRAPE).unwrap(), &parse(now).unwrap());
+        assert_eq!(on(&DRAPE.replace("10 20 30", "10 20 30.15").replace("bb", "cc")).moved, ["Rest garment"]);
+        let found = on(&DRAPE.replace("11 20 30", "11 20 33"));
+        assert_eq!(found.first_stage(), Some("Rest"));
+        assert_eq!(
+            found.differences[0].message,
+            "its surface moved by 3.00 mm at 95 % (tolerance 0.2) and by 3.00 mm at most (tolerance 1): \
+             panel \"front\" at (3, 4) mm was at (11.0, 20.0, 30.0) mm, is at (11.0, 20.0, 33.0) mm"
+        );
+        let bare = "[Rest garment]\ndigest = bb\n";
+        let blind = compare(&parse(bare).unwrap(), &parse(DRAPE).unwrap());
+        assert_eq!(blind.differences[0].message, "its surface is not in the golden sheet");
+        let gone = on(bare);
+        assert_eq!(gone.differences[0].message, "it has no surface any more");
     }
 
     #[test]
     fn every_measure_of_a_sheet_can_fail() {
         let golden = parse(GOLDEN).unwrap();
-        for s in 0..golden.0.len() {
-            for m in 0..golden.0[s].measures.len() {
+        for s in 0..golden.sections.len() {
+            for m in 0..golden.sections[s].measures.len() {
                 let mut now = golden.clone();
-                let measure = &mut now.0[s].measures[m];
+                let measure = &mut now.sections[s].measures[m];
                 measure.value += 1.01 * measure.tolerance + 1e-5;
-                assert_eq!(compare(&golden, &now).first_stage(), Some(golden.0[s].stage.as_str()));
+                assert_eq!(compare(&golden, &now).first_stage(), Some(golden.sections[s].stage.as_str()));
             }
         }
     }

@@ -45,7 +45,8 @@ use overrides::Given;
 pub use overrides::Override;
 pub use plugins::{PluginUse, asked as plugins_asked};
 pub use qualities::{
-    MAX_QUALITIES, MAX_SETTINGS, Quality, fill as fill_qualities, without as without_qualities,
+    Basis, MAX_QUALITIES, MAX_SETTINGS, Quality, Standing, fill as fill_qualities,
+    without as without_qualities,
 };
 
 use crate::{Card, Registry, Stage, StageError};

@@ -1,6 +1,7 @@
 //! Tests of the loader, on a small world of stages that do nothing.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod basis;
 mod faults;
 mod graph;
 pub(crate) mod kit;

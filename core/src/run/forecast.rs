@@ -46,7 +46,7 @@ pub fn forecast(
         listener: &listener,
         reads: None,
         meter: None,
-        predicted: &options.predicted,
+        expect: None,
         steps: Vec::new(),
     };
     let mut outlooks = Vec::new();

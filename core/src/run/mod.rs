@@ -16,7 +16,7 @@ pub(crate) use node::Made;
 
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
 use crate::cache::{Cache, Hash};
-use crate::cost::{Meter, Predicted, StageCost};
+use crate::cost::{Expect, Meter, StageCost};
 use crate::pipeline::Pipeline;
 use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
 use std::any::Any;
@@ -42,8 +42,8 @@ pub struct RunOptions {
     pub reads: Option<Reads>,
     /// Measures what stages take; none measures nothing but wall time.
     pub meter: Option<Arc<dyn Meter>>,
-    /// What stages are expected to take, by id, for the record and the report.
-    pub predicted: Arc<BTreeMap<String, Predicted>>,
+    /// Says what stages were expected to take, for the record and the report; none says nothing.
+    pub expect: Option<Arc<dyn Expect>>,
 }
 
 /// Files with the digest of the content that was read, none where there was no such file; a run fills it in while it
@@ -113,7 +113,7 @@ pub fn run(
         listener,
         reads,
         meter: options.meter.as_deref(),
-        predicted: &options.predicted,
+        expect: options.expect.as_deref(),
         steps: Vec::new(),
     };
     for skipped in plan {
@@ -221,7 +221,7 @@ pub(crate) fn typed<T: ArtifactType>(artifact: &Arc<dyn Artifact>) -> Option<&T>
 
 fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
     let steps = || run.pipeline.nodes.iter().zip(&run.steps);
-    let ran = steps().filter_map(|(node, step)| match step {
+    let ran = steps().enumerate().filter_map(|(i, (node, step))| match step {
         Step::Skipped(_) => None,
         Step::Ran(ran) => Some(StageMetrics {
             id: node.id.clone(),
@@ -232,7 +232,7 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
             figures: StageMetrics::figure_map(&ran.figures),
             warnings: ran.warnings.clone(),
             used: ran.cost.as_ref().map(|c| c.0),
-            predicted: run.predicted.get(&node.id).copied(),
+            predicted: run.expected(i),
         }),
     });
     let skipped = steps().filter_map(|(node, step)| match step {

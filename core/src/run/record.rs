@@ -95,7 +95,7 @@ impl Run<'_> {
             figures: ran.figures.clone(),
             warnings: ran.warnings.clone(),
             used: ran.cost.as_ref().map(|c| c.0),
-            predicted: self.predicted.get(&node.id).copied(),
+            predicted: self.pipeline.find(&node.id).and_then(|i| self.expected(i)),
         }
     }
 }

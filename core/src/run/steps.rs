@@ -6,10 +6,9 @@ use super::value::Held;
 use super::{Reads, RunError, typed};
 use crate::artifact::Measure;
 use crate::cache::{Cache, Fed, Found, Hash, Ingredients, RUN_SO_FAR, of_stage};
-use crate::cost::{Meter, Predicted, Size, StageCost, Used, size_of};
+use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used, size_of};
 use crate::pipeline::{Feed, Node, Pipeline};
-use crate::{Arity, ArtifactType, Cancel, Context, Inputs, Listener, PortValue, StageError};
-use std::collections::BTreeMap;
+use crate::{Arity, ArtifactType, Cancel, Context, Contract, Inputs, Listener, PortValue, StageError};
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 
@@ -41,7 +40,7 @@ pub(super) struct Run<'a> {
     pub(super) listener: &'a Arc<dyn Listener>,
     pub(super) reads: Option<&'a Reads>,
     pub(super) meter: Option<&'a dyn Meter>,
-    pub(super) predicted: &'a BTreeMap<String, Predicted>,
+    pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<Step>,
 }
 
@@ -83,6 +82,18 @@ impl Run<'_> {
             _ => None,
         };
         self.pipeline.nodes.iter().zip(&self.steps).filter_map(cost).collect()
+    }
+
+    /// What a stage was expected to take, where it ran whole. A run that found in the cache all that a cache can hold is no
+    /// news, and asks nobody.
+    pub(super) fn expected(&self, index: usize) -> Option<Predicted> {
+        let ran_whole = |step: &Step| matches!(step, Step::Ran(Ran { cost: Some(_), .. }));
+        let kept =
+            |node: &Node| self.cache.is_none() || node.card.contracts.contains(&Contract::Deterministic);
+        let mut steps = self.pipeline.nodes.iter().zip(&self.steps);
+        let is_news = steps.any(|(node, step)| ran_whole(step) && kept(node));
+        let expect = self.expect.filter(|_| is_news && self.steps.get(index).is_some_and(ran_whole))?;
+        expect.expected(self.pipeline, index)
     }
 
     /// Runs a stage for some of its entries, and says what that took.

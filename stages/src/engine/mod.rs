@@ -2,11 +2,13 @@
 //!
 //! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
 
+mod arithmetic;
 mod fault;
 mod lost;
 mod scene;
 mod skin;
 
+pub use arithmetic::arithmetic;
 pub use fault::{cloth_error, scene_error};
 pub use lost::lost;
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};

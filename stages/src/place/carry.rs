@@ -4,7 +4,6 @@
 //! Cost: linear in vertices. Limits: what was flat between the old vertices is flat still: on a body, new vertices start a
 //! little nearer to the skin than the old ones, and a solver has to push them out.
 
-use super::locate::Locator;
 use super::sew::seams;
 use super::whole::{offsets, whole};
 use toile_core::prelude::*;
@@ -62,9 +61,8 @@ fn carried(name: &str, panel: &Panel, drape: &Garment) -> Result<Vec<Point3>, St
         .ok_or_else(|| StageError::invalid(format!("panel \"{name}\" of the earlier garment has no area")))?;
     let place = |p: &Point2| {
         let found = locator.find(*p).ok_or_else(|| beyond(name, *p))?;
-        let corners = triangles[found.triangle].map(|v| drape.positions[v as usize].coords);
-        let at = (0..3).map(|k| corners[k] * found.weights[k]).sum::<Vector3>();
-        if at.amax() < FARTHEST { Ok(Point3::from(at)) } else { Err(torn(name, *p)) }
+        let at = found.in_space(triangles[found.triangle].map(|v| drape.positions[v as usize]));
+        if at.coords.amax() < FARTHEST { Ok(at) } else { Err(torn(name, *p)) }
     };
     panel.positions.iter().map(place).collect()
 }

@@ -4,7 +4,6 @@ mod carry;
 mod depth;
 mod fit;
 mod lift;
-mod locate;
 mod panels;
 mod refine;
 mod sew;

@@ -83,3 +83,38 @@ fn a_vest_of_plugins_is_the_same_loaded_and_linked_in() {
     let [a, b] = [linked_out, loaded_out].map(|d| std::fs::read(d.join("garment.glb")).unwrap());
     assert!(a == b, "the two models differ");
 }
+
+#[test]
+fn what_a_plugin_promises_is_declared_until_the_doctor_ran_it() {
+    let dir = tempfile::tempdir().unwrap();
+    let (file, cache) = (library("toile_tutorial").display().to_string(), dir.path().display().to_string());
+    let with = ["--plugin", &file, "--cache-dir", &cache];
+    let call = |arguments: &[&str]| toile_tests::toile(&[arguments, &with].concat());
+    let card = || call(&["stage", "Dust"]).out;
+    let words = "\nPromises:\n  Deterministic            declared\n  ThreadInvariant          declared\n  Cancellable              declared\n  \
+                 (declared: nobody ran it here; `toile doctor Dust --contracts` does)\n";
+    assert!(card().contains(words), "{}", card());
+    assert!(call(&["stage", "Dust", "--json"]).out.contains("\"checked\":[]"));
+
+    let answer = call(&["doctor", "Dust", "--contracts"]);
+    assert_eq!(answer.code, 0, "{}", answer.out);
+    assert!(answer.out.contains("\n    ThreadInvariant          kept "), "{}", answer.out);
+    let checked = "\nPromises:\n  Deterministic            checked\n  ThreadInvariant          checked\n  Cancellable              checked\n";
+    assert!(card().contains(checked) && !card().contains("declared"), "{}", card());
+    assert!(
+        call(&["stage", "Dust", "--json"])
+            .out
+            .contains("\"checked\":[\"Deterministic\",\"ThreadInvariant\",\"Cancellable\"]")
+    );
+    // The built-in stages are held to theirs by the project's own tests.
+    assert!(call(&["stage", "Otsu"]).out.contains("  Deterministic            checked\n"));
+
+    // Of another build of the library nothing is known.
+    let copy = dir.path().join("libcopy.so");
+    let mut bytes = std::fs::read(&file).unwrap();
+    bytes.push(0);
+    std::fs::write(&copy, bytes).unwrap();
+    let copy = copy.display().to_string();
+    let other = toile_tests::toile(&["stage", "Dust", "--plugin", &copy, "--cache-dir", &cache]);
+    assert!(other.out.contains("  Deterministic            declared\n"), "{}{}", other.out, other.err);
+}

@@ -5,6 +5,7 @@ use super::law::{Law, Seen, median};
 use super::record::{CostRecord, Figure};
 use super::terms::terms;
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use toile_core::cost::{Estimate, Predicted, Size};
 
 /// How many runs all shipped ones of a stage count for, beside this machine's own.
@@ -18,20 +19,42 @@ const TELLING_S: f64 = 1e-3;
 /// Runs of stages by which a machine's speed is known.
 const TELLING_RUNS: usize = 5;
 
-/// Laws of stages.
-#[derive(Debug, Clone, Default)]
+/// Laws of stages, each fitted when it is first asked for: a run asks for those of the stages that it had to run.
+#[derive(Debug, Default)]
 pub struct Costs {
-    /// By the stage's name and figure.
-    stages: BTreeMap<(String, Figure), Entry>,
-    /// By the role and figure, for stages without record.
-    roles: BTreeMap<(String, Figure), Entry>,
+    /// This machine's records of so many threads.
+    own: Vec<CostRecord>,
+    /// Those of another machine.
+    shipped: Vec<CostRecord>,
     /// What stages made of what they were to be given.
     made: BTreeMap<String, Size>,
-    bias: Bias,
     /// Pipelines that this machine has run.
     met: BTreeSet<String>,
-    /// Runs of stages on this machine.
-    own: usize,
+    bias: OnceLock<Bias>,
+    /// The laws that were fitted; none where there is no record.
+    laws: Mutex<BTreeMap<(Group, String, Figure), Option<Law>>>,
+    /// How much longer this machine takes; none while that is not known.
+    speeds: Mutex<BTreeMap<Figure, Option<f64>>>,
+}
+
+/// Whose records a law is fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Group {
+    /// A stage's.
+    Stage,
+    /// Those of all stages of a role, for stages without record.
+    Role,
+    /// A stage's on the machine of the shipped records.
+    Shipped,
+}
+
+impl Group {
+    fn name(self, record: &CostRecord) -> &str {
+        match self {
+            Group::Stage | Group::Shipped => &record.stage,
+            Group::Role => &record.role,
+        }
+    }
 }
 
 /// A stage in its pipeline, by names.
@@ -47,49 +70,19 @@ pub struct Place<'a> {
     pub style: &'a str,
 }
 
-#[derive(Debug, Clone)]
-struct Entry {
-    law: Law,
-    /// More spread, from elsewhere.
-    more: f64,
-}
-
 impl Costs {
-    /// Fits laws to this machine's records of so many threads, and to those of another machine, which are brought to
+    /// Laws fitted to this machine's records of so many threads, and to those of another machine, which are brought to
     /// this one's speed where that is known.
     pub fn fit(own: &[CostRecord], shipped: &[CostRecord], threads: usize) -> Self {
         let made = own.iter().map(|r| (r.key.clone(), r.made.clone())).collect();
-        let own: Vec<&CostRecord> = own.iter().filter(|r| r.threads == threads).collect();
-        let shipped: Vec<&CostRecord> = shipped.iter().collect();
+        let own: Vec<CostRecord> = own.iter().filter(|r| r.threads == threads).cloned().collect();
         let met = own.iter().map(|r| r.pipeline.clone()).collect();
-        let bias = Bias::learn(own.iter().chain(&shipped).copied());
-        let mut costs = Costs { made, bias, met, own: own.len(), ..Costs::default() };
-        for figure in Figure::ALL {
-            let prior = laws(&shipped, &[], figure, 1.0, |r| r.stage.clone());
-            let speed = speed(&own, &prior, figure);
-            let (factor, more) = match (speed, shipped.is_empty() || !figure.is_time()) {
-                (_, true) => (1.0, 0.0),
-                (Some(speed), _) => (speed, 0.0),
-                (None, _) => (1.0, OTHER_MACHINE),
-            };
-            let mut add = |to: fn(&mut Costs) -> &mut BTreeMap<(String, Figure), Entry>,
-                           fitted: Laws,
-                           more: f64| {
-                to(&mut costs).extend(fitted.into_iter().map(|(n, law)| ((n, figure), Entry { law, more })));
-            };
-            add(|c| &mut c.stages, laws(&own, &shipped, figure, factor, |r| r.stage.clone()), more);
-            add(
-                |c| &mut c.roles,
-                laws(&own, &shipped, figure, factor, |r| r.role.clone()),
-                more + OTHER_STAGE,
-            );
-        }
-        costs
+        Costs { own, shipped: shipped.to_vec(), made, met, ..Costs::default() }
     }
 
     /// Runs of stages on this machine that the laws rest on.
     pub fn own_runs(&self) -> usize {
-        self.own
+        self.own.len()
     }
 
     /// What a stage made last time of the same.
@@ -99,14 +92,24 @@ impl Costs {
 
     /// What the rules foresee at a stage, corrected by how far they were off in earlier runs; `style` as in the records.
     pub fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
-        self.bias.corrected(stage, style, foreseen)
+        let bias = self.bias.get_or_init(|| Bias::learn(self.own.iter().chain(&self.shipped)));
+        bias.corrected(stage, style, foreseen)
     }
 
     /// One figure of a stage of a pipeline; none where no stage of its role was ever seen.
     pub fn estimate(&self, at: &Place<'_>, size: &Size, figure: Figure) -> Option<Estimate> {
-        let own = self.stages.get(&(at.stage.to_owned(), figure));
-        let entry = own.or_else(|| self.roles.get(&(at.role.to_owned(), figure)))?;
-        Some(entry.law.estimate(size, at.style, self.met.contains(at.pipeline), entry.more))
+        let elsewhere = self.elsewhere(figure);
+        let (law, more) = match self.law(Group::Stage, at.stage, figure) {
+            Some(law) => (law, elsewhere),
+            None => (self.law(Group::Role, at.role, figure)?, elsewhere + OTHER_STAGE),
+        };
+        Some(law.estimate(size, at.style, self.met.contains(at.pipeline), more))
+    }
+
+    /// How far this machine may lie from what the laws rest on, as a logarithm.
+    fn elsewhere(&self, figure: Figure) -> f64 {
+        let is_told = self.shipped.is_empty() || !figure.is_time() || self.speed(figure).is_some();
+        if is_told { 0.0 } else { OTHER_MACHINE }
     }
 
     /// All figures of a stage.
@@ -122,43 +125,65 @@ impl Costs {
 
     /// True where the stage has records of its own.
     pub fn knows(&self, stage: &str) -> bool {
-        self.stages.contains_key(&(stage.to_owned(), Figure::Wall))
+        self.law(Group::Stage, stage, Figure::Wall).is_some()
     }
-}
 
-type Laws = BTreeMap<String, Law>;
-
-/// A law for each name; shipped records are brought to this machine by a factor.
-fn laws(
-    own: &[&CostRecord],
-    shipped: &[&CostRecord],
-    figure: Figure,
-    factor: f64,
-    name: impl Fn(&CostRecord) -> String,
-) -> Laws {
-    let mut seen: BTreeMap<String, (&str, Vec<Seen<'_>>)> = BTreeMap::new();
-    let mut count: BTreeMap<String, f64> = BTreeMap::new();
-    shipped.iter().for_each(|r| *count.entry(name(r)).or_default() += 1.0);
-    let weighed = |r: &CostRecord| SHIPPED_RUNS / count.get(&name(r)).copied().unwrap_or(1.0);
-    let all = own.iter().map(|r| (r, 1.0, 1.0)).chain(shipped.iter().map(|r| (r, weighed(r), factor)));
-    for (record, weight, factor) in all {
-        let Some(fact) = figure.of(&record.used) else { continue };
-        let entry = seen.entry(name(record)).or_insert((record.role.as_str(), Vec::new()));
-        let CostRecord { pipeline, style, size, .. } = record;
-        entry.1.push(Seen { pipeline, style, size, fact: fact * factor, weight });
+    /// True where the stage has run on this machine.
+    pub fn measured_here(&self, stage: &str) -> bool {
+        self.own.iter().any(|r| r.stage == stage)
     }
-    let law = |(name, (role, seen)): (String, (&str, Vec<Seen<'_>>))| {
-        Some((name, Law::fit(terms(role), &seen, figure.floor())?))
-    };
-    seen.into_iter().filter_map(law).collect()
-}
 
-/// How much longer this machine takes than the one of the shipped records; none while that is not known.
-fn speed(own: &[&CostRecord], prior: &Laws, figure: Figure) -> Option<f64> {
-    let ratio = |r: &&CostRecord| {
-        let fact = figure.of(&r.used).filter(|f| *f >= TELLING_S)?;
-        Some((fact / prior.get(&r.stage)?.value(&r.size, &r.style)).ln())
-    };
-    let mut ratios: Vec<f64> = own.iter().filter_map(ratio).collect();
-    (ratios.len() >= TELLING_RUNS).then(|| median(&mut ratios).exp())
+    /// The law of a name; none where nothing was seen of it.
+    fn law(&self, group: Group, name: &str, figure: Figure) -> Option<Law> {
+        let key = (group, name.to_owned(), figure);
+        if let Some(law) = self.laws.lock().unwrap_or_else(PoisonError::into_inner).get(&key) {
+            return law.clone();
+        }
+        let law = self.fitted(group, name, figure);
+        self.laws.lock().unwrap_or_else(PoisonError::into_inner).insert(key, law.clone());
+        law
+    }
+
+    fn fitted(&self, group: Group, name: &str, figure: Figure) -> Option<Law> {
+        let of_name = |r: &&CostRecord| group.name(r) == name;
+        let shipped: Vec<&CostRecord> = self.shipped.iter().filter(of_name).collect();
+        let (own, weight, factor) = match group {
+            Group::Shipped => (Vec::new(), 1.0, 1.0),
+            Group::Stage | Group::Role => {
+                let factor = if figure.is_time() { self.speed(figure).unwrap_or(1.0) } else { 1.0 };
+                (self.own.iter().filter(of_name).collect(), SHIPPED_RUNS / shipped.len() as f64, factor)
+            }
+        };
+        let own = own.into_iter().map(|r| (r, 1.0, 1.0));
+        let all = own.chain(shipped.into_iter().map(|r| (r, weight, factor)));
+        let all: Vec<(&CostRecord, f64, f64)> =
+            all.filter_map(|(r, weight, factor)| Some((r, weight, figure.of(&r.used)? * factor))).collect();
+        let role = all.first()?.0.role.as_str();
+        let seen: Vec<Seen<'_>> = all
+            .iter()
+            .map(|(CostRecord { pipeline, style, size, .. }, weight, fact)| Seen {
+                pipeline,
+                style,
+                size,
+                fact: *fact,
+                weight: *weight,
+            })
+            .collect();
+        Law::fit(terms(role), &seen, figure.floor())
+    }
+
+    /// How much longer this machine takes than the one of the shipped records; none while that is not known.
+    fn speed(&self, figure: Figure) -> Option<f64> {
+        if let Some(speed) = self.speeds.lock().unwrap_or_else(PoisonError::into_inner).get(&figure) {
+            return *speed;
+        }
+        let ratio = |r: &CostRecord| {
+            let fact = figure.of(&r.used).filter(|f| *f >= TELLING_S)?;
+            Some((fact / self.law(Group::Shipped, &r.stage, figure)?.value(&r.size, &r.style)).ln())
+        };
+        let mut ratios: Vec<f64> = self.own.iter().filter_map(ratio).collect();
+        let speed = (ratios.len() >= TELLING_RUNS).then(|| median(&mut ratios).exp());
+        self.speeds.lock().unwrap_or_else(PoisonError::into_inner).insert(figure, speed);
+        speed
+    }
 }

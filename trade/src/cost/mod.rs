@@ -38,7 +38,7 @@ pub use check::{Check, Tally, Verdict, check};
 pub use costs::{Costs, Place};
 pub use meter::{MemoryCount, Stopwatch};
 pub use note::note;
-pub use predict::{Forecast, predict, total};
+pub use predict::{Forecast, forecast, predict, sizes, total};
 pub use record::{CostRecord, Figure, Host};
 pub use repeats::shortest;
 pub use shipped::{Collection, parse as parse_collection, shipped};

@@ -19,6 +19,8 @@ pub struct Forecast {
     pub predicted: Predicted,
     /// False where the stage has no record of its own and others of its role stand in.
     pub known: bool,
+    /// False where the stage has not run on this machine yet.
+    pub measured_here: bool,
 }
 
 /// Names what a stage is to be given, for finding what it made of the same before.
@@ -34,17 +36,29 @@ pub(super) fn key(node: &Node, foreseen: &Size) -> String {
 
 /// What each stage of a pipeline will be given, make and take. Nothing is run.
 pub fn predict(pipeline: &Pipeline, costs: &Costs) -> Vec<Forecast> {
+    let sizes = sizes(pipeline, costs).into_iter().enumerate();
+    sizes.filter_map(|(i, size)| forecast(pipeline, costs, i, size)).collect()
+}
+
+/// How much each stage of a pipeline will be given and make, all together.
+pub fn sizes(pipeline: &Pipeline, costs: &Costs) -> Vec<Size> {
     let known = |i: usize, rule: &Size| costs.made(&key(&pipeline.nodes[i], rule)).cloned();
     let (rules, facts) = (foresee(pipeline, &|_, _| None), foresee(pipeline, &known));
     let style = style(pipeline);
-    let forecast = |(node, (rules, facts)): (&Node, (Foreseen, Foreseen))| {
-        let (work, role) = (work(node), node.card.role.as_str());
-        let size = best(&costs.corrected(&work, &style, &all(&rules)), &all(&rules), &all(&facts));
-        let predicted =
-            costs.predicted(&Place { pipeline: &pipeline.name, stage: &work, role, style: &style }, &size);
-        Forecast { stage: node.id.clone(), size, predicted, known: costs.knows(&work) }
+    let size = |(node, (rules, facts)): (&Node, (Foreseen, Foreseen))| {
+        best(&costs.corrected(&work(node), &style, &all(&rules)), &all(&rules), &all(&facts))
     };
-    pipeline.nodes.iter().zip(rules.into_iter().zip(facts)).map(forecast).collect()
+    pipeline.nodes.iter().zip(rules.into_iter().zip(facts)).map(size).collect()
+}
+
+/// What one stage, by its index, will take of such a size.
+pub fn forecast(pipeline: &Pipeline, costs: &Costs, node: usize, size: Size) -> Option<Forecast> {
+    let node = pipeline.nodes.get(node)?;
+    let (work, role, style) = (work(node), node.card.role.as_str(), style(pipeline));
+    let place = Place { pipeline: &pipeline.name, stage: &work, role, style: &style };
+    let predicted = costs.predicted(&place, &size);
+    let (known, measured_here) = (costs.knows(&work), costs.measured_here(&work));
+    Some(Forecast { stage: node.id.clone(), size, predicted, known, measured_here })
 }
 
 fn all(f: &Foreseen) -> Size {

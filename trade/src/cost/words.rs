@@ -38,7 +38,11 @@ pub fn forecast_lines(forecasts: &[&Forecast], source: &str) -> Vec<String> {
         format!("(80 of 100 runs lie in the range; {source})"),
     ];
     for f in forecasts {
-        let mark = if f.known { "" } else { "  no record of it; others of its role stand in" };
+        let mark = match (f.known, f.measured_here) {
+            (false, _) => "  no record of it; others of its role stand in",
+            (true, false) => "  not measured here",
+            (true, true) => "",
+        };
         lines.push(row(&f.stage, &f.predicted) + mark);
     }
     let all: Vec<&Predicted> = forecasts.iter().map(|f| &f.predicted).collect();

@@ -9,7 +9,7 @@ mod tests;
 use crate::record::{Clock, Machine};
 use crate::tune::{Proof, Prover, Wish, overrides, refusal};
 use std::str::FromStr;
-use toile_core::pipeline::{Quality, fill_qualities, load, without_qualities};
+use toile_core::pipeline::{Basis, Quality, fill_qualities, load, without_qualities};
 use toile_core::{ErrorCode, Length, StageError};
 
 /// A quality that is asked for: `Draft=10 mm`.
@@ -100,7 +100,13 @@ pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Resu
     let base = source.load(&[]).map_err(|f| invalid(f.to_string()))?.text;
     let is_same = source.set.is_empty() && source.quality.is_none();
     let base = if is_same { base } else { without_qualities(&base).map_err(|f| invalid(f.message))? };
-    let qualities: Vec<Quality> = kept.iter().map(|(a, p)| quality(prover, a, p, date)).collect();
+    let one = |(asked, proof): &(Asked, Proof)| {
+        let quality = quality(prover, asked, proof, date);
+        let measured_on = load(&base, &source.file, &source.base, source.registry, &quality.set);
+        let measured_on = measured_on.map_err(|f| invalid(f.to_string()))?;
+        Ok(quality.measured_for(Basis::of(&measured_on)))
+    };
+    let qualities = kept.iter().map(one).collect::<Result<Vec<_>, StageError>>()?;
     let text = fill_qualities(&base, &qualities).map_err(|f| invalid(f.message))?;
     load(&text, &source.file, &source.base, source.registry, &[]).map_err(|f| invalid(f.to_string()))?;
     Ok(text)

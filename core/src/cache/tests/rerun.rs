@@ -1,6 +1,8 @@
 //! What runs again after an edit, and what does not.
 
 use super::bench::{ALL, Bench, STAGES, file};
+use crate::cost::{Expect, Meter, Predicted, Used};
+use crate::pipeline::Pipeline;
 use crate::{Cancel, Event, Listener, RunOptions, RunResult, run};
 use std::fs;
 use std::sync::{Arc, Mutex};
@@ -23,6 +25,53 @@ fn a_second_run_runs_nothing_and_gives_the_same() {
     }
     assert_eq!(warm.metrics.stages[1].figures["back.level"], 3.0);
     assert_eq!(warm.metrics.stages[1].warnings, ["back: it is small", "front: it is small"]);
+}
+
+/// Notes of which stages it was asked.
+#[derive(Debug, Default)]
+struct Asked(Mutex<Vec<usize>>);
+
+impl Expect for Asked {
+    fn expected(&self, _pipeline: &Pipeline, node: usize) -> Option<Predicted> {
+        self.0.lock().unwrap().push(node);
+        Some(Predicted::default())
+    }
+}
+
+#[test]
+fn what_is_expected_is_asked_of_stages_that_ran_and_of_no_others() {
+    let bench = Bench::new("expect", STAGES);
+    let asked = |sets: &[&str]| {
+        let asked = Arc::new(Asked::default());
+        let meter: Arc<dyn Meter> = Arc::new(Still);
+        let expect: Arc<dyn Expect> = asked.clone();
+        let options = RunOptions {
+            cache: Some(bench.cache()),
+            meter: Some(meter),
+            expect: Some(expect),
+            ..RunOptions::default()
+        };
+        let listener: Arc<dyn Listener> = Arc::new(());
+        let result = run(&bench.pipeline(sets), &options, &Cancel::new(), &listener).unwrap();
+        let told = result.metrics.stages.iter().filter(|s| s.predicted.is_some()).count();
+        let mut nodes = std::mem::take(&mut *asked.0.lock().unwrap());
+        nodes.sort_unstable();
+        nodes.dedup();
+        (nodes, told)
+    };
+    assert_eq!(asked(&[]), (vec![0, 1, 2, 3], 4));
+    assert_eq!(asked(&[]), (vec![], 0), "nothing ran, so nothing is fitted");
+    assert_eq!(asked(&["stages.Modulo.levels=8"]), (vec![1, 2, 3], 3));
+}
+
+#[derive(Debug)]
+struct Still;
+
+impl Meter for Still {
+    fn start(&self) {}
+    fn stop(&self) -> Used {
+        Used::default()
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The entries of `qualities`, as far as they stand for themselves.
 
-use super::{MAX_QUALITIES, MAX_SETTINGS, Quality};
+use super::{Basis, MAX_QUALITIES, MAX_SETTINGS, Quality};
 use crate::Length;
 use crate::param::ron_options;
 use crate::pipeline::fault::Fault;
@@ -9,7 +9,7 @@ use crate::pipeline::{Override, near, parse};
 use std::ops::Range;
 
 /// The fields of an entry.
-const FIELDS: [&str; 4] = ["name", "max_error", "set", "measured"];
+const FIELDS: [&str; 5] = ["name", "max_error", "set", "measured", "measured_for"];
 /// How one is written.
 const FORM: &str = "Quality(name: \"Draft\", max_error: \"10 mm\", set: [...])";
 
@@ -110,6 +110,7 @@ impl Reader<'_> {
         let error = self.field(entries, "max_error").map(|v| self.length(v));
         let set = self.field(entries, "set").map(|v| self.settings(v));
         let measured = self.field(entries, "measured").map(|v| self.words("measured", v));
+        let basis = self.field(entries, "measured_for").map(|v| self.basis(v));
         for (field, given) in
             [("name", title.is_some()), ("max_error", error.is_some()), ("set", set.is_some())]
         {
@@ -121,7 +122,8 @@ impl Reader<'_> {
         let (title, place) = title?;
         let (set, places) = set??.into_iter().unzip();
         let measured = measured.map_or(Some(None), |words| words.map(Some))?;
-        Some(Quality { name: title?, max_error: error??, set, measured, place, places })
+        let basis = basis.map_or(Some(None), |basis| basis.map(Some))?;
+        Some(Quality { name: title?, max_error: error??, set, measured, basis, place, places })
     }
 
     /// Reports fields that there are not, that are given twice, or that have no name.
@@ -155,6 +157,12 @@ impl Reader<'_> {
             self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
         }
         parsed
+    }
+
+    fn basis(&mut self, value: &Tree) -> Option<Basis> {
+        let words = self.words("measured_for", value)?;
+        let parsed = words.parse::<Basis>();
+        parsed.map_err(|why| self.fault("bad_value", format!("`measured_for`: {why}"), &value.span)).ok()
     }
 
     fn name(&mut self, value: &Tree) -> Option<String> {

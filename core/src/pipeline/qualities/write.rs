@@ -80,9 +80,13 @@ fn written(quality: &Quality) -> String {
         ),
         format!("            set: [{}]", set.join(", ")),
     ];
-    if let Some(measured) = &quality.measured {
-        lines[1].push(',');
-        lines.push(format!("            measured: {}", ron_text(measured)));
+    let measured = quality.measured.as_ref().map(|m| ("measured", ron_text(m)));
+    let basis = quality.basis.as_ref().map(|b| ("measured_for", ron_text(&b.to_string())));
+    for (field, value) in measured.into_iter().chain(basis) {
+        if let Some(last) = lines.last_mut() {
+            last.push(',');
+        }
+        lines.push(format!("            {field}: {value}"));
     }
     lines.join("\n") + "),"
 }

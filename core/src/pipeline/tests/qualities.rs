@@ -1,6 +1,6 @@
 //! Named qualities: read, checked at every load, chosen, written.
 
-use super::super::{Changes, Quality, fill_qualities, load_with, without_qualities};
+use super::super::{Changes, Quality, Standing, fill_qualities, load_with, without_qualities};
 use super::*;
 use crate::Length;
 
@@ -30,7 +30,7 @@ fn a_quality_sets_what_it_says_and_set_comes_after_it() {
     let plain = good(&text);
     assert_eq!((plain.qualities.len(), plain.quality.as_deref()), (2, None));
     assert!(param(&plain, "GridMesher").contains("12 mm"));
-    assert_eq!(plain.qualities[1].words(), "Fine (2 mm)");
+    assert_eq!(plain.qualities[1].words(Standing::Holds), "Fine (2 mm)");
     assert_eq!(plain.qualities[1].measured.as_deref(), Some("today"));
 
     let draft = at(&text, "Draft", &[]).unwrap();
@@ -112,7 +112,7 @@ fn the_form_of_an_entry_word_for_word() {
         shown("[Quality(nam: \"A\", max_error: 3, set: \"x\")]"),
         format!(
             "vest.ron:11:17: the quality lacks `name`; {form}\n\
-             vest.ron:11:25: unknown field `nam`; did you mean `name`? a quality has `name`, `max_error`, `set`, `measured`\n\
+             vest.ron:11:25: unknown field `nam`; did you mean `name`? a quality has `name`, `max_error`, `set`, `measured`, `measured_for`\n\
              vest.ron:11:46: `max_error` wants text in quotes\n\
              vest.ron:11:54: `set` wants a list of texts; write `set: [\"stages.GridMesher.edge=\\\"24 mm\\\"\"]`"
         )
@@ -184,7 +184,7 @@ fn qualities_are_written_last_and_all_else_stays() {
 fn one_of_a_name_takes_its_place_and_others_follow() {
     let text = with(TWO);
     let filled = fill_qualities(&text, &[quality("Draft", &[]), quality("Mid", &["name=\"m\""])]).unwrap();
-    let names: Vec<String> = good(&filled).qualities.iter().map(Quality::words).collect();
+    let names: Vec<String> = good(&filled).qualities.iter().map(|q| q.words(Standing::Holds)).collect();
     assert_eq!(names, ["Draft (4 mm)", "Fine (2 mm)", "Mid (4 mm)"]);
     assert!(filled.contains("measured: \"today\"), // mine\n        Quality(name: \"Mid\""), "{filled}");
     // A last entry without a comma gets one, past the comment behind it.

@@ -4,6 +4,7 @@
 mod block;
 mod cholesky;
 mod pcg;
+mod probe;
 mod vectors;
 
 #[cfg(test)]
@@ -12,4 +13,5 @@ mod tests;
 pub use block::BlockMatrix;
 pub use cholesky::Cholesky;
 pub use pcg::{PcgReport, conjugate_gradients};
+pub use probe::probe;
 pub(crate) use vectors::leave_vectors;

@@ -92,6 +92,22 @@ fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     leave_vectors();
 }
 
+/// The factor of a fixed matrix and what it leaves of the border, to show this machine's arithmetic; see
+/// [`crate::linear::probe`]. The matrix is strictly dominated by its diagonal, so it has a factor.
+pub(crate) fn probe_factor<T: Real>(rows: usize, columns: usize) -> Vec<f64> {
+    let value =
+        |r: usize, c: usize| if r == c { 2.0 * rows as f64 } else { ((r * c + r + c) % 97) as f64 / 97.0 };
+    let mut own: Vec<T> = (0..columns).flat_map(|c| (0..rows).map(move |r| T::of(value(r, c)))).collect();
+    let below = rows - columns;
+    let mut border = vec![T::ZERO; below * below];
+    let mut front = MatMut::from_column_major_slice_mut(&mut own, rows, columns);
+    if factor_columns(front.rb_mut()).is_ok() {
+        let border = MatMut::from_column_major_slice_mut(&mut border, below, below);
+        take_product(border, Accum::Replace, front.rb().subrows(columns, below));
+    }
+    own.into_iter().chain(border).map(Real::wide).collect()
+}
+
 /// Half of `size`, in whole pieces.
 fn whole_pieces(size: usize, piece: usize) -> usize {
     size.div_ceil(2 * piece) * piece

@@ -41,3 +41,5 @@ pub mod thread;
 #[cfg(test)]
 mod trial;
 mod work;
+
+pub(crate) use dense::probe_factor;

@@ -30,8 +30,13 @@ fn a_check_is_told_in_words() {
 fn a_forecast_is_told_in_words() {
     let e = |value: f64| Some(Estimate { value, low: value / 2.0, high: value * 2.0 });
     let predicted = Predicted { wall_s: e(0.04), peak_bytes: e(3e6), ..Predicted::default() };
-    let forecast =
-        |stage: &str, known, predicted| Forecast { stage: stage.into(), size: Size::new(), predicted, known };
+    let forecast = |stage: &str, known, predicted| Forecast {
+        stage: stage.into(),
+        size: Size::new(),
+        predicted,
+        known,
+        measured_here: true,
+    };
     let (otsu, own) = (forecast("Otsu", true, predicted), forecast("Own", false, Predicted::default()));
     assert_eq!(
         forecast_lines(&[&otsu, &own], "from 3 runs"),

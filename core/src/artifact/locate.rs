@@ -4,18 +4,25 @@
 //! into wider and wider rings. Cost: linear in the triangles; a point costs what its cell holds.
 //! Limits: a point beyond the mesh gets the triangle nearest to it, by distance to its sides.
 
+use super::{Point2, Point3, Vector3};
 use std::collections::BTreeMap;
-use toile_core::artifact::Point2;
 
 /// Where a point lies: a triangle, its weights (which sum to 1), and how far beyond the mesh it is, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Place {
+pub struct Located {
     /// Index of the triangle.
     pub triangle: usize,
     /// Weights of its corners; one is negative for a point beyond the mesh.
     pub weights: [f64; 3],
     /// Distance from the triangle, metres; 0 inside.
     pub beyond: f64,
+}
+
+impl Located {
+    /// The same point of the cloth where the triangle's corners lie in space.
+    pub fn in_space(&self, corners: [Point3; 3]) -> Point3 {
+        Point3::from((0..3).map(|k| corners[k].coords * self.weights[k]).sum::<Vector3>())
+    }
 }
 
 /// Cells to the farthest that a point may lie beyond the mesh, at most.
@@ -25,7 +32,8 @@ const CELLS_A_REACH: f64 = 8.0;
 const LEAST_SHAPE: f64 = 1e-3;
 
 /// A flat mesh, ready to be asked.
-pub(crate) struct Locator {
+#[derive(Debug, Clone)]
+pub struct Locator {
     corners: Vec<[Point2; 3]>,
     cell: f64,
     cells: BTreeMap<(i64, i64), Vec<usize>>,
@@ -34,7 +42,7 @@ pub(crate) struct Locator {
 
 impl Locator {
     /// Of triangles with some area, for points at most `reach` (metres) beyond them; none where there are none.
-    pub(crate) fn new(corners: Vec<[Point2; 3]>, reach: f64) -> Option<Self> {
+    pub fn new(corners: Vec<[Point2; 3]>, reach: f64) -> Option<Self> {
         let area: f64 = corners.iter().map(|[a, b, c]| (b - a).perp(&(c - a)).abs() / 2.0).sum();
         // With the mean square of the boxes for a cell, all boxes together touch a number of cells linear in theirs.
         let extent = |[a, b, c]: &[Point2; 3]| (a.sup(b).sup(c) - a.inf(b).inf(c)).max().powi(2);
@@ -60,10 +68,10 @@ impl Locator {
     }
 
     /// The triangle that holds `p`, or the nearest one within reach.
-    pub(crate) fn find(&self, p: Point2) -> Option<Place> {
+    pub fn find(&self, p: Point2) -> Option<Located> {
         let (i, j) = ((p.x / self.cell).floor() as i64, (p.y / self.cell).floor() as i64);
         let most = (self.reach / self.cell).ceil() as i64 + 1;
-        let mut best: Option<Place> = None;
+        let mut best: Option<Located> = None;
         for ring in 0..=most {
             // What lies in farther rings is farther than this.
             if best.is_some_and(|b| b.beyond <= (ring - 1).max(0) as f64 * self.cell) {
@@ -81,7 +89,7 @@ impl Locator {
         best.filter(|b| b.beyond <= self.reach)
     }
 
-    fn place(&self, k: usize, p: Point2) -> Place {
+    fn place(&self, k: usize, p: Point2) -> Located {
         let [a, b, c] = self.corners[k];
         let area = (b - a).perp(&(c - a));
         let (v, w) = ((p - a).perp(&(c - a)) / area, (b - a).perp(&(p - a)) / area);
@@ -92,7 +100,7 @@ impl Locator {
             (p - (a + (b - a) * t)).norm()
         };
         let beyond = if inside { 0.0 } else { to(a, b).min(to(b, c)).min(to(c, a)) };
-        Place { triangle: k, weights, beyond }
+        Located { triangle: k, weights, beyond }
     }
 }
 
@@ -120,7 +128,7 @@ mod tests {
             let q = Point2::new(x, y);
             let found = locator.find(q).unwrap();
             let corners = locator.corners[found.triangle];
-            let back: nalgebra::Vector2<f64> = (0..3).map(|k| corners[k].coords * found.weights[k]).sum();
+            let back: super::super::Vector2 = (0..3).map(|k| corners[k].coords * found.weights[k]).sum();
             assert!((back - q.coords).norm() < 1e-12 && (found.beyond - beyond).abs() < 1e-12, "{found:?}");
         }
     }

@@ -1,0 +1,61 @@
+//! What the pipeline of prepared scenes gives by default hardly depends on where the cloth began.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::Path;
+use toile_cloth::scene::{Scene, body_to_obj, generate, to_json};
+use toile_tests::{pipeline, toile};
+
+/// Where the vertices of a scene come to rest by `pipelines/scene.ron`, mm.
+fn at_rest(dir: &Path, scene: &Scene, more: &[&str]) -> Vec<[f64; 3]> {
+    fs::write(dir.join("scene.json"), to_json(scene, "body.obj")).unwrap();
+    fs::write(dir.join("body.obj"), body_to_obj(scene)).unwrap();
+    let (file, out) = (dir.join("scene.json"), dir.join("out").display().to_string());
+    let set = format!("scene.file={:?}", file.display().to_string());
+    let answer = toile(&[&["run", &pipeline("scene.ron"), "--set", &set, "--out", &out], more].concat());
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+    let text = fs::read_to_string(dir.join("out/result.obj")).unwrap();
+    let vertex = |l: &str| {
+        let c: Vec<f64> = l.strip_prefix("v ")?.split(' ').map(|c| c.parse::<f64>().unwrap() * 1e3).collect();
+        Some([c[0], c[1], c[2]])
+    };
+    text.lines().filter_map(vertex).collect()
+}
+
+/// How far 95 % of the vertices end at most from where they end without the move, over starts of which every vertex is moved by
+/// 1 mm, mm.
+fn spread(scene: &Scene, starts: u64, more: &[&str]) -> f64 {
+    let dir = tempfile::tempdir().unwrap();
+    let own = at_rest(dir.path(), scene, more);
+    let apart = |seed: u64| {
+        let mut moved = scene.clone();
+        generate::jitter(&mut moved, 1e-3, seed);
+        let there = at_rest(dir.path(), &moved, more);
+        let far = |(a, b): (&[f64; 3], &[f64; 3])| {
+            a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+        };
+        let mut far: Vec<f64> = own.iter().zip(&there).map(far).collect();
+        far.sort_by(f64::total_cmp);
+        eprintln!("start {seed}: 95 % within {:.2} mm", far[far.len() * 95 / 100]);
+        far[far.len() * 95 / 100]
+    };
+    (1..=starts).map(apart).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
+    let skirt = generate::tube(22, 25);
+    let default = spread(&skirt, 4, &[]);
+    assert!(default < 2.0, "{default}");
+    // The choice that is fast leaves the folds to chance, or this test would tell nothing.
+    let fast = spread(&skirt, 4, &["--set", "stages.Rest.graded=false"]);
+    assert!(fast > 4.0, "{fast}");
+}
+
+#[test]
+fn a_square_over_a_ball_from_moved_starts_ends_near() {
+    let drape = generate::drape(24);
+    let default = spread(&drape, 4, &[]);
+    let fast = spread(&drape, 4, &["--set", "stages.Rest.graded=false"]);
+    assert!(default < 5.0 && default < fast, "{default} {fast}");
+}
