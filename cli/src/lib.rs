@@ -37,7 +37,7 @@ use clap::Parser;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
-use toile_core::Registry;
+use toile_core::{Registry, panics};
 use toile_core::pipeline::Faults;
 use toile_trade::apart::Apart;
 
@@ -89,6 +89,22 @@ impl Streams<'_> {
         exit::INVALID
     }
 
+    /// Says that the program panicked, and what to do about it.
+    fn bug(&mut self, json: bool, words: &str) -> u8 {
+        let message = format!("the program panicked: {words}");
+        match json {
+            true => {
+                let code = toile_core::ErrorCode::Internal.as_str();
+                self.say(serde_json::json!({ "error": code, "message": message, "hint": panics::REPORT }));
+            }
+            false => {
+                self.tell(format!("error: {message}"));
+                self.tell(format!("  help: {}", panics::REPORT));
+            }
+        }
+        exit::BUG
+    }
+
     /// Writes a line for the person at the terminal.
     pub(crate) fn tell(&mut self, line: impl std::fmt::Display) {
         let _ = writeln!(self.err, "{line}");
@@ -121,25 +137,36 @@ where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
+    panics::quiet();
     started(registry, arguments, Streams { apart: Apart::this_program(Vec::new()), out, err })
 }
 
+/// Runs the command; a panic in it is told as a bug.
 fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>) -> u8
 where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
+    let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let json = arguments.iter().any(|a| a == "--json");
+    match panics::caught(|| answered(registry, arguments, &mut streams)) {
+        Ok(code) => code,
+        Err(words) => streams.bug(json, &words),
+    }
+}
+
+fn answered(registry: &Registry, arguments: Vec<OsString>, streams: &mut Streams<'_>) -> u8 {
     match Arguments::try_parse_from(arguments) {
         Ok(Arguments { command: Command::Run(args), plugins }) if args.watch => {
-            watch::watch(&args, &plugins, registry, &mut streams)
+            watch::watch(&args, &plugins, registry, streams)
         }
         Ok(Arguments { command, plugins }) => {
             // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
             let (registry, all) = with_plugins(registry, &plugins);
-            streams.apart = streams.apart.map(|program| apart::with_plugins(program, &plugins));
+            streams.apart = streams.apart.take().map(|program| apart::with_plugins(program, &plugins));
             match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
-                true => dispatch(command, &registry, &mut streams),
-                false => refused(&registry, &mut streams),
+                true => dispatch(command, &registry, streams),
+                false => refused(&registry, streams),
             }
         }
         Err(e) if e.use_stderr() => {

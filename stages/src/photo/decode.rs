@@ -67,6 +67,11 @@ pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
     }
 }
 
+/// Refuses what [`decode`] would refuse by the header alone.
+pub(super) fn check(bytes: &[u8], name: &str) -> Result<(), StageError> {
+    check_header(bytes, name).map(|_| ())
+}
+
 fn check_header(bytes: &[u8], name: &str) -> Result<Header, StageError> {
     if bytes.is_empty() {
         return Err(damaged(name, "is empty"));
