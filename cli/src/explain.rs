@@ -38,11 +38,7 @@ pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Str
     };
     let (plan, decided) = match planned(args, &pipeline) {
         Ok(both) => both,
-        Err(e) if args.json => return fail_run(&pipeline, &e, true, streams),
-        Err(e) => {
-            streams.tell(format!("error: {e}"));
-            return exit::INVALID;
-        }
+        Err(e) => return fail_run(&pipeline, &e, args.json, streams),
     };
     let ablation = match ablation(args, &pipeline, streams) {
         Ok(ablation) => ablation,

@@ -45,7 +45,7 @@ use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
 use streams::Streams;
-use toile_core::Registry;
+use toile_core::{Registry, panics};
 use toile_trade::apart::Apart;
 
 /// Exit codes of the command.
@@ -91,21 +91,32 @@ where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
+    panics::quiet();
     let _alive = Alive::new();
     started(registry, arguments, Streams::new(Apart::this_program(Vec::new()), out, err), true)
 }
 
+/// Runs the command; a panic in it is told as a bug.
 fn started<A, T>(registry: &Registry, arguments: A, mut streams: Streams<'_>, is_program: bool) -> u8
 where
     A: IntoIterator<Item = T>,
     T: Into<OsString> + Clone,
 {
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
+    let json = arguments.iter().any(|a| a == "--json");
     if is_program {
-        last_words::as_json(arguments.iter().any(|a| a == "--json"));
+        last_words::as_json(json);
     }
-    let code = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => asked(arguments, registry, &mut streams, is_program),
+    let code = match panics::caught(|| answered(registry, arguments, &mut streams, is_program)) {
+        Ok(code) => code,
+        Err(words) => streams.bug(json, &words),
+    };
+    streams.ended(code)
+}
+
+fn answered(registry: &Registry, arguments: Vec<OsString>, streams: &mut Streams<'_>, is_program: bool) -> u8 {
+    match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => asked(arguments, registry, streams, is_program),
         Err(e) if e.use_stderr() => {
             streams.tell(e.render());
             exit::USAGE
@@ -114,8 +125,7 @@ where
             streams.say(e.render());
             exit::DONE
         }
-    };
-    streams.ended(code)
+    }
 }
 
 fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, is_program: bool) -> u8 {

@@ -10,7 +10,7 @@ use toile_core::artifact::OutputFile;
 use toile_core::cache::Cache;
 use toile_core::lock::Lock;
 use toile_core::pipeline::Pipeline;
-use toile_core::{Listener, Registry, RunOptions, RunResult, run as run_stages, write_files};
+use toile_core::{Listener, Registry, RunOptions, RunResult, faults, run as run_stages, write_files};
 
 /// Runs every pipeline and writes its lock.
 pub(crate) fn lock(args: &LockArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -29,6 +29,10 @@ fn one(path: &Path, args: &LockArgs, registry: &Registry, streams: &mut Streams<
             return exit::INVALID;
         }
     };
+    if let Err(faults) = faults(&pipeline, |_| true, None) {
+        streams.fault(&faults);
+        return exit::INVALID;
+    }
     let cache = cache::chosen(&args.cache, streams).unwrap_or_else(|| Arc::new(Cache::nowhere()));
     let options = RunOptions { cache: Some(cache.clone()), ..RunOptions::default() };
     let listener: Arc<dyn Listener> = Arc::new(());
@@ -87,7 +91,7 @@ pub(crate) fn compare(
     run: &RunResult,
     streams: &mut Streams<'_>,
 ) -> u8 {
-    let differences = lock.differences(&Lock::of(pipeline, registry, run));
+    let differences = lock.differences(&Lock::held_against(pipeline, registry, run));
     for line in &differences {
         streams.tell(format!("lock: {line}"));
     }

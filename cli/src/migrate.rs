@@ -4,8 +4,8 @@ use crate::args::MigrateArgs;
 use crate::{Streams, exit, stdin};
 use std::path::Path;
 use toile_core::artifact::OutputFile;
-use toile_core::pipeline::migrate;
-use toile_core::{Registry, read_text, write_files};
+use toile_core::pipeline::{Faults, load, migrate};
+use toile_core::{Registry, add_implicit, faults, read_text, write_files};
 
 /// Rewrites every file that needs it, and says what was changed.
 pub(crate) fn run(args: &MigrateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -35,7 +35,10 @@ fn one(path: &Path, check: bool, registry: &Registry, streams: &mut Streams<'_>)
     for change in &new.changes {
         streams.say(format!("{name}: {change}"));
     }
-    match (new.changes.is_empty(), check) {
+    let base = path.parent().unwrap_or(Path::new("."));
+    let left = valid(&new.text, &name, base, registry);
+    let code = match (new.changes.is_empty(), check) {
+        (true, _) if left.is_err() => exit::INVALID,
         (true, _) => {
             streams.say(format!("{name}: up to date"));
             exit::DONE
@@ -48,7 +51,21 @@ fn one(path: &Path, check: bool, registry: &Registry, streams: &mut Streams<'_>)
                 exit::INVALID
             }
         },
+    };
+    match left {
+        Ok(()) => code,
+        Err(faults) => {
+            streams.fault(&faults);
+            exit::INVALID
+        }
     }
+}
+
+/// Whether `toile validate` would take a text.
+fn valid(text: &str, name: &str, base: &Path, registry: &Registry) -> Result<(), Box<Faults>> {
+    let mut pipeline = load(text, name, base, registry, &[])?;
+    add_implicit(&mut pipeline, registry);
+    Ok(faults(&pipeline, |_| true, None)?)
 }
 
 /// Writes the file whole or not at all; of a link, the file that it leads to.

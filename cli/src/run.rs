@@ -3,7 +3,7 @@
 use crate::args::RunArgs;
 use crate::costs::{self, Known};
 use crate::progress::Bar;
-use crate::validate::open;
+use crate::validate::{Refused, inspect, open, warn};
 use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
 use serde_json::json;
 use std::path::PathBuf;
@@ -37,6 +37,16 @@ pub(crate) fn once(
         Ok(lock) => lock,
         Err(e) => return streams.refuse(args.json, e),
     };
+    let (until, also, reads_too) = (args.until.clone(), args.also.clone(), reads.cloned());
+    let asked = RunOptions { until, also, reads: reads_too, ..RunOptions::default() };
+    match inspect(&pipeline, &asked) {
+        Ok(()) => {}
+        Err(Refused::Run(e)) => return fail_run(&pipeline, &e, args.json, streams),
+        Err(Refused::File(faults)) => return fail_load(&faults, args.json, streams),
+    }
+    if args.until.is_none() {
+        warn(&pipeline, registry, streams);
+    }
     if let Err(e) = check_folder(&folder(args)) {
         return unwritable(&pipeline, e, args.json, streams);
     }
@@ -200,7 +210,7 @@ fn as_faults(pipeline: &Pipeline, e: &RunError) -> Faults {
     let StageError { code, hint, .. } = &e.error;
     let fault = Fault::new(code.as_str(), e.to_string()).hint(hint.clone());
     let fault = if e.span.is_empty() { fault } else { fault.at(&e.span, code_words(*code)) };
-    Faults::new(&pipeline.file, &pipeline.text, vec![fault])
+    pipeline.faults(vec![fault])
 }
 
 fn code_words(code: ErrorCode) -> &'static str {

@@ -2,6 +2,7 @@
 
 use crate::exit;
 use std::io::{self, ErrorKind, IsTerminal, Write};
+use toile_core::panics;
 use toile_core::pipeline::Faults;
 use toile_trade::apart::Apart;
 
@@ -105,6 +106,22 @@ impl<'a> Streams<'a> {
             false => self.tell(format!("error: {words}")),
         }
         exit::INVALID
+    }
+
+    /// Says that the program panicked, and what to do about it.
+    pub(crate) fn bug(&mut self, json: bool, words: &str) -> u8 {
+        let message = format!("the program panicked: {words}");
+        match json {
+            true => {
+                let code = toile_core::ErrorCode::Internal.as_str();
+                self.say(serde_json::json!({ "error": code, "message": message, "hint": panics::REPORT }));
+            }
+            false => {
+                self.tell(format!("error: {message}"));
+                self.tell(format!("  help: {}", panics::REPORT));
+            }
+        }
+        exit::BUG
     }
 
     /// The exit code of a command that ends with `code`: an answer that could not be written is not done.

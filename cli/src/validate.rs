@@ -5,7 +5,7 @@ use crate::{Streams, exit, stdin};
 use serde_json::json;
 use std::path::Path;
 use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, Standing, load_with};
-use toile_core::{Registry, add_implicit};
+use toile_core::{Registry, RunError, RunOptions, add_implicit, faults, plan};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
 pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> Result<Pipeline, Box<Faults>> {
@@ -19,6 +19,40 @@ pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> R
     Ok(pipeline)
 }
 
+/// Asks the stages that a run would run what is wrong with their parameters and files.
+/// The files that they look at are added to the options' `reads`.
+pub(crate) fn inspect(pipeline: &Pipeline, options: &RunOptions) -> Result<(), Refused> {
+    let plan = plan(pipeline, options).map_err(Refused::Run)?;
+    let runs = |i: usize| plan.get(i).is_some_and(Option::is_none);
+    faults(pipeline, runs, options.reads.as_ref()).map_err(|faults| Refused::File(Box::new(faults)))
+}
+
+/// Why a pipeline is not run.
+pub(crate) enum Refused {
+    /// What is asked of it cannot be.
+    Run(RunError),
+    /// What its stages find wrong.
+    File(Box<Faults>),
+}
+
+/// As [`open`], and asks every stage what is wrong with its parameters and files.
+pub(crate) fn checked(
+    path: &Path,
+    overrides: &Overrides,
+    registry: &Registry,
+) -> Result<Pipeline, Box<Faults>> {
+    let pipeline = open(path, overrides, registry)?;
+    faults(&pipeline, |_| true, None)?;
+    Ok(pipeline)
+}
+
+/// Shows what a pipeline does not use.
+pub(crate) fn warn(pipeline: &Pipeline, registry: &Registry, streams: &mut Streams<'_>) {
+    for line in pipeline.warnings(registry).iter().flat_map(Faults::lines) {
+        streams.warn(line);
+    }
+}
+
 fn unreadable(file: &str, why: &str) -> Box<Faults> {
     let fault = Fault::new("pattern_loading", format!("cannot read the pipeline \"{file}\": {why}"));
     Box::new(Faults::new(file, "", vec![fault]))
@@ -26,11 +60,12 @@ fn unreadable(file: &str, why: &str) -> Box<Faults> {
 
 /// Checks every pipeline and shows all faults of all of them.
 pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
-    let mut faults = Vec::new();
+    let (mut faults, mut warnings) = (Vec::new(), Vec::new());
     for path in &args.pipelines {
-        match open(path, &args.overrides, registry) {
-            Ok(_) if args.json => {}
+        match checked(path, &args.overrides, registry) {
+            Ok(p) if args.json => warnings.extend(p.warnings(registry)),
             Ok(p) => {
+                warn(&p, registry, streams);
                 let line = format!("{}: valid, {} stages", stdin::name(path), p.nodes.len());
                 let words = quality_words(&standings(path, &args.overrides, &p, registry));
                 let words = if words.is_empty() { words } else { format!(", qualities {words}") };
@@ -42,7 +77,8 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
     match args.json {
         true => {
             let list: Vec<_> = faults.iter().flat_map(|f| f.records()).collect();
-            streams.say(json!({ "valid": faults.is_empty(), "faults": list }));
+            let warned: Vec<_> = warnings.iter().flat_map(Faults::records).collect();
+            streams.say(json!({ "valid": faults.is_empty(), "faults": list, "warnings": warned }));
         }
         false => faults.iter().for_each(|f| streams.fault(f)),
     }

@@ -1,7 +1,7 @@
 //! `toile why`: what a run would do again and why, and where a triangle of a result comes from.
 
 use crate::args::WhyArgs;
-use crate::run::fail_load;
+use crate::run::{fail_load, fail_run};
 use crate::validate::open;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
@@ -73,7 +73,7 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
         return streams.refuse(args.json, "there is no place for a cache; set TOILE_CACHE to a folder");
     };
     match explained(args, &pipeline, &cache) {
-        Err(e) => streams.refuse(args.json, e),
+        Err(e) => fail_run(&pipeline, &e, args.json, streams),
         Ok((outlooks, roots)) if args.json => {
             let records = |all: &[Outlook]| all.iter().map(record).collect::<Vec<_>>();
             streams.say(json!({ "stages": records(&outlooks), "since": records(&roots) }));

@@ -225,6 +225,19 @@ impl Context {
         content
     }
 
+    /// Looks whether a file named by the pipeline is there to be read, without reading it.
+    ///
+    /// Errors: those of [`Context::read`].
+    pub fn look(&self, path: &str) -> Result<(), StageError> {
+        let there = self.readable(path).and_then(|full| {
+            std::fs::File::open(&full).map(|_| ()).map_err(|e| unread(path, &io_words(&e)))
+        });
+        if there.is_err() {
+            self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), None));
+        }
+        there
+    }
+
     /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else did.
     pub(crate) fn note_read(&self, path: &str, digest: Option<[u8; 32]>) {
         let hash = digest.map(|d| Hash(Digest(d))).or_else(|| crate::cache::file_hash(&self.resolve(path)));
@@ -232,12 +245,17 @@ impl Context {
     }
 
     fn read_file(&self, path: &str) -> Result<Vec<u8>, StageError> {
+        crate::read_file(&self.resolve(path)).map_err(|e| unread(path, &io_words(&e)))
+    }
+
+    /// The full path of an ordinary file within the limit.
+    fn readable(&self, path: &str) -> Result<PathBuf, StageError> {
         let full = self.resolve(path);
-        let fail = |why: String| {
-            StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
-                .hint("paths are relative to the pipeline file")
-        };
-        crate::read_file(&full).map_err(|e| fail(io_words(&e)))
+        let size = crate::files::ordinary(&full).map_err(|e| unread(path, &io_words(&e)))?.len();
+        match size > MAX_FILE_BYTES {
+            true => Err(unread(path, &format!("it has {size} bytes, the limit is {MAX_FILE_BYTES}"))),
+            false => Ok(full),
+        }
     }
 
     /// The files that the stage has read so far, with the digests of their contents; `None` for one that could
@@ -266,6 +284,11 @@ impl Context {
         let warnings = std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner));
         (figures, warnings)
     }
+}
+
+fn unread(path: &str, why: &str) -> StageError {
+    StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
+        .hint("paths are relative to the pipeline file")
 }
 
 /// The system's reason without its number, so that it reads alike everywhere.

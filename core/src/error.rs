@@ -110,12 +110,14 @@ pub struct StageError {
     pub hint: Option<String>,
     /// The parameter at fault, so that the runner can point at it.
     pub param: Option<&'static str>,
+    /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside in.
+    pub path: Vec<String>,
 }
 
 impl StageError {
     /// An error with a code and a sentence.
     pub fn new(code: ErrorCode, message: impl Into<String>) -> Self {
-        StageError { code, message: message.into(), hint: None, param: None }
+        StageError { code, message: message.into(), hint: None, param: None, path: Vec::new() }
     }
 
     /// Invalid input (exit code 3).
@@ -137,6 +139,14 @@ impl StageError {
     /// Names the parameter at fault.
     pub fn at(mut self, param: &'static str) -> Self {
         self.param = Some(param);
+        self
+    }
+
+    /// Names an element of the parameter's value: a key of a map, a field, the number of an item. Called again, one within it.
+    ///
+    /// `error.at("photos").within("front").within("file")`
+    pub fn within(mut self, key: impl ToString) -> Self {
+        self.path.push(key.to_string());
         self
     }
 }

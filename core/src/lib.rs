@@ -47,6 +47,7 @@ pub mod golden;
 pub mod lock;
 mod metrics;
 mod output;
+pub mod panics;
 pub mod param;
 pub mod pipeline;
 #[allow(unsafe_code)]
@@ -66,9 +67,9 @@ pub use metrics::{Metrics, StageMetrics};
 pub use output::{check_folder, write_files};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, forecast, plan, run};
+pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, faults, forecast, plan, run};
 pub use stage::{
-    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, PluginId, PortValue, Role, Set, Stage,
+    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, Placed, PluginId, PortValue, Role, Set, Stage,
     StageMeta, StageType,
 };
 pub use toile_core_derive::{choice, plugin, stage};
@@ -80,7 +81,7 @@ pub use {ron, serde, typetag};
 pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
-        Context, Contract, ErrorCode, Length, ParamType, Registry, Role, Section, SectionValue, Set, Stage,
+        Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, Section, SectionValue, Set, Stage,
         StageError, StageType, choice, stage,
     };
 }

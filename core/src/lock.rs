@@ -44,15 +44,28 @@ pub struct LockedStage {
     pub params: BTreeMap<String, String>,
     /// Digest of what it made; none for what holds times, such as a report on the run.
     pub result: Option<Hash>,
+    /// True of a stage that the run left out, which has no result to compare.
+    #[serde(skip)]
+    pub left_out: bool,
 }
 
 impl Lock {
     /// The lock of a pipeline after a run of it that took digests (with a cache, or [`crate::cache::Cache::nowhere`]).
     pub fn of(pipeline: &Pipeline, registry: &Registry, run: &RunResult) -> Self {
+        let ran = |id: &str| run.results.iter().any(|(ran, _)| ran == id);
+        let mut lock = Lock::held_against(pipeline, registry, run);
+        lock.stages.retain(|s| ran(&s.id));
+        lock
+    }
+
+    /// What [`Lock::differences`] holds against a lock: stages that the run left out, as with `--until`, are in it and have no
+    /// result.
+    pub fn held_against(pipeline: &Pipeline, registry: &Registry, run: &RunResult) -> Self {
         let stage = |node: &Node| {
-            let (_, result) = run.results.iter().find(|(id, _)| *id == node.id)?;
+            let ran = run.results.iter().find(|(id, _)| *id == node.id);
+            let result = ran.and_then(|(_, result)| *result);
             let timed = node.card.inputs.iter().any(|p| p.kind == RunLog::KIND);
-            Some(LockedStage {
+            LockedStage {
                 id: node.id.clone(),
                 stage: node.card.name.to_owned(),
                 package: node.card.package.to_owned(),
@@ -61,12 +74,13 @@ impl Lock {
                 schema: schema(&node.card).0.short(),
                 params: fields_of(&node.stage.params()),
                 result: result.filter(|_| !timed),
-            })
+                left_out: ran.is_none(),
+            }
         };
         Lock {
             lock: LOCK_VERSION,
             pipeline: pipeline.name.clone(),
-            stages: pipeline.nodes.iter().filter_map(stage).collect(),
+            stages: pipeline.nodes.iter().map(stage).collect(),
         }
     }
 
@@ -96,7 +110,7 @@ impl Lock {
                 None => lines.push(format!("{}: it is not run any more", stage.id)),
             }
         }
-        let new = now.stages.iter().filter(|s| find(self, &s.id).is_none());
+        let new = now.stages.iter().filter(|s| !s.left_out && find(self, &s.id).is_none());
         lines.extend(new.map(|s| format!("{}: it is not in the lock", s.id)));
         lines
     }
@@ -122,7 +136,9 @@ impl LockedStage {
             field(name, &shown(&self.params, name), &shown(&now.params, name));
         }
         let short = |result: &Option<Hash>| result.map_or("(none)".to_owned(), |h| h.0.short());
-        field("result", &short(&self.result), &short(&now.result));
+        if !now.left_out {
+            field("result", &short(&self.result), &short(&now.result));
+        }
         lines
     }
 }
@@ -154,6 +170,7 @@ mod tests {
             schema: "00".into(),
             params: params.iter().map(|(k, v)| ((*k).to_owned(), (*v).to_owned())).collect(),
             result: Some(Hash::of(id.as_bytes())),
+            left_out: false,
         };
         let stages = vec![stage("GridMesher", &[("edge", "\"16 mm\"")]), stage("Otsu", &[("bias", "0.0")])];
         Lock { lock: LOCK_VERSION, pipeline: "vest".into(), stages }

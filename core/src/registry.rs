@@ -30,6 +30,8 @@ pub struct Registry {
 struct Entry {
     card: Card,
     maker: Maker,
+    /// How many were added before it: the first of a role is its default.
+    order: usize,
 }
 
 /// Who makes a stage from its arguments.
@@ -86,9 +88,13 @@ impl Registry {
 
     /// Adds a stage type. A second stage of the same name and role replaces the first.
     pub fn add<S: StageType + 'static>(&mut self) -> &mut Self {
-        let card = S::type_card();
-        self.cards.insert((card.name, card.role), Entry { card, maker: Maker::Typed(make::<S>) });
+        self.insert(S::type_card(), Maker::Typed(make::<S>));
         self
+    }
+
+    fn insert(&mut self, card: Card, maker: Maker) {
+        let order = self.cards.len();
+        self.cards.insert((card.name, card.role), Entry { card, maker, order });
     }
 
     /// Loads a plugin and adds its stages, all or none; `pinned` is the BLAKE3 digest that its file must
@@ -121,8 +127,7 @@ impl Registry {
             return Err(refused(format!("the stage name `{}` is taken by {by}", taken.name), Some(hint)));
         }
         for (card, of) in plugin.cards.iter().zip(&plugin.types) {
-            let entry = Entry { card: card.clone(), maker: Maker::Foreign(of.clone()) };
-            self.cards.insert((card.name, card.role), entry);
+            self.insert(card.clone(), Maker::Foreign(of.clone()));
         }
         self.plugins.push(plugin);
         Ok(())
@@ -188,6 +193,18 @@ impl Registry {
     /// The card of that name; of several, the one whose role comes first in a pipeline.
     pub fn card(&self, name: &str) -> Option<&Card> {
         self.cards().find(|c| c.name == name)
+    }
+
+    /// All cards in the order in which they were added: of each role the default comes first.
+    pub(crate) fn in_order(&self) -> Vec<&Card> {
+        let mut entries: Vec<&Entry> = self.cards.values().collect();
+        entries.sort_by_key(|e| e.order);
+        entries.into_iter().map(|e| &e.card).collect()
+    }
+
+    /// Whether pipelines get that stage by themselves.
+    pub(crate) fn is_implicit(&self, card: &Card) -> bool {
+        self.implicit.iter().any(|make| make().card().name == card.name)
     }
 
     /// All cards of that name, in the order of their roles.

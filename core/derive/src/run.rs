@@ -27,7 +27,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
         .ok_or(missing)?;
     let ports = ports(run)?;
     let out = output(run)?;
-    let (sizes, decisions) = (sizes(&item), decisions(&item));
+    let (sizes, decisions, faults) = (sizes(&item), decisions(&item), faults(&item));
     let in_ports = ports.iter().map(|Port { name, ty, original }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -56,6 +56,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                 }
                 #sizes
                 #decisions
+                #faults
                 fn run_ports(
                     &self,
                     inputs: &::toile_core::Inputs,
@@ -105,6 +106,21 @@ fn decisions(item: &ItemImpl) -> TokenStream {
                 known: &::toile_core::decide::Known<'_>,
             ) -> ::std::vec::Vec<::toile_core::decide::Decision> {
                 Self::decide(self, known)
+            }
+        },
+    }
+}
+
+/// The trait's `faults`, where the author looks at parameters and files by `precheck`.
+fn faults(item: &ItemImpl) -> TokenStream {
+    match has(item, "precheck") {
+        false => TokenStream::new(),
+        true => quote! {
+            fn faults(
+                &self,
+                placed: &::toile_core::Placed<'_>,
+            ) -> ::std::vec::Vec<::toile_core::StageError> {
+                Self::precheck(self, placed)
             }
         },
     }

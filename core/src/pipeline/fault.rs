@@ -34,12 +34,15 @@ pub struct Fault {
     pub hint: Option<String>,
     /// Its places; the first is the main one.
     pub labels: Vec<Label>,
+    /// The option of the command line that its places are in, as the user wrote it: `--set body.height=3`; none where they are
+    /// in the file.
+    pub option: Option<String>,
 }
 
 impl Fault {
     /// A fault with a code and a sentence, at no place yet.
     pub fn new(code: &'static str, message: impl Into<String>) -> Self {
-        Fault { code, message: message.into(), hint: None, labels: Vec::new() }
+        Fault { code, message: message.into(), hint: None, labels: Vec::new(), option: None }
     }
 
     /// Adds a place: the first call gives the main one.
@@ -54,6 +57,12 @@ impl Fault {
         self
     }
 
+    /// Says that its places are in an option of the command line.
+    pub fn of_option(mut self, option: impl Into<String>) -> Self {
+        self.option = Some(option.into());
+        self
+    }
+
     /// The first byte of its main place.
     pub fn start(&self) -> usize {
         self.labels.first().map_or(0, |l| l.span.start)
@@ -65,7 +74,7 @@ impl Fault {
 pub struct Faults {
     /// The file's name as the user gave it.
     pub file: String,
-    /// The text that the places refer to (with `--set` already applied).
+    /// The file's text, which the places refer to that are in no option.
     pub text: String,
     /// At least one.
     pub faults: Vec<Fault>,
@@ -74,7 +83,7 @@ pub struct Faults {
 /// One fault for machines.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct FaultRecord {
-    /// The file's name.
+    /// The file's name; of a fault in an option of the command line, that option.
     pub file: String,
     /// Line, from 1.
     pub line: usize,
@@ -89,9 +98,9 @@ pub struct FaultRecord {
 }
 
 impl Faults {
-    /// Faults in the order of their places.
+    /// Faults in the order of their places; those of options, in the options' order, come first.
     pub fn new(file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
-        faults.sort_by_key(Fault::start);
+        faults.sort_by_key(|f| (f.option.is_none(), if f.option.is_none() { f.start() } else { 0 }));
         Faults { file: file.to_owned(), text: text.to_owned(), faults }
     }
 
@@ -99,9 +108,12 @@ impl Faults {
     pub fn records(&self) -> Vec<FaultRecord> {
         let lines = Lines::of(&self.text);
         let record = |f: &Fault| {
-            let (line, column) = lines.position(&self.text, f.start());
+            let (line, column) = match &f.option {
+                Some(option) => Lines::of(option).position(option, f.start()),
+                None => lines.position(&self.text, f.start()),
+            };
             FaultRecord {
-                file: self.file.clone(),
+                file: f.option.as_ref().unwrap_or(&self.file).clone(),
                 line,
                 column,
                 code: f.code,
@@ -133,23 +145,32 @@ impl Faults {
 }
 
 impl Faults {
-    /// Each fault as one line: `vest.ron:12:5: message; hint`.
-    fn lines(&self) -> Vec<String> {
-        let line = |r: FaultRecord| {
+    /// Each fault as one line: `vest.ron:12:5: message; hint`, or `--set body.height=3: message; hint`.
+    pub fn lines(&self) -> Vec<String> {
+        let line = |(r, fault): (FaultRecord, &Fault)| {
             let hint = r.hint.map_or_else(String::new, |h| format!("; {h}"));
-            format!("{}:{}:{}: {}{hint}", r.file, r.line, r.column, r.message)
+            match &fault.option {
+                Some(option) => format!("{option}: {}{hint}", r.message),
+                None => format!("{}:{}:{}: {}{hint}", r.file, r.line, r.column, r.message),
+            }
         };
-        self.records().into_iter().map(line).collect()
+        self.records().into_iter().zip(&self.faults).map(line).collect()
+    }
+
+    /// The text that a fault's places are in.
+    fn source<'a>(&'a self, fault: &'a Fault) -> &'a str {
+        fault.option.as_ref().unwrap_or(&self.text)
     }
 
     fn can_draw(&self, fault: &Fault) -> bool {
+        let text = self.source(fault);
         let fits = |l: &Label| {
-            let before = self.text.get(..l.span.start).and_then(|t| t.rfind('\n')).map_or(0, |i| i + 1);
-            let rest = self.text.get(l.span.end..).unwrap_or("");
+            let before = text.get(..l.span.start).and_then(|t| t.rfind('\n')).map_or(0, |i| i + 1);
+            let rest = text.get(l.span.end..).unwrap_or("");
             let after = rest.find('\n').unwrap_or(rest.len());
             (l.span.end + after).saturating_sub(before) <= MAX_LINE
         };
-        !self.text.is_empty() && fault.labels.iter().all(fits)
+        !text.is_empty() && fault.labels.iter().all(fits)
     }
 }
 
@@ -232,9 +253,10 @@ impl SourceCode for Drawn<'_> {
         before: usize,
         after: usize,
     ) -> Result<Box<dyn miette::SpanContents<'a> + 'a>, miette::MietteError> {
-        let inner = self.of.text.read_span(span, before, after)?;
+        let inner = self.of.source(self.fault).read_span(span, before, after)?;
+        let name = if self.fault.option.is_some() { "command line" } else { &self.of.file };
         Ok(Box::new(miette::MietteSpanContents::new_named(
-            self.of.file.clone(),
+            name.to_owned(),
             inner.data(),
             *inner.span(),
             inner.line(),

@@ -18,7 +18,7 @@ pub fn to_json(text: &str, file: &str) -> Result<Value, Faults> {
 fn value(text: &str, tree: &Tree) -> Value {
     let own = text.get(tree.span.clone()).unwrap_or("");
     match &tree.shape {
-        Shape::Literal => literal(own),
+        Shape::Literal | Shape::Broken => literal(own),
         Shape::Name => name(own),
         Shape::Group { name: None, bracket: Bracket::Square, entries, .. } => list(text, entries),
         Shape::Group { name: None, entries, .. } if entries.iter().all(|e| e.key.is_none()) => {

@@ -2,15 +2,16 @@
 //!
 //! [`load`] works in four steps, and collects the faults of all of them:
 //!
-//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value
-//!    (a syntax fault ends the load: nothing after it can be trusted);
+//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value; after a syntax
+//!    fault it is read on as it was probably meant (`repair`);
 //! 2. `read`: fields, sections and stages are read, every parameter is checked by its own
 //!    [`ParamDoc`](crate::ParamDoc), clean stages are made through typetag;
 //! 3. `order`: stages get their ids, sections their place among the stages;
 //! 4. `graph`: each input port finds the stage that feeds it.
 //!
 //! The settings of a quality that is asked for and `--set` overrides are spliced into the text before step 1, so that they
-//! pass the same checks; `qualities` are checked beside the file.
+//! pass the same checks; `qualities` are checked beside the file. `origin` shows what is wrong where the user wrote it: in the
+//! file or in the option. `warnings` says what a clean file does not use.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!
@@ -24,14 +25,18 @@ mod json;
 mod migrate;
 pub(crate) mod near;
 mod order;
+mod origin;
 mod overrides;
 mod parser;
 mod pick;
+mod place;
 mod plugins;
 mod qualities;
 mod read;
+mod repair;
 mod tree;
 pub(crate) mod typed;
+mod warnings;
 mod words;
 
 #[cfg(test)]
@@ -49,7 +54,7 @@ pub use qualities::{
     without as without_qualities,
 };
 
-use crate::{Card, Registry, Stage, StageError};
+use crate::{Card, Registry, Stage};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -82,6 +87,8 @@ pub struct Pipeline {
     pub qualities: Vec<Quality>,
     /// The quality that it is loaded with, for people: `Draft`, `Draft, changed by --set`.
     pub quality: Option<String>,
+    /// The file's text as it stands, and where the parts of `text` come from.
+    written: (String, origin::Origin),
 }
 
 /// A stage in its place.
@@ -162,27 +169,27 @@ pub fn load_with(
     // Overrides may name a plugin, and may name stages of plugins.
     let mut registry = registry.clone();
     let mut refused = plugins::load(text, base, &mut registry);
-    let mut applied = applied(text, &registry, changes);
+    let (mut applied, known) = applied(text, &registry, changes);
     if plugins::asked(&applied.text) != plugins::asked(text) || !refused.is_empty() {
         refused = plugins::load(&applied.text, base, &mut registry);
     }
-    let mut faults = std::mem::take(&mut applied.known);
-    faults.extend(std::mem::take(&mut applied.refused).into_iter().map(|(_, fault)| fault));
+    let mut faults: Vec<Fault> = std::mem::take(&mut applied.refused).into_iter().map(|(_, f)| f).collect();
     faults.append(&mut refused);
     let checked = check(&applied.text, &registry, &mut faults);
     match checked {
-        Some((read, drafts, feeds)) if faults.is_empty() => {
+        Some((read, drafts, feeds)) if faults.is_empty() && known.is_empty() => {
             let nodes = drafts.into_iter().zip(feeds).filter_map(|(d, inputs)| d.finish(inputs)).collect();
             let stem =
                 || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
             let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
             let (qualities, quality) = (read.qualities, changes.words());
+            let written = (text.to_owned(), applied.origin);
             let (text, base, file) = (applied.text, base.to_owned(), file.to_owned());
-            Ok(Pipeline { name, file, text, base, nodes, plugins, qualities, quality })
+            Ok(Pipeline { name, file, text, base, nodes, plugins, qualities, quality, written })
         }
         _ => {
-            applied.name_origin(&mut faults);
-            Err(Faults::new(file, &applied.text, faults))
+            let told = faults.into_iter().map(|fault| applied.origin.told(fault));
+            Err(Faults::new(file, text, told.chain(known).collect()))
         }
     }
 }
@@ -195,24 +202,28 @@ impl Changes<'_> {
     }
 }
 
-/// The text with the changes; a quality with a fault is not applied, since its fault says it all.
-fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> overrides::Applied {
+/// The text with the changes, and faults of the text as it stands; a quality with a fault is not applied, since its fault
+/// says it all.
+fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> (overrides::Applied, Vec<Fault>) {
     let mut faults = if changes.again { Vec::new() } else { qualities::settings(text, registry) };
     let chosen =
         changes.quality.map(|name| qualities::choose(text, qualities::named(text), name)).transpose();
     let chosen = chosen.map_err(|fault| faults.push(*fault)).ok().flatten().filter(|_| faults.is_empty());
     let of_quality = chosen.iter().flat_map(Given::of_quality);
     let given: Vec<Given<'_>> = of_quality.chain(changes.set.iter().map(Given::set)).collect();
-    overrides::apply(text, registry, &given, faults)
+    (overrides::apply(text, registry, &given), faults)
 }
 
-/// Reads and connects the stages; none where the text is no RON.
+/// Reads and connects the stages; none where the text cannot be understood.
 fn check(
     text: &str,
     registry: &Registry,
     faults: &mut Vec<Fault>,
 ) -> Option<(read::Read, Vec<draft::Draft>, Vec<Vec<Feed>>)> {
-    let tree = parse(text).map_err(|fault| faults.push(fault)).ok()?;
+    let (tree, mut of_syntax) = repair::read(text);
+    faults.append(&mut of_syntax);
+    let tree = tree?;
+    read::doubled_keys(text, &tree, faults);
     let mut read = read::file(text, &tree, registry, faults);
     let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
     let feeds = graph::connect(&drafts, registry, faults);
@@ -246,10 +257,7 @@ pub(crate) fn texts_of(params: &str) -> Vec<String> {
 }
 
 fn parse(text: &str) -> Result<tree::Tree, Fault> {
-    parser::parse(text).map_err(|e| {
-        let fault = Fault::new("syntax", e.message).at(&e.span, "");
-        e.also.iter().fold(fault, |f, (span, what)| f.at(span, *what))
-    })
+    parser::parse(text).map_err(|e| repair::plain(&e))
 }
 
 fn refused_by_ron(text: &str) -> Option<Fault> {
@@ -288,17 +296,14 @@ impl Pipeline {
         needed
     }
 
-    /// Puts a stage's error at its place in the file: at the parameter that it names, if the file
-    /// gives it, else at the stage.
-    pub fn locate(&self, node: &Node, error: &StageError) -> Faults {
-        let place = error.param.and_then(|p| node.params.get(p)).unwrap_or(&node.place);
-        let message = format!("{}: {}", node.id, error.message);
-        let fault = Fault::new(error.code.as_str(), message).at(place, "").hint(error.hint.clone());
-        Faults::new(&self.file, &self.text, vec![fault])
-    }
-
     /// The line of the file on which a stage stands, from 1.
     pub fn line(&self, node: &Node) -> usize {
         fault::Lines::of(&self.text).position(&self.text, node.place.start).0
+    }
+
+    /// Faults of the text with its overrides, shown where the user wrote what is wrong.
+    pub fn faults(&self, faults: Vec<Fault>) -> Faults {
+        let (text, origin) = &self.written;
+        Faults::new(&self.file, text, faults.into_iter().map(|f| origin.told(f)).collect())
     }
 }

@@ -6,6 +6,7 @@
 
 use super::draft::Draft;
 use super::fault::Fault;
+use super::origin::{Origin, Region, Writer};
 use super::qualities::Quality;
 use super::read::{self, GENERIC};
 use super::tree::{Bracket, Entry, Shape, Tree};
@@ -55,11 +56,6 @@ impl<'a> Given<'a> {
         quality.set.iter().map(|o| Given { o, quality: Some(&quality.name) })
     }
 
-    /// A path as the user writes it: `--set a.b`, in a quality `a.b`.
-    fn named(&self) -> String {
-        if self.quality.is_some() { self.o.path.clone() } else { format!("--set {}", self.o.path) }
-    }
-
     /// A path with a value as the user writes it: `--set 'a.b=...'`, in a quality `a.b=...`.
     fn written(&self, path: &str, value: &str) -> String {
         match self.quality {
@@ -68,34 +64,51 @@ impl<'a> Given<'a> {
         }
     }
 
-    fn origin(&self) -> String {
+    /// The option as it stands on the command line, without the shell's quotes.
+    fn option(&self) -> String {
+        format!("{OPTION}{}={}", self.o.path, self.o.value)
+    }
+
+    fn writer(&self, value_at: usize) -> Writer {
         match self.quality {
-            Some(name) => format!("the quality `{name}`"),
-            None => format!("`{}`", self.named()),
+            Some(name) => Writer::Quality(name.to_owned()),
+            None => Writer::Option(self.option(), OPTION.len() + self.o.path.len() + 1 + value_at),
+        }
+    }
+
+    /// A fault of the override itself, at a part of `PATH=VALUE`.
+    fn fault(&self, message: &str, at: Range<usize>) -> Fault {
+        match self.quality {
+            Some(_) => Fault::new("bad_override", format!("`{}`: {message}", self.o.path)).at(&(0..0), ""),
+            None => {
+                let at = OPTION.len() + at.start..OPTION.len() + at.end;
+                Fault::new("bad_override", message).at(&at, "").of_option(self.option())
+            }
         }
     }
 }
+
+/// What stands before the path on the command line.
+const OPTION: &str = "--set ";
 
 /// A text with overrides applied.
 #[derive(Debug, Default)]
 pub(super) struct Applied {
     pub(super) text: String,
-    /// Where each override's value stands now, with its number and where it comes from.
-    regions: Vec<(Range<usize>, usize, String)>,
-    /// Overrides that could not be applied, by number; places refer to `text`.
+    /// Where its parts come from.
+    pub(super) origin: Origin,
+    /// Overrides that could not be applied, by number.
     pub(super) refused: Vec<(usize, Fault)>,
-    /// Faults that were known before, at their places in `text`.
-    pub(super) known: Vec<Fault>,
 }
 
-/// Applies overrides in their order; `known` are faults of the text, whose places move with it.
-pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Given<'_>], known: Vec<Fault>) -> Applied {
-    let mut applied = Applied { text: text.to_owned(), known, ..Applied::default() };
+/// Applies overrides in their order.
+pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Given<'_>]) -> Applied {
+    let mut applied = Applied { text: text.to_owned(), ..Applied::default() };
     for (i, given) in overrides.iter().enumerate() {
         // A text that is no RON is reported by the load itself.
         let Ok(tree) = parse(&applied.text) else { break };
         match edit(&applied.text, &tree, registry, *given) {
-            Ok(edit) => applied.splice(&edit, i, given.origin()),
+            Ok((edit, value_at)) => applied.splice(&edit, i, given.writer(value_at)),
             Err(fault) => applied.refused.push((i, fault)),
         }
     }
@@ -103,39 +116,12 @@ pub(super) fn apply(text: &str, registry: &Registry, overrides: &[Given<'_>], kn
 }
 
 impl Applied {
-    /// Says of faults that lie in an override's value where that value comes from.
-    pub(super) fn name_origin(&self, faults: &mut [Fault]) {
-        for fault in faults {
-            if let Some((_, _, origin)) = self.region(fault) {
-                fault.message.push_str(&format!(" (from {origin})"));
-            }
-        }
-    }
-
-    /// The number of the override in whose value a fault lies.
-    pub(super) fn origin(&self, fault: &Fault) -> Option<usize> {
-        self.region(fault).map(|(_, i, _)| *i)
-    }
-
-    fn region(&self, fault: &Fault) -> Option<&(Range<usize>, usize, String)> {
-        let start = fault.start();
-        self.regions.iter().find(|(r, _, _)| r.contains(&start))
-    }
-
-    fn splice(&mut self, edit: &Edit, number: usize, origin: String) {
+    fn splice(&mut self, edit: &Edit, number: usize, writer: Writer) {
         let Edit { at, before, value, after } = edit;
         self.text.replace_range(at.clone(), &format!("{before}{value}{after}"));
-        let added = before.len() + value.len() + after.len();
-        let shift = |span: &mut Range<usize>| {
-            let moved = |x: usize| if x >= at.end { x + added - at.len() } else { x.min(at.start) };
-            *span = moved(span.start)..moved(span.end);
-        };
-        self.regions.iter_mut().for_each(|(span, _, _)| shift(span));
-        let faults = self.refused.iter_mut().map(|(_, f)| f).chain(&mut self.known);
-        faults.flat_map(|f| &mut f.labels).for_each(|l| shift(&mut l.span));
-        let start = at.start + before.len();
-        self.regions.retain(|(span, _, _)| !span.is_empty());
-        self.regions.push((at.start..start + value.len(), number, origin));
+        let span = at.start..at.start + before.len() + value.len();
+        let region = Region { span, before: before.len(), number, writer };
+        self.origin.note(at, before.len() + value.len() + after.len(), region);
     }
 }
 
@@ -164,22 +150,24 @@ impl Edit {
     }
 }
 
-/// What one override does to the text.
-fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Result<Edit, Fault> {
+/// What one override does to the text, and where in its value the value proper begins.
+fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
     let o = given.o;
-    let value = parse(&o.value).map_err(|e| bad_value(tree, given, &e))?;
+    let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;
     let read = read::file(text, tree, registry, &mut Vec::new());
     let segments: Vec<&str> = o.path.split('.').collect();
+    let value_at = value.span.start;
     let walk = Walk { text, registry, given, value: &o.value[value.span], segments: &segments };
-    walk.top(tree, &read.sections, &read.stages)
+    Ok((walk.top(tree, &read.sections, &read.stages)?, value_at))
 }
 
-fn bad_value(tree: &Tree, given: Given<'_>, e: &Fault) -> Fault {
+fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
     let o = given.o;
-    let message = format!("`{}`: `{}` is no RON value: {}", given.named(), o.value, e.message);
+    let message = format!("`{}` is no RON value: {}", o.value, e.message);
     let quoted = format!("\"{}\"", o.value.trim_matches(['"', '\'']));
     let hint = format!("text stands in quotes: `{}`", given.written(&o.path, &quoted));
-    Fault::new("bad_override", message).at(&tree.head(), "").hint(hint)
+    let from = o.path.len() + 1;
+    given.fault(&message, from..from + o.value.len()).hint(hint)
 }
 
 /// One override on its way down the tree.
@@ -197,16 +185,16 @@ impl Walk<'_> {
         let field = self.segments.first().copied().unwrap_or("");
         let known = read::top_level(self.registry);
         let Shape::Group { name: None, bracket: Bracket::Round, inside, entries } = &tree.shape else {
-            return Err(self.fault(format!("there is no field `{field}`"), &tree.head()));
+            return Err(self.fault(0, format!("there is no field `{field}`")));
         };
         if !known.contains(&field) {
-            return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known, &tree.head()));
+            return Err(self.no_path(0, &format!("a pipeline has no field `{field}`"), &known));
         }
         let Some((key, value)) = self.entry(entries, field) else {
             return match self.segments.len() {
                 1 => Ok(Edit::insert(*inside, entries, field, self.value)),
                 _ => {
-                    let fault = self.fault(format!("the file has no `{field}`"), &tree.head());
+                    let fault = self.fault(0, format!("the file has no `{field}`"));
                     Err(fault.hint(format!("set all of it: `{}`", self.given.written(field, "..."))))
                 }
             };
@@ -214,18 +202,18 @@ impl Walk<'_> {
         let section = sections.iter().find(|d| d.span == value.span && d.place != *key);
         match (field, section) {
             _ if self.segments.len() == 1 => Ok(Edit::replace(&value.span, self.value)),
-            ("stages", _) => self.in_list(value, key, stages),
+            ("stages", _) => self.in_list(value, stages),
             (_, Some(draft)) => self.in_stage(1, value, draft),
-            _ => self.inside(1, value, key),
+            _ => self.inside(1, value),
         }
     }
 
     /// `stages.ID...`
-    fn in_list(&self, list: &Tree, key: &Range<usize>, stages: &[Draft]) -> Result<Edit, Fault> {
+    fn in_list(&self, list: &Tree, stages: &[Draft]) -> Result<Edit, Fault> {
         let id = self.segments[1];
         let Some(draft) = stages.iter().find(|d| d.id == id) else {
             let ids: Vec<&str> = stages.iter().map(|d| d.id.as_str()).collect();
-            return Err(self.no_path(1, &format!("no stage in `stages` has the id `{id}`"), &ids, key));
+            return Err(self.no_path(1, &format!("no stage in `stages` has the id `{id}`"), &ids));
         };
         let item = list.entries().iter().find(|e| e.value.span == draft.span);
         match item {
@@ -240,15 +228,15 @@ impl Walk<'_> {
         let params: Vec<&str> =
             draft.card.iter().flat_map(|c| &c.params).map(|p| p.name).chain(GENERIC).collect();
         let Shape::Group { inside, entries, .. } = &tree.shape else {
-            return Err(self.fault(format!("`{}` has no brackets", draft.name), &draft.place));
+            return Err(self.fault(i - 1, format!("`{}` has no brackets", draft.name)));
         };
         if !params.contains(&field) {
             let message = format!("`{}` has no parameter `{field}`", draft.name);
-            return Err(self.no_path(i, &message, &params, &draft.place));
+            return Err(self.no_path(i, &message, &params));
         }
         if let ([Entry { key: None, value }], Some(first)) = (entries.as_slice(), params.first()) {
             return match first == &field {
-                true => self.inside(i + 1, value, &draft.place),
+                true => self.inside(i + 1, value),
                 // The one value without a name gets its name.
                 false => {
                     let after = format!(", {first}: ");
@@ -257,25 +245,24 @@ impl Walk<'_> {
             };
         }
         match self.entry(entries, field) {
-            Some((key, value)) => self.inside(i + 1, value, key),
+            Some((_, value)) => self.inside(i + 1, value),
             None if i + 1 == self.segments.len() => Ok(Edit::insert(*inside, entries, field, self.value)),
             None => {
                 let whole = self.segments[..=i].join(".");
-                let fault =
-                    self.fault(format!("the file gives no `{field}` to change a part of"), &draft.place);
+                let fault = self.fault(i, format!("the file gives no `{field}` to change a part of"));
                 Err(fault.hint(format!("set all of it: `{}`", self.given.written(&whole, "..."))))
             }
         }
     }
 
     /// A value, and what is in it, at segment `i`.
-    fn inside(&self, i: usize, tree: &Tree, at: &Range<usize>) -> Result<Edit, Fault> {
+    fn inside(&self, i: usize, tree: &Tree) -> Result<Edit, Fault> {
         let Some(segment) = self.segments.get(i) else { return Ok(Edit::replace(&tree.span, self.value)) };
         let Shape::Group { bracket, inside, entries, .. } = &tree.shape else {
-            return Err(self.fault(format!("`{}` has no parts", self.segments[i - 1]), at));
+            return Err(self.fault(i - 1, format!("`{}` has no parts", self.segments[i - 1])));
         };
-        if let Some((key, value)) = self.entry(entries, segment) {
-            return self.inside(i + 1, value, key);
+        if let Some((_, value)) = self.entry(entries, segment) {
+            return self.inside(i + 1, value);
         }
         let named = *bracket == Bracket::Curly || entries.iter().any(|e| e.key.is_some());
         if named && i + 1 == self.segments.len() {
@@ -284,7 +271,7 @@ impl Walk<'_> {
         }
         let keys = self.keys(entries);
         let known: Vec<&str> = keys.iter().map(String::as_str).collect();
-        Err(self.no_path(i, &format!("`{}` has no `{segment}`", self.segments[i - 1]), &known, at))
+        Err(self.no_path(i, &format!("`{}` has no `{segment}`", self.segments[i - 1]), &known))
     }
 
     /// The entry of that name, or of that number in a list.
@@ -302,18 +289,20 @@ impl Walk<'_> {
         entries.iter().enumerate().map(key).collect()
     }
 
-    fn fault(&self, message: impl AsRef<str>, at: &Range<usize>) -> Fault {
-        Fault::new("bad_override", format!("`{}`: {}", self.given.named(), message.as_ref())).at(at, "")
+    /// A fault at segment `i` of the path.
+    fn fault(&self, i: usize, message: impl AsRef<str>) -> Fault {
+        let from: usize = self.segments.iter().take(i).map(|s| s.len() + 1).sum();
+        self.given.fault(message.as_ref(), from..from + self.segments.get(i).map_or(0, |s| s.len()))
     }
 
     /// Segment `i` names nothing: proposes the path with the nearest name in its place.
-    fn no_path(&self, i: usize, message: &str, known: &[&str], at: &Range<usize>) -> Fault {
+    fn no_path(&self, i: usize, message: &str, known: &[&str]) -> Fault {
         let near = near::nearest(self.segments[i], known.iter().copied()).map(|near| {
             let path: Vec<&str> =
                 self.segments.iter().enumerate().map(|(j, s)| if i == j { near } else { s }).collect();
             format!("did you mean `{}`?", path.join("."))
         });
         let list = (!known.is_empty()).then(|| format!("there is {}", near::quoted(known)));
-        self.fault(message, at).hint(near.or(list))
+        self.fault(i, message).hint(near.or(list))
     }
 }

@@ -1,7 +1,7 @@
 //! The plugins that a pipeline names: `plugins: ["libsdf.so", (file: "libx.so", blake3: "...")]`.
 
 use super::fault::Fault;
-use super::tree::{Bracket, Shape, Tree};
+use super::tree::{Bracket, Entry, Shape, Tree};
 use crate::Registry;
 use crate::param::ron_options;
 use std::ops::Range;
@@ -46,7 +46,12 @@ fn one(text: &str, value: &Tree) -> Result<PluginUse, Wrong> {
         return Ok(PluginUse { file: words(value)?, blake3: None, span: value.span.clone() });
     };
     let mut found = PluginUse { file: String::new(), blake3: None, span: value.span.clone() };
-    for entry in entries {
+    for (i, entry) in entries.iter().enumerate() {
+        let name = |e: &Entry| e.key.as_ref().and_then(|k| text.get(k.clone()));
+        let key = entry.key.as_ref().filter(|_| entries[..i].iter().any(|e| name(e) == name(entry)));
+        if let Some(key) = key {
+            return Err((format!("the field `{}` is given twice", name(entry).unwrap_or("")), key.clone()));
+        }
         match entry.key.as_ref().and_then(|k| text.get(k.clone())) {
             Some("file") => found.file = words(&entry.value)?,
             Some("blake3") => found.blake3 = Some(digest(words(&entry.value)?, &entry.value)?),

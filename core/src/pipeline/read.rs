@@ -95,7 +95,9 @@ impl Reader<'_> {
         let mut fields = Fields::new();
         for entry in entries {
             let Some(key) = &entry.key else {
-                self.fault("unnamed_value", "a value without a field name", &entry.value.span);
+                if !entry.value.is_broken() {
+                    self.fault("unnamed_value", "a value without a field name", &entry.value.span);
+                }
                 continue;
             };
             let name = self.at(key).to_owned();
@@ -126,6 +128,9 @@ impl Reader<'_> {
     }
 
     fn text_value(&mut self, field: &str, value: &Tree) -> Option<String> {
+        if value.is_broken() {
+            return None;
+        }
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
         if parsed.is_none() {
             self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
@@ -135,6 +140,9 @@ impl Reader<'_> {
 
     fn stages(&mut self, list: &Tree) -> Vec<Draft> {
         let Shape::Group { bracket: Bracket::Square, entries, .. } = &list.shape else {
+            if list.is_broken() {
+                return vec![Draft::unknown(&list.span)];
+            }
             self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.head());
             return vec![Draft::unknown(&list.span)];
         };
@@ -183,6 +191,7 @@ impl Reader<'_> {
         let (name_span, entries) = match &value.shape {
             Shape::Group { name: Some(name), entries, .. } => (name, Some(entries)),
             Shape::Name => (&value.span, None),
+            Shape::Broken => return Draft::unknown(&value.span),
             _ => {
                 self.fault("not_a_stage", "expected a stage, written `Name(field: value)`", &value.head());
                 let card = section.and_then(|(_, role)| self.fit(role).next().cloned());
@@ -201,7 +210,7 @@ impl Reader<'_> {
                 self.push(fault.hint(format!("write `{name}()`")));
             }
         }
-        if self.faults.len() == before {
+        if self.faults.len() == before && !value.is_broken() {
             self.make(&mut draft);
         }
         draft
@@ -322,6 +331,9 @@ impl Reader<'_> {
 
     /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
+        if value.is_broken() {
+            return false;
+        }
         let Err(e) = doc.check.run(self.at(&value.span), doc) else { return true };
         let (span, key) = e.offset.map_or((value.span.clone(), None), |o| value.locate(value.span.start + o));
         let message = match key {
@@ -366,6 +378,28 @@ impl Reader<'_> {
             }
         }
     }
+}
+
+/// Reports every key that stands twice in a map; of two values the reader would take the last and say nothing.
+pub(super) fn doubled_keys(text: &str, tree: &Tree, faults: &mut Vec<Fault>) {
+    if let Shape::Group { bracket: Bracket::Curly, entries, .. } = &tree.shape {
+        let mut seen: BTreeMap<String, &Range<usize>> = BTreeMap::new();
+        for key in entries.iter().filter_map(|e| e.key.as_ref()) {
+            let written = text.get(key.clone()).unwrap_or("");
+            let name = ron_options().from_str::<String>(written).unwrap_or_else(|_| written.to_owned());
+            match seen.get(&name) {
+                Some(first) if faults.len() < MAX_FAULTS => {
+                    let fault = Fault::new("duplicate_field", format!("the key \"{name}\" is given twice"));
+                    faults.push(fault.at(key, "again here").at(first, "first here"));
+                }
+                Some(_) => return,
+                None => {
+                    seen.insert(name, key);
+                }
+            }
+        }
+    }
+    tree.entries().iter().for_each(|e| doubled_keys(text, &e.value, faults));
 }
 
 /// A stage of that role in words: `mesher`, `body stage`.

@@ -36,8 +36,13 @@ fn faults(text: &str) -> String {
 /// What each fault's labels cover, with what they say.
 fn places(text: &str) -> Vec<Vec<(String, String)>> {
     let faults = read(text).expect_err("the text has a fault");
-    let label = |l: &super::Label| (faults.text[l.span.clone()].to_owned(), l.text.clone());
-    faults.faults.iter().map(|f| f.labels.iter().map(label).collect()).collect()
+    faults.faults.iter().map(|f| labels(&faults, f)).collect()
+}
+
+/// What a fault's labels cover, in the file or in the option, with what they say.
+fn labels(faults: &Faults, fault: &super::Fault) -> Vec<(String, String)> {
+    let text = fault.option.as_ref().unwrap_or(&faults.text);
+    fault.labels.iter().map(|l| (text[l.span.clone()].to_owned(), l.text.clone())).collect()
 }
 
 /// The graph as text: `Canny < Otsu, Photos`.

@@ -18,6 +18,8 @@ pub(super) enum Shape {
     Literal,
     /// A bare name: `Otsu`, `true`.
     Name,
+    /// A value whose text has a fault that was told: nothing more is to be said of it.
+    Broken,
     /// `Name(...)`, `(...)`, `[...]` or `{...}`.
     Group {
         /// The name before the bracket.
@@ -53,6 +55,20 @@ impl Tree {
             Shape::Group { entries, .. } => entries,
             _ => &[],
         }
+    }
+
+    /// True where something in it has a fault that was told.
+    pub(super) fn is_broken(&self) -> bool {
+        self.shape == Shape::Broken || self.entries().iter().any(|e| e.value.is_broken())
+    }
+
+    /// The entry of that key, or of that number where entries have none.
+    pub(super) fn entry(&self, text: &str, name: &str) -> Option<&Entry> {
+        let is_it = |(i, e): &(usize, &Entry)| match &e.key {
+            Some(key) => text.get(key.clone()).is_some_and(|k| k.trim_matches('"') == name),
+            None => i.to_string() == name,
+        };
+        self.entries().iter().enumerate().find(is_it).map(|(_, e)| e)
     }
 
     /// What to underline where a whole group would be too much: its name, or its bracket.

@@ -39,7 +39,8 @@ pub(super) fn required(card: &Card) -> impl Iterator<Item = Kind> {
 /// Names the stages that would make `wanted` out of what is there, or else those that make it at all.
 pub(super) fn bridge(wanted: Kind, live: &BTreeSet<Kind>, registry: &Registry) -> Option<String> {
     let makes = |c: &&Card| c.outputs.iter().any(|o| o.kind == wanted) && !required(c).any(|k| k == wanted);
-    let makers: Vec<&Card> = registry.cards().filter(makes).collect();
+    // In the order of the registry, so that the default of a role is named first.
+    let makers: Vec<&Card> = registry.in_order().into_iter().filter(makes).collect();
     let ready: Vec<&Card> =
         makers.iter().copied().filter(|c| required(c).all(|k| live.contains(&k))).collect();
     let best = if ready.is_empty() { &makers } else { &ready };

@@ -1,7 +1,7 @@
 //! A panic must not cross the border: it ends here, as a status and a message.
 
 use super::abi;
-use std::any::Any;
+use crate::panics;
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -15,20 +15,10 @@ pub(super) fn guarded(work: impl FnOnce() -> Result<(), String>) -> i32 {
     let (status, message) = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return abi::OK,
         Ok(Err(message)) => (abi::FAILED, message),
-        Err(payload) => (abi::PANICKED, panic_text(payload)),
+        Err(payload) => (abi::PANICKED, panics::words(payload)),
     };
     LAST.with(|last| *last.borrow_mut() = message);
     status
-}
-
-/// What a panic says.
-pub(super) fn panic_text(payload: Box<dyn Any + Send>) -> String {
-    let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
-    let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
-    let text = text.or_else(|| payload.downcast_ref::<crate::StageError>().map(ToString::to_string));
-    // Dropping a payload may panic again, and then nothing could be told at all.
-    std::mem::forget(payload);
-    text.unwrap_or_default()
 }
 
 /// The message of the last failure on this thread, good until the next one.

@@ -4,14 +4,16 @@
 //! that it is given, its context asks the program, and what it returns is lent as records.
 
 use super::abi::{self, Text};
-use super::guard::{guarded, panic_text};
+use super::guard::guarded;
 use super::view::{Lent, record, text};
 use super::{card, collide};
 use crate::artifact::stored::{from_trusted_record, kind_named};
 use crate::artifact::{Artifact, Collider};
 use crate::context::Parallel;
 use crate::param::ron_options;
-use crate::{Cancel, Card, Context, ErrorCode, Event, Inputs, Listener, PortValue, StageError, StageType};
+use crate::{
+    Cancel, Card, Context, ErrorCode, Event, Inputs, Listener, PortValue, StageError, StageType, panics,
+};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::ffi::c_void;
@@ -36,7 +38,7 @@ impl Tables {
     pub fn give(&self, minor: u32, make: fn() -> Vec<abi::StageTable>, count: *mut usize) -> *const c_void {
         let stride = stage_size(minor) as usize;
         // A card that panics must not end the program: the library then has no stages.
-        let made = || catch_unwind(AssertUnwindSafe(make)).map_err(panic_text).unwrap_or_default();
+        let made = || catch_unwind(AssertUnwindSafe(make)).map_err(panics::words).unwrap_or_default();
         let packed = self.0.get_or_init(|| pack(&made(), stride));
         if let Some(count) = unsafe { count.as_mut() } {
             *count = packed.len() * size_of::<u64>() / stride;
@@ -178,7 +180,7 @@ fn entry(host: *const abi::Host, work: impl FnOnce() -> Result<(), StageError>) 
         Err(payload) => match payload.downcast_ref::<StageError>() {
             Some(e) => failed(e),
             None => {
-                tell(host, "internal", &panic_text(payload), "", "");
+                tell(host, "internal", &panics::words(payload), "", "");
                 abi::PANICKED
             }
         },
@@ -372,6 +374,6 @@ struct LoopBody<'a> {
 unsafe extern "C" fn loop_body(data: *mut c_void, index: usize) {
     let work = unsafe { &*data.cast::<LoopBody<'_>>() };
     if let Err(payload) = catch_unwind(AssertUnwindSafe(|| (work.body)(index))) {
-        *work.panicked.lock().unwrap_or_else(PoisonError::into_inner) = Some(panic_text(payload));
+        *work.panicked.lock().unwrap_or_else(PoisonError::into_inner) = Some(panics::words(payload));
     }
 }

@@ -1,5 +1,6 @@
 //! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
 
+mod faults;
 mod forecast;
 mod implicit;
 mod known;
@@ -10,6 +11,7 @@ mod record;
 mod steps;
 mod value;
 
+pub use faults::faults;
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
 pub(crate) use node::Made;
@@ -17,8 +19,8 @@ pub(crate) use node::Made;
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
 use crate::cache::{Cache, Hash};
 use crate::cost::{Expect, Meter, StageCost};
-use crate::pipeline::Pipeline;
-use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics};
+use crate::pipeline::{Feed, Node, Pipeline, near};
+use crate::{ArtifactType, Cancel, Listener, Metrics, StageError, StageMetrics, panics};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -69,7 +71,7 @@ pub struct RunResult {
 /// A stage's failure with its place.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunError {
-    /// The stage's id.
+    /// The stage's id; empty where it is of none of the pipeline's.
     pub stage: String,
     /// The panel at work, empty for a stage that is not mapped.
     pub entry: String,
@@ -81,9 +83,10 @@ pub struct RunError {
 
 impl std::fmt::Display for RunError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.entry.as_str() {
-            "" => write!(f, "{}: {}", self.stage, self.error),
-            entry => write!(f, "{} ({entry}): {}", self.stage, self.error),
+        match (self.stage.as_str(), self.entry.as_str()) {
+            ("", _) => write!(f, "{}", self.error),
+            (stage, "") => write!(f, "{stage}: {}", self.error),
+            (stage, entry) => write!(f, "{stage} ({entry}): {}", self.error),
         }
     }
 }
@@ -116,9 +119,9 @@ pub fn run(
         expect: options.expect.as_deref(),
         steps: Vec::new(),
     };
-    for skipped in plan {
+    for (node, skipped) in pipeline.nodes.iter().zip(plan) {
         match skipped {
-            None => run.step()?,
+            None => unbroken(node, || run.step())?,
             Some(reason) => run.steps.push(Step::Skipped(reason)),
         }
     }
@@ -133,6 +136,14 @@ pub fn run(
     Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results, costs })
 }
 
+/// Does a part of a run for a stage; a panic in it is an error that names the stage.
+fn unbroken<T>(node: &Node, work: impl FnOnce() -> Result<T, RunError>) -> Result<T, RunError> {
+    panics::caught(work).unwrap_or_else(|words| {
+        let error = StageError::internal(format!("the runner panicked: {words}")).hint(panics::REPORT);
+        Err(RunError { stage: node.id.clone(), entry: String::new(), span: node.span.clone(), error })
+    })
+}
+
 /// The writers' files and those of stages whose artifacts were asked for.
 fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, RunError> {
     let mut files: Vec<OutputFile> = written(run)?.into_iter().flat_map(|(_, f)| f.0).collect();
@@ -142,9 +153,11 @@ fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, Run
     for &index in &kept {
         run.ensure_all(index)?;
     }
-    let ids: Vec<&str> = kept.iter().map(|i| run.pipeline.nodes[*i].id.as_str()).collect();
     let log = run.log(run.steps.len());
-    files.extend(log.stages.iter().filter(|r| ids.contains(&r.id.as_str())).flat_map(exports));
+    for node in kept.iter().map(|i| &run.pipeline.nodes[*i]) {
+        let record = log.stages.iter().filter(|r| r.id == node.id);
+        files.extend(unbroken(node, || Ok(record.flat_map(exports).collect::<Vec<_>>()))?);
+    }
     Ok(files)
 }
 
@@ -175,6 +188,7 @@ fn twice(pipeline: &Pipeline, path: &str, first: usize, second: usize) -> RunErr
 ///
 /// Errors: `until` or one of `also` names no stage of the pipeline.
 pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<String>>, RunError> {
+    sound(pipeline)?;
     let find = |name: &String| pipeline.find(name).ok_or_else(|| unknown_stage(pipeline, name));
     let mut asked = sinks(pipeline, options)?;
     asked.extend(options.also.iter().map(find).collect::<Result<Vec<_>, _>>()?);
@@ -184,6 +198,23 @@ pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<Stri
         None => "nothing asked for depends on it".to_owned(),
     };
     Ok(needed.into_iter().map(|needed| (!needed).then(reason)).collect())
+}
+
+/// Refuses a pipeline in which a stage reads from one that stands after it, which no file can say and a program's own
+/// changes might.
+fn sound(pipeline: &Pipeline) -> Result<(), RunError> {
+    for (index, node) in pipeline.nodes.iter().enumerate() {
+        for feed in &node.inputs {
+            let Feed::Node { node: maker, port } = feed else { continue };
+            let is_made = |n: &Node| *maker < index && *port < n.card.outputs.len();
+            if !pipeline.nodes.get(*maker).is_some_and(is_made) {
+                let error = StageError::internal("it reads what no stage before it makes").hint(panics::REPORT);
+                let (stage, span) = (node.id.clone(), node.span.clone());
+                return Err(RunError { stage, entry: String::new(), span, error });
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The stages that something asks for: `until`, or all that give files (with the judgement), or,
@@ -208,9 +239,10 @@ fn sinks(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<usize>, RunErr
 
 fn unknown_stage(pipeline: &Pipeline, name: &str) -> RunError {
     let ids: Vec<&str> = pipeline.nodes.iter().map(|n| n.id.as_str()).collect();
+    let near = near::nearest(name, ids.iter().copied()).map_or_else(String::new, |n| format!("did you mean `{n}`? "));
     let error = StageError::invalid(format!("there is no stage `{name}` in this pipeline"))
-        .hint(format!("its stages are {}", ids.join(", ")));
-    RunError { stage: name.to_owned(), entry: String::new(), span: 0..0, error }
+        .hint(format!("{near}its stages are {}", ids.join(", ")));
+    RunError { stage: String::new(), entry: String::new(), span: 0..0, error }
 }
 
 /// An artifact as its own type.

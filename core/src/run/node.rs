@@ -4,7 +4,7 @@ use super::pixels::of_the_file;
 use crate::artifact::Measure;
 use crate::cache::{Hash, file_hash};
 use crate::pipeline::{Node, texts_of};
-use crate::{Context, Inputs, PortValue, StageError};
+use crate::{Context, Inputs, PortValue, StageError, panics};
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -67,10 +67,8 @@ fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>,
             Err(payload.downcast::<StageError>().map_or_else(|_| StageError::internal(""), |e| *e))
         }
         Err(payload) => {
-            let text = payload.downcast_ref::<&str>().map(|s| (*s).to_owned());
-            let text = text.or_else(|| payload.downcast_ref::<String>().cloned()).unwrap_or_default();
-            Err(StageError::internal(format!("the stage panicked: {text}"))
-                .hint("this is a bug, please report it"))
+            Err(StageError::internal(format!("the stage panicked: {}", panics::words(payload)))
+                .hint(panics::REPORT))
         }
     }
 }

@@ -52,8 +52,8 @@ impl Run<'_> {
         let cx = self.context(node, self.listener.clone());
         cx.progress(0.0, "");
         let started = Instant::now();
-        cx.check().map_err(|e| located(node, (String::new(), e)))?;
-        let searches = self.search(index).map_err(|e| located(node, e))?;
+        cx.check().map_err(|e| located(self.pipeline, node, (String::new(), e)))?;
+        let searches = self.search(index).map_err(|e| located(self.pipeline, node, e))?;
         self.tell(node, &searches);
         let missing = searches.iter().filter(|s| matches!(s.found, Found::Miss(_)));
         let missing: Vec<String> = missing.map(|s| s.entry.clone()).collect();
@@ -122,7 +122,7 @@ impl Run<'_> {
         let made = run_entries(node, jobs, cx);
         let used = self.meter.map(Meter::stop);
         self.note_reads(cx.take_reads());
-        made.map(|made| (made, used)).map_err(|e| located(node, e))
+        made.map(|made| (made, used)).map_err(|e| located(self.pipeline, node, e))
     }
 
     /// Tells whoever asked which files were read.
@@ -222,7 +222,7 @@ fn sizes(made: &[Made]) -> Size {
 }
 
 /// A failure with its place in the pipeline file.
-fn located(node: &Node, (entry, error): Failure) -> RunError {
-    let span = error.param.and_then(|p| node.params.get(p)).unwrap_or(&node.span).clone();
+fn located(pipeline: &Pipeline, node: &Node, (entry, error): Failure) -> RunError {
+    let span = pipeline.given(node, &error).unwrap_or_else(|| node.span.clone());
     RunError { stage: node.id.clone(), entry, span, error }
 }

@@ -2,11 +2,13 @@
 
 mod card;
 mod contract;
+mod placed;
 mod role;
 mod values;
 
 pub use card::{Arity, Card, InPort, OutPort, PluginId};
 pub use contract::Contract;
+pub use placed::Placed;
 pub use role::Role;
 pub use values::{Input, Inputs, Output, PortValue, Set};
 
@@ -33,6 +35,13 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
 
     /// What it leaves out or simplifies here, by which facts of the scene (see [`crate::decide`]).
     fn decisions(&self, _known: &Known<'_>) -> Vec<Decision> {
+        Vec::new()
+    }
+
+    /// What is wrong with its parameters and files, as far as it can be told before anything runs: all of it, each at its own
+    /// parameter and element ([`StageError::at`], [`StageError::within`]). It is asked before every run and by `toile validate`, so
+    /// it must be quick: it looks at files, and computes nothing. What it finds, the run would find as well.
+    fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }
 

@@ -69,10 +69,7 @@ pub struct BodyObj {
 #[stage]
 impl BodyObj {
     pub(crate) fn run(&self, cx: &Context) -> Result<Body, StageError> {
-        if self.file.is_empty() {
-            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the body from");
-            return Err(e.hint("write `file: \"body.obj\"`").at("file"));
-        }
+        self.named()?;
         let bytes = cx.read(&self.file)?;
         let text = std::str::from_utf8(&bytes).map_err(|_| {
             StageError::new(ErrorCode::PatternLoading, format!("\"{}\" is not a text", self.file))
@@ -81,9 +78,23 @@ impl BodyObj {
         cx.check()?;
         self.body(parse(text)?, cx)
     }
+
+    /// Whether the file is there.
+    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let there = self.named().and_then(|()| placed.cx.look(&self.file));
+        there.map_err(|e| e.at("file")).err().into_iter().collect()
+    }
 }
 
 impl BodyObj {
+    fn named(&self) -> Result<(), StageError> {
+        if self.file.is_empty() {
+            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the body from");
+            return Err(e.hint("write `file: \"body.obj\"`").at("file"));
+        }
+        Ok(())
+    }
+
     /// A body from the file's vertices and triangles.
     fn body(&self, (points, triangles): TriMesh, cx: &Context) -> Result<Body, StageError> {
         let (points, triangles) = join_equal(&points, &triangles);

@@ -73,6 +73,11 @@ impl Mannequin {
         check(&size)?;
         fit(&size, self.edge.metres(), cx)
     }
+
+    /// Whether anybody has such measures.
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        check(&self.size()).err().into_iter().collect()
+    }
 }
 
 impl Mannequin {

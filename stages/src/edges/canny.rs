@@ -41,13 +41,22 @@ pub struct Canny {
 #[stage]
 impl Canny {
     pub(crate) fn run(&self, photo: &Photo, mask: &Mask, cx: &Context) -> Result<Outline, StageError> {
+        self.ordered()?;
+        detect(self, photo, mask, cx)
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.ordered().err().into_iter().collect()
+    }
+
+    fn ordered(&self) -> Result<(), StageError> {
         if self.low > self.high {
             let text = format!("`low` is {}, above `high`, which is {}", self.low, self.high);
             return Err(StageError::new(ErrorCode::InvalidParameter, text)
                 .hint("an edge starts above `high` and goes on above `low`")
                 .at("low"));
         }
-        detect(self, photo, mask, cx)
+        Ok(())
     }
 }
 

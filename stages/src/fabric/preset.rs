@@ -33,11 +33,18 @@ pub struct Preset {
 impl Preset {
     /// Runs the stage.
     pub fn run(&self, _cx: &Context) -> Result<Fabric, StageError> {
+        self.typical().map(|t| t.fabric(self.hysteresis))
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.typical().err().into_iter().collect()
+    }
+
+    fn typical(&self) -> Result<&'static Typical, StageError> {
         let wanted = self.name.trim().to_lowercase();
         TYPICAL
             .iter()
             .find(|t| t.name == wanted || t.also.contains(&wanted.as_str()))
-            .map(|t| t.fabric(self.hysteresis))
             .ok_or_else(|| {
                 let names: Vec<&str> = TYPICAL.iter().map(|t| t.name).collect();
                 let near = nearest(&wanted, &names);

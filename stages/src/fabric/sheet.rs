@@ -64,6 +64,11 @@ impl Cloth {
             source: "given in the pipeline".into(),
         })
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        let curves = [(&self.warp, "warp"), (&self.weft, "weft")];
+        curves.into_iter().filter_map(|(points, param)| rising(points, param).err()).collect()
+    }
 }
 
 /// The points as a curve that rises from the origin.
@@ -81,7 +86,8 @@ fn rising(points: &[(f64, f64)], param: &'static str) -> Result<Curve, StageErro
             );
             return Err(StageError::new(ErrorCode::InvalidParameter, text)
                 .hint("give points (strain, N/m) that rise in both, without the origin")
-                .at(param));
+                .at(param)
+                .within(i));
         }
         last = p;
     }

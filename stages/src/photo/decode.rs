@@ -82,6 +82,11 @@ fn reader(kind: Form, bytes: &[u8]) -> ImageReader<Cursor<&[u8]>> {
     ImageReader::with_format(Cursor::new(bytes), format)
 }
 
+/// Refuses what [`decode`] would refuse by the header alone.
+pub(super) fn check(bytes: &[u8], name: &str) -> Result<(), StageError> {
+    check_header(bytes, name).map(|_| ())
+}
+
 fn check_header(bytes: &[u8], name: &str) -> Result<(Form, Header), StageError> {
     if bytes.is_empty() {
         return Err(damaged(name, "is empty"));

@@ -2,10 +2,14 @@
 
 use super::entry::{scale_fault, width_fault};
 use super::expected;
+use super::decode::check;
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_core::cost::Size;
+use toile_core::StageMeta;
+use toile_core::param::ron_options;
+use toile_core::pipeline::{Node, nearest};
 use toile_core::prelude::*;
 
 /// Reads the photos of the garment's sides.
@@ -37,6 +41,20 @@ impl Photos {
         read_photos(&self.photos, cx)
     }
 
+    /// Names, widths, mirrors, and whether each file is a whole picture by its header.
+    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        if self.photos.is_empty() {
+            return vec![none()];
+        }
+        let of_name = self.photos.keys().filter_map(|name| named(name).err());
+        let of_side = self.photos.iter().filter_map(|(name, entry)| match (resolve(&self.photos, name), entry) {
+            (Err(e), _) => Some(e),
+            (Ok((file, _)), PhotoEntry::File(_)) => look(name, &file.file, placed.cx).err(),
+            (Ok(_), PhotoEntry::MirrorOf(_)) => None,
+        });
+        of_name.chain(of_side).collect()
+    }
+
     /// How much it will read: from the files' headers.
     pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
         expected::size(&self.photos, cx)
@@ -54,6 +72,14 @@ impl Photos {
     }
 }
 
+/// The names of the photos that a stage's panels are made from; none where they do not come from one `Photos`.
+pub(crate) fn sides(sources: &[&Node]) -> Option<Vec<String>> {
+    let mut readers = sources.iter().filter(|n| n.card.name == Photos::NAME);
+    let reader = readers.next().filter(|_| readers.next().is_none())?;
+    let photos: Photos = ron_options().from_str(&reader.stage.params()).ok()?;
+    Some(photos.photos.into_keys().collect())
+}
+
 /// Reads all photos in parallel; a file that is named twice is decoded once.
 ///
 /// # Errors
@@ -61,9 +87,7 @@ impl Photos {
 /// [`decode`] refuses.
 pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Result<Set<Photo>, StageError> {
     if entries.is_empty() {
-        return Err(StageError::invalid("there are no photos")
-            .hint("add `photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\")}`")
-            .at("photos"));
+        return Err(none());
     }
     entries.keys().try_for_each(|name| named(name))?;
     let sides = entries
@@ -83,13 +107,26 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
     Ok(sides.into_iter().filter_map(photo).collect())
 }
 
+fn none() -> StageError {
+    StageError::invalid("there are no photos")
+        .hint("add `photos: {\"front\": (file: \"front.jpg\", width: \"52 cm\")}`")
+        .at("photos")
+}
+
+/// Looks at a side's file without decoding it.
+fn look(side: &str, file: &str, cx: &Context) -> Result<(), StageError> {
+    let seen = cx.read(file).and_then(|bytes| check(&bytes, file));
+    seen.map_err(|e| e.at("photos").within(side).within("file"))
+}
+
 /// A side's name stands in the names of files: textures, kept artifacts, goldens.
 fn named(name: &str) -> Result<(), StageError> {
     let is_apart = |c: char| c.is_control() || matches!(c, '/' | '\\' | ':');
     match name.is_empty() || name.starts_with('.') || name.contains(is_apart) {
         true => Err(StageError::invalid(format!("a photo is named {name:?}, as no file can be"))
             .hint("name it after the garment's side: \"front\", \"back\"")
-            .at("photos")),
+            .at("photos")
+            .within(name)),
         false => Ok(()),
     }
 }
@@ -138,14 +175,18 @@ pub(super) fn resolve<'a>(
     }
     Err(StageError::invalid(format!("photo \"{name}\" mirrors itself"))
         .hint("one of the photos must be a file")
-        .at("photos"))
+        .at("photos")
+        .within(name))
 }
 
 fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &str) -> StageError {
     let known: Vec<String> = entries.keys().map(|k| format!("\"{k}\"")).collect();
+    let others = entries.keys().map(String::as_str).filter(|k| *k != name);
+    let near = nearest(target, others).map_or_else(String::new, |n| format!("did you mean \"{n}\"? "));
     StageError::invalid(format!("photo \"{name}\" is to mirror \"{target}\", which there is not"))
-        .hint(format!("the photos are {}", known.join(", ")))
+        .hint(format!("{near}the photos are {}", known.join(", ")))
         .at("photos")
+        .within(name)
 }
 
 /// Values set from code have not passed the pipeline reader.
@@ -156,7 +197,7 @@ fn checked<'a>(name: &str, file: &'a PhotoFile) -> Result<&'a PhotoFile, StageEr
     match fault {
         Some(fault) => {
             let text = format!("photo \"{name}\": {fault}");
-            Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos"))
+            Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos").within(name))
         }
         None => Ok(file),
     }

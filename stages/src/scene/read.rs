@@ -40,10 +40,7 @@ const SHARE: f64 = 0.75;
 impl Scene {
     /// Runs the stage.
     pub fn run(&self, cx: &Context) -> Result<(Garment, Body, Collider, Phases), StageError> {
-        if self.file.is_empty() {
-            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the scene from");
-            return Err(e.hint("write `file: \"skirt.json\"`").at("file"));
-        }
+        self.named()?;
         let text = text(cx, &self.file)?;
         let folder = std::path::Path::new(&self.file).parent().map(std::path::Path::to_path_buf);
         let beside = |obj: &str| {
@@ -68,6 +65,20 @@ impl Scene {
         self.check(&collider)?;
         self.check(&phases)?;
         Ok((garment, body, collider, phases))
+    }
+
+    fn named(&self) -> Result<(), StageError> {
+        if self.file.is_empty() {
+            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the scene from");
+            return Err(e.hint("write `file: \"skirt.json\"`").at("file"));
+        }
+        Ok(())
+    }
+
+    /// Whether the file and the body's beside it are there. What stands in them is read by the run, at once: scenes come first.
+    pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let there = self.named().and_then(|()| placed.cx.look(&self.file));
+        there.map_err(|e| e.at("file")).err().into_iter().collect()
     }
 
     /// A file whose numbers the reader takes and no garment, body or motion can have.

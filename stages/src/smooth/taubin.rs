@@ -37,6 +37,17 @@ pub struct Taubin {
 impl Taubin {
     pub(crate) fn run(&self, panel: &Panel, cx: &Context) -> Result<Panel, StageError> {
         super::check(panel)?;
+        self.outweighs()?;
+        let inward = Umbrella { share: self.lambda, outline: true };
+        let outward = Umbrella { share: self.mu, outline: true };
+        smooth(panel, self.iterations as usize, &[&inward, &outward], cx)
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.outweighs().err().into_iter().collect()
+    }
+
+    fn outweighs(&self) -> Result<(), StageError> {
         if self.mu >= -self.lambda && self.lambda > 0.0 {
             return Err(StageError::new(
                 ErrorCode::InvalidParameter,
@@ -45,8 +56,6 @@ impl Taubin {
             .hint("the outward step must outweigh the inward one; -0.53 goes with 0.5")
             .at("mu"));
         }
-        let inward = Umbrella { share: self.lambda, outline: true };
-        let outward = Umbrella { share: self.mu, outline: true };
-        smooth(panel, self.iterations as usize, &[&inward, &outward], cx)
+        Ok(())
     }
 }

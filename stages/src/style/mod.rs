@@ -20,7 +20,16 @@ pub use seams::{SeamEntry, Seams};
 pub use tshirt::TShirt;
 pub use vest::Vest;
 
-use toile_core::Registry;
+use toile_core::{Registry, StageMeta};
+
+/// The edges that a style of that name gives every panel; none of a style that is not built in.
+fn edges_of(style: &str) -> Option<Vec<String>> {
+    match style {
+        Vest::NAME => Some(naming::edge_names(&vest::HALF)),
+        TShirt::NAME => Some(naming::edge_names(&tshirt::HALF)),
+        _ => None,
+    }
+}
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {

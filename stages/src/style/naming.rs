@@ -52,6 +52,12 @@ pub(super) fn name_edges(
     Ok(named)
 }
 
+/// The names of all edges of a panel whose halves have these, from the hem upwards.
+pub(super) fn edge_names(half: &[&str]) -> Vec<String> {
+    let both = half.iter().flat_map(|name| ["left", "right"].map(|side| format!("{name}_{side}")));
+    both.chain(["neck".to_owned(), "hem".to_owned()]).collect()
+}
+
 /// True for panels that lie behind the body.
 pub(super) fn is_back(panel: &str) -> bool {
     panel.to_lowercase().contains("back")

@@ -1,6 +1,8 @@
 //! Seams that a pipeline file lists itself.
 
-use super::sewing::{placement, sew};
+use super::edges_of;
+use super::sewing::{misnamed, placement, sew};
+use crate::photo::sides;
 use toile_core::prelude::*;
 
 /// One entry of a pipeline's `seams`.
@@ -55,6 +57,13 @@ impl Seams {
             (name.to_owned(), found)
         };
         sew(&outlines, seams, outlines.iter().map(place).collect(), cx)
+    }
+
+    /// Names of panels and edges, where photos and a built-in style make them.
+    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let seams: Vec<Seam> = self.seams.iter().map(SeamEntry::seam).collect();
+        let edges = placed.maker("plan").and_then(|style| edges_of(style.card.name));
+        misnamed(&seams, sides(&placed.sources()).as_deref(), edges.as_deref())
     }
 }
 

@@ -75,21 +75,62 @@ pub(super) fn sew(
         outlines.iter().map(|(k, o)| (k.to_owned(), o.clone())).collect();
     sewn.values_mut().for_each(own_gauges);
     let mut used: Vec<&EdgeRef> = Vec::new();
-    for seam in &seams {
-        for side in [&seam.a, &seam.b] {
-            find(&sewn, side)?;
+    for (i, seam) in seams.iter().enumerate() {
+        for (k, side) in [&seam.a, &seam.b].into_iter().enumerate() {
+            find(&sewn, side).map_err(|e| of_seam(e, i).within(k))?;
             if used.contains(&side) {
-                return Err(stitching(format!("the edge {side} stands in more than one seam"))
-                    .hint("sew every edge once"));
+                return Err(of_seam(twice(side), i).within(k));
             }
             used.push(side);
         }
-        check_lengths(&sewn, seam, cx)?;
-        check_direction(&sewn, seam, &placements)?;
+        check_lengths(&sewn, seam, cx).map_err(|e| of_seam(e, i))?;
+        check_direction(&sewn, seam, &placements).map_err(|e| of_seam(e, i))?;
         agree(&mut sewn, seam);
     }
     let sewn = sewn.into_iter().map(|(k, o)| (k, Arc::new(o))).collect();
     Ok((Set(sewn), SewingPlan { seams, placements }))
+}
+
+/// Puts an error at the seam of that number, where the file lists seams.
+fn of_seam(error: StageError, number: usize) -> StageError {
+    error.at("seams").within(number)
+}
+
+fn twice(side: &EdgeRef) -> StageError {
+    stitching(format!("the edge {side} stands in more than one seam")).hint("sew every edge once")
+}
+
+/// What is wrong with seams by the names of panels and edges alone, as far as these are known before the outlines are.
+pub(super) fn misnamed(seams: &[Seam], panels: Option<&[String]>, edges: Option<&[String]>) -> Vec<StageError> {
+    let (mut used, mut found): (Vec<&EdgeRef>, Vec<StageError>) = (Vec::new(), Vec::new());
+    for (i, seam) in seams.iter().enumerate() {
+        for (k, side) in [&seam.a, &seam.b].into_iter().enumerate() {
+            let is_in = |names: &[String], name: &String| names.contains(name);
+            let error = match (panels, edges) {
+                (Some(names), _) if !is_in(names, &side.panel) => Some(no_panel(side, &texts(names))),
+                (_, Some(names)) if !is_in(names, &side.edge) => Some(no_edge(side, &texts(names))),
+                _ if used.contains(&side) => Some(twice(side)),
+                _ => None,
+            };
+            used.push(side);
+            found.extend(error.map(|e| of_seam(e, i).within(k)));
+        }
+    }
+    found
+}
+
+fn texts(names: &[String]) -> Vec<&str> {
+    names.iter().map(String::as_str).collect()
+}
+
+fn no_panel(side: &EdgeRef, names: &[&str]) -> StageError {
+    let text = format!("there is no panel \"{}\"", side.panel);
+    unknown(text, &side.panel, names, |n| format!("{n}.{}", side.edge))
+}
+
+fn no_edge(side: &EdgeRef, names: &[&str]) -> StageError {
+    let text = format!("the panel \"{}\" has no edge \"{}\"", side.panel, side.edge);
+    unknown(text, &side.edge, names, |n| format!("{}.{n}", side.panel))
 }
 
 fn stitching(text: String) -> StageError {
@@ -99,10 +140,7 @@ fn stitching(text: String) -> StageError {
 /// The points of an edge or an inner line.
 fn find(outlines: &BTreeMap<String, Outline>, side: &EdgeRef) -> Result<Vec<Point2>, StageError> {
     let Some(outline) = outlines.get(&side.panel) else {
-        let names: Vec<&str> = outlines.keys().map(String::as_str).collect();
-        return Err(unknown(format!("there is no panel \"{}\"", side.panel), &side.panel, &names, |n| {
-            format!("{n}.{}", side.edge)
-        }));
+        return Err(no_panel(side, &outlines.keys().map(String::as_str).collect::<Vec<_>>()));
     };
     if let Some(edge) = outline.edge(&side.edge) {
         return Ok(outline.edge_points(edge));
@@ -112,8 +150,7 @@ fn find(outlines: &BTreeMap<String, Outline>, side: &EdgeRef) -> Result<Vec<Poin
     }
     let edges = outline.edges.iter().map(|e| e.name.as_str());
     let names: Vec<&str> = edges.chain(outline.inner.iter().map(|l| l.name.as_str())).collect();
-    let text = format!("the panel \"{}\" has no edge \"{}\"", side.panel, side.edge);
-    Err(unknown(text, &side.edge, &names, |n| format!("{}.{n}", side.panel)))
+    Err(no_edge(side, &names))
 }
 
 fn unknown(text: String, name: &str, names: &[&str], full: impl Fn(&str) -> String) -> StageError {

@@ -19,6 +19,9 @@ use toile_core::prelude::*;
 )]
 pub struct TShirt;
 
+/// The edges of one half, from the hem upwards.
+pub(super) const HALF: [&str; 4] = ["side", "underarm", "cuff", "shoulder"];
+
 /// What is sewn, in the order of the report.
 const SEWN: [&str; 6] =
     ["shoulder_left", "shoulder_right", "underarm_left", "underarm_right", "side_left", "side_right"];
@@ -67,5 +70,5 @@ fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
     if !long(armpit, low, LEAST_UNDERARM) || !long(low, top, LEAST_CUFF) {
         return Err("its arms end without a cuff; it seems to have no sleeves".into());
     }
-    Ok(vec![("side", path.from), ("underarm", armpit), ("cuff", low), ("shoulder", top)])
+    Ok(HALF.into_iter().zip([path.from, armpit, low, top]).collect())
 }

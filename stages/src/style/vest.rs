@@ -34,6 +34,9 @@ impl Vest {
     }
 }
 
+/// The edges of one half, from the hem upwards.
+pub(super) const HALF: [&str; 3] = ["side", "armhole", "shoulder"];
+
 /// Shortest shoulder seam, as a share of the garment's size.
 const LEAST_SHOULDER: f64 = 0.03;
 /// Least height of an armhole, as a share of the garment's height.
@@ -68,5 +71,5 @@ fn find_half(shape: &Shape, path: Path) -> Result<Half, String> {
     if depth < LEAST_SCOOP * shape.size || rise < LEAST_ARMHOLE * shape.height() {
         return Err("its border does not curve in between shoulder and armpit".into());
     }
-    Ok(vec![("side", path.from), ("armhole", armpit), ("shoulder", shoulder)])
+    Ok(HALF.into_iter().zip([path.from, armpit, shoulder]).collect())
 }

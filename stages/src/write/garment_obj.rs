@@ -33,4 +33,8 @@ impl GarmentObj {
         }
         Ok(OutputFiles::one(&format!("{}.obj", self.name), text.into_bytes()))
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }

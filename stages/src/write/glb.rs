@@ -40,6 +40,10 @@ impl Glb {
         let bytes = glb(model, &images, self.textures.mime())?;
         Ok(OutputFiles::one(&format!("{}.glb", self.name), bytes))
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }
 
 /// Component types and buffer targets of the standard.

@@ -57,6 +57,10 @@ impl Obj {
         files.extend(names.into_iter().zip(images).map(|(path, bytes)| OutputFile::new(path, bytes)));
         Ok(OutputFiles(files))
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }
 
 /// The geometry.

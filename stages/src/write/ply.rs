@@ -30,6 +30,10 @@ impl Ply {
         check_model(model)?;
         Ok(OutputFiles::one(&format!("{}.ply", self.name), ply(model)))
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }
 
 /// The file.

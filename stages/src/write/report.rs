@@ -56,6 +56,10 @@ impl Report {
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
         report_views::rule(known, self.views, VIEW_HEIGHT).into_iter().collect()
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }
 
 fn html(page: &Page) -> Result<String, minijinja::Error> {

@@ -67,4 +67,8 @@ impl SceneJson {
         let body = OutputFile::new(obj, body_to_obj(&scene).into());
         Ok(OutputFiles(if scene.body.is_some() { vec![json, body] } else { vec![json] }))
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        super::names::check_name(&self.name).err().into_iter().collect()
+    }
 }

@@ -31,11 +31,11 @@ fn one(text: &str, registry: &Registry, quality: &Quality, file_is_clean: bool) 
         return fixed;
     }
     let given: Vec<Given<'_>> = Given::of_quality(quality).collect();
-    let applied = overrides::apply(text, registry, &given, Vec::new());
+    let applied = overrides::apply(text, registry, &given);
     let mut found = Vec::new();
     check(&applied.text, registry, &mut found);
     let refused = applied.refused.iter().map(|(i, f)| (Some(*i), f.clone()));
-    let brought = found.into_iter().map(|f| (applied.origin(&f), f));
+    let brought = found.into_iter().map(|f| (applied.origin.number(&f), f));
     let brought = brought.filter(|(i, _)| file_is_clean || i.is_some());
     refused.chain(brought).map(|(i, fault)| placed(quality, i, fault)).collect()
 }

@@ -134,3 +134,87 @@ fn size_has_limits() {
     assert!(found.faults.len() <= super::super::MAX_FAULTS + 1, "{}", found.faults.len());
     assert!(found.render(false).len() < 100_000);
 }
+
+/// The vest with a slip in it, and the faults that come of it: no others, and the rest of the file is read.
+#[track_caller]
+fn slip(from: &str, to: &str, expected: &str) {
+    assert!(kit::VEST.contains(from), "{from}");
+    let text = kit::VEST.replacen(from, to, 1);
+    assert_eq!(faults(&text), expected, "\n{text}");
+    // A fault behind the slip, and one before it, come out in the same run.
+    let more = text.replacen("Report()", "Reprot()", 1);
+    if more != text {
+        let both = faults(&more);
+        assert!(both.contains("unknown stage `Reprot`; did you mean `Report`?"), "{both}");
+    }
+    let more = text.replacen("172 cm", "9 m", 1);
+    if more != text {
+        let both = faults(&more);
+        assert!(both.contains("`height` is 9 m, above its greatest value 2.5 m"), "{both}");
+    }
+}
+
+#[test]
+fn a_missing_comma_is_named_where_it_is_missing_and_the_rest_is_read() {
+    slip("Otsu(),", "Otsu()", "vest.ron:13:15: a comma is missing after `Otsu()`");
+    slip("low: 20,", "low: 20", "vest.ron:14:22: a comma is missing after `20`");
+    slip("name: \"vest\",", "name: \"vest\"", "vest.ron:3:17: a comma is missing after `\"vest\"`");
+    slip("\"52 cm\"),", "\"52 cm\")", "vest.ron:5:53: a comma is missing after `(...)`");
+    slip("style: Vest(),", "style: Vest()", "vest.ron:8:18: a comma is missing after `Vest()`");
+    slip("    },\n", "    }\n", "vest.ron:7:6: a comma is missing after `{...}`");
+    slip("edge: \"12 mm\"),", "edge: \"12 mm\")", "vest.ron:15:34: a comma is missing after `GridMesher(...)`");
+    slip("left\", ", "left\" ", "vest.ron:20:37: a comma is missing after `\"front.side_left\"`");
+    slip("Otsu(),", "Otsu();", "vest.ron:13:15: expected `,`, found `;`");
+    slip("Otsu(),", "Otsu(),,", "vest.ron:13:16: expected a value, found `,`");
+}
+
+#[test]
+fn two_missing_commas_are_two_faults() {
+    let text = kit::VEST.replace("Otsu(),", "Otsu()").replace("Taubin(),", "Taubin()");
+    let expected = "vest.ron:13:15: a comma is missing after `Otsu()`\n\
+                    vest.ron:16:17: a comma is missing after `Taubin()`";
+    assert_eq!(faults(&text), expected);
+}
+
+#[test]
+fn a_missing_colon_is_named() {
+    slip("radius: 1", "radius 1", "vest.ron:12:33: a colon is missing after `radius`; write `radius: ...`");
+    slip("radius: 1", "radius = 1", "vest.ron:12:34: expected `:` after `radius`, found `=`; write `radius: ...`");
+    slip("style: Vest()", "style Vest()", "vest.ron:8:10: a colon is missing after `style`; write `style: ...`");
+    slip("\"front\": (", "\"front\" (", "vest.ron:5:17: expected `:` after the key, found `(`");
+}
+
+#[test]
+fn a_text_without_one_of_its_quotes_is_named() {
+    let closed = "this text is never closed; write `\"` at its end";
+    slip("\"vest\",", "\"vest,", &format!("vest.ron:3:11: {closed}"));
+    slip("\"front.jpg\"", "\"front.jpg", &format!("vest.ron:5:25: {closed}"));
+    slip("\"12 mm\"", "\"12 mm", &format!("vest.ron:15:26: {closed}"));
+    slip("\"12 mm\"", "12 mm\"", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
+    slip("\"12 mm\"", "12 mm", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
+    slip("\"vest\"", "my vest", "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`");
+}
+
+#[test]
+fn a_bracket_that_lacks_its_partner_is_named() {
+    let never = |place: &str, bracket: &str, end: &str, next: &str| {
+        format!("vest.ron:{place}: this `{bracket}` is never closed; write `{end}` before `{next}`")
+    };
+    slip("Report(),\n    ],", "Report(),", &never("11:13", "[", "]", "seams"));
+    slip("Otsu()", "Otsu(", &never("13:13", "(", ")", "Canny"));
+    slip("\"52 cm\"),\n    },", "\"52 cm\"),", &never("4:13", "{", "}", "style"));
+    slip("Otsu()", "Otsu(]", "vest.ron:13:14: expected `)`, found `]`");
+    slip("Otsu()", "Otsu())", "vest.ron:13:15: expected `,` or `]`, found `)`");
+    slip("high: 60)", "high: 60]", "vest.ron:14:32: expected `,` or `)`, found `]`");
+}
+
+#[test]
+fn a_key_that_stands_twice_in_a_map_is_refused() {
+    slip("\"back\":  (", "\"front\": (", "vest.ron:6:9: the key \"front\" is given twice");
+    let text = kit::VEST.replacen("\"back\":", "\"fr\\u{6f}nt\":", 1);
+    assert_eq!(faults(&text), "vest.ron:6:9: the key \"front\" is given twice");
+    let labels = places(&text).remove(0);
+    assert_eq!(labels[1], ("\"front\"".into(), "first here".into()));
+    let plugins = "plugins: [(file: \"a\", file: \"b\")], name:";
+    assert_eq!(faults(&kit::VEST.replacen("name:", plugins, 1)), "vest.ron:3:27: the field `file` is given twice");
+}

@@ -17,9 +17,11 @@ fn sound(text: &str, overrides: &[Override]) {
         }
         Err(faults) => {
             assert!(!faults.faults.is_empty(), "an error without a fault");
-            for label in faults.faults.iter().flat_map(|f| &f.labels) {
-                assert!(faults.text.get(label.span.clone()).is_some(), "{label:?} is not in the text");
+            for (fault, label) in faults.faults.iter().flat_map(|f| f.labels.iter().map(move |l| (f, l))) {
+                let text = fault.option.as_ref().unwrap_or(&faults.text);
+                assert!(text.get(label.span.clone()).is_some(), "{label:?} is not in {text}");
             }
+            assert_eq!(faults.text, text, "places are in the file as it stands");
             assert!(faults.faults.iter().all(|f| !f.labels.is_empty()));
             assert!(!faults.render(false).is_empty() && !faults.to_string().is_empty());
         }
