@@ -13,15 +13,15 @@ pub enum ErrorCode {
     InvalidParameter,
     /// A mesh with triangles of no area, or an outline that crosses itself.
     DegenerateTriangles,
-    /// A seam that cannot be sewn.
+    /// A seam that did not close. One that is known to be wrong before it is sewn is invalid input.
     StitchingError,
     /// The solver did not come to rest.
     StaticEquilibrium,
     /// The simulation was over suspiciously early.
     FastFinish,
-    /// Cloth is inside the body.
+    /// Cloth ended inside the body. A start in the body is invalid input.
     BodyIntersection,
-    /// Cloth crosses itself.
+    /// Cloth ended through itself. A start that crosses itself is invalid input.
     SelfIntersection,
     /// Out of time.
     Timeout,
@@ -71,16 +71,16 @@ impl ErrorCode {
         }
     }
 
-    /// The exit code of a run that ends with it: 3 invalid input, 4 quality, 5 out of time or
-    /// stopped, 70 a bug.
+    /// The exit code of a run that ends with it: 3 what is wrong before anything is solved, 4 what solving came to, 5 out of
+    /// time or stopped, 70 a bug.
     pub fn exit_code(self) -> u8 {
         match self {
             ErrorCode::PatternLoading
             | ErrorCode::InvalidInput
             | ErrorCode::InvalidParameter
-            | ErrorCode::DegenerateTriangles
-            | ErrorCode::StitchingError => 3,
-            ErrorCode::StaticEquilibrium
+            | ErrorCode::DegenerateTriangles => 3,
+            ErrorCode::StitchingError
+            | ErrorCode::StaticEquilibrium
             | ErrorCode::FastFinish
             | ErrorCode::BodyIntersection
             | ErrorCode::SelfIntersection => 4,

@@ -134,11 +134,9 @@ pub(super) fn motion_error(error: &MotionError) -> StageError {
         MotionError::Cloth(e) => return cloth_error(e),
         MotionError::Scene(e) => return scene_error(e),
         MotionError::SeamNotClosed { .. } => ErrorCode::StitchingError,
-        MotionError::InitialPenetration { .. } => ErrorCode::BodyIntersection,
-        MotionError::InitialCrossing { .. } => ErrorCode::SelfIntersection,
         MotionError::Timeout { .. } => ErrorCode::Timeout,
         MotionError::Stopped => ErrorCode::Cancelled,
-        MotionError::Fabrics { .. } => ErrorCode::InvalidInput,
+        MotionError::Start(_) | MotionError::Fabrics { .. } => ErrorCode::InvalidInput,
     };
     let e = StageError::new(code, text);
     match hint {

@@ -10,8 +10,13 @@ pub fn cloth_error(error: &ClothError) -> StageError {
         ClothError::DegenerateTriangle { .. } | ClothError::ZeroLengthEdge { .. } => {
             ErrorCode::DegenerateTriangles
         }
-        ClothError::InvalidParameter { .. } => ErrorCode::InvalidParameter,
-        ClothError::Diverged { .. } | ClothError::Wind { .. } => ErrorCode::StaticEquilibrium,
+        ClothError::InvalidParameter { .. } | ClothError::TimeStepUnstable { .. } => {
+            ErrorCode::InvalidParameter
+        }
+        ClothError::StrainLimitExceeded { .. }
+        | ClothError::NotConverged { .. }
+        | ClothError::Factorization { .. }
+        | ClothError::Diverged { .. } => ErrorCode::StaticEquilibrium,
         _ => ErrorCode::InvalidInput,
     };
     let text = error.to_string();

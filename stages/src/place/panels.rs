@@ -224,14 +224,12 @@ impl<'a> Scene<'a> {
 
 fn too_deep(panel: &str, depth: f64) -> StageError {
     let message = format!("the panel \"{panel}\" would start {:.0} mm deep in the body", depth * 1e3);
-    StageError::new(ErrorCode::BodyIntersection, message)
-        .hint("raise `ease`: the panels' distance from the skin")
-        .at("ease")
+    StageError::invalid(message).hint("raise `ease`: the panels' distance from the skin").at("ease")
 }
 
 fn too_far(seam: &str, gap: f64) -> StageError {
     let message = format!("the seam {seam} would start {:.0} cm apart, too far to be sewn", gap * 100.0);
-    StageError::new(ErrorCode::StitchingError, message).hint(format!(
+    StageError::invalid(message).hint(format!(
         "lower `ease`, or check the panels' places; seams may start {:.0} cm apart",
         MAX_GAP * 100.0
     ))

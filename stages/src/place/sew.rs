@@ -30,7 +30,7 @@ fn unequal(seam: &Seam, a: usize, b: usize) -> StageError {
         "`{}` has {a} vertices and `{}` has {b}, so they cannot be sewn point by point",
         seam.a, seam.b
     );
-    StageError::new(ErrorCode::StitchingError, message)
+    StageError::invalid(message)
         .hint("mesh both panels with the same mesher and edge length, after the style has named their seams")
 }
 
@@ -45,18 +45,15 @@ fn vertices(at: &EdgeRef, panels: &Offsets) -> Result<Vec<u32>, StageError> {
 
 /// The plan names a panel that there is none of.
 pub(crate) fn unknown_panel(name: &str, panels: &Offsets) -> StageError {
-    StageError::new(ErrorCode::StitchingError, format!("there is no panel \"{name}\""))
+    StageError::invalid(format!("there is no panel \"{name}\""))
         .hint(format!("the panels are {}", list(panels.keys().copied())))
 }
 
 fn unknown_edge(at: &EdgeRef, panel: &Panel) -> StageError {
     let names =
         panel.edges.iter().map(|e| e.name.as_str()).chain(panel.inner.iter().map(|c| c.name.as_str()));
-    StageError::new(
-        ErrorCode::StitchingError,
-        format!("the panel \"{}\" has no edge \"{}\"", at.panel, at.edge),
-    )
-    .hint(format!("its edges are {}", list(names)))
+    StageError::invalid(format!("the panel \"{}\" has no edge \"{}\"", at.panel, at.edge))
+        .hint(format!("its edges are {}", list(names)))
 }
 
 fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {

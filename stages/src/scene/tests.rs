@@ -163,7 +163,7 @@ fn rest_names_the_stages_that_rest_in_wind_and_wind_needs_air() {
     scene.pinned = vec![0, 1];
     let (g, _, c, p) = through_files(&scene).unwrap();
     let e = Rest::default().run(&g, Some(&c), Some(&p), &cx).unwrap_err();
-    assert_eq!(e.code, ErrorCode::StaticEquilibrium);
+    assert_eq!(e.code, ErrorCode::InvalidInput);
     assert_eq!(e.message, "wind of 5 m/s has no potential, so this solver finds no state of rest in it");
     assert_eq!(
         e.hint.as_deref(),
@@ -275,5 +275,55 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
     assert_eq!(
         (code, hint.as_deref()),
         (ErrorCode::InvalidInput, Some("docs/scene.md describes the format"))
+    );
+}
+
+/// What `Rest` says of a scene that it cannot bring to rest.
+fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
+    let (garment, _, collider, phases) = through_files(scene).unwrap();
+    let rest = Rest { graded: false, ..Rest::default() };
+    rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap_err()
+}
+
+#[test]
+fn what_is_wrong_with_the_start_is_invalid_input() {
+    let mut sunk = generate::tube(8, 9);
+    sunk.positions.iter_mut().for_each(|p| p.z *= 0.2);
+    let mut reversed = generate::tube(8, 9);
+    let mut second: Vec<u32> = reversed.seams[0].pairs.iter().map(|p| p[1]).collect();
+    second.reverse();
+    reversed.seams[0].pairs.iter_mut().zip(second).for_each(|(p, v)| p[1] = v);
+    let mut crossing = generate::tube(8, 9);
+    let back = crossing.panels[1].vertices.clone();
+    crossing.positions[back]
+        .iter_mut()
+        .for_each(|p| *p = nalgebra::Vector3::new(p.x, p.y + 0.007, 0.2 + 0.3 * p.x));
+    for (scene, words, hint) in [
+        (sunk, "vertices start inside the body", "place the panels outside it"),
+        (reversed, "run against each other", "list the second vertices of the pairs in reverse order"),
+        (
+            crossing,
+            "panels 'front' and 'back' pass through each other at the start",
+            "lay them out so that none do",
+        ),
+    ] {
+        let e = refused(&scene);
+        assert_eq!((e.code, e.code.exit_code()), (ErrorCode::InvalidInput, 3), "{}", e.message);
+        assert!(e.message.contains(words), "{}", e.message);
+        assert!(e.hint.as_ref().is_some_and(|h| h.starts_with(hint)), "{:?}", e.hint);
+    }
+}
+
+#[test]
+fn a_seam_that_solving_does_not_close_is_a_result() {
+    let mut narrow = generate::tube(8, 9);
+    narrow.rest.iter_mut().for_each(|p| p.x *= 0.3);
+    narrow.positions.iter_mut().for_each(|p| p.x *= 0.3);
+    let e = refused(&narrow);
+    assert_eq!((e.code, e.code.exit_code()), (ErrorCode::StitchingError, 4), "{}", e.message);
+    assert!(e.message.starts_with("seam 'side_") && e.message.contains(" mm at "), "{}", e.message);
+    assert_eq!(
+        e.hint.as_deref(),
+        Some("place its panels nearer, with nothing between its sides, or cut them wider")
     );
 }

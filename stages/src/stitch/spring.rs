@@ -107,10 +107,10 @@ fn check_start(garment: &Garment, scheme: Option<&dyn Collide>, deepest: f64) ->
     let worst = deep.iter().copied().fold(0.0, f64::max);
     match deep.len() {
         0 => Ok(()),
-        n => Err(StageError::new(
-            ErrorCode::BodyIntersection,
-            format!("{n} vertices start deep inside the body, the deepest by {:.0} mm", worst * 1e3),
-        )
+        n => Err(StageError::invalid(format!(
+            "{n} vertices start deep inside the body, the deepest by {:.0} mm",
+            worst * 1e3
+        ))
         .hint("place the panels farther from the body, or give them more ease")),
     }
 }

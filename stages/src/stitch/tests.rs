@@ -116,7 +116,7 @@ fn the_limit_of_steps_is_named() {
 #[test]
 fn a_start_deep_in_the_body_is_refused() {
     let e = sew(&tube(0.0, &plain(2000.0, 50.0, 1e-5)), Some(&pole(0.1))).unwrap_err();
-    assert_eq!(e.code, ErrorCode::BodyIntersection);
+    assert_eq!(e.code, ErrorCode::InvalidInput);
     assert_eq!(e.message, "126 vertices start deep inside the body, the deepest by 100 mm");
     assert_eq!(e.hint.as_deref(), Some("place the panels farther from the body, or give them more ease"));
 }

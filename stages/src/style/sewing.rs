@@ -97,7 +97,7 @@ fn of_seam(error: StageError, number: usize) -> StageError {
 }
 
 fn twice(side: &EdgeRef) -> StageError {
-    stitching(format!("the edge {side} stands in more than one seam")).hint("sew every edge once")
+    StageError::invalid(format!("the edge {side} stands in more than one seam")).hint("sew every edge once")
 }
 
 /// What is wrong with seams by the names of panels and edges alone, as far as these are known before the outlines are.
@@ -133,10 +133,6 @@ fn no_edge(side: &EdgeRef, names: &[&str]) -> StageError {
     unknown(text, &side.edge, names, |n| format!("{}.{n}", side.panel))
 }
 
-fn stitching(text: String) -> StageError {
-    StageError::new(ErrorCode::StitchingError, text)
-}
-
 /// The points of an edge or an inner line.
 fn find(outlines: &BTreeMap<String, Outline>, side: &EdgeRef) -> Result<Vec<Point2>, StageError> {
     let Some(outline) = outlines.get(&side.panel) else {
@@ -159,7 +155,7 @@ fn unknown(text: String, name: &str, names: &[&str], full: impl Fn(&str) -> Stri
         None if names.is_empty() => "its edges have no names; a style must come before".to_owned(),
         None => format!("known are {}", names.join(", ")),
     };
-    stitching(text).hint(hint)
+    StageError::invalid(text).hint(hint)
 }
 
 fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context) -> Result<(), StageError> {
@@ -168,10 +164,9 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
     let words = format!("{} is {:.1} mm long, {} {:.1} mm", seam.a, a * 1e3, seam.b, b * 1e3);
     match seam.kind {
         SeamKind::Gathered => Ok(()),
-        SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(stitching(format!(
-            "{words}: they differ by {:.1} %, too much to be sewn flat",
-            100.0 * difference
-        ))
+        SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(StageError::invalid(
+            format!("{words}: they differ by {:.1} %, too much to be sewn flat", 100.0 * difference),
+        )
         .hint(format!(
             "if the longer one is meant to be gathered, write Gather(\"{}\", \"{}\")",
             seam.a, seam.b
@@ -208,7 +203,7 @@ fn check_direction(
     }
     let better = if seam.reversed { "Match" } else { "Reversed" };
     let text = format!("the seam {} is reversed: its threads would cross between the panels", seam.name());
-    Err(stitching(text).hint(format!(
+    Err(StageError::invalid(text).hint(format!(
         "each edge runs counter-clockwise, and the start of one meets the end of the other; sew the edges \
          that lie on each other, or write {better}(\"{}\", \"{}\")",
         seam.a, seam.b

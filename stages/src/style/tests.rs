@@ -231,7 +231,7 @@ fn sewn(entries: Vec<SeamEntry>) -> Result<(Set<Outline>, SewingPlan), StageErro
 
 fn fault(entry: fn(EdgeRef, EdgeRef) -> SeamEntry, a: &str, b: &str) -> (String, String) {
     let e = sewn(vec![entry(edge(a), edge(b))]).unwrap_err();
-    assert_eq!(e.code, ErrorCode::StitchingError);
+    assert_eq!(e.code, ErrorCode::InvalidInput);
     (e.message, e.hint.unwrap_or_default())
 }
 

@@ -4,6 +4,7 @@
 //! vertex and edge belongs to one triangle, so that every pair is found once (Curtis, Tamstorf, Manocha 2008). Cost
 //! O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
 
+mod lie;
 mod meet;
 mod part;
 mod slab;

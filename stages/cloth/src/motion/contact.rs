@@ -1,24 +1,15 @@
 //! What cloth meets on its way: the body, and itself.
 
-use super::MotionError;
 use crate::contact::limit::hold_apart;
 use crate::contact::pair::Pair;
-use crate::contact::start;
 use crate::contact::tree::ClothTree;
 use crate::rest::solve::Wearer;
-use crate::scene::Scene;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
 /// Share of an overlap of two layers that one step takes away.
 const RELEASE: f64 = 0.2;
-
-/// The start with vertices that lie a little inside the body moved out.
-pub(super) fn clear_start(scene: &Scene, wearer: Option<Wearer<'_>>) -> Result<Vec<Vec3>, MotionError> {
-    let Some(wearer) = wearer else { return Ok(scene.positions.clone()) };
-    Ok(start::clear_start(&scene.positions, wearer.skin, scene.material.thickness)?)
-}
 
 /// Keeps moves out of the body: what a vertex loses of its way into it, times the friction, it may lose of its way along it.
 ///

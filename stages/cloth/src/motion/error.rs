@@ -1,7 +1,7 @@
 //! Why a motion did not end.
 
-use crate::contact::start::Sunk;
 use crate::error::ClothError;
+use crate::rest::start::StartError;
 use crate::scene::SceneError;
 
 /// Why a motion did not end.
@@ -23,7 +23,8 @@ pub enum MotionError {
     },
     /// A seam does not close.
     #[error(
-        "seam '{seam}' stays open by {gap:.4} m after {time:.2} s; place its panels nearer or cut them wider"
+        "seam '{seam}' stays open by {:.1} mm after {time:.2} s; place its panels nearer, with nothing between its sides, or cut them wider",
+        1e3 * gap
     )]
     SeamNotClosed {
         /// The seam with the widest gap.
@@ -33,22 +34,9 @@ pub enum MotionError {
         /// Simulated time, s.
         time: f64,
     },
-    /// Vertices start inside the body, too deep to be pushed out.
-    #[error(
-        "{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it"
-    )]
-    InitialPenetration {
-        /// How many.
-        vertices: usize,
-        /// The deepest, m.
-        depth: f64,
-    },
-    /// Cloth that passes through cloth where it starts.
-    #[error("{pairs} pairs of an edge and a triangle cross at the start; lay the panels out so that none do")]
-    InitialCrossing {
-        /// How many.
-        pairs: usize,
-    },
+    /// What is wrong with the start.
+    #[error(transparent)]
+    Start(#[from] StartError),
     /// The budget of wall time is spent.
     #[error("out of time after {seconds:.1} s, at {time:.3} s of the motion")]
     Timeout {
@@ -60,10 +48,4 @@ pub enum MotionError {
     /// The caller asked to stop.
     #[error("stopped")]
     Stopped,
-}
-
-impl From<Sunk> for MotionError {
-    fn from(sunk: Sunk) -> Self {
-        Self::InitialPenetration { vertices: sunk.vertices, depth: sunk.depth }
-    }
 }

@@ -23,6 +23,7 @@ use crate::fabric::Fabric;
 use crate::force::Air;
 use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
+use crate::rest::start::check;
 use crate::scene::Scene;
 use moving::Moving;
 use nalgebra::Vector3;
@@ -138,7 +139,7 @@ impl Motion {
         scene.check()?;
         let fabric = one_fabric(scene)?;
         let pieces = Pieces::new(scene);
-        let start = contact::clear_start(scene, wearer)?;
+        let start = check::<MotionError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
         let mut run = Run { settings: self, scene, wearer, fabric, pieces, clock: Instant::now(), progress };
         let open = Moving::open(&run, start)?;
         match self.until {

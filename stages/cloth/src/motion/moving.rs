@@ -8,6 +8,7 @@ use crate::error::ClothError;
 use crate::force::{Air, AirDrag};
 use crate::mesh::Sheet;
 use crate::rest::solve::Wearer;
+use crate::rest::start::{check_lying, crossing};
 use crate::solver::{Model, Solver, State};
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
@@ -46,10 +47,11 @@ impl Moving {
         moving.seams = Seams { pairs };
         moving.tree = moving.tree.map(|t| t.sewing(run.pieces.point.clone()));
         if let Some(tree) = &moving.tree {
-            let crossings = tree.crossings(&moving.state.x).len();
-            if crossings > 0 {
-                return Err(MotionError::InitialCrossing { pairs: crossings });
+            let x = &moving.state.x;
+            if let Some(error) = crossing(run.scene, &run.pieces.panel, x, &tree.crossings(x)) {
+                return Err(error.into());
             }
+            check_lying::<MotionError>(run.scene, &run.pieces, x)?;
         }
         Ok(moving)
     }

@@ -80,8 +80,7 @@ pub(super) fn assemble<'a>(
     });
     let mut corners = vec![0u16; n];
     sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
-    let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
-    let thickness = panel.iter().map(thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest);
+    let thickness = layer_thickness(&cloths, panel.iter().copied(), sheet);
     let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
     let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
     let no_friction = cloths.iter().all(|c| c.friction == 0.0);
@@ -122,6 +121,12 @@ pub(super) fn assemble<'a>(
         seen: vec![],
         pulls: vec![],
     })
+}
+
+/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted from 1, m.
+pub(super) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = usize>, sheet: &Sheet) -> f64 {
+    let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
+    panels.map(|p| cloths[p].thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest)
 }
 
 /// What no panel and what each panel is made of.

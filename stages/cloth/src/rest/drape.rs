@@ -4,6 +4,7 @@ use super::graded::stages;
 use super::level::Level;
 use super::newton::Pace;
 use super::solve::{Progress, RestError};
+use super::tangled::entangled;
 use super::work::{Draped, Work};
 use crate::error::ClothError;
 
@@ -43,8 +44,7 @@ impl<'a> Work<'a> {
                 self.bring(k, &mut level, &mut bending, progress)
             })?;
             if level.system.is_tangled() {
-                let pairs = level.system.layers.as_ref().map_or(0, |l| l.tangles.len());
-                return Ok(Draped::Tangled { nodes: level.x.len(), pairs });
+                return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
             }
             if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {
                 return Ok(pierced);

@@ -2,12 +2,18 @@
 
 use super::multifrontal::NotPositive;
 use super::solve::Rested;
-use crate::contact::start::Sunk;
+use super::start::StartError;
+use super::tangled::Load;
+use super::words::{both, list, place};
 use crate::error::ClothError;
 use crate::scene::SceneError;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
+
+/// How far, in edges, a seam may stay open because its mesh is too coarse: a polygon of n corners about a limb is longer than the limb's
+/// girth by 3.3 edges over n, and what is folded onto itself by its seams by an edge or two.
+pub(super) const MOST_EDGES: f64 = 3.0;
 
 /// Why there is no garment at rest.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -26,9 +32,23 @@ pub enum RestError {
         "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
     )]
     Falls,
+    /// What is wrong with the start.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// A step that has no solution.
+    #[error("no step can be solved at vertex {vertex} of {panel}: {why}")]
+    Unsolvable {
+        /// The vertex about which it has none.
+        vertex: usize,
+        /// Its panel.
+        panel: String,
+        /// Why, and what may help.
+        why: &'static str,
+    },
     /// A seam does not close.
     #[error(
-        "seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider"
+        "seam '{seam}' stays open by {:.1} mm at {force:.1} N a metre; {}",
+        1e3 * gap, remedy(reversed)
     )]
     SeamNotClosed {
         /// The seam with the widest gap.
@@ -37,24 +57,24 @@ pub enum RestError {
         gap: f64,
         /// The force that did not close it, N/m.
         force: f64,
+        /// Seams whose pairs seem to run against each other.
+        reversed: Vec<String>,
     },
-    /// Vertices start inside the body, too deep to be pushed out.
+    /// Cloth came through cloth while it was brought to rest.
     #[error(
-        "{vertices} vertices start inside the body, the deepest by {depth:.3} m; place the panels outside it"
+        "cloth passes through cloth under its load: {} while solving, and {pairs} pairs cross or lie in each other, one at {}, while {load}",
+        both(panels, "came through", "came through"),
+        place(at)
     )]
-    InitialPenetration {
-        /// How many.
-        vertices: usize,
-        /// The deepest, m.
-        depth: f64,
-    },
-    /// Cloth that passes through cloth where it starts.
-    #[error(
-        "cloth touches or passes through cloth at the start: {pairs} pairs of an edge and a triangle cross or cannot be told apart; lay the panels out so that none do"
-    )]
-    InitialCrossing {
-        /// How many.
+    Tangled {
+        /// Two panels of them.
+        panels: [String; 2],
+        /// How many pairs of an edge and a triangle, or so near that nothing tells their sides.
         pairs: usize,
+        /// Where one is, m.
+        at: Vec3,
+        /// Weight against stiffness.
+        load: Load,
     },
     /// Cloth that passes through cloth at the end.
     #[error(
@@ -97,19 +117,23 @@ pub enum RestError {
 }
 
 impl RestError {
-    /// Whether a finer mesh to begin on may help.
-    pub(super) fn is_of_a_coarse_mesh(&self) -> bool {
-        matches!(
-            self,
-            Self::SeamNotClosed { .. }
-                | Self::Cloth(ClothError::NonManifoldEdge { .. })
-                | Self::Crossing { .. }
-        )
+    /// Whether a finer mesh to begin on may help, where this one's edges have a mean length, m.
+    pub(super) fn is_of_a_coarse_mesh(&self, edge: f64) -> bool {
+        match self {
+            Self::SeamNotClosed { gap, .. } => *gap < MOST_EDGES * edge,
+            Self::Cloth(ClothError::NonManifoldEdge { .. }) | Self::Crossing { .. } => true,
+            _ => false,
+        }
     }
 }
 
-impl From<Sunk> for RestError {
-    fn from(sunk: Sunk) -> Self {
-        Self::InitialPenetration { vertices: sunk.vertices, depth: sunk.depth }
+fn remedy(reversed: &[String]) -> String {
+    match reversed {
+        [] => "place its panels nearer, with nothing between its sides, or cut them wider".into(),
+        names => format!(
+            "the pairs of {} {} seem to run against each other: if that is not meant, list their second vertices in reverse order",
+            if names.len() == 1 { "seam" } else { "seams" },
+            list(names)
+        ),
     }
 }

@@ -15,6 +15,8 @@ use rayon::prelude::*;
 mod crowd;
 mod tangles;
 
+pub(super) use tangles::MERGED;
+
 type Vec3 = Vector3<f64>;
 
 /// Pairs that may touch, and how stiffly.

@@ -34,12 +34,14 @@ mod rub;
 mod search;
 mod sew;
 pub mod solve;
-mod start;
+pub mod start;
 pub mod support;
 pub mod system;
+mod tangled;
 pub mod thread;
 #[cfg(test)]
 mod trial;
+pub(crate) mod words;
 mod work;
 
 pub(crate) use dense::probe_factor;

@@ -8,7 +8,7 @@ use super::level::Level;
 use super::pieces::Pieces;
 use super::pile::pile_of;
 use super::solve::Rest;
-use super::start::{clear_start, crossings_at_start};
+use super::start::{crossing, crossings_at_start};
 use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
@@ -35,28 +35,26 @@ pub(super) struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Levels down to one of about `coarsest` nodes.
+    /// Levels down to one of about `coarsest` nodes, of a scene whose vertices begin at `start`.
     pub(super) fn new(
         rest: &'a Rest,
         coarsest: usize,
         scene: &'a Scene,
         body: Option<Wearer<'a>>,
+        start: &[Vec3],
     ) -> Result<Self, RestError> {
-        let (start, (mut pieces, mut coarser)) =
-            rayon::join(|| clear_start(scene, body), || levels(scene, coarsest));
-        let mut starts = vec![start?];
+        let (mut pieces, mut coarser) = levels(scene, coarsest);
+        let mut starts = vec![start.to_vec()];
         for level in &coarser {
             let finer = &starts[starts.len() - 1];
             starts.push(level.kept.iter().map(|&v| finer[v as usize]).collect());
         }
         // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
         while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
-            let pairs = crossings_at_start(scene, coarse, start)?;
-            if pairs == 0 {
-                break;
-            }
+            let crossings = crossings_at_start(scene, coarse, start)?;
+            let Some(error) = crossing(scene, &coarse.panel, start, &crossings) else { break };
             if coarser.pop().is_none() {
-                return Err(RestError::InitialCrossing { pairs });
+                return Err(error.into());
             }
             pieces.pop();
             starts.pop();
@@ -66,6 +64,20 @@ impl<'a> Plan<'a> {
         }
         let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
         Ok(Self { rest, scene, body, cloths, is_pile, pieces, coarser, starts })
+    }
+
+    /// Mean length of the edges of the coarsest level, m.
+    pub(super) fn edge(&self) -> f64 {
+        let Some(coarsest) = self.pieces.last() else { return 0.0 };
+        let at = |v: u32| coarsest.rest[v as usize];
+        let sides =
+            coarsest.triangles.iter().flat_map(|t| (0..3).map(|k| (at(t[k]) - at(t[(k + 1) % 3])).norm()));
+        sides.sum::<f64>() / (3 * coarsest.triangles.len()).max(1) as f64
+    }
+
+    /// The vertex of the finest level that vertex `v` of level `k` is.
+    pub(super) fn finest_of(&self, k: usize, v: u32) -> u32 {
+        self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize])
     }
 
     /// Points of the level that is finer than the coarsest, if there is one.

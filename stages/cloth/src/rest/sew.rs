@@ -1,15 +1,18 @@
 //! Panels are sewn, on the coarsest level.
 
 use super::assemble::{assemble, spacing, strongest};
+use super::error::MOST_EDGES;
 use super::graded::stages;
 use super::newton::Pace;
 use super::solve::{Progress, RestError};
+use super::start::probably_reversed;
 use super::system::System;
 use super::thread::Thread;
 use super::work::Work;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
 use nalgebra::Vector3;
+use std::cell::Cell;
 
 type Vec3 = Vector3<f64>;
 
@@ -21,6 +24,12 @@ const HARDER: (f64, usize) = (3.0, 4);
 
 /// Steps of sewing, its first step of pseudo-time, s, and the least way that is the farthest of a step, m.
 const SEWING: (usize, f64, f64) = (40, 0.02, 0.05);
+
+/// Steps in which a wide gap must shrink, and by what share of itself; else it is pulled harder, or given up.
+const SHRINKING: (usize, f64) = (12, 0.01);
+
+/// How many times more a gap may shrink under a harder pull than in proportion to it.
+const MORE_THAN_LINEAR: f64 = 3.0;
 
 /// Steps in which cloth without seams is pressed flat.
 const PRESSING: usize = 10;
@@ -55,11 +64,16 @@ impl Work<'_> {
         let first = self.plan.grade(size(sheet)).map_or(1.0, |g| g.first());
         let mut force = 0.0;
         let start = x.to_vec();
-        for stiff in std::iter::once(first).chain(stages(first, 1.0)) {
+        let softer = stages(first, 1.0);
+        // What stays wide open as limp as it is would stay so while it is stiffer, too: that is looked at before the stages between.
+        let probe = softer.last().copied().filter(|_| softer.len() > 1);
+        for (k, stiff) in std::iter::once(first).chain(probe).chain(softer).enumerate() {
             // Cloth too stiff to go round the body has been squeezed out of its place: above the arms, off the shoulders.
             x.copy_from_slice(&start);
             force = self.pull(sheet, pairs, x, stiff, progress)?;
-            if widest(x, pairs) <= self.plan.rest.join_gap {
+            let gap = widest(x, pairs);
+            let is_probe = k == 1 && probe.is_some();
+            if if is_probe { self.is_wide(gap) } else { gap <= self.plan.rest.join_gap } {
                 break;
             }
         }
@@ -67,7 +81,8 @@ impl Work<'_> {
         self.joined_at = Some(gap);
         if gap > self.plan.rest.join_gap {
             let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
-            return Err(RestError::SeamNotClosed { seam, gap, force });
+            let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
+            return Err(RestError::SeamNotClosed { seam, gap, force, reversed });
         }
         Ok(())
     }
@@ -84,11 +99,13 @@ impl Work<'_> {
         let coarsest = self.plan.pieces.len() - 1;
         let spacing = spacing(&self.plan.pieces[coarsest], pairs);
         let mut pull = SEAM_PULL * strongest(&self.plan.cloths);
-        for _ in 0..HARDER.1 {
+        let mut before = f64::INFINITY;
+        for round in 0..HARDER.1 {
             let gap = widest(x, pairs);
-            if gap < self.plan.rest.join_gap {
+            if gap < self.plan.rest.join_gap || self.is_wide(gap) && is_hopeless(before, gap, round) {
                 break;
             }
+            before = gap;
             let thread = |nodes: &[u32; 2]| Thread {
                 nodes: *nodes,
                 force: pull * spacing,
@@ -100,13 +117,22 @@ impl Work<'_> {
             let farthest = (0.2 * gap).max(least);
             let pace =
                 Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
-            let closed = |x: &[Vec3]| self.plan.rest.join_gap > widest(x, pairs);
+            let shrinking = Shrinking::default();
+            let closed = |x: &[Vec3]| {
+                let gap = widest(x, pairs);
+                gap < self.plan.rest.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
+            };
             let report =
                 self.run(&mut system, sheet, &self.plan.starts[coarsest], x, &pace, &closed, progress)?;
             self.reports.push(report);
             pull *= HARDER.0;
         }
         Ok(pull / HARDER.0)
+    }
+
+    /// Whether a gap is wider than a mesh that is too coarse leaves it.
+    fn is_wide(&self, gap: f64) -> bool {
+        gap > MOST_EDGES * self.plan.edge()
     }
 
     /// Lets stiff cloth without seams forget its unevenness before it has weight.
@@ -141,12 +167,46 @@ impl Work<'_> {
     pub(super) fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
         let worst = self.plan.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let fine_of = |v: u32| self.plan.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
         let point = |v: u32| self.plan.pieces[0].point[v as usize];
-        let at = worst.map(|p| point(fine_of(p[0])));
+        let at = worst.map(|p| point(self.plan.finest_of(k, p[0])));
         let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
         self.plan.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
+}
+
+/// Whether a gap still shrinks.
+struct Shrinking {
+    least: Cell<f64>,
+    steps: Cell<usize>,
+}
+
+impl Default for Shrinking {
+    fn default() -> Self {
+        Self { least: Cell::new(f64::INFINITY), steps: Cell::new(0) }
+    }
+}
+
+impl Shrinking {
+    /// Looks at the gap after a step; whether it has shrunk of late.
+    fn goes_on(&self, gap: f64) -> bool {
+        let (most, share) = SHRINKING;
+        if gap < (1.0 - share) * self.least.get() {
+            self.least.set(gap);
+            self.steps.set(0);
+        } else {
+            self.steps.set(self.steps.get() + 1);
+        }
+        self.steps.get() < most
+    }
+}
+
+/// Whether a gap, `before` one pull and `after` a harder one, stays open under the hardest, when so many rounds of pulling are over.
+fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
+    let (factor, most) = HARDER;
+    // Of a sheet that stretches, the gap shrinks in proportion to the pull.
+    let last = factor.powi(most.saturating_sub(rounds) as i32);
+    let more = (before - after) * (last - 1.0) / (1.0 - 1.0 / factor);
+    rounds > 1 && MORE_THAN_LINEAR * more < after
 }
 
 /// The root of a sheet's area, m.
@@ -157,4 +217,31 @@ pub(super) fn size(sheet: &Sheet) -> f64 {
 /// The widest gap of pairs of vertices, m.
 pub(super) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_that_a_harder_pull_hardly_closes_is_given_up() {
+        assert!(!is_hopeless(f64::INFINITY, 0.3, 0));
+        assert!(!is_hopeless(0.5, 0.3, 1), "the first pull tells nothing yet");
+        assert!(is_hopeless(0.300, 0.299, 2));
+        assert!(!is_hopeless(0.30, 0.28, 2), "nine times the pull may close it");
+        assert!(is_hopeless(0.30, 0.28, 3), "three times will not");
+        assert!(!is_hopeless(0.30, 0.25, 3));
+    }
+
+    #[test]
+    fn a_gap_goes_on_shrinking_while_it_does() {
+        let shrinking = Shrinking::default();
+        let mut gap = 1.0;
+        for _ in 0..50 {
+            gap *= 0.98;
+            assert!(shrinking.goes_on(gap));
+        }
+        let steps = (0..50).take_while(|_| shrinking.goes_on(gap)).count();
+        assert_eq!(steps, SHRINKING.0 - 1);
+    }
 }

@@ -16,13 +16,19 @@
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Wearer;
+use super::assemble::gravity;
 pub use super::error::RestError;
 use super::graded::COARSEST;
 use super::grip::Grip;
 use super::newton::Outcome;
+use super::pieces::Pieces;
 use super::pile::pile_of;
 use super::plan::Plan;
 pub use super::real::Precision;
+pub use super::start::StartError;
+use super::start::{check, check_lying};
+pub use super::tangled::Load;
+use super::tangled::tangled;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
 use crate::scene::Scene;
@@ -150,17 +156,21 @@ impl Rest {
         scene.check_still()?;
         let pile = pile_of(scene);
         let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
+        let start = check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
+        if !self.from_here {
+            check_lying::<RestError>(scene, &Pieces::new(scene), &start)?;
+        }
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
         loop {
-            let plan = Plan::new(&rest, coarsest, scene, wearer)?;
+            let plan = Plan::new(&rest, coarsest, scene, wearer, &start)?;
             let (made, finer) = (Work::new(&plan, clock).make(progress), plan.second());
             coarsest = match (made, finer) {
                 (Ok(Draped::Rested(state)), _) => return rest.judge(Rested { restarts, ..*state }),
                 // From its own start the level keeps free of crossings by itself, if slowly.
-                (Ok(Draped::Tangled { pairs, .. }), None) => {
-                    return Err(RestError::InitialCrossing { pairs });
+                (Ok(Draped::Tangled(entangled)), None) => {
+                    return Err(tangled(scene, gravity(scene).norm(), entangled));
                 }
-                (Ok(Draped::Tangled { nodes, .. }), Some(finer)) => nodes.max(finer),
+                (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
                 (Ok(Draped::Pierced { finer }), _) => finer,
                 // What slides off while it is stiff may stay on as cloth.
                 (Err(RestError::Falls), _) if rest.graded => {
@@ -171,7 +181,7 @@ impl Rest {
                 (Err(RestError::Falls), Some(finer)) if wearer.is_some() => finer,
                 // A polygon of so few corners does not go round a limb, is folded onto itself by its seams, or hands on
                 // folds that lie too close for a finer mesh to come apart.
-                (Err(e), Some(finer)) if e.is_of_a_coarse_mesh() => finer,
+                (Err(e), Some(finer)) if e.is_of_a_coarse_mesh(plan.edge()) => finer,
                 (Err(e), _) => return Err(e),
             };
             restarts += 1;

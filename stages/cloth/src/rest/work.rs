@@ -10,6 +10,7 @@ use super::plan::Plan;
 use super::sew::widest;
 use super::solve::{LevelReport, Progress, RestError, Rested};
 use super::system::System;
+use super::tangled::{Entangled, unsolvable};
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
@@ -27,12 +28,8 @@ const CLEAR_STEP: f64 = 0.2;
 /// How the levels ended.
 pub(super) enum Draped {
     Rested(Box<Rested>),
-    /// The state carried to the level of so many nodes crosses itself and could not be undone.
-    Tangled {
-        nodes: usize,
-        /// Crossings left.
-        pairs: usize,
-    },
+    /// The state carried to a level crosses itself and could not be undone.
+    Tangled(Entangled),
     /// The body comes through a coarse level between its vertices.
     Pierced {
         /// Points of the next finer level.
@@ -192,7 +189,7 @@ impl<'a> Work<'a> {
         };
         match relax(system, layout, tree, x, pace, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
-            Err(Halt::NotPositive(error)) => return Err(error.into()),
+            Err(Halt::NotPositive(error)) => return Err(self.unsolvable(error.node, x)),
             Err(Halt::Stopped) => is_late = true,
         }
         match stop {
@@ -200,6 +197,16 @@ impl<'a> Work<'a> {
             None if is_late => Err(self.timeout(x)),
             None => Ok(report),
         }
+    }
+
+    /// A step from nodes of a level at `x` has no solution because of what is about one of them.
+    fn unsolvable(&self, node: u32, x: &[Vec3]) -> RestError {
+        let k = self.level_of(x);
+        let pieces = &self.plan.pieces[k];
+        let is_open = pieces.nodes != x.len();
+        let of_node = || pieces.node.iter().position(|n| *n == node).unwrap_or(0);
+        let vertex = if is_open { node as usize } else { of_node() };
+        unsolvable(self.plan.scene, self.plan.finest_of(k, vertex as u32) as usize, &x[node as usize])
     }
 
     /// Out of time with the nodes of a level at `x`.
@@ -229,7 +236,8 @@ impl<'a> Work<'a> {
             return Ok(());
         }
         let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
-        Err(RestError::SeamNotClosed { seam, gap, force: KEPT_PULL * strongest(&self.plan.cloths) })
+        let force = KEPT_PULL * strongest(&self.plan.cloths);
+        Err(RestError::SeamNotClosed { seam, gap, force, reversed: vec![] })
     }
 
     /// Refuses cloth that the strain limit could not hold.

@@ -115,8 +115,8 @@ fn state(solved: Result<Rested, RestError>) -> Result<(Rested, &'static str), Ve
         Err(RestError::NotAtRest { state, .. }) => Ok((*state, "not at rest, as the error says")),
         Err(
             e @ (RestError::SeamNotClosed { .. }
-            | RestError::InitialPenetration { .. }
-            | RestError::InitialCrossing { .. }
+            | RestError::Start(_)
+            | RestError::Tangled { .. }
             | RestError::Falls
             | RestError::Timeout { .. }),
         ) => Err(Verdict::Refused(e.to_string())),

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 type Vec3 = Vector3<f64>;
 
 /// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth and more.
-const MERGED: f64 = 0.02;
+pub(in crate::rest) const MERGED: f64 = 0.02;
 
 impl Layers {
     /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side. Cloth
@@ -27,6 +27,11 @@ impl Layers {
     /// Pairs so near that the wall between them and the search for the first impact would hold them there for ever.
     fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
         self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
+    }
+
+    /// The nodes of each crossing and of each pair that lies in each other, an edge's or a vertex's own first.
+    pub(in crate::rest) fn entangled(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
+        self.tangles.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
     }
 
     /// Whether the pair is one of them.
@@ -68,10 +73,10 @@ impl Layers {
         }
     }
 
-    /// Crossings of cloth of one layer, which no order resolves.
+    /// Whether an edge and a triangle are of two layers, whose order resolves their crossing.
     #[must_use]
-    pub fn unordered(&self, crossings: &[([u32; 2], [u32; 3])]) -> usize {
-        crossings.iter().filter(|(e, t)| self.side(e, t).is_none()).count()
+    pub fn is_ordered(&self, e: &[u32; 2], t: &[u32; 3]) -> bool {
+        self.side(e, t).is_some()
     }
 
     /// Whether the pair lies among tangled nodes only.

@@ -197,7 +197,7 @@ fn panels_inside_the_body_are_refused_or_moved_out() {
     scene.positions.iter_mut().for_each(|p| p.z *= 0.2);
     let error = settle(&scene).unwrap_err();
     assert!(
-        matches!(error, RestError::InitialPenetration { vertices, depth } if vertices > 20 && depth > 0.05),
+        matches!(&error, RestError::Start(StartError::InBody { vertices, depth, panel, .. }) if *vertices > 20 && *depth > 0.05 && panel == "panel 'front'"),
         "{error}"
     );
     let mut scene = generate::drape(12);
@@ -227,7 +227,11 @@ fn crossing_panels_are_refused() {
         *p = Vec3::new(q.x + 0.011, q.y + 0.007, q.z + 0.3 * (q.x + 0.011));
     }
     let error = settle(&scene).unwrap_err();
-    assert!(matches!(error, RestError::InitialCrossing { .. }), "{error}");
+    let RestError::Start(StartError::Crossing { panels, pairs, more, .. }) = &error else {
+        panic!("{error}")
+    };
+    assert_eq!((&panels[..], *more), (&["panel 'front'".to_owned(), "panel 'back'".to_owned()][..], 0));
+    assert!(*pairs > 0);
 }
 
 #[test]

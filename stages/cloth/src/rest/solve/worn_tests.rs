@@ -86,7 +86,7 @@ fn layers_that_start_through_each_other_are_put_in_order() {
     }
     let mut one = scene.clone();
     one.panels.iter_mut().for_each(|p| p.layer = 0);
-    assert!(matches!(settle(&one), Err(RestError::InitialCrossing { .. })));
+    assert!(matches!(settle(&one), Err(RestError::Start(StartError::Crossing { .. }))));
     let state = roughly(&scene);
     assert_eq!(crossings(&scene, &state.positions), 0);
     assert!(least_height(&scene, &state.positions) > 0.0, "{}", least_height(&scene, &state.positions));
