@@ -1,5 +1,6 @@
 //! Why a motion did not end.
 
+use crate::contact::past::Fallen;
 use crate::contact::start::Sunk;
 use crate::error::ClothError;
 use crate::scene::SceneError;
@@ -21,6 +22,9 @@ pub enum MotionError {
         /// The panel.
         panel: String,
     },
+    /// Cloth falls past the body.
+    #[error("{0}")]
+    FallsPast(Box<Fallen>),
     /// A seam does not close.
     #[error(
         "seam '{seam}' stays open by {gap:.4} m after {time:.2} s; place its panels nearer or cut them wider"

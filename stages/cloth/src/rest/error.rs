@@ -2,6 +2,8 @@
 
 use super::multifrontal::NotPositive;
 use super::solve::Rested;
+use super::unrest::unrest;
+use crate::contact::past::Fallen;
 use crate::contact::start::Sunk;
 use crate::error::ClothError;
 use crate::scene::SceneError;
@@ -26,6 +28,9 @@ pub enum RestError {
         "nothing holds the cloth: it has weight, but no pin and no body under it; it has no state of rest"
     )]
     Falls,
+    /// Cloth falls past the body.
+    #[error("{0}")]
+    FallsPast(Box<Fallen>),
     /// A seam does not close.
     #[error(
         "seam '{seam}' stays open by {gap:.4} m at {force:.1} N a metre; place its panels nearer or cut them wider"
@@ -67,10 +72,12 @@ pub enum RestError {
         state: Box<Rested>,
     },
     /// Still moving after all steps.
-    #[error("still moving after {steps} steps: {speed:.4} m/s, wanted {wanted:.4} m/s; allow more steps or a faster end", steps = state.outcome.steps, speed = state.outcome.speed)]
+    #[error("{}", unrest(state, panel, *wanted))]
     NotAtRest {
         /// The speed that was asked for, m/s.
         wanted: f64,
+        /// The panel with the greatest force left over.
+        panel: String,
         /// The last state, which has neither crossings nor vertices in the body.
         state: Box<Rested>,
     },

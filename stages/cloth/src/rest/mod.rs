@@ -10,6 +10,7 @@ mod drape;
 mod ears;
 pub mod elastic;
 mod error;
+pub(crate) mod fallen;
 mod first;
 mod front;
 mod graded;
@@ -40,4 +41,5 @@ pub mod system;
 pub mod thread;
 #[cfg(test)]
 mod trial;
+pub mod unrest;
 mod work;

@@ -137,13 +137,17 @@ impl Work<'_> {
         Ok(system)
     }
 
+    /// The vertex of the scene that vertex `v` of level `k` is.
+    pub(super) fn finest(&self, k: usize, v: u32) -> u32 {
+        self.plan.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize])
+    }
+
     /// The name of the seam that is open widest, with the vertices of level `k` at `x`.
     pub(super) fn widest_seam(&self, k: usize, x: &[Vec3]) -> String {
         let gap = |p: &[u32; 2]| (x[p[0] as usize] - x[p[1] as usize]).norm();
         let worst = self.plan.pieces[k].seam_pairs().into_iter().max_by(|a, b| gap(a).total_cmp(&gap(b)));
-        let fine_of = |v: u32| self.plan.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize]);
         let point = |v: u32| self.plan.pieces[0].point[v as usize];
-        let at = worst.map(|p| point(fine_of(p[0])));
+        let at = worst.map(|p| point(self.finest(k, p[0])));
         let has = |s: &&Seam| s.pairs.iter().any(|p| Some(point(p[0])) == at);
         self.plan.scene.seams.iter().find(has).map_or("?", |s| &s.name).to_string()
     }
