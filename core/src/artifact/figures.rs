@@ -50,6 +50,8 @@ pub struct GarmentFigures {
     pub body_penetration: Option<PenetrationFigures>,
     /// Pairs of triangles that cross; `None` where nothing looked.
     pub self_crossings: Option<usize>,
+    /// The share that is still in its place on the body, of the panel that has slid farthest; `None` where nothing told.
+    pub on_body: Option<f64>,
     /// Elastic and gravitational energy.
     pub energy_j: f64,
     /// Greatest speed of a vertex at the end.

@@ -57,6 +57,9 @@ pub struct SolveStatus {
     /// Greatest speed of a vertex at the end, m/s; of a solver that waits for rest, by its way over the
     /// solver's last look.
     pub max_speed: f64,
+    /// For each panel the share of it that is still in its place on the body, after all solvers: 1 less the way that its upper edge has
+    /// sunk, as a share of its size. Empty where nothing told: no body, no weight.
+    pub on_body: Vec<f64>,
 }
 
 /// Panels lifted into space with their seams.

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use toile_cloth::rest::solve::{Rest, RestError, Rested};
+use toile_cloth::rest::unrest::unrest;
 use toile_cloth::scene;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -36,8 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let wall = clock.elapsed().as_secs_f64();
     let (state, error): (Rested, Option<String>) = match solved {
         Ok(state) => (state, None),
-        Err(RestError::NotAtRest { wanted, state }) => {
-            ((*state).clone(), Some(RestError::NotAtRest { wanted, state }.to_string()))
+        Err(RestError::NotAtRest { wanted, panel, state }) => {
+            let why = unrest(&state, &panel, wanted);
+            (*state, Some(why))
         }
         Err(error) => return Err(error.into()),
     };

@@ -295,6 +295,7 @@ impl<'a> Simulation<'a> {
             converged,
             energy: self.energy(),
             max_speed: self.max_speed(),
+            on_body: self.garment.status.on_body.clone(),
         };
         self.cloth.scatter(&self.state, &mut self.garment);
         mark_closed(&mut self.garment);

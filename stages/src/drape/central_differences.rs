@@ -11,11 +11,13 @@ use toile_core::prelude::*;
 ///
 /// Promises motion of second order without damping of its own; the step stays below the stable limit
 /// 2/omega_max, which is computed from the stiffness and again as cloth stiffens. `SpringStitcher` and
-/// `SpringDraper` do the same with springs. In a scene it follows the scene's phases for their
-/// seconds; else it sews without weight and drapes until rest.
+/// `SpringDraper` do the same with springs.
+/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
+/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
+/// the body is an error.
 #[stage(
     role = Draper,
-    version = 4,
+    version = 5,
     source = "Fan et al. 1999; Desbrun et al. 1999",
     example = "CentralDifferences(drag: 4.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

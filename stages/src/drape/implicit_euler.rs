@@ -11,11 +11,13 @@ use toile_core::prelude::*;
 ///
 /// Promises: stable at any step, never gains energy, free fall exact, each step solved to
 /// `tolerance` newtons. Damps what the step does not resolve: a mode of frequency w loses the factor
-/// 1/sqrt(1 + (w dt)^2) a step. In a scene it follows the scene's phases for their seconds; else it
-/// sews without weight and drapes until rest.
+/// 1/sqrt(1 + (w dt)^2) a step.
+/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
+/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
+/// the body is an error.
 #[stage(
     role = Draper,
-    version = 4,
+    version = 5,
     source = "Baraff and Witkin 1998; Martin et al. 2011",
     example = "ImplicitEuler(tolerance: 1e-4)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

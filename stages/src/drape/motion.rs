@@ -1,7 +1,7 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
 use crate::cloth::check_garment;
-use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -52,7 +52,7 @@ pub(super) fn drape(
     let friction = card.map_or(0.0, |c| c.friction);
     let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
     let until = match phases {
-        Some(_) => Until::Phases,
+        Some(_) => Until::Phases { longest: course.longest },
         None => Until::Rest { speed: course.speed, energy: SETTLED, longest: course.longest },
     };
     let motion = Motion {
@@ -68,11 +68,36 @@ pub(super) fn drape(
     cx.check()?;
     let moved = moved.map_err(|e| motion_error(&e))?;
     if !moved.converged {
-        let (speed, time) = (moved.progress.speed * 1e3, moved.progress.time);
-        cx.warn(format!("the cloth still moves by {speed:.0} mm/s after {time:.1} s"));
+        cx.warn(unrest(&moved, course.speed));
     }
     cx.figure("motion_time", moved.progress.time, "s");
-    Ok(finish(garment, &moved))
+    let mut draped = finish(garment, &moved);
+    let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
+    if let Some(collider) = collider {
+        let kept = engine::on_body(garment, &draped.positions, collider.scheme.as_ref(), &gravity);
+        draped.status.on_body = engine::both(&garment.status.on_body, kept);
+    }
+    Ok(draped)
+}
+
+/// Why a motion has not come to rest, whose speed is `wanted`, m/s.
+fn unrest(moved: &Moved, wanted: f64) -> String {
+    let (speed, wanted, time) = (moved.progress.speed * 1e3, wanted * 1e3, moved.progress.time);
+    if moved.is_jammed {
+        format!(
+            "after {time:.1} s cloth holds cloth in the air, where it has no rest: take a smaller `dt`, or place the layers farther apart"
+        )
+    } else if speed < wanted {
+        let share = SETTLED * 1e2;
+        format!(
+            "after {time:.1} s the cloth moves by only {speed:.2} mm/s, but its energy still changes by more than {share} % in a sixtieth of \
+             a second: allow a longer motion"
+        )
+    } else {
+        format!(
+            "the cloth still moves by {speed:.1} mm/s after {time:.1} s, at rest it has less than {wanted:.1} mm/s: allow a longer motion"
+        )
+    }
 }
 
 /// The air that a stage's parameters name.
@@ -123,6 +148,7 @@ fn finish(garment: &Garment, moved: &Moved) -> Garment {
         converged: moved.converged,
         energy: moved.energy,
         max_speed: moved.progress.speed,
+        on_body: garment.status.on_body.clone(),
     };
     garment
 }
@@ -133,6 +159,7 @@ pub(super) fn motion_error(error: &MotionError) -> StageError {
     let code = match error {
         MotionError::Cloth(e) => return cloth_error(e),
         MotionError::Scene(e) => return scene_error(e),
+        MotionError::FallsPast(_) => ErrorCode::StaticEquilibrium,
         MotionError::SeamNotClosed { .. } => ErrorCode::StitchingError,
         MotionError::Timeout { .. } => ErrorCode::Timeout,
         MotionError::Stopped => ErrorCode::Cancelled,

@@ -11,11 +11,13 @@ use toile_core::prelude::*;
 ///
 /// Promises that every turn lowers the energy of the step and that a step costs the same always;
 /// what `iterations` leave undone shows as cloth too stiff against turning and slow to fall into folds.
-/// Warp and weft count as one stiffness. In a scene it follows the scene's phases for their seconds;
-/// else it sews without weight and drapes until rest.
+/// Warp and weft count as one stiffness.
+/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
+/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
+/// the body is an error.
 #[stage(
     role = Draper,
-    version = 4,
+    version = 5,
     source = "Bouaziz et al. 2014",
     example = "Projective(iterations: 10)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -10,11 +10,12 @@ use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
 use crate::cloth::check_garment;
-use crate::engine::{SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
+use toile_cloth::rest::unrest::unrest;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
@@ -29,12 +30,13 @@ const MOST_DIP: f64 = 1e-4;
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
 /// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
-/// `coarsest` saves it. A scene that nothing holds has no rest: its fall is
-/// followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
+/// `coarsest` saves it. Cloth that misses the body or slides off it is an error, as
+/// soon as nothing is left that could catch it, mostly on the coarsest mesh. A scene without a body that no pin holds has no
+/// rest: its fall is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 13,
+    version = 14,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -128,7 +130,12 @@ impl Rest {
                 "between its vertices the cloth dips up to {mm:.1} mm into the body: try a finer mesh"
             ));
         }
-        Ok(self.finish(garment, &state, steps, converged))
+        let mut rested = self.finish(garment, &state, steps, converged);
+        if let Some(collider) = collider {
+            let kept = engine::on_body(garment, &rested.positions, collider.scheme.as_ref(), &gravity);
+            rested.status.on_body = engine::both(&garment.status.on_body, kept);
+        }
+        Ok(rested)
     }
 
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
@@ -158,9 +165,8 @@ impl Rest {
     fn judge(&self, result: Result<Rested, RestError>, cx: &Context) -> Result<(Rested, bool), StageError> {
         match result {
             Ok(state) => Ok((state, true)),
-            Err(RestError::NotAtRest { state, .. }) => {
-                let (speed, steps) = (state.outcome.speed * 1e3, state.outcome.steps);
-                cx.warn(format!("the cloth still moves by {speed:.1} mm/s after {steps} steps of the drape"));
+            Err(RestError::NotAtRest { wanted, panel, state }) => {
+                cx.warn(unrest(&state, &panel, wanted));
                 Ok((*state, false))
             }
             Err(RestError::Crossing { pairs, state }) => {
@@ -181,6 +187,7 @@ impl Rest {
             converged,
             energy: state.energy,
             max_speed: state.outcome.speed,
+            on_body: garment.status.on_body.clone(),
         };
         garment
     }
@@ -220,6 +227,7 @@ fn rest_error(error: &RestError) -> StageError {
         RestError::SeamNotClosed { .. } => ErrorCode::StitchingError,
         RestError::Start(_) => ErrorCode::InvalidInput,
         RestError::Tangled { .. } | RestError::Crossing { .. } => ErrorCode::SelfIntersection,
+        RestError::FallsPast(_) => ErrorCode::StaticEquilibrium,
         RestError::Timeout { .. } => ErrorCode::Timeout,
         RestError::Stopped => ErrorCode::Cancelled,
         _ => ErrorCode::StaticEquilibrium,

@@ -7,6 +7,7 @@
 //! strain is the weight below a point over that stiffness, under 1 % for a garment.
 
 use crate::cloth::{CentralDifferences, Rest, Settings, Simulation, Softening, check_garment};
+use crate::engine::{self, FallWatch};
 use nalgebra::Vector3;
 use toile_core::prelude::*;
 
@@ -15,10 +16,11 @@ use toile_core::prelude::*;
 /// Gravity, the cloth's springs and contacts act, edges longer than `max_strain` allows are
 /// shortened after every step, and cloth is kept off itself. Damping grows with time, so that
 /// folds form freely first and swinging dies out then. The stage ends when the energy no longer
-/// changes and every vertex is slow, or at its time limit with a warning.
+/// changes and every vertex is slow, or at its time limit with a warning. Cloth that falls past the body
+/// is an error, as soon as nothing is left that could catch it.
 #[stage(
     role = Draper,
-    version = 2,
+    version = 3,
     source = "improved spring-mass model, 2003; Provot, 1995",
     example = "SpringDraper(max_strain: 0.02)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -98,17 +100,29 @@ impl SpringDraper {
         let mut simulation =
             Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings(garment));
         let mut rest = Rest::default();
-        let converged = self.fall(&mut simulation, &mut rest, cx)?;
+        let gravity = simulation.settings.gravity;
+        let watch = scheme.and_then(|s| FallWatch::of(garment, s, &gravity));
+        let converged = self.fall(&mut simulation, &mut rest, watch.as_ref(), cx)?;
         let speed = rest.drift().unwrap_or_else(|| simulation.max_speed());
         if !converged {
-            let (speed, time) = (speed * 1e3, simulation.time);
-            cx.warn(format!("the cloth still moves by {speed:.0} mm/s after {time:.1} s of drape"));
+            let (time, change) = (simulation.time, rest.change().unwrap_or(0.0));
+            cx.warn(match speed < self.speed {
+                true => format!(
+                    "the cloth's energy still changes by {change:.1e} J in 20 ms after {time:.1} s of drape, at rest by less than {:.1e} J",
+                    self.tolerance
+                ),
+                false => format!("the cloth still moves by {:.0} mm/s after {time:.1} s of drape", speed * 1e3),
+            });
         }
         simulation.lift_off_skin();
         cx.figure("drape_time", simulation.time, "s");
         cx.figure("self_searches", simulation.searches() as f64, "");
         let mut draped = simulation.finish(converged);
         draped.status.max_speed = speed;
+        if let Some(scheme) = scheme {
+            let kept = engine::on_body(garment, &draped.positions, scheme, &gravity);
+            draped.status.on_body = engine::both(&garment.status.on_body, kept);
+        }
         Ok(draped)
     }
 }
@@ -127,13 +141,22 @@ impl SpringDraper {
     }
 
     /// Steps until rest or the limits; true where it came to rest.
-    fn fall(&self, simulation: &mut Simulation, rest: &mut Rest, cx: &Context) -> Result<bool, StageError> {
+    fn fall(
+        &self,
+        simulation: &mut Simulation,
+        rest: &mut Rest,
+        watch: Option<&FallWatch<'_>>,
+        cx: &Context,
+    ) -> Result<bool, StageError> {
         while simulation.time < self.time_limit && simulation.steps < self.max_steps {
             if simulation.steps.is_multiple_of(CHECK_EVERY) {
                 cx.check()?;
             }
             simulation.step()?;
             if rest.look(simulation) {
+                if let Some(error) = watch.and_then(|w| w.look(&places(simulation))) {
+                    return Err(error);
+                }
                 let doublings = simulation.time / self.settle_time;
                 simulation.settings.damping =
                     (self.damping * doublings.exp2()).min(GREATEST_DAMPING.max(self.damping));
@@ -156,6 +179,12 @@ impl SpringDraper {
         rest.time_left(self.tolerance)
             .map_or(limit, |left| limit.max(simulation.time / (simulation.time + left)))
     }
+}
+
+/// Where every vertex of the garment is.
+fn places(simulation: &Simulation<'_>) -> Vec<Vector3<f64>> {
+    let at = |&n: &u32| simulation.state.x[n as usize].coords;
+    simulation.cloth.node_of.iter().map(at).collect()
 }
 
 /// `energy 0.412 J, fastest 31 mm/s, about 0.4 s to rest`.

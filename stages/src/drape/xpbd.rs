@@ -10,11 +10,13 @@ use toile_core::prelude::*;
 /// Sews the garment and lets it fall and settle, by extended position-based dynamics.
 ///
 /// Promises a picture in fixed time, never unstable, free fall exact; approaches the finite elements
-/// as `substeps` grow, from the soft side. In a scene it follows the scene's phases for their seconds;
-/// else it sews without weight and drapes until rest.
+/// as `substeps` grow, from the soft side.
+/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
+/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
+/// the body is an error.
 #[stage(
     role = Draper,
-    version = 4,
+    version = 5,
     source = "Macklin et al. 2016, 2019",
     example = "Xpbd(substeps: 8)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -3,13 +3,18 @@
 //! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
 
 mod arithmetic;
+mod fall;
 mod fault;
 mod lost;
+mod on_body;
+mod pieces;
 mod scene;
 mod skin;
 
 pub use arithmetic::arithmetic;
+pub use fall::FallWatch;
 pub use fault::{cloth_error, scene_error};
 pub use lost::lost;
+pub use on_body::{both, on_body};
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSkin;

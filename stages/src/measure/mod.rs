@@ -1,5 +1,6 @@
 //! The judgement of a finished garment, behind `metrics.json`.
 
+mod on_body;
 mod quality;
 
 pub use quality::Measure;

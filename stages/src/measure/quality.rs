@@ -4,6 +4,7 @@
 //! strain is that of the mesh edges. Body and self-contact are asked of the pipeline's collider;
 //! without one they are not measured, and `metrics.json` says so with a null.
 
+use super::on_body;
 use crate::cloth::check_garment;
 use std::collections::BTreeMap;
 use toile_core::artifact::{
@@ -20,6 +21,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// misses a limit is written all the same, with exit code 4.
 #[stage(
     role = Writer,
+    version = 2,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -37,6 +39,10 @@ pub struct Measure {
     /// Greatest 99th percentile of the edge strain, as a share.
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
+    /// Least share of every panel that must still be in its place on the body: 1 less the way that the upper edge of its piece has
+    /// sunk, from where it started or from the top of the body under it, as a share of the root of the piece's area.
+    #[param(default = 0.5, min = 0.0, max = 1.0)]
+    least_on_body: f64,
 }
 
 #[stage]
@@ -54,6 +60,7 @@ impl Measure {
             shortfalls: Vec::new(),
         };
         figures.shortfalls = self.shortfalls(&figures);
+        figures.shortfalls.extend(on_body::shortfall(garment, self.least_on_body));
         Ok(figures)
     }
 
@@ -160,6 +167,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFig
         },
         body_penetration: collider.map(|c| penetration(garment, c)),
         self_crossings: collider.map(|c| crossings(garment, c)),
+        on_body: on_body::least(garment).map(|(_, share)| share),
         energy_j: garment.status.energy,
         max_speed_m_s: garment.status.max_speed,
         steps: garment.status.steps,

@@ -62,7 +62,13 @@ pub(crate) fn garment(n: usize) -> Garment {
         seams,
         weld,
         pinned: Vec::new(),
-        status: SolveStatus { steps: 120, converged: true, energy: 0.4, max_speed: 1e-4 },
+        status: SolveStatus {
+            steps: 120,
+            converged: true,
+            energy: 0.4,
+            max_speed: 1e-4,
+            on_body: Vec::new(),
+        },
         positions,
     }
 }

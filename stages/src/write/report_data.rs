@@ -311,6 +311,9 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
     if let Some(crossings) = judged.and_then(|g| g.self_crossings) {
         cloth.push(row("pairs of triangles that cross", crossings as f64, ""));
     }
+    if let Some(share) = judged.and_then(|g| g.on_body) {
+        fit.push(row("still in its place on the body", share * 1e2, "%"));
+    }
     vec![cloth, fit]
 }
 

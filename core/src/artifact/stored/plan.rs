@@ -208,7 +208,8 @@ fn garment_fields(g: &GarmentFigures) -> Record<'_> {
         .number("energy_j", g.energy_j)
         .number("max_speed_m_s", g.max_speed_m_s)
         .count("steps", g.steps)
-        .flag("converged", g.converged);
+        .flag("converged", g.converged)
+        .maybe_number("on_body", g.on_body);
     match g.self_crossings {
         Some(crossings) => record.count("self_crossings", crossings),
         None => record,
@@ -228,6 +229,7 @@ fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
         edge_strain: StrainFigures { p50, p99, max },
         body_penetration: r.maybe("body_penetration")?.map(inside).transpose()?,
         self_crossings: r.find("self_crossings").map(|_| r.count("self_crossings")).transpose()?,
+        on_body: r.maybe_one("on_body")?,
         energy_j: r.one("energy_j")?,
         max_speed_m_s: r.one("max_speed_m_s")?,
         steps: r.count("steps")?,

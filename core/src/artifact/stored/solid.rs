@@ -127,6 +127,7 @@ fn status_fields(s: &SolveStatus) -> Record<'_> {
         .flag("converged", s.converged)
         .number("energy", s.energy)
         .number("max_speed", s.max_speed)
+        .list("on_body", &s.on_body)
 }
 
 fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
@@ -135,6 +136,7 @@ fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
         converged: r.flag("converged")?,
         energy: r.one("energy")?,
         max_speed: r.one("max_speed")?,
+        on_body: r.find("on_body").map(|_| r.list("on_body")).transpose()?.unwrap_or_default(),
     })
 }
 

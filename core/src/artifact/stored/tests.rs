@@ -91,7 +91,7 @@ fn garment() -> Garment {
         }],
         weld: vec![0, 0, 2],
         pinned: vec![2],
-        status: SolveStatus { steps: 5, converged: true, energy: 0.25, max_speed: 1e-4 },
+        status: SolveStatus { steps: 5, converged: true, energy: 0.25, max_speed: 1e-4, on_body: vec![0.9] },
     }
 }
 
@@ -160,6 +160,7 @@ fn figures() -> Figures {
             vertices: 3,
             body_penetration: Some(PenetrationFigures { vertices: 1, max_m: 2e-4 }),
             self_crossings: Some(4),
+            on_body: Some(0.75),
             ..GarmentFigures::default()
         },
         shortfalls: vec![Shortfall { code: ErrorCode::BodyIntersection, message: "inside".into() }],

@@ -6,6 +6,7 @@ pub mod closest;
 pub mod give_way;
 pub mod limit;
 pub mod pair;
+pub mod past;
 pub mod skin;
 pub(crate) mod start;
 pub mod tree;

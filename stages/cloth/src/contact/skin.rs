@@ -18,6 +18,9 @@ pub trait Skin: Send + Sync + std::fmt::Debug {
 
     /// Ends each move that would lead into the solid its `gap` (m) outside it. A point inside may move as it likes.
     fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]);
+
+    /// How far the solid reaches along a unit direction: the greatest product of its points with it, m. Nothing where there is none.
+    fn reach(&self, direction: &Vec3) -> Option<f64>;
 }
 
 impl Skin for Body {
@@ -29,5 +32,10 @@ impl Skin for Body {
     fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]) {
         let guard = |((m, p), gap): ((&mut Vec3, &Vec3), &f64)| *m = Body::guard(self, p, m, *gap);
         moves.par_iter_mut().zip(points).zip(gaps).with_min_len(CHUNK).for_each(guard);
+    }
+
+    fn reach(&self, direction: &Vec3) -> Option<f64> {
+        let corners = self.triangles().iter().flatten().map(|&v| self.vertices()[v as usize]);
+        corners.map(|p| p.dot(direction)).reduce(f64::max)
     }
 }

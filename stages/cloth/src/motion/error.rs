@@ -1,5 +1,6 @@
 //! Why a motion did not end.
 
+use crate::contact::past::Fallen;
 use crate::error::ClothError;
 use crate::rest::start::StartError;
 use crate::scene::SceneError;
@@ -21,6 +22,9 @@ pub enum MotionError {
         /// The panel.
         panel: String,
     },
+    /// Cloth falls past the body.
+    #[error("{0}")]
+    FallsPast(Box<Fallen>),
     /// A seam does not close.
     #[error(
         "seam '{seam}' stays open by {:.1} mm after {time:.2} s; place its panels nearer, with nothing between its sides, or cut them wider",

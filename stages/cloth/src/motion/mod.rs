@@ -8,6 +8,7 @@
 
 mod contact;
 mod error;
+mod fall;
 mod method;
 mod moving;
 mod seams;
@@ -25,6 +26,7 @@ use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
 use crate::rest::start::check;
 use crate::scene::Scene;
+use fall::Falls;
 use moving::Moving;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -35,8 +37,12 @@ type Vec3 = Vector3<f64>;
 /// When a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Until {
-    /// After the phases of the scene, each for its seconds.
-    Phases,
+    /// After the phases of the scene, each for its seconds. Seams are sewn first, without weight and wind, for as long as they take: the
+    /// phases that have no weight and come first last so much less.
+    Phases {
+        /// Longest time for sewing, s.
+        longest: f64,
+    },
     /// Sewn without weight and without wind, then at rest under the last phase's gravity, in its air, or after so many seconds of either.
     Rest {
         /// Way of every vertex in a sixtieth of a second, as a speed, m/s.
@@ -81,7 +87,7 @@ impl Default for Motion {
             viscosity: 0.0,
             closing: 0.5,
             join_gap: 5e-4,
-            until: Until::Phases,
+            until: Until::Phases { longest: LONGEST },
             budget: Duration::from_secs(600),
         }
     }
@@ -113,11 +119,22 @@ pub struct Moved {
     pub progress: Progress,
     /// Whether it is at rest; after [`Until::Phases`] always true, for that is all that was asked.
     pub converged: bool,
+    /// Whether contacts of cloth with cloth held all of it back in the last step: it hangs in the air.
+    pub is_jammed: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
 }
+
+/// Longest time for sewing, s.
+const LONGEST: f64 = 6.0;
+
+/// A seam that has closed by less than this share of its widest gap in [`PATIENCE`] is stuck.
+const LEAST_CLOSED: f64 = 0.02;
+
+/// Simulated time in which an open seam must come nearer, s.
+const PATIENCE: f64 = 0.5;
 
 /// Time between two looks at speed and energy, s.
 const LOOK: f64 = 1.0 / 60.0;
@@ -140,10 +157,12 @@ impl Motion {
         let fabric = one_fabric(scene)?;
         let pieces = Pieces::new(scene);
         let start = check::<MotionError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
-        let mut run = Run { settings: self, scene, wearer, fabric, pieces, clock: Instant::now(), progress };
+        let falls = Falls::of(scene, wearer, &pieces);
+        let mut run =
+            Run { settings: self, scene, wearer, fabric, pieces, falls, clock: Instant::now(), progress };
         let open = Moving::open(&run, start)?;
         match self.until {
-            Until::Phases => run.phases(open),
+            Until::Phases { longest } => run.phases(open, longest),
             Until::Rest { speed, energy, longest } => run.rest(open, speed, energy, longest),
         }
     }
@@ -165,45 +184,53 @@ struct Run<'a> {
     wearer: Option<Wearer<'a>>,
     fabric: &'a Fabric,
     pieces: Pieces,
+    falls: Option<Falls>,
     clock: Instant,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
 
 impl Run<'_> {
-    fn phases(&mut self, mut moving: Moving) -> Result<Moved, MotionError> {
+    fn phases(&mut self, moving: Moving, longest: f64) -> Result<Moved, MotionError> {
+        let mut moving = self.sew(moving, longest)?;
+        let mut sewn_for = moving.progress.time;
         for phase in &self.scene.phases {
             moving.set_gravity(phase.gravity);
             moving.set_air(phase.air);
-            let end = moving.progress.time + phase.seconds;
+            sewn_for = if phase.gravity == Vec3::zeros() { sewn_for } else { 0.0 };
+            let seconds = (phase.seconds - sewn_for).max(0.0);
+            sewn_for = (sewn_for - phase.seconds).max(0.0);
+            let end = moving.progress.time + seconds;
             while end - moving.progress.time > SAME_TIME {
                 self.step(&mut moving, end)?;
-                if moving.seams_met(self.settings.join_gap) {
-                    moving = moving.join(self)?;
-                }
             }
         }
-        self.closed(&moving)?;
         Ok(self.finish(&moving, !moving.is_jammed))
     }
 
-    fn rest(
-        &mut self,
-        mut moving: Moving,
-        speed: f64,
-        energy: f64,
-        longest: f64,
-    ) -> Result<Moved, MotionError> {
-        let last = self.scene.phases.last();
-        let (gravity, air) = (last.map(|p| p.gravity).unwrap_or_default(), last.and_then(|p| p.air));
+    /// Closes the seams, if there are any, and joins them: without weight and without wind.
+    fn sew(&mut self, mut moving: Moving, longest: f64) -> Result<Moving, MotionError> {
         moving.set_gravity(Vec3::zeros());
-        moving.set_air(air.map(Air::calmed));
+        moving.set_air(self.scene.phases.last().and_then(|p| p.air).map(Air::calmed));
+        let (mut widest, mut since) = (f64::INFINITY, moving.progress.time);
         while !moving.seams.is_empty() && moving.progress.time < longest {
             self.step(&mut moving, f64::INFINITY)?;
             if moving.seams_met(self.settings.join_gap) {
-                moving = moving.join(self)?;
+                return moving.join(self);
+            }
+            if moving.progress.gap < (1.0 - LEAST_CLOSED) * widest {
+                (widest, since) = (moving.progress.gap, moving.progress.time);
+            } else if moving.progress.time - since > PATIENCE {
+                break;
             }
         }
         self.closed(&moving)?;
+        Ok(moving)
+    }
+
+    fn rest(&mut self, moving: Moving, speed: f64, energy: f64, longest: f64) -> Result<Moved, MotionError> {
+        let last = self.scene.phases.last();
+        let (gravity, air) = (last.map(|p| p.gravity).unwrap_or_default(), last.and_then(|p| p.air));
+        let mut moving = self.sew(moving, longest)?;
         moving.set_gravity(gravity);
         moving.set_air(air);
         let end = moving.progress.time + longest;
@@ -228,6 +255,9 @@ impl Run<'_> {
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
         moving.step(self.settings, self.wearer, end)?;
+        if let Some(fallen) = self.falls.as_ref().and_then(|f| f.look(self.scene, moving)) {
+            return Err(MotionError::FallsPast(Box::new(fallen)));
+        }
         if (self.progress)(&moving.progress).is_break() {
             return Err(MotionError::Stopped);
         }
@@ -260,6 +290,7 @@ impl Run<'_> {
             velocities: spread(&moving.state.v),
             progress: moving.progress,
             converged,
+            is_jammed: moving.is_jammed,
             energy: moving.energy(),
             joined_at: moving.joined_at,
         }

@@ -110,6 +110,10 @@ impl Moving {
         self.model.gravity = gravity;
     }
 
+    pub(super) fn has_weight(&self) -> bool {
+        self.model.gravity != Vec3::zeros()
+    }
+
     pub(super) fn set_air(&mut self, air: Option<Air>) {
         self.model.air = air.filter(Air::acts).map(|a| AirDrag::new(a, self.sheet.triangles()));
     }

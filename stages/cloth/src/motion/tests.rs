@@ -89,8 +89,8 @@ fn cloth_thrown_at_a_ball_stays_outside_and_does_not_cross_itself() {
 fn a_seam_that_cannot_close_is_named() {
     let mut scene = generate::tube(4, 5);
     scene.phases.truncate(1);
-    scene.phases[0].seconds = 0.05;
-    let error = run(&Motion::default(), &scene).unwrap_err();
+    let error =
+        run(&Motion { until: Until::Phases { longest: 0.05 }, ..Motion::default() }, &scene).unwrap_err();
     assert!(matches!(error, MotionError::SeamNotClosed { .. }), "{error}");
     let name = &scene.seams[0].name;
     let text = error.to_string();
@@ -201,4 +201,71 @@ fn cloth_that_contacts_hold_in_the_air_is_not_at_rest() {
     let motion = Motion { method, until, drag: 4.0, ..Motion::default() };
     let moved = run(&motion, &generate::stack(50, 4)).unwrap();
     assert!(!moved.converged, "at rest after {} s", moved.progress.time);
+}
+
+#[test]
+fn gravity_waits_for_the_seams() {
+    // 0.5 s do not close the sides of a skirt at half a metre a second; it keeps its place all the same.
+    let scene = generate::tube(8, 10);
+    let method = Method::Xpbd { substeps: 4 };
+    let (mut sewn, mut time) = (0.0, 0.0);
+    let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+    let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+    let moved = Motion { method, drag: 4.0, ..Motion::default() }
+        .run(&scene, wearer, &mut |p| {
+            sewn = if p.gap > 0.0 { p.time } else { sewn };
+            time = p.time;
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert!(sewn > 0.5, "{sewn}");
+    // The drape has its 1.5 s whatever sewing took.
+    assert!((time - sewn - 1.5).abs() < 0.01, "{time} {sewn}");
+    let top = moved.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    assert!(top > 0.9, "{top}");
+}
+
+#[test]
+fn seams_that_close_early_leave_the_phases_their_time() {
+    let mut scene = generate::tube(4, 5);
+    scene.phases[0].seconds = 3.0;
+    scene.phases.truncate(1);
+    let moved = run(&Motion { method: Method::Xpbd { substeps: 1 }, ..Motion::default() }, &scene).unwrap();
+    assert!((moved.progress.time - 3.0).abs() < 1e-6, "{}", moved.progress.time);
+}
+
+#[test]
+fn a_seam_that_is_stuck_is_told_before_the_time_is_over() {
+    let mut scene = generate::tube(4, 5);
+    scene.rest.iter_mut().for_each(|p| p.x *= 0.3);
+    scene.positions.iter_mut().for_each(|p| p.x *= 0.3);
+    let error =
+        run(&Motion { method: Method::Xpbd { substeps: 4 }, ..Motion::default() }, &scene).unwrap_err();
+    assert!(matches!(error, MotionError::SeamNotClosed { time, .. } if time < 4.0), "{error}");
+}
+
+#[test]
+fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
+    let mut scene = Scene { phases: falling(4).phases, ..generate::drape(4) };
+    scene.phases[0].seconds = 3.0;
+    scene.positions.iter_mut().for_each(|p| p.x += 1.0);
+    for method in METHODS {
+        let mut end = 0.0;
+        let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
+        let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+        let motion = Motion { method, ..Motion::default() };
+        let error = motion.run(&scene, wearer, &mut |p| {
+            end = p.time;
+            ControlFlow::Continue(())
+        });
+        assert_eq!(
+            error.unwrap_err().to_string(),
+            "the cloth of 'square' falls past the body: it starts 0.200 m beside it, and the body is 0.60 m tall; place it around or \
+             above the body, and see that both are in the same unit of length"
+        );
+        // 0.62 m of free fall.
+        assert!((end - (2.0_f64 * 0.62 / 9.81).sqrt()).abs() < 0.01, "{method:?}: {end}");
+    }
+    let free = run(&Motion::default(), &Scene { body: None, ..scene }).unwrap();
+    assert!(free.positions[0].y < -10.0);
 }

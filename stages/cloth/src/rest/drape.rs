@@ -131,7 +131,7 @@ impl<'a> Work<'a> {
         Ok(true)
     }
 
-    /// Brings a level near rest; whether it stays on the body. With friction only a free fall says that it does not.
+    /// Brings a level near rest; whether it stays on the body. With friction only a fall past the body says that it does not.
     pub(super) fn stays(
         &mut self,
         level: &mut Level<'a>,
@@ -142,7 +142,10 @@ impl<'a> Work<'a> {
         match self.settle(level, stiff, pace, progress) {
             Ok(()) if level.friction.is_some() => Ok(level.moved() < MOST_FALL * level.size()),
             Ok(()) => Ok(true),
-            Err(RestError::Falls) => Ok(false),
+            Err(RestError::FallsPast(fallen)) if !fallen.is_certain => {
+                self.last_fall = Some(RestError::FallsPast(fallen));
+                Ok(false)
+            }
             Err(e) => Err(e),
         }
     }

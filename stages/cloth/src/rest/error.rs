@@ -5,6 +5,8 @@ use super::solve::Rested;
 use super::start::StartError;
 use super::tangled::Load;
 use super::words::{both, list, place};
+use super::unrest::unrest;
+use crate::contact::past::Fallen;
 use crate::error::ClothError;
 use crate::scene::SceneError;
 use nalgebra::Vector3;
@@ -45,6 +47,9 @@ pub enum RestError {
         /// Why, and what may help.
         why: &'static str,
     },
+    /// Cloth falls past the body.
+    #[error("{0}")]
+    FallsPast(Box<Fallen>),
     /// A seam does not close.
     #[error(
         "seam '{seam}' stays open by {:.1} mm at {force:.1} N a metre; {}",
@@ -87,10 +92,12 @@ pub enum RestError {
         state: Box<Rested>,
     },
     /// Still moving after all steps.
-    #[error("still moving after {steps} steps: {speed:.4} m/s, wanted {wanted:.4} m/s; allow more steps or a faster end", steps = state.outcome.steps, speed = state.outcome.speed)]
+    #[error("{}", unrest(state, panel, *wanted))]
     NotAtRest {
         /// The speed that was asked for, m/s.
         wanted: f64,
+        /// The panel with the greatest force left over.
+        panel: String,
         /// The last state, which has neither crossings nor vertices in the body.
         state: Box<Rested>,
     },

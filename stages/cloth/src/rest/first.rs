@@ -41,7 +41,12 @@ impl<'a> Work<'a> {
         let slick = level.system.rubs_nowhere();
         for stiff in std::iter::once(first).chain(stages(first, end)) {
             let (mut free, mut held) = (level.clone(), level.clone());
+            self.last_fall = None;
             let stays = self.free_state(&mut free, stiff, progress)?;
+            if !slick {
+                // Friction may hold what falls without it.
+                self.last_fall = None;
+            }
             let mut is_held = !slick && self.first_state(&mut held, stiff, progress)?;
             let alike = slick || is_held && apart(&held.x, &free.x) < MOST_SLIP * level.size();
             if stays && alike && self.let_go(k, &mut free, [stiff, end], progress)? {
@@ -57,7 +62,10 @@ impl<'a> Work<'a> {
                 return Ok((end, false));
             }
         }
-        Ok((end, false))
+        match self.last_fall.take() {
+            Some(fall) => Err(fall),
+            None => Ok((end, false)),
+        }
     }
 
     /// Brings a level near rest without friction; whether it stays on the body.

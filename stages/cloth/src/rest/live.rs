@@ -13,6 +13,7 @@ use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
 use super::solve::{LevelReport, Progress, Rest, RestError, Rested};
 use super::system::System;
+use super::unrest::unbalanced;
 use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -217,10 +218,12 @@ impl<'a> Live<'a> {
             }
         }
         self.system.touch(&self.x);
+        let unbalanced = unbalanced(&self.system, &self.system.gradient(&self.x), &self.pieces);
         let state = Rested {
             positions: self.positions(),
             outcome,
-            residual: greatest(&self.system.gradient(&self.x)),
+            residual: unbalanced.force,
+            unbalanced,
             slides: self.pieces.spread(&self.system.held_back(&self.x)),
             folds: self.system.elastic.held().to_vec(),
             grips: self.system.layers.as_ref().map_or_else(Vec::new, |l| l.grips.clone()),
@@ -235,7 +238,7 @@ impl<'a> Live<'a> {
         if pairs > 0 {
             return Err(RestError::Crossing { pairs, state: Box::new(state) });
         }
-        self.rest.judge(state)
+        self.rest.judge(&self.scene, state)
     }
 
     fn report(&self, clock: Instant, first: usize) -> LevelReport {

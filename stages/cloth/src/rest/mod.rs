@@ -10,6 +10,7 @@ mod drape;
 mod ears;
 pub mod elastic;
 mod error;
+pub(crate) mod fallen;
 mod first;
 mod front;
 mod graded;
@@ -41,6 +42,7 @@ mod tangled;
 pub mod thread;
 #[cfg(test)]
 mod trial;
+pub mod unrest;
 pub(crate) mod words;
 mod work;
 

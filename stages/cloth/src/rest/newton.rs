@@ -102,6 +102,8 @@ pub struct Outcome {
     pub share: f64,
     /// The step of pseudo-time, s.
     pub dt: f64,
+    /// Greatest speed gained in the last step of [`REST_STEP`], m/s: what says how far from rest the cloth is. Nothing before the first.
+    pub gained: Option<f64>,
 }
 
 /// What a caller learns after each step; it may stop the level.
@@ -261,6 +263,7 @@ impl Descent {
             speed: longest / used,
             residual,
             dt: used,
+            gained: if self.proves { Some(longest / used) } else { self.outcome.gained },
             ..self.outcome
         };
         self.last = longest;

@@ -9,6 +9,7 @@ use super::pieces::Pieces;
 use super::pile::pile_of;
 use super::solve::Rest;
 use super::start::{crossing, crossings_at_start};
+use crate::contact::past::BodyBox;
 use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
@@ -22,6 +23,8 @@ pub(super) struct Plan<'a> {
     pub(super) rest: &'a Rest,
     pub(super) scene: &'a Scene,
     pub(super) body: Option<Wearer<'a>>,
+    /// The box around the body, where there is one and the cloth has weight.
+    pub(super) body_box: Option<BodyBox>,
     /// What no panel and what each panel is made of.
     pub(super) cloths: Vec<&'a Fabric>,
     /// Whether many cloths lie on each other.
@@ -43,6 +46,7 @@ impl<'a> Plan<'a> {
         body: Option<Wearer<'a>>,
         start: &[Vec3],
     ) -> Result<Self, RestError> {
+        let body_box = body.and_then(|w| BodyBox::of(w.skin, &gravity(scene)));
         let (mut pieces, mut coarser) = levels(scene, coarsest);
         let mut starts = vec![start.to_vec()];
         for level in &coarser {
@@ -59,11 +63,12 @@ impl<'a> Plan<'a> {
             pieces.pop();
             starts.pop();
         }
-        if scene.pinned.is_empty() && body.is_none() && gravity(scene).norm() > 0.0 {
+        // A collider may stand for no body.
+        if scene.pinned.is_empty() && body_box.is_none() && gravity(scene).norm() > 0.0 {
             return Err(RestError::Falls);
         }
         let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
-        Ok(Self { rest, scene, body, cloths, is_pile, pieces, coarser, starts })
+        Ok(Self { rest, scene, body, body_box, cloths, is_pile, pieces, coarser, starts })
     }
 
     /// Mean length of the edges of the coarsest level, m.

@@ -29,9 +29,10 @@ pub use super::start::StartError;
 use super::start::{check, check_lying};
 pub use super::tangled::Load;
 use super::tangled::tangled;
+use super::unrest::Unbalanced;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
-use crate::scene::Scene;
+use crate::scene::{Panel, Scene};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -103,6 +104,8 @@ pub struct Rested {
     pub outcome: Outcome,
     /// Greatest force left on a node, N.
     pub residual: f64,
+    /// Where that is, and what the cloth meets there.
+    pub unbalanced: Unbalanced,
     /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
     pub slides: Vec<Vec3>,
     /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what `Live` goes on from.
@@ -165,7 +168,7 @@ impl Rest {
             let plan = Plan::new(&rest, coarsest, scene, wearer, &start)?;
             let (made, finer) = (Work::new(&plan, clock).make(progress), plan.second());
             coarsest = match (made, finer) {
-                (Ok(Draped::Rested(state)), _) => return rest.judge(Rested { restarts, ..*state }),
+                (Ok(Draped::Rested(state)), _) => return rest.judge(scene, Rested { restarts, ..*state }),
                 // From its own start the level keeps free of crossings by itself, if slowly.
                 (Ok(Draped::Tangled(entangled)), None) => {
                     return Err(tangled(scene, gravity(scene).norm(), entangled));
@@ -173,12 +176,12 @@ impl Rest {
                 (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
                 (Ok(Draped::Pierced { finer }), _) => finer,
                 // What slides off while it is stiff may stay on as cloth.
-                (Err(RestError::Falls), _) if rest.graded => {
+                (Err(RestError::FallsPast(fallen)), _) if rest.graded && !fallen.is_certain => {
                     rest.graded = false;
                     rest.first_coarsest(pile)
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
-                (Err(RestError::Falls), Some(finer)) if wearer.is_some() => finer,
+                (Err(RestError::FallsPast(fallen)), Some(finer)) if !fallen.is_certain => finer,
                 // A polygon of so few corners does not go round a limb, is folded onto itself by its seams, or hands on
                 // folds that lie too close for a finer mesh to come apart.
                 (Err(e), Some(finer)) if e.is_of_a_coarse_mesh(plan.edge()) => finer,
@@ -198,14 +201,18 @@ impl Rest {
         one * pile.unwrap_or(1)
     }
 
-    pub(super) fn judge(&self, state: Rested) -> Result<Rested, RestError> {
-        match state.outcome.at_rest {
-            true => Ok(state),
-            false => Err(RestError::NotAtRest { wanted: self.speed, state: Box::new(state) }),
+    pub(super) fn judge(&self, scene: &Scene, state: Rested) -> Result<Rested, RestError> {
+        if state.outcome.at_rest {
+            return Ok(state);
         }
+        let has = |p: &&Panel| p.vertices.contains(&(state.unbalanced.vertex as usize));
+        let panel = scene.panels.iter().find(has).map_or("?", |p| &p.name).to_string();
+        Err(RestError::NotAtRest { wanted: self.speed, panel, state: Box::new(state) })
     }
 }
 
+#[cfg(test)]
+mod fall_tests;
 #[cfg(test)]
 mod graded_tests;
 #[cfg(test)]

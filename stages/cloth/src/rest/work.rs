@@ -2,6 +2,7 @@
 
 use super::assemble::{KEPT_PULL, strongest};
 use super::clear::{Clearance, clearance};
+use super::fallen::pieces_of;
 use super::multifrontal::Halt;
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
@@ -11,6 +12,7 @@ use super::sew::widest;
 use super::solve::{LevelReport, Progress, RestError, Rested};
 use super::system::System;
 use super::tangled::{Entangled, unsolvable};
+use super::unrest::unbalanced;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
@@ -47,11 +49,13 @@ pub(super) struct Work<'a> {
     /// How deep the cloth at rest dips into the body between its vertices, where that is known, m.
     dip: Option<f64>,
     pub(super) reports: Vec<LevelReport>,
+    /// What fell past the body in the last state that was tried, where it did.
+    pub(super) last_fall: Option<RestError>,
 }
 
 impl<'a> Work<'a> {
     pub(super) fn new(plan: &'a Plan<'a>, clock: Instant) -> Self {
-        Self { plan, clock, x: vec![], joined_at: None, dip: None, reports: vec![] }
+        Self { plan, clock, x: vec![], joined_at: None, dip: None, reports: vec![], last_fall: None }
     }
 
     /// Sews and drapes.
@@ -108,7 +112,7 @@ impl<'a> Work<'a> {
         x: Vec<Vec3>,
     ) -> Result<Rested, RestError> {
         system.touch(&x);
-        let residual = super::newton::greatest(&system.gradient(&x));
+        let unbalanced = unbalanced(&system, &system.gradient(&x), &self.plan.pieces[0]);
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.plan.pieces[0].spread(&x);
         let energy = system.stored(&x);
@@ -121,7 +125,8 @@ impl<'a> Work<'a> {
         let state = Rested {
             positions,
             outcome,
-            residual,
+            residual: unbalanced.force,
+            unbalanced,
             slides,
             folds: system.elastic.held().to_vec(),
             grips,
@@ -165,19 +170,14 @@ impl<'a> Work<'a> {
         let tree = self.plan.scene.self_collision.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
-        let (mut stop, mut is_late, mut falling) = (None, false, 0);
+        let (mut stop, mut is_late) = (None, false);
+        let piece = if self.plan.body_box.is_some() { pieces_of(system) } else { Vec::new() };
         let late = || self.clock.elapsed() > self.plan.rest.budget;
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
             report = LevelReport { nodes: x.len(), outcome: *outcome, seconds, ..report };
-            let free = system.touches.is_empty() && !system.pinned.contains(&true);
-            let falls = free
-                && outcome.speed > 0.9 * system.gravity.norm() * outcome.dt
-                && outcome.dt >= pace.longest;
-            falling = if falls && outcome.speed > 0.0 { falling + 1 } else { 0 };
-            if falling > 8 {
-                stop = Some(RestError::Falls);
-            } else if progress(&report).is_break() {
+            stop = self.fallen(system, sheet, x, &piece);
+            if stop.is_none() && progress(&report).is_break() {
                 stop = Some(RestError::Stopped);
             }
             is_late = late();
@@ -216,7 +216,7 @@ impl<'a> Work<'a> {
     }
 
     /// The level, fine to coarse, that has these nodes, sewn or open.
-    fn level_of(&self, x: &[Vec3]) -> usize {
+    pub(super) fn level_of(&self, x: &[Vec3]) -> usize {
         let has = |p: &Pieces| p.nodes == x.len() || p.rest.len() == x.len();
         self.plan.pieces.iter().position(has).unwrap_or(0)
     }

@@ -118,6 +118,7 @@ fn state(solved: Result<Rested, RestError>) -> Result<(Rested, &'static str), Ve
             | RestError::Start(_)
             | RestError::Tangled { .. }
             | RestError::Falls
+            | RestError::FallsPast(_)
             | RestError::Timeout { .. }),
         ) => Err(Verdict::Refused(e.to_string())),
         Err(e) => Err(Verdict::Failed(e.to_string())),

@@ -36,7 +36,7 @@ fn slid(scene: &Scene, k: usize) -> (f64, bool) {
     let (state, rests) = match rest.solve(scene, &mut |_| ControlFlow::Continue(())) {
         Ok(state) => (state, true),
         Err(RestError::NotAtRest { state, .. }) => (*state, false),
-        Err(RestError::Falls) => return (f64::INFINITY, false),
+        Err(RestError::FallsPast(_)) => return (f64::INFINITY, false),
         Err(error) => panic!("{error}"),
     };
     let range = scene.panels[k].vertices.clone();

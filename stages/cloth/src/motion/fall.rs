@@ -1,0 +1,54 @@
+//! A fall past the body ends a motion: there is nothing to follow any more.
+
+use super::Vec3;
+use super::moving::Moving;
+use crate::contact::past::{BodyBox, Fallen, NO_PIECE};
+use crate::rest::fallen::{list_of, pieces_of_scene};
+use crate::rest::pieces::Pieces;
+use crate::rest::solve::Wearer;
+use crate::scene::Scene;
+
+/// What a fall is told by.
+pub(super) struct Falls {
+    body: BodyBox,
+    /// The piece of cloth of each vertex, and of each node once seams are joined, with what pins hold.
+    open: (Vec<u32>, Vec<bool>),
+    joined: (Vec<u32>, Vec<bool>),
+}
+
+impl Falls {
+    /// Of a scene on a body; nothing where there is none, or no weight in the end: such a motion is followed.
+    pub(super) fn of(scene: &Scene, wearer: Option<Wearer<'_>>, pieces: &Pieces) -> Option<Self> {
+        let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
+        let body = wearer.and_then(|w| BodyBox::of(w.skin, &gravity))?;
+        let open = (pieces_of_scene(scene), pieces.pinned.clone());
+        let mut joined = (vec![NO_PIECE; pieces.nodes], vec![false; pieces.nodes]);
+        for (v, &n) in pieces.node.iter().enumerate() {
+            joined.0[n as usize] = joined.0[n as usize].min(open.0[v]);
+            joined.1[n as usize] |= open.1[v];
+        }
+        Some(Self { body, open, joined })
+    }
+
+    /// The cloth that is past the body now, if any is.
+    pub(super) fn look(&self, scene: &Scene, moving: &Moving) -> Option<Fallen> {
+        let (piece, held) = if moving.is_joined { &self.joined } else { &self.open };
+        if !moving.has_weight() || piece.len() != moving.state.x.len() {
+            return None;
+        }
+        let past = self.body.past(&moving.state.x, piece, held);
+        if past.is_empty() {
+            return None;
+        }
+        let is_past = |p: &u32| past.get(*p as usize).copied().unwrap_or(false);
+        let is_fallen: Vec<bool> = self.open.0.iter().map(is_past).collect();
+        let of: Vec<Vec3> =
+            scene.positions.iter().zip(&is_fallen).filter(|(_, f)| **f).map(|(p, _)| *p).collect();
+        Some(Fallen {
+            cloth: list_of(scene, &is_fallen),
+            start: self.body.start(&of),
+            body: self.body.height(),
+            is_certain: true,
+        })
+    }
+}
