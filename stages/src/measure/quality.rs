@@ -1,10 +1,12 @@
 //! Figures of the garment against its quality limits.
 //!
 //! Area and outline errors are those of Fan et al. 1999, `(S2 - S3) / S2` and `(L2 - L3) / L2`;
-//! strain is that of the mesh edges. Body and self-contact are asked of the pipeline's collider;
-//! without one they are not measured, and `metrics.json` says so with a null.
+//! strain is that of the mesh edges. Vertices in the body and self-contact are asked of the pipeline's
+//! collider, what crosses the body between its vertices is found on the body's own triangles; without
+//! collider or body they are not measured, and `metrics.json` says so with a null.
 
 use crate::cloth::check_garment;
+use crate::collide::crossing::body_crossings;
 use std::collections::BTreeMap;
 use toile_core::artifact::{
     BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,
@@ -20,6 +22,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// misses a limit is written all the same, with exit code 4.
 #[stage(
     role = Writer,
+    version = 2,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -37,6 +40,9 @@ pub struct Measure {
     /// Greatest 99th percentile of the edge strain, as a share.
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
+    /// Most pairs of a triangle of the garment and one of the body that cross.
+    #[param(default = 0, min = 0, max = 1_000_000, unit = "pairs")]
+    max_body_crossings: usize,
 }
 
 #[stage]
@@ -45,12 +51,13 @@ impl Measure {
         &self,
         garment: &Garment,
         collider: Option<&Collider>,
+        body: Option<&Body>,
         _cx: &Context,
     ) -> Result<Figures, StageError> {
         check_garment(garment)?;
         let mut figures = Figures {
             panels: panel_figures(garment)?,
-            garment: garment_figures(garment, collider),
+            garment: garment_figures(garment, collider, body),
             shortfalls: Vec::new(),
         };
         figures.shortfalls = self.shortfalls(&figures);
@@ -110,6 +117,15 @@ impl Measure {
                 Length::m(inside.max_m)
             ),
         );
+        let crossings = g.body_crossings.unwrap_or(0);
+        miss(
+            crossings > self.max_body_crossings,
+            ErrorCode::BodyIntersection,
+            format!(
+                "{crossings} pairs of a triangle of the garment and one of the body cross, the limit is {}",
+                self.max_body_crossings
+            ),
+        );
         let crossings = g.self_crossings.unwrap_or(0);
         miss(
             crossings > 0,
@@ -147,7 +163,7 @@ fn panel_figures(garment: &Garment) -> Result<BTreeMap<String, PanelFigures>, St
     garment.panels.iter().map(figures).collect()
 }
 
-fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFigures {
+fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<&Body>) -> GarmentFigures {
     let strains = garment.edge_strains();
     GarmentFigures {
         vertices: garment.positions.len(),
@@ -159,6 +175,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFig
             max: strains.last().copied().unwrap_or(0.0),
         },
         body_penetration: collider.map(|c| penetration(garment, c)),
+        body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b).len()),
         self_crossings: collider.map(|c| crossings(garment, c)),
         energy_j: garment.status.energy,
         max_speed_m_s: garment.status.max_speed,
