@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 use std::sync::Arc;
-use toile_core::artifact::{Artifact, Collider, Figures, Garment, Outline, Point3};
+use toile_core::artifact::{Artifact, Body, Collider, Figures, Garment, Outline, Point3};
 use toile_core::testkit;
 use toile_core::{Context, ErrorCode, Inputs, PortValue, StageError};
 use toile_tests::{pipeline, toile};
@@ -22,8 +22,19 @@ fn run(
 
 /// The limits that a garment misses: code and words.
 fn shortfalls(garment: Garment, collider: Option<Collider>) -> Vec<(ErrorCode, String)> {
+    judged("()", garment, collider, None)
+}
+
+/// The same with a body and other limits.
+fn judged(
+    limits: &str,
+    garment: Garment,
+    collider: Option<Collider>,
+    body: Option<Body>,
+) -> Vec<(ErrorCode, String)> {
     let collider = collider.map(|c| Arc::new(c) as Arc<dyn Artifact>);
-    let made = run("Measure", "()", vec![Some(Arc::new(garment)), collider]).unwrap();
+    let body = body.map(|b| Arc::new(b) as Arc<dyn Artifact>);
+    let made = run("Measure", limits, vec![Some(Arc::new(garment)), collider, body]).unwrap();
     let any: Arc<dyn std::any::Any + Send + Sync> = made[0].entries()[0].1.clone();
     let figures = any.downcast::<Figures>().unwrap();
     figures.shortfalls.iter().map(|s| (s.code, s.message.clone())).collect()
@@ -84,6 +95,30 @@ fn body_intersection() {
     let found = shortfalls(garment, Some(collider()));
     let body = found.iter().find(|(code, _)| *code == ErrorCode::BodyIntersection).unwrap();
     assert!(body.1.contains(" vertices lie in the body, the deepest by "), "{}", body.1);
+}
+
+/// A needle of a triangular section that stands in a triangle of the garment, no longer than its side.
+fn needle_through(garment: &Garment, triangle: usize) -> Body {
+    let [a, b, c] = garment.triangles[triangle].map(|i| garment.positions[i as usize]);
+    let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);
+    let normal = (b - a).cross(&(c - a)).normalize() * (b - a).norm();
+    let base = [a, b, c].map(|p| middle + (p - middle) * 0.1 - normal);
+    Body {
+        positions: vec![base[0], base[1], base[2], middle + normal],
+        triangles: vec![[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+        landmarks: Default::default(),
+        measurements: Default::default(),
+    }
+}
+
+#[test]
+fn body_intersection_between_the_vertices() {
+    let garment = good();
+    let needle = needle_through(&garment, 0);
+    let words = "3 pairs of a triangle of the garment and one of the body cross, the limit is 0".to_owned();
+    let found = judged("()", garment.clone(), None, Some(needle.clone()));
+    assert_eq!(found, [(ErrorCode::BodyIntersection, words)]);
+    assert_eq!(judged("(max_body_crossings: 3)", garment, None, Some(needle)), []);
 }
 
 #[test]

@@ -48,6 +48,8 @@ pub struct GarmentFigures {
     pub edge_strain: StrainFigures,
     /// Vertices inside the body; `None` without a body.
     pub body_penetration: Option<PenetrationFigures>,
+    /// Pairs of a triangle of the garment and one of the body that cross; `None` without a body.
+    pub body_crossings: Option<usize>,
     /// Pairs of triangles that cross; `None` where nothing looked.
     pub self_crossings: Option<usize>,
     /// The share that is still in its place on the body, of the panel that has slid farthest; `None` where nothing told.
@@ -112,6 +114,9 @@ impl Artifact for Figures {
         m.push("strain_p99", g.edge_strain.p99 * 1e2, "%", 1.0);
         if let Some(p) = &g.body_penetration {
             m.count("vertices_in_body", p.vertices);
+        }
+        if let Some(crossings) = g.body_crossings {
+            m.count("body_crossings", crossings);
         }
         if let Some(crossings) = g.self_crossings {
             m.count("self_crossings", crossings);

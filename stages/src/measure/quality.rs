@@ -1,11 +1,13 @@
 //! Figures of the garment against its quality limits.
 //!
 //! Area and outline errors are those of Fan et al. 1999, `(S2 - S3) / S2` and `(L2 - L3) / L2`;
-//! strain is that of the mesh edges. Body and self-contact are asked of the pipeline's collider;
-//! without one they are not measured, and `metrics.json` says so with a null.
+//! strain is that of the mesh edges. Vertices in the body and self-contact are asked of the pipeline's
+//! collider, what crosses the body between its vertices is found on the body's own triangles; without
+//! collider or body they are not measured, and `metrics.json` says so with a null.
 
 use super::on_body;
 use crate::cloth::check_garment;
+use crate::collide::crossing::body_crossings;
 use std::collections::BTreeMap;
 use toile_core::artifact::{
     BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,
@@ -43,6 +45,9 @@ pub struct Measure {
     /// sunk, from where it started or from the top of the body under it, as a share of the root of the piece's area.
     #[param(default = 0.5, min = 0.0, max = 1.0)]
     least_on_body: f64,
+    /// Most pairs of a triangle of the garment and one of the body that cross.
+    #[param(default = 0, min = 0, max = 1_000_000, unit = "pairs")]
+    max_body_crossings: usize,
 }
 
 #[stage]
@@ -51,12 +56,13 @@ impl Measure {
         &self,
         garment: &Garment,
         collider: Option<&Collider>,
+        body: Option<&Body>,
         _cx: &Context,
     ) -> Result<Figures, StageError> {
         check_garment(garment)?;
         let mut figures = Figures {
             panels: panel_figures(garment)?,
-            garment: garment_figures(garment, collider),
+            garment: garment_figures(garment, collider, body),
             shortfalls: Vec::new(),
         };
         figures.shortfalls = self.shortfalls(&figures);
@@ -117,6 +123,15 @@ impl Measure {
                 Length::m(inside.max_m)
             ),
         );
+        let crossings = g.body_crossings.unwrap_or(0);
+        miss(
+            crossings > self.max_body_crossings,
+            ErrorCode::BodyIntersection,
+            format!(
+                "{crossings} pairs of a triangle of the garment and one of the body cross, the limit is {}",
+                self.max_body_crossings
+            ),
+        );
         let crossings = g.self_crossings.unwrap_or(0);
         miss(
             crossings > 0,
@@ -154,7 +169,7 @@ fn panel_figures(garment: &Garment) -> Result<BTreeMap<String, PanelFigures>, St
     garment.panels.iter().map(figures).collect()
 }
 
-fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFigures {
+fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<&Body>) -> GarmentFigures {
     let strains = garment.edge_strains();
     GarmentFigures {
         vertices: garment.positions.len(),
@@ -166,6 +181,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>) -> GarmentFig
             max: strains.last().copied().unwrap_or(0.0),
         },
         body_penetration: collider.map(|c| penetration(garment, c)),
+        body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b).len()),
         self_crossings: collider.map(|c| crossings(garment, c)),
         on_body: on_body::least(garment).map(|(_, share)| share),
         energy_j: garment.status.energy,

@@ -308,6 +308,9 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         cloth.push(row("vertices inside the body", inside.vertices as f64, ""));
         fit.push(row("deepest in the body", inside.max_m * 1e3, "mm"));
     }
+    if let Some(crossings) = judged.and_then(|g| g.body_crossings) {
+        cloth.push(row("pairs of triangles that cross the body", crossings as f64, ""));
+    }
     if let Some(crossings) = judged.and_then(|g| g.self_crossings) {
         cloth.push(row("pairs of triangles that cross", crossings as f64, ""));
     }

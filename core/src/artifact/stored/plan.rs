@@ -210,10 +210,8 @@ fn garment_fields(g: &GarmentFigures) -> Record<'_> {
         .count("steps", g.steps)
         .flag("converged", g.converged)
         .maybe_number("on_body", g.on_body);
-    match g.self_crossings {
-        Some(crossings) => record.count("self_crossings", crossings),
-        None => record,
-    }
+    let counts = [("body_crossings", g.body_crossings), ("self_crossings", g.self_crossings)];
+    counts.into_iter().filter_map(|(name, n)| Some((name, n?))).fold(record, |r, (name, n)| r.count(name, n))
 }
 
 fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
@@ -222,13 +220,15 @@ fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
     let inside = |p: Reader<'_>| {
         Ok::<_, String>(PenetrationFigures { vertices: p.count("vertices")?, max_m: p.one("max_m")? })
     };
+    let maybe_count = |name| r.find(name).map(|_| r.count(name)).transpose();
     Ok(GarmentFigures {
         vertices: r.count("vertices")?,
         triangles: r.count("triangles")?,
         seam_gap_max_m: r.one("seam_gap_max_m")?,
         edge_strain: StrainFigures { p50, p99, max },
         body_penetration: r.maybe("body_penetration")?.map(inside).transpose()?,
-        self_crossings: r.find("self_crossings").map(|_| r.count("self_crossings")).transpose()?,
+        body_crossings: maybe_count("body_crossings")?,
+        self_crossings: maybe_count("self_crossings")?,
         on_body: r.maybe_one("on_body")?,
         energy_j: r.one("energy_j")?,
         max_speed_m_s: r.one("max_speed_m_s")?,

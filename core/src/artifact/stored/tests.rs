@@ -159,6 +159,7 @@ fn figures() -> Figures {
         garment: GarmentFigures {
             vertices: 3,
             body_penetration: Some(PenetrationFigures { vertices: 1, max_m: 2e-4 }),
+            body_crossings: Some(3),
             self_crossings: Some(4),
             on_body: Some(0.75),
             ..GarmentFigures::default()
