@@ -28,6 +28,9 @@ type Vec3 = Vector3<f64>;
 /// How far beyond a thickness pairs are looked for, in thicknesses: they hold until the cloth has moved that far.
 const SLACK: f64 = 1.5;
 
+/// Cloth that is farther than this from every feature is not looked at again until it has moved that far, m.
+const FAR: f64 = 0.03;
+
 /// Edges or triangles that one task looks after.
 const CHUNK: usize = 512;
 
@@ -92,6 +95,8 @@ pub struct Ridges {
     bridges: Vec<[u32; 2]>,
     /// Where the nodes were when the pairs were sought; nothing where they hold for one step alone.
     at: Option<Vec<Vec3>>,
+    /// How far they may move from there, m.
+    slack: f64,
     /// Pairs whose cloth the body passes through, sorted.
     pierced: Vec<Pair>,
     contacts: Vec<Contact>,
@@ -168,6 +173,7 @@ impl Ridges {
             pairs: Vec::new(),
             bridges: Vec::new(),
             at: None,
+            slack: 0.0,
             pierced: Vec::new(),
             contacts: Vec::new(),
         })
@@ -186,21 +192,48 @@ impl Ridges {
 
     /// Sees to it that the pairs hold for `moves` from `x`.
     pub(super) fn seek(&mut self, x: &[Vec3], moves: &[Vec3]) {
-        let slack = SLACK * self.thickness;
-        let stays = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| (p + m - a).norm_squared() < slack * slack;
+        let most = self.slack * self.slack;
+        let stays = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| (p + m - a).norm_squared() < most;
         if self.at.as_ref().is_some_and(|at| at.iter().zip(x).zip(moves).all(stays)) {
             return;
         }
+        if self.pairs.is_empty() {
+            // Most of a garment's way leads past nothing sharp.
+            if self.is_far(x, moves) {
+                self.at = None;
+                return;
+            }
+            self.seek_within(x, moves, FAR);
+            if self.pairs.is_empty() {
+                return;
+            }
+        }
+        self.seek_within(x, moves, SLACK * self.thickness);
+    }
+
+    fn seek_within(&mut self, x: &[Vec3], moves: &[Vec3], slack: f64) {
         let is_short = moves.iter().all(|m| m.norm_squared() < 0.25 * slack * slack);
-        self.at = is_short.then(|| x.to_vec());
+        (self.at, self.slack) = (is_short.then(|| x.to_vec()), slack);
+        let reach = self.thickness + slack;
         self.pairs = match is_short {
-            true => self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.thickness + slack),
-            false => self.pairs_about(x, moves, self.thickness + slack),
+            true => self.pairs_about(x, &vec![Vec3::zeros(); x.len()], reach),
+            false => self.pairs_about(x, moves, reach),
         };
         let edges = self.pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]);
         self.bridges = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
         self.bridges.sort_unstable();
         self.bridges.dedup();
+    }
+
+    /// Whether the whole cloth keeps clear of every feature on its way.
+    fn is_far(&self, x: &[Vec3], moves: &[Vec3]) -> bool {
+        let nothing = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let (low, high) = x.iter().zip(moves).fold(nothing, |(low, high), (p, m)| {
+            let end = p + m;
+            (low.inf(p).inf(&end), high.sup(p).sup(&end))
+        });
+        let reach = Vec3::repeat(self.thickness + SLACK * self.thickness);
+        !self.sharp.meets(&(low - reach), &(high + reach))
     }
 
     /// Pairs that may come nearer than `reach` on the way, sorted.
@@ -425,6 +458,7 @@ impl Ridges {
             pairs: Vec::new(),
             bridges: Vec::new(),
             at: None,
+            slack: 0.0,
             pierced,
             contacts: self
                 .contacts

@@ -2,7 +2,7 @@
 use crate::rest::system::System;
 use crate::rest::trial::on_its_body;
 use crate::scene::generate;
-use crate::scene::{Body, Scene};
+use crate::scene::{Scene, SceneBody};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -15,7 +15,7 @@ fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
     let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let mut scene = generate::drape(3);
-    scene.body = Some(Body { vertices: (0..8).map(corner).collect(), triangles, friction: 0.4 });
+    scene.body = Some(SceneBody { vertices: (0..8).map(corner).collect(), triangles, friction: 0.4 });
     let x = scene.positions.iter().map(|p| Vec3::new(p.x, height + slope * p.x, p.z)).collect();
     (scene, x)
 }
