@@ -282,7 +282,7 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
 fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
     let (garment, _, collider, phases) = through_files(scene).unwrap();
     let rest = Rest { graded: false, ..Rest::default() };
-    rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap_err()
+    rest.run(&garment, Some(&collider), Some(&phases), None, &Context::quiet()).unwrap_err()
 }
 
 #[test]
