@@ -111,7 +111,10 @@ pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Strea
 }
 
 /// The record and the sheet of two equal runs, or why there is none that a later run could be held against.
-fn twice(pipeline: &Pipeline, streams: &mut Streams<'_>) -> Result<Result<(RunLog, Sheet), String>, RunError> {
+fn twice(
+    pipeline: &Pipeline,
+    streams: &mut Streams<'_>,
+) -> Result<Result<(RunLog, Sheet), String>, RunError> {
     let arithmetic = arithmetic();
     let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
     let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;

@@ -114,7 +114,12 @@ where
     streams.ended(code)
 }
 
-fn answered(registry: &Registry, arguments: Vec<OsString>, streams: &mut Streams<'_>, is_program: bool) -> u8 {
+fn answered(
+    registry: &Registry,
+    arguments: Vec<OsString>,
+    streams: &mut Streams<'_>,
+    is_program: bool,
+) -> u8 {
     match Arguments::try_parse_from(arguments) {
         Ok(arguments) => asked(arguments, registry, streams, is_program),
         Err(e) if e.use_stderr() => {

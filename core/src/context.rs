@@ -229,9 +229,9 @@ impl Context {
     ///
     /// Errors: those of [`Context::read`].
     pub fn look(&self, path: &str) -> Result<(), StageError> {
-        let there = self.readable(path).and_then(|full| {
-            std::fs::File::open(&full).map(|_| ()).map_err(|e| unread(path, &io_words(&e)))
-        });
+        let there = self
+            .readable(path)
+            .and_then(|full| std::fs::File::open(&full).map(|_| ()).map_err(|e| unread(path, &io_words(&e))));
         if there.is_err() {
             self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), None));
         }

@@ -254,7 +254,8 @@ fn between(wanted: &BTreeSet<Kind>, given: &BTreeSet<Kind>, registry: &Registry)
         !needs.is_empty() && needs.is_subset(given) && c.outputs.iter().any(|o| o.kind == kind)
     };
     let kind = *wanted.iter().find(|k| !given.contains(k) && registry.cards().any(|c| fits(&c, **k)))?;
-    let cards: Vec<&Card> = registry.in_order().into_iter().filter(|c| fits(c, kind)).take(MAX_PLACES).collect();
+    let cards: Vec<&Card> =
+        registry.in_order().into_iter().filter(|c| fits(c, kind)).take(MAX_PLACES).collect();
     let names: Vec<String> = cards.iter().map(|c| format!("`{}()`", c.name)).collect();
     let (verb, which) = if names.len() == 1 { ("makes", "it") } else { ("make", "one of them") };
     let from = all_of(cards.iter().flat_map(|c| required(c)));

@@ -119,7 +119,8 @@ pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
 
 /// Parses a text as it is with the repairs.
 pub(super) fn repaired(text: &str, repairs: &Repairs) -> Result<Tree, SyntaxFault> {
-    let mut p = Parser { text, at: 0, long_text: None, last_text: None, lenient: false, repairs: repairs.clone() };
+    let mut p =
+        Parser { text, at: 0, long_text: None, last_text: None, lenient: false, repairs: repairs.clone() };
     p.eat("\u{feff}");
     p.attributes()?;
     if p.rest().is_empty() {
@@ -432,7 +433,8 @@ impl<'a> Parser<'a> {
         entries: &[Entry],
     ) -> SyntaxFault {
         let early = self.early_end(opened, entries).map(|at| {
-            let next = self.text.get(at..).and_then(|t| t.split(['(', ':', '\n']).next()).unwrap_or("").trim();
+            let next =
+                self.text.get(at..).and_then(|t| t.split(['(', ':', '\n']).next()).unwrap_or("").trim();
             let hint = Some(format!("write `{}` before `{next}`", bracket.close()));
             let message = format!("this `{}` is never closed", &self.text[opened.clone()]);
             (at, (message, hint, opened.clone()))
@@ -445,7 +447,8 @@ impl<'a> Parser<'a> {
             None => fault.meant(Repair::CloseAll, None),
             Some(_) => {
                 let here = self.here();
-                let fault = fault.meant(Repair::Closer(here.clone()), None).meant(Repair::Close(self.at), None);
+                let fault =
+                    fault.meant(Repair::Closer(here.clone()), None).meant(Repair::Close(self.at), None);
                 fault.meant(Repair::Skip(here), None)
             }
         }
@@ -465,7 +468,11 @@ impl<'a> Parser<'a> {
         let is_round = self.text[opened.clone()] == *"(";
         // A stage's arguments stand on its line, or have names.
         let lone = is_round && form(first) == 0 && later(&first);
-        if lone { Some(start(first)) } else { entries.iter().filter(later).find(|e| form(e) != form(first)).map(start) }
+        if lone {
+            Some(start(first))
+        } else {
+            entries.iter().filter(later).find(|e| form(e) != form(first)).map(start)
+        }
     }
 
     /// At the end of the file the bracket is at fault, else what stands here.
@@ -517,14 +524,16 @@ impl<'a> Parser<'a> {
             fault = fault.meant(Repair::Value(text.start..to), Some(words));
         }
         // A bare word or number and more words: a text without its quotes.
-        let bare = matches!(value.shape, Shape::Literal | Shape::Name) && !self.text[value.span.clone()].contains('"');
+        let bare = matches!(value.shape, Shape::Literal | Shape::Name)
+            && !self.text[value.span.clone()].contains('"');
         let same_line = !self.text[end..self.at].contains('\n');
         let to = self.bare_end();
         if bare && same_line && (entry.key.is_some() || bracket != Bracket::Round) && !self.is_field_next() {
             let words = self.text[value.span.start..to].trim_end_matches('"').to_owned();
             let hint = Some(format!("write `\"{words}\"`"));
             let message = format!("`{words}` is a text and stands in quotes");
-            fault = fault.meant(Repair::Value(value.span.start..to), Some((message, hint, value.span.start..to)));
+            fault =
+                fault.meant(Repair::Value(value.span.start..to), Some((message, hint, value.span.start..to)));
         }
         if bracket == Bracket::Round && entry.key.is_none() && value.shape == Shape::Name {
             let name = &self.text[value.span.clone()];

@@ -48,7 +48,7 @@ pub(super) fn drape(
         self_collision: card.is_none_or(|c| c.self_collision),
     };
     let scene = with_phases(scene_of(garment, &setting)?, phases);
-    let skin = collider.map(|c| SchemeSkin(c.scheme.as_ref()));
+    let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
     let friction = card.map_or(0.0, |c| c.friction);
     let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
     let until = match phases {

@@ -27,7 +27,7 @@ const MOST_DIP: f64 = 1e-4;
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
-/// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
+/// exactly, cloth is kept out of the body, off its sharp edges and corners, too, and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
 /// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
 /// `coarsest` saves it. Cloth that misses the body or slides off it is an error, as
@@ -36,7 +36,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 14,
+    version = 15,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -92,6 +92,7 @@ impl Rest {
         garment: &Garment,
         collider: Option<&Collider>,
         phases: Option<&Phases>,
+        body: Option<&Body>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
         check_garment(garment)?;
@@ -106,7 +107,7 @@ impl Rest {
         };
         let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
-        let skin = collider.map(|c| SchemeSkin(c.scheme.as_ref()));
+        let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()).with_edges_of(body));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
         let result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));

@@ -19,7 +19,7 @@ pub struct FallWatch<'g> {
 impl<'g> FallWatch<'g> {
     /// Of a garment at its start; nothing without a body or weight: such a fall is followed.
     pub fn of(garment: &'g Garment, scheme: &dyn Collide, gravity: &Vector3<f64>) -> Option<Self> {
-        let body = BodyBox::of(&SchemeSkin(scheme), gravity)?;
+        let body = BodyBox::of(&SchemeSkin::new(scheme), gravity)?;
         let mut piece = vec![NO_PIECE; garment.positions.len()];
         for (k, p) in pieces(garment).iter().enumerate() {
             p.vertices.iter().for_each(|&v| piece[v] = k as u32);

@@ -28,7 +28,7 @@ const STEPS: usize = 400;
 /// For each panel the share of it that is still in its place, of its piece that has sunk farthest; 1 for what pins hold. `garment`
 /// stands where it starts, `end` is where its vertices have come to. Empty without a body or weight.
 pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity: &Vector3<f64>) -> Vec<f64> {
-    let skin = SchemeSkin(scheme);
+    let skin = SchemeSkin::new(scheme);
     let Some(body) = BodyBox::of(&skin, gravity) else { return Vec::new() };
     let up = -gravity.normalize();
     let pieces = pieces(garment);

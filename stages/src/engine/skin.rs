@@ -1,13 +1,36 @@
 //! A pipeline's collision scheme as the engine's skin.
 
 use nalgebra::Vector3;
+use std::sync::Arc;
 use toile_cloth::contact::body::Nearest;
+use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
-use toile_core::artifact::{BodyContact, Collide, Point3};
+use toile_core::artifact::{Body, BodyContact, Collide, Point3};
 
 /// The body of a collision scheme: one call a question, whatever the number of points.
-#[derive(Debug, Clone, Copy)]
-pub struct SchemeSkin<'a>(pub &'a dyn Collide);
+#[derive(Debug, Clone)]
+pub struct SchemeSkin<'a> {
+    scheme: &'a dyn Collide,
+    sharp: Option<Arc<Sharp>>,
+}
+
+impl<'a> SchemeSkin<'a> {
+    /// The body that `scheme` keeps cloth out of, whose sharp edges nobody looks for.
+    #[must_use]
+    pub fn new(scheme: &'a dyn Collide) -> Self {
+        Self { scheme, sharp: None }
+    }
+
+    /// The same with the sharp edges of `body`, where it is given: a scheme tells distances, no mesh.
+    #[must_use]
+    pub fn with_edges_of(self, body: Option<&Body>) -> Self {
+        let of = |b: &Body| {
+            let places: Vec<Vector3<f64>> = b.positions.iter().map(|p| p.coords).collect();
+            Sharp::of(&places, &b.triangles).map(Arc::new)
+        };
+        Self { sharp: body.and_then(of), ..self }
+    }
+}
 
 /// From so far away along a direction the nearest point of a body is the one that reaches farthest along it, metres: for a body 1 m
 /// wide it is off by half a micrometre.
@@ -23,7 +46,7 @@ impl Skin for SchemeSkin<'_> {
     fn nearest(&self, points: &[Vector3<f64>], within: &[f64]) -> Vec<Option<Nearest>> {
         let reach = within.iter().fold(0.0, |a: f64, b| a.max(*b)).min(ANYWHERE);
         let mut contacts = Vec::new();
-        self.0.body_contacts(&points_of(points), reach, &mut contacts);
+        self.scheme.body_contacts(&points_of(points), reach, &mut contacts);
         let mut near = vec![None; points.len()];
         for c in contacts {
             let i = c.vertex as usize;
@@ -38,7 +61,7 @@ impl Skin for SchemeSkin<'_> {
         let from = points_of(points);
         let to: Vec<Point3> = from.iter().zip(moves.iter()).map(|(p, m)| p + m).collect();
         let mut hits = Vec::new();
-        self.0.body_hits(&from, &to, &mut hits);
+        self.scheme.body_hits(&from, &to, &mut hits);
         for h in hits {
             let i = h.vertex as usize;
             moves[i] = h.point.coords + h.normal * gaps[i] - points[i];
@@ -49,10 +72,14 @@ impl Skin for SchemeSkin<'_> {
         let mut at = Point3::origin();
         for _ in 0..LOOKS {
             let mut found = Vec::new();
-            self.0.body_contacts(&[at + direction * FAR], f64::MAX.sqrt(), &mut found);
+            self.scheme.body_contacts(&[at + direction * FAR], f64::MAX.sqrt(), &mut found);
             at = found.first()?.point;
         }
         Some(at.coords.dot(direction))
+    }
+
+    fn sharp(&self) -> Option<Arc<Sharp>> {
+        self.sharp.clone()
     }
 }
 

@@ -162,7 +162,11 @@ fn a_missing_comma_is_named_where_it_is_missing_and_the_rest_is_read() {
     slip("\"52 cm\"),", "\"52 cm\")", "vest.ron:5:53: a comma is missing after `(...)`");
     slip("style: Vest(),", "style: Vest()", "vest.ron:8:18: a comma is missing after `Vest()`");
     slip("    },\n", "    }\n", "vest.ron:7:6: a comma is missing after `{...}`");
-    slip("edge: \"12 mm\"),", "edge: \"12 mm\")", "vest.ron:15:34: a comma is missing after `GridMesher(...)`");
+    slip(
+        "edge: \"12 mm\"),",
+        "edge: \"12 mm\")",
+        "vest.ron:15:34: a comma is missing after `GridMesher(...)`",
+    );
     slip("left\", ", "left\" ", "vest.ron:20:37: a comma is missing after `\"front.side_left\"`");
     slip("Otsu(),", "Otsu();", "vest.ron:13:15: expected `,`, found `;`");
     slip("Otsu(),", "Otsu(),,", "vest.ron:13:16: expected a value, found `,`");
@@ -179,8 +183,16 @@ fn two_missing_commas_are_two_faults() {
 #[test]
 fn a_missing_colon_is_named() {
     slip("radius: 1", "radius 1", "vest.ron:12:33: a colon is missing after `radius`; write `radius: ...`");
-    slip("radius: 1", "radius = 1", "vest.ron:12:34: expected `:` after `radius`, found `=`; write `radius: ...`");
-    slip("style: Vest()", "style Vest()", "vest.ron:8:10: a colon is missing after `style`; write `style: ...`");
+    slip(
+        "radius: 1",
+        "radius = 1",
+        "vest.ron:12:34: expected `:` after `radius`, found `=`; write `radius: ...`",
+    );
+    slip(
+        "style: Vest()",
+        "style Vest()",
+        "vest.ron:8:10: a colon is missing after `style`; write `style: ...`",
+    );
     slip("\"front\": (", "\"front\" (", "vest.ron:5:17: expected `:` after the key, found `(`");
 }
 
@@ -192,7 +204,11 @@ fn a_text_without_one_of_its_quotes_is_named() {
     slip("\"12 mm\"", "\"12 mm", &format!("vest.ron:15:26: {closed}"));
     slip("\"12 mm\"", "12 mm\"", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
     slip("\"12 mm\"", "12 mm", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
-    slip("\"vest\"", "my vest", "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`");
+    slip(
+        "\"vest\"",
+        "my vest",
+        "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`",
+    );
 }
 
 #[test]
@@ -216,5 +232,8 @@ fn a_key_that_stands_twice_in_a_map_is_refused() {
     let labels = places(&text).remove(0);
     assert_eq!(labels[1], ("\"front\"".into(), "first here".into()));
     let plugins = "plugins: [(file: \"a\", file: \"b\")], name:";
-    assert_eq!(faults(&kit::VEST.replacen("name:", plugins, 1)), "vest.ron:3:27: the field `file` is given twice");
+    assert_eq!(
+        faults(&kit::VEST.replacen("name:", plugins, 1)),
+        "vest.ron:3:27: the field `file` is given twice"
+    );
 }

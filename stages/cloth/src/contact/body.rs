@@ -5,9 +5,11 @@
 //! the caller knows an upper bound, which it does after every small step.
 
 use super::closest::{Feature, on_triangle};
+use super::sharp::Sharp;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 type Vec3 = Vector3<f64>;
 
@@ -27,6 +29,7 @@ pub struct Body {
     /// Of each triangle: its face, its sides, its corners.
     normals: Vec<[Vec3; 7]>,
     boxes: Vec<Node>,
+    sharp: Option<Arc<Sharp>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +69,8 @@ impl Body {
         let sorted: Vec<[u32; 3]> = order.iter().map(|&t| triangles[t as usize]).collect();
         let corners = sorted.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
         let normals = order.iter().map(|&t| all[t as usize]).collect();
-        let mut body = Self { vertices, triangles: sorted, corners, normals, boxes };
+        let sharp = Sharp::of(&vertices, triangles).map(Arc::new);
+        let mut body = Self { vertices, triangles: sorted, corners, normals, boxes, sharp };
         body.fit();
         body
     }
@@ -81,6 +85,12 @@ impl Body {
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// Its sharp edges and corners, if it has any.
+    #[must_use]
+    pub fn sharp(&self) -> Option<Arc<Sharp>> {
+        self.sharp.clone()
     }
 
     fn fit(&mut self) {

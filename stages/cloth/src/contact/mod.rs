@@ -7,6 +7,7 @@ pub mod give_way;
 pub mod limit;
 pub mod pair;
 pub mod past;
+pub mod sharp;
 pub mod skin;
 pub(crate) mod start;
 pub mod tree;

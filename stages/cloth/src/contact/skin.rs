@@ -3,8 +3,10 @@
 //! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`Skin`].
 
 use super::body::{Body, Nearest};
+use super::sharp::Sharp;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 type Vec3 = Vector3<f64>;
 
@@ -21,6 +23,11 @@ pub trait Skin: Send + Sync + std::fmt::Debug {
 
     /// How far the solid reaches along a unit direction: the greatest product of its points with it, m. Nothing where there is none.
     fn reach(&self, direction: &Vec3) -> Option<f64>;
+
+    /// Its sharp edges and corners, if it has any and knows of them.
+    fn sharp(&self) -> Option<Arc<Sharp>> {
+        None
+    }
 }
 
 impl Skin for Body {
@@ -37,5 +44,9 @@ impl Skin for Body {
     fn reach(&self, direction: &Vec3) -> Option<f64> {
         let corners = self.triangles().iter().flatten().map(|&v| self.vertices()[v as usize]);
         corners.map(|p| p.dot(direction)).reduce(f64::max)
+    }
+
+    fn sharp(&self) -> Option<Arc<Sharp>> {
+        Body::sharp(self)
     }
 }

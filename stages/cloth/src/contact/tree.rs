@@ -24,26 +24,26 @@ const LEAF_TRIANGLES: usize = 4;
 const FLAT: f64 = 1e-9;
 
 #[derive(Debug, Clone, Copy)]
-struct Bounds {
-    low: Vec3,
-    high: Vec3,
+pub(super) struct Bounds {
+    pub(super) low: Vec3,
+    pub(super) high: Vec3,
 }
 
 impl Bounds {
-    fn meets(&self, other: &Self) -> bool {
+    pub(super) fn meets(&self, other: &Self) -> bool {
         (0..3).all(|k| self.low[k] <= other.high[k] && other.low[k] <= self.high[k])
     }
 
-    fn with(&self, other: &Self) -> Self {
+    pub(super) fn with(&self, other: &Self) -> Self {
         Self { low: self.low.inf(&other.low), high: self.high.sup(&other.high) }
     }
 }
 
 /// A part of the tree: a leaf's triangles, or the left child; the right one follows it.
 #[derive(Debug, Clone, Copy)]
-struct Branch {
-    first: u32,
-    count: u32,
+pub(super) struct Branch {
+    pub(super) first: u32,
+    pub(super) count: u32,
 }
 
 /// The tree over one sheet.
@@ -242,7 +242,7 @@ fn far(kind: Kind, x: &[Vec3; 4], reach: f64) -> bool {
 }
 
 /// The order of the triangles in the tree, and its branches.
-fn halves(all: &[[u32; 3]], layout: &[Vec3]) -> (Vec<u32>, Vec<Branch>) {
+pub(super) fn halves(all: &[[u32; 3]], layout: &[Vec3]) -> (Vec<u32>, Vec<Branch>) {
     let centres: Vec<Vec3> =
         all.iter().map(|t| t.iter().map(|&v| layout[v as usize]).sum::<Vec3>() / 3.0).collect();
     let mut order: Vec<u32> = (0..all.len() as u32).collect();

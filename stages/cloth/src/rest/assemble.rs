@@ -3,6 +3,7 @@
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pieces::Pieces;
+use super::ridges::Ridges;
 use super::support::Support;
 use super::system::System;
 use super::thread::Thread;
@@ -112,6 +113,7 @@ pub(super) fn assemble<'a>(
         push: vec![],
         pinned,
         threads: vec![],
+        ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),
         support,
         layers,
         touches: vec![],

@@ -154,6 +154,9 @@ impl<'a> Live<'a> {
             std::mem::swap(&mut new.pairs, &mut old.pairs);
             std::mem::swap(&mut new.grips, &mut old.grips);
         }
+        if let (Some(new), Some(old)) = (&mut new.ridges, &old.ridges) {
+            new.go_on(old);
+        }
         new.pulls = old.pulls.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
         self.system = new;
         self.descent.renew(&mut self.system);

@@ -31,6 +31,7 @@ mod pile;
 mod plan;
 pub mod press;
 pub mod real;
+pub mod ridges;
 mod rub;
 mod search;
 mod sew;

@@ -166,6 +166,7 @@ impl Descent {
     ) -> Self {
         nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
         nearby.untangle(system, x);
+        system.look_for_pierced(x);
         Self::among(nearby, system, layout, x, first)
     }
 
@@ -177,6 +178,7 @@ impl Descent {
         x: &[Vec3],
         first: f64,
     ) -> Self {
+        system.seek_ridges(x);
         system.touch(x);
         let linear = Linear::new(system, layout);
         let outcome = Outcome { dt: first, ..Outcome::default() };
@@ -270,11 +272,13 @@ impl Descent {
         shorten(&mut moves, pace.farthest / longest);
         let pulled = system.pull(x, &mut moves, pace.farthest);
         system.clear_of_body(x, &mut moves, |_| true);
+        system.clear_of_ridges(x, &mut moves);
         let reach = self.nearby.within_reach(x, &moves);
         self.left = reach < 1.0;
         shorten(&mut moves, reach);
         self.nearby.seek(system, x, &moves);
         let left = self.nearby.limit(system, x, &mut moves);
+        system.stop_at_ridges(x, &mut moves);
         // Seams pull over long ways, whatever is between.
         let kept = if system.threads.is_empty() { left } else { 1.0 };
         if kept < LEAST_KEPT && !pulled && !self.proves && self.dt > SHORTEST {

@@ -42,7 +42,7 @@ impl Cut {
     }
 
     /// Whether the part has all of an element's nodes.
-    fn knows(&self, nodes: &[u32]) -> bool {
+    pub(super) fn knows(&self, nodes: &[u32]) -> bool {
         nodes.iter().all(|&i| self.index[i as usize] != NONE)
     }
 
@@ -106,6 +106,7 @@ impl<'a> Part<'a> {
         let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
         scale(&mut self.system.loads);
         self.system.support.iter_mut().for_each(|s| scale(&mut s.stiffness));
+        self.system.ridges.iter_mut().for_each(|r| r.weigh(factor));
         if let Some(l) = &mut self.system.layers {
             scale(&mut l.stiffness);
             l.grips.iter_mut().for_each(|g| g.load *= factor);
@@ -137,6 +138,9 @@ impl<'a> Part<'a> {
             let grip = |g: &Grip| Grip { nodes: g.nodes.map(|i| self.nodes[i as usize]), ..*g };
             to.take_over(|g| self.cut.wakes(&g.nodes), from.grips.iter().map(grip));
         }
+        if let (Some(from), Some(to)) = (&self.system.ridges, &mut system.ridges) {
+            to.learn(&self.cut, &self.nodes, from);
+        }
         system.elastic.learn(&self.cut, &self.system.elastic);
     }
 }
@@ -160,6 +164,7 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
         pinned: nodes.iter().map(asleep).collect(),
         threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
         support: system.support.as_ref().map(|s| support(s, cut, nodes)),
+        ridges: system.ridges.as_ref().map(|r| r.part(cut, nodes)),
         layers: system.layers.as_ref().map(|l| layers(l, cut, nodes)),
         touches: Vec::new(),
         anchors: pick(nodes, &system.anchors),

@@ -97,14 +97,20 @@ impl Support<'_> {
         }
     }
 
-    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body.
-    pub(super) fn allow_for_sag(&mut self, near: &[Option<Nearest>], x: &[Vec3]) {
+    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body, but for edges that are
+    /// held off it themselves.
+    pub(super) fn allow_for_sag(
+        &mut self,
+        near: &[Option<Nearest>],
+        x: &[Vec3],
+        is_held: impl Fn([u32; 2]) -> bool,
+    ) {
         let mut sags = vec![0.0f64; self.offsets.len()];
         for &([i, j], length) in &self.edges {
             let (i, j) = (i as usize, j as usize);
             if let (Some(a), Some(b)) = (&near[i], &near[j]) {
                 let turn = b.normal - a.normal;
-                if turn.dot(&(x[j] - x[i])) > 0.0 {
+                if turn.dot(&(x[j] - x[i])) > 0.0 && !is_held([i as u32, j as u32]) {
                     let sag = length * turn.norm() / 8.0;
                     (sags[i], sags[j]) = (sags[i].max(sag), sags[j].max(sag));
                 }

@@ -8,6 +8,7 @@
 use super::elastic::Elastic;
 use super::layers::Layers;
 use super::pattern::Pattern;
+use super::ridges::Ridges;
 use super::rub::Rub;
 use super::support::{NEAR, NUDGE, Seen, Sight, Support};
 use super::thread::Thread;
@@ -46,6 +47,8 @@ pub struct System<'a> {
     pub threads: Vec<Thread>,
     /// The body.
     pub support: Option<Support<'a>>,
+    /// Its sharp edges and corners.
+    pub ridges: Option<Ridges>,
     /// Cloth against itself.
     pub layers: Option<Layers>,
     /// Nodes in contact at the start of the step.
@@ -149,6 +152,40 @@ impl System<'_> {
         }
     }
 
+    /// Finds what may touch sharp features at `x`.
+    pub fn seek_ridges(&mut self, x: &[Vec3]) {
+        self.ridges.iter_mut().for_each(|r| r.seek(x, &vec![Vec3::zeros(); x.len()]));
+    }
+
+    /// Ends moves that lead the cloth past a sharp feature of the body before that; it gives way where it can.
+    pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(r) = &mut self.ridges else { return };
+        r.seek(x, moves);
+        let pushed = r.give_way(x, moves, &self.pinned);
+        if pushed.contains(&true) {
+            self.clear_of_body(x, moves, |i| pushed[i]);
+            self.ridges.iter_mut().for_each(|r| {
+                r.seek(x, moves);
+                r.hold_apart(x, moves);
+            });
+        }
+    }
+
+    /// Shortens all moves alike where they still lead past one.
+    pub fn stop_at_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
+        if let Some(r) = &mut self.ridges {
+            r.seek(x, moves);
+            r.stop(x, moves);
+        }
+    }
+
+    /// Looks for cloth that the body passes through at `x`, as what a coarser mesh left may: it is pushed back out.
+    pub fn look_for_pierced(&mut self, x: &[Vec3]) {
+        if let (Some(r), Some(s)) = (&mut self.ridges, &self.support) {
+            r.look_for_pierced(s, x);
+        }
+    }
+
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
@@ -174,7 +211,8 @@ impl System<'_> {
         };
         let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value(x));
-        Visit { energy: lasting + body + rub + layers, lasting, sight }
+        let ridges = self.ridges.as_ref().map_or(0.0, |r| r.value(x));
+        Visit { energy: lasting + body + rub + layers + ridges, lasting, sight }
     }
 
     /// Energy at the step's start, J, of which `lasting` does not depend on contacts.
@@ -189,7 +227,8 @@ impl System<'_> {
         };
         let rub: f64 = self.rubs().map(|(i, r)| r.value(&x[i])).sum();
         let layers = self.layers.as_ref().map_or(0.0, |l| l.value_at_start(x));
-        lasting + body + rub + layers
+        let ridges = self.ridges.as_ref().map_or(0.0, |r| r.value_at_start(x));
+        lasting + body + rub + layers + ridges
     }
 
     /// Elastic and gravitational energy at `x`, J.
@@ -222,6 +261,7 @@ impl System<'_> {
             std::mem::swap(&mut s.friction, friction);
         }
         self.layers.iter_mut().for_each(Layers::swap_friction);
+        self.ridges.iter_mut().for_each(Ridges::swap_friction);
         self.anchors.fill(None);
         self.loads.fill(0.0);
     }
@@ -239,7 +279,9 @@ impl System<'_> {
         let near = self.look(x, sight);
         let Some(s) = &mut self.support else { return };
         s.stiffen();
-        s.allow_for_sag(&near, x);
+        let ridges = &mut self.ridges;
+        ridges.iter_mut().for_each(|r| r.touch(x));
+        s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];
         self.touches.clear();
@@ -264,6 +306,7 @@ impl System<'_> {
         let dragged: Vec<(usize, Vec3)> = self.rubs().map(|(i, r)| (i, r.dragged(&x[i]))).collect();
         dragged.into_iter().for_each(|(i, anchor)| self.anchors[i] = Some(anchor));
         self.layers.iter_mut().for_each(|l| l.drag(x));
+        self.ridges.iter_mut().for_each(|r| r.drag(x));
         self.elastic.drag(x);
     }
 
@@ -296,6 +339,7 @@ impl System<'_> {
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
         self.rubs().for_each(|(i, r)| g[i] += r.gradient(&x[i]));
         self.layers.iter().for_each(|l| l.add_gradient(x, &mut g));
+        self.ridges.iter().for_each(|r| r.add_gradient(x, &mut g));
         g.iter_mut().zip(&self.pinned).filter(|(_, p)| **p).for_each(|(g, _)| *g = Vec3::zeros());
         g
     }
@@ -323,6 +367,7 @@ impl System<'_> {
         }
         self.rubs().for_each(|(i, r)| values[i] += r.matrix(&x[i]));
         self.layers.iter().for_each(|l| l.add_matrix(x, pattern, values));
+        self.ridges.iter().for_each(|r| r.add_matrix(x, pattern, values));
         let held = self.pinned.iter().zip(values).filter(|(p, _)| **p);
         held.for_each(|(_, v)| *v = Matrix3::identity());
     }

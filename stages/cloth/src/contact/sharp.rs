@@ -1,0 +1,262 @@
+//! Edges and corners of a body that are too sharp for distances of single points to keep cloth off them.
+//!
+//! A vertex of the cloth is held off by its distance from the surface, and so is the cloth between its vertices where the surface bends
+//! gently. An edge of a table, a blade or the tip of a cone comes through between them. These features are found once, from the
+//! angles of the mesh, and each knows on which side of it a point lies: outside where its closest point of the surface is on the
+//! feature (the point is in the feature's normal cone), inside where the point is hidden behind all faces that meet there.
+//!
+//! Cost: O(n) for the body's triangles, O(log m) for a look at the m features. Limits: a rounded edge of many small angles is none.
+
+use super::pair::Kind;
+use super::tree::{Bounds, Branch, halves};
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Cosine of the angle between the normals of two faces from which on their edge is sharp: 44 degrees, less than in a
+/// prism of eight sides and more than in all but some hundred edges of a mannequin.
+const SHARP_EDGE: f64 = 0.719;
+
+/// Cosine of the angle between a face and the mean of all about a corner from which on that is sharp: 45 degrees; a
+/// corner of a box has 55.
+const SHARP_CORNER: f64 = 0.707;
+
+/// Cosine of the angle from which on an edge of a sharp corner counts: 1 degree.
+const BENT: f64 = 0.9998;
+
+/// Share of its distance by which a point may lie beyond a normal cone and still count as in it.
+const LENIENT: f64 = 0.02;
+
+/// A sharp edge or corner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Feature {
+    /// Whether it meets edges of the cloth, or, a corner, its triangles.
+    pub kind: Kind,
+    /// Its two ends; of a corner the same place.
+    pub ends: [Vec3; 2],
+    /// Unit directions from it into the surface: into the two faces, or along the edges of a corner.
+    pub into: Vec<Vec3>,
+}
+
+/// Where a point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Outside, where the feature is the closest part of the surface.
+    Out,
+    /// Behind every face that meets there.
+    In,
+    /// Anywhere else.
+    Beside,
+}
+
+/// The sharp features of a body.
+#[derive(Debug, Clone)]
+pub struct Sharp {
+    /// In the order of the tree.
+    features: Vec<Feature>,
+    branches: Vec<Branch>,
+    boxes: Vec<Bounds>,
+}
+
+impl Feature {
+    /// Where the point lies that is `off` from the closest point of the feature.
+    #[must_use]
+    pub fn side(&self, off: &Vec3) -> Side {
+        let lenient = LENIENT * off.norm();
+        let (mut out, mut hidden) = (true, true);
+        for into in &self.into {
+            let along = into.dot(off);
+            out &= along <= lenient;
+            hidden &= along > 0.0;
+        }
+        match (out, hidden) {
+            (true, _) => Side::Out,
+            (false, true) => Side::In,
+            (false, false) => Side::Beside,
+        }
+    }
+}
+
+impl Sharp {
+    /// The sharp features of a closed mesh that faces outwards; `None` where there are none.
+    #[must_use]
+    pub fn of(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Option<Self> {
+        let features = features(vertices, triangles);
+        if features.is_empty() {
+            return None;
+        }
+        let layout: Vec<Vec3> = features.iter().flat_map(|f| f.ends).collect();
+        let segments: Vec<[u32; 3]> =
+            (0..features.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
+        let (order, branches) = halves(&segments, &layout);
+        let features: Vec<Feature> = order.iter().map(|&k| features[k as usize].clone()).collect();
+        let boxes = fitted(&branches, &features);
+        Some(Self { features, branches, boxes })
+    }
+
+    /// A feature.
+    #[must_use]
+    pub fn feature(&self, k: u32) -> &Feature {
+        &self.features[k as usize]
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.features.len()
+    }
+
+    /// Whether any feature's box meets that from `low` to `high`.
+    #[must_use]
+    pub fn meets(&self, low: &Vec3, high: &Vec3) -> bool {
+        let mut any = false;
+        for kind in [Kind::EdgeEdge, Kind::VertexTriangle] {
+            self.within(kind, low, high, |_| any = true);
+        }
+        any
+    }
+
+    /// Visits every feature of a kind whose box meets that from `low` to `high`, in the order of the tree.
+    pub fn within(&self, kind: Kind, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
+        let around = Bounds { low: *low, high: *high };
+        // The tree is as deep as the logarithm of its size.
+        let mut stack = [0u32; 64];
+        let mut depth = 1;
+        while depth > 0 {
+            depth -= 1;
+            let k = stack[depth] as usize;
+            if !self.boxes[k].meets(&around) {
+                continue;
+            }
+            let branch = self.branches[k];
+            if branch.count == 0 {
+                (stack[depth], stack[depth + 1]) = (branch.first + 1, branch.first);
+                depth += 2;
+                continue;
+            }
+            for f in branch.first..branch.first + branch.count {
+                let feature = &self.features[f as usize];
+                if feature.kind == kind && bounds(feature).meets(&around) {
+                    visit(f);
+                }
+            }
+        }
+    }
+}
+
+fn bounds(f: &Feature) -> Bounds {
+    Bounds { low: f.ends[0].inf(&f.ends[1]), high: f.ends[0].sup(&f.ends[1]) }
+}
+
+fn fitted(branches: &[Branch], features: &[Feature]) -> Vec<Bounds> {
+    let mut boxes = vec![Bounds { low: Vec3::zeros(), high: Vec3::zeros() }; branches.len()];
+    for (k, b) in branches.iter().enumerate().rev() {
+        let first = b.first as usize;
+        boxes[k] = match b.count {
+            0 => boxes[first].with(&boxes[first + 1]),
+            n => features[first + 1..first + n as usize]
+                .iter()
+                .fold(bounds(&features[first]), |all, f| all.with(&bounds(f))),
+        };
+    }
+    boxes
+}
+
+/// An edge of the mesh: its ends, the lower one first, and the corners across it.
+struct Edge {
+    ends: [u32; 2],
+    across: [u32; 2],
+    /// Cosine of the angle between its faces; less than 1 only where they bend outwards.
+    cosine: f64,
+}
+
+fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
+    let place = |v: u32| vertices[v as usize];
+    let face = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(place);
+        (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
+    };
+    let faces: Vec<Vec3> = triangles.iter().map(face).collect();
+    let edges = edges(vertices, triangles, &faces);
+    let mut corner = sharp_corners(vertices.len(), triangles, &faces);
+    let at_corner = |e: &Edge| e.ends.iter().any(|&v| corner[v as usize]);
+    let sharp: Vec<bool> =
+        edges.iter().map(|e| e.cosine < SHARP_EDGE || e.cosine < BENT && at_corner(e)).collect();
+    for (e, _) in edges.iter().zip(&sharp).filter(|(_, s)| **s) {
+        e.ends.iter().for_each(|&v| corner[v as usize] = true);
+    }
+    let mut sides: Vec<Vec<Vec3>> = vec![Vec::new(); if corner.contains(&true) { vertices.len() } else { 0 }];
+    for e in edges.iter().filter(|e| e.ends.iter().any(|&v| corner[v as usize])) {
+        let along = (place(e.ends[1]) - place(e.ends[0])).try_normalize(0.0).unwrap_or_default();
+        sides[e.ends[0] as usize].push(along);
+        sides[e.ends[1] as usize].push(-along);
+    }
+    let ridge = |e: &Edge| {
+        let ends = e.ends.map(place);
+        let along = (ends[1] - ends[0]).try_normalize(0.0).unwrap_or_default();
+        let into = |v: u32| {
+            let way = place(v) - ends[0];
+            (way - along * along.dot(&way)).try_normalize(0.0).unwrap_or_default()
+        };
+        Feature { kind: Kind::EdgeEdge, ends, into: e.across.map(into).to_vec() }
+    };
+    let ridges = edges.iter().zip(&sharp).filter(|(_, s)| **s).map(|(e, _)| ridge(e));
+    let tip = |v: usize| Feature {
+        kind: Kind::VertexTriangle,
+        ends: [vertices[v]; 2],
+        into: std::mem::take(&mut sides[v]),
+    };
+    let mut all: Vec<Feature> = ridges.collect();
+    all.extend((0..vertices.len()).filter(|&v| corner[v]).map(tip));
+    all
+}
+
+/// Corners of which a face stands far from the mean of all.
+fn sharp_corners(count: usize, triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<bool> {
+    let mut means = vec![Vec3::zeros(); count];
+    for (t, n) in triangles.iter().zip(faces) {
+        t.iter().for_each(|&v| means[v as usize] += n);
+    }
+    let mut sharp = vec![false; count];
+    for (t, n) in triangles.iter().zip(faces) {
+        for &v in t {
+            let mean = &means[v as usize];
+            sharp[v as usize] |= mean.dot(n) < SHARP_CORNER * mean.norm();
+        }
+    }
+    sharp
+}
+
+/// The edges of two faces each, in the order of their lower ends.
+fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<Edge> {
+    // Sorted by counting: a body has many edges, and few of them are sharp.
+    let side = |t: &[u32; 3], k: usize| (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]), t[(k + 2) % 3]);
+    let mut starts = vec![0u32; vertices.len() + 1];
+    triangles.iter().for_each(|t| (0..3).for_each(|k| starts[side(t, k).0 as usize + 1] += 1));
+    (0..vertices.len()).for_each(|v| starts[v + 1] += starts[v]);
+    let mut next = starts.clone();
+    let mut halves = vec![(0u32, 0u32, 0u32); 3 * triangles.len()];
+    for (f, t) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let (low, high, across) = side(t, k);
+            halves[next[low as usize] as usize] = (high, f as u32, across);
+            next[low as usize] += 1;
+        }
+    }
+    let mut all = Vec::with_capacity(halves.len() / 2);
+    for low in 0..vertices.len() {
+        let own = &mut halves[starts[low] as usize..starts[low + 1] as usize];
+        own.sort_unstable();
+        for pair in own.chunk_by(|a, b| a.0 == b.0) {
+            let [(high, f, v), (_, g, w)] = *pair else { continue };
+            let (n, m) = (&faces[f as usize], &faces[g as usize]);
+            let is_convex = n.dot(&(vertices[w as usize] - vertices[low])) < 0.0;
+            let cosine = if is_convex { n.dot(m) } else { 1.0 };
+            all.push(Edge { ends: [low as u32, high], across: [v, w], cosine });
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests;
