@@ -139,14 +139,16 @@ fn told(mut moved: Vec<(f64, &str, Place, Place)>, tolerance: Tolerance) -> Opti
     let p95 = quantile(&distances, 0.95);
     let (most, panel, was, is) = moved.last()?;
     let near = p95 <= tolerance.within_mm + SHEET_ROUNDING && *most <= tolerance.most_mm + SHEET_ROUNDING;
-    let ([u, v], [x, y, z], [a, b, c]) = (was.flat, was.space, is.space);
-    (!near).then(|| {
-            format!(
-                "its surface moved by {p95:.2} mm at 95 % (tolerance {}) and by {most:.2} mm at most (tolerance {}): \
-                 panel \"{panel}\" at ({u:.0}, {v:.0}) mm was at ({x:.1}, {y:.1}, {z:.1}) mm, is at ({a:.1}, {b:.1}, {c:.1}) mm",
-                tolerance.within_mm, tolerance.most_mm
-            )
-        })
+    if near {
+        return None;
+    }
+    let Tolerance { within_mm, most_mm } = tolerance;
+    let at = |[x, y, z]: [f64; 3]| format!("({x:.1}, {y:.1}, {z:.1}) mm");
+    let ([u, v], before, now) = (was.flat, at(was.space), at(is.space));
+    Some(format!(
+        "its surface moved by {p95:.2} mm at 95 % (tolerance {within_mm}) and by {most:.2} mm at most (tolerance {most_mm}): \
+         panel \"{panel}\" at ({u:.0}, {v:.0}) mm was at {before}, is at {now}"
+    ))
 }
 
 /// How far a point moved; one beyond the mesh is as far as its nearest point and the way there.
