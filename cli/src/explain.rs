@@ -5,11 +5,11 @@ use crate::costs::Known;
 use crate::explain_json::json;
 use crate::run::fail_run;
 use crate::trade::{default_folder, failed, opened, quality};
-use crate::validate::{quality_words, standings};
+use crate::validate::{Stood, quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
 use toile_core::decide::{Decided, decisions};
-use toile_core::pipeline::{Feed, Node, Pipeline, Quality, Standing};
+use toile_core::pipeline::{Feed, Node, Pipeline};
 use toile_core::{Registry, RunError, RunOptions, StageError, plan};
 use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
@@ -20,7 +20,7 @@ use toile_trade::saving::Evidence;
 pub(crate) struct Explained<'a> {
     pub(crate) pipeline: &'a Pipeline,
     /// Its qualities with what their claims are worth.
-    pub(crate) qualities: Vec<(Quality, Standing)>,
+    pub(crate) qualities: Vec<Stood>,
     /// For each stage `None` where it runs, or why it is left out.
     pub(crate) plan: Vec<Option<String>>,
     /// What each stage is expected to take.
@@ -110,7 +110,7 @@ fn lines(explained: &Explained<'_>) -> Vec<String> {
 }
 
 /// `vest: 14 stages, quality Draft; qualities: Draft (10 mm), Fine (2 mm)`.
-fn title(pipeline: &Pipeline, qualities: &[(Quality, Standing)]) -> String {
+fn title(pipeline: &Pipeline, qualities: &[Stood]) -> String {
     let chosen = pipeline.quality.as_ref().map_or_else(String::new, |q| format!(", quality {q}"));
     let words = quality_words(qualities);
     let known = if words.is_empty() { words } else { format!("; qualities: {words}") };

