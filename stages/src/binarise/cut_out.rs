@@ -2,10 +2,10 @@
 //!
 //! Programs that remove the ground write such pictures, with a margin or cropped to the garment, and then the garment touches
 //! the frame and is not cut by it. But a photo may be transparent along its frame for other reasons: rounded corners, a round
-//! crop, the wedges that a turn or a perspective leaves. What is opaque in those is convex; the outline of most garments is not.
+//! crop, the wedges that a turn leaves. What is opaque in those is convex and the same turned by half; a garment is not both.
 //!
-//! Cost: one look at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone chain, 1979). Limits: a skirt
-//! laid straight is convex as well; there the opacity counts only where the method of the binariser finds no garment.
+//! Cost: two looks at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone chain, 1979). Limits: a photo whose
+//! perspective was set right may be convex alone, as a skirt is; what is taken for a skirt is told.
 
 use super::tone::{OPAQUE, mark, rim_share};
 use image::GrayImage;
@@ -18,32 +18,36 @@ const LEAST_TRANSPARENT: f64 = 0.02;
 /// From this share of its hull on, the opaque part is convex.
 const CONVEX: f64 = 0.97;
 
-/// What a picture's opacity says of the garment.
+/// Up to this share of the opaque part, what differs from it turned by half does not count.
+const SYMMETRIC: f64 = 0.03;
+
+/// The garment of a picture whose ground was cut away.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Opacity {
-    /// Nothing.
-    Nothing,
-    /// It is the mask.
-    Mask(GrayImage),
-    /// It is the mask, unless the picture shows a garment on a ground all the same.
-    Perhaps(GrayImage),
+pub(super) struct CutOut {
+    /// What is opaque.
+    pub(super) mask: GrayImage,
+    /// Whether its shape leaves no doubt.
+    pub(super) sure: bool,
 }
 
-/// Reads a photo's opacity.
-pub(super) fn opacity(photo: &Photo) -> Opacity {
-    let Some(alpha) = photo.alpha.as_deref() else { return Opacity::Nothing };
-    let mask = || mark(alpha, |_, a| a >= OPAQUE);
+/// The garment of a picture whose ground was cut away; none for an ordinary photo.
+pub(super) fn cut_out(photo: &Photo) -> Option<CutOut> {
+    let alpha = photo.alpha.as_deref()?;
+    let found = |sure| Some(CutOut { mask: mark(alpha, |_, a| a >= OPAQUE), sure });
     if rim_share(alpha, None, |a| a < OPAQUE) >= RIM {
-        return Opacity::Mask(mask());
+        return found(true);
     }
-    let opaque = alpha.as_raw().iter().filter(|a| **a >= OPAQUE).count() as f64;
-    if opaque > (1.0 - LEAST_TRANSPARENT) * alpha.as_raw().len() as f64 {
-        return Opacity::Nothing;
+    let pixels = alpha.as_raw();
+    let opaque = pixels.iter().filter(|a| **a >= OPAQUE).count() as f64;
+    if opaque > (1.0 - LEAST_TRANSPARENT) * pixels.len() as f64 {
+        return None;
     }
-    match opaque < CONVEX * hull_area(alpha) {
-        true => Opacity::Mask(mask()),
-        false => Opacity::Perhaps(mask()),
+    if opaque < CONVEX * hull_area(alpha) {
+        return found(true);
     }
+    let turned = pixels.iter().zip(pixels.iter().rev());
+    let differs = turned.filter(|(a, b)| (**a >= OPAQUE) != (**b >= OPAQUE)).count() as f64;
+    if differs <= SYMMETRIC * opaque { None } else { found(false) }
 }
 
 /// Area of the convex hull of the opaque pixels, squares of a pixel.
@@ -87,13 +91,13 @@ mod tests {
     use super::*;
     use image::Luma;
 
-    fn read(shape: impl Fn(f64, f64) -> bool) -> Opacity {
+    fn read(shape: impl Fn(f64, f64) -> bool) -> Option<bool> {
         let (w, h) = (120, 100);
         let alpha = GrayImage::from_fn(w, h, |x, y| {
             let (x, y) = ((f64::from(x) + 0.5) / f64::from(w), (f64::from(y) + 0.5) / f64::from(h));
             Luma([if shape(2.0 * x - 1.0, 2.0 * y - 1.0) { 255 } else { 0 }])
         });
-        opacity(&Photo {
+        let found = cut_out(&Photo {
             pixels: image::RgbImage::new(w, h).into(),
             alpha: Some(alpha.into()),
             px_per_metre: None,
@@ -101,7 +105,8 @@ mod tests {
             mirrored: false,
             joined: 1,
             file: "front.png".into(),
-        })
+        });
+        found.map(|f| f.sure)
     }
 
     #[test]
@@ -112,24 +117,24 @@ mod tests {
                 let (x, y) = (scale * x.abs(), scale * y);
                 y.abs() < 1.0 && x < 1.0 && (x < 0.6 || y < -0.4)
             };
-            assert!(matches!(read(tee), Opacity::Mask(_)), "{scale}");
+            assert_eq!(read(tee), Some(true), "{scale}");
         }
     }
 
     #[test]
-    fn a_convex_shape_may_be_a_skirt_or_the_frame_of_a_photo() {
-        let round = |x: f64, y: f64| x * x + y * y < 1.0;
-        let skirt = |x: f64, y: f64| x.abs() < 0.7 + 0.3 * y;
-        let turned = |x: f64, y: f64| (x + 0.2 * y).abs() < 0.85 && (y - 0.2 * x).abs() < 0.85;
-        assert!(matches!(read(skirt), Opacity::Perhaps(_)));
-        assert!(matches!(read(turned), Opacity::Perhaps(_)));
-        assert!(matches!(read(round), Opacity::Perhaps(_)));
+    fn a_skirt_is_convex_and_not_the_same_upside_down() {
+        assert_eq!(read(|x, y| x.abs() < 0.7 + 0.3 * y), Some(false));
     }
 
     #[test]
-    fn a_small_transparent_corner_says_nothing() {
-        assert_eq!(read(|x, y| x + y > -1.8), Opacity::Nothing);
-        assert_eq!(read(|_, _| true), Opacity::Nothing);
+    fn a_photo_with_transparent_corners_or_wedges_is_none() {
+        let round = |x: f64, y: f64| x * x + y * y < 1.0;
+        let rounded = |x: f64, y: f64| (x.abs() - 0.6).max(0.0).hypot((y.abs() - 0.6).max(0.0)) < 0.4;
+        let turned = |x: f64, y: f64| (x + 0.05 * y).abs() < 0.97 && (y - 0.05 * x).abs() < 0.97;
+        let corner = |x: f64, y: f64| x + y > -1.8;
+        for shape in [&round as &dyn Fn(f64, f64) -> bool, &rounded, &turned, &corner, &|_, _| true] {
+            assert_eq!(read(shape), None);
+        }
     }
 
     #[test]

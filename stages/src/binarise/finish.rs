@@ -1,7 +1,7 @@
 //! What every binariser does at its end: clean the mask, keep one garment, and say so when there is
 //! none, more than one, or half of one.
 
-use super::cut_out::{Opacity, opacity};
+use super::cut_out::{CutOut, cut_out};
 use super::morphology::{close, open};
 use super::regions::{Piece, Regions};
 use super::tone::OPAQUE;
@@ -39,15 +39,14 @@ pub fn mask_of(
     method: impl FnOnce() -> Result<GrayImage, StageError>,
 ) -> Result<Mask, StageError> {
     has_pixels(photo)?;
-    let cut_out = |mask| finish(mask, photo, Finish { touch: f64::INFINITY, ..settings }, cx);
-    match opacity(photo) {
-        Opacity::Mask(mask) => cut_out(mask),
-        Opacity::Nothing => finish(method()?, photo, settings, cx),
-        Opacity::Perhaps(mask) => {
-            let found = method().and_then(|raw| finish(raw, photo, settings, cx));
-            found.or_else(|e| if e.code == ErrorCode::Cancelled { Err(e) } else { cut_out(mask) })
-        }
+    let Some(CutOut { mask, sure }) = cut_out(photo) else { return finish(method()?, photo, settings, cx) };
+    if !sure {
+        cx.warn(format!(
+            "what is opaque in \"{}\" is taken for the garment, and the rest for its ground",
+            photo.file
+        ));
     }
+    finish(mask, photo, Finish { touch: f64::INFINITY, ..settings }, cx)
 }
 
 /// Cleans a raw mask and checks that it shows one whole garment.

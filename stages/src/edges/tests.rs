@@ -260,6 +260,23 @@ fn failure(photo: &Photo, mask: &Mask) -> (String, String) {
     (e.message, e.hint.unwrap_or_default())
 }
 
+/// A garment whose ground was cut away may fill its frame; a photo of one that does is cut.
+#[test]
+fn a_garment_that_was_cut_out_is_not_cut_by_the_frame() {
+    let at = |x: u32, y: u32| Luma([255 * u8::from(x >= 70 && y < 150 || y < 60)]);
+    let whole = mask(GrayImage::from_fn(200, 200, at));
+    let mut cut_out = photo(RgbImage::from_fn(200, 200, |x, y| Rgb([255 - at(x, y).0[0] / 2; 3])), None);
+    cut_out.px_per_metre = Some(1000.0);
+    assert_eq!(failure(&cut_out, &whole).0, "the garment is cut off by the photo's left border");
+    cut_out.alpha = Some(whole.pixels.clone());
+    let outline = Canny::default().run(&cut_out, &whole, &Context::quiet()).unwrap();
+    let area = toile_core::artifact::polygon_area(&outline.outer.points) * 1e6;
+    assert!((area / f64::from(whole.area_px() as u32) - 1.0).abs() < 0.02, "{area}");
+    // A mask that is not what is opaque is cut as before.
+    let other = mask(GrayImage::from_fn(200, 200, |x, y| Luma([255 * u8::from(x < 90 && y < 60)])));
+    assert_eq!(failure(&cut_out, &other).0, "the garment is cut off by the photo's left border");
+}
+
 #[test]
 fn errors_say_what_is_wrong_and_what_to_do() {
     let (photo, whole) = drawn(200, |p| square(p, 100.0, 60.0, 0.0, 0.0));
