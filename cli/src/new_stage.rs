@@ -290,6 +290,7 @@ fn manifest(name: &str, dependencies: &str, core: &str) -> String {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
 
     #[test]

@@ -167,7 +167,7 @@ fn a_crate_whose_sources_are_not_tested_has_no_tests_in_them() {
     let untested = manifests.iter().filter(|m| {
         let text = std::fs::read_to_string(m).unwrap();
         text.split_once("[lib]")
-            .is_some_and(|(_, lib)| lib.split("\n[").next().unwrap().contains("test = false\n"))
+            .is_some_and(|(_, lib)| lib.split("\n[").next().unwrap().contains("\ntest = false\n"))
     });
     let untested: Vec<&Path> = untested.map(|m| m.parent().unwrap()).collect();
     assert!(untested.len() > 5, "{untested:?}");

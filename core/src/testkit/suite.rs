@@ -149,11 +149,13 @@ fn scene_value(scene: &Scene, port: &InPort) -> Option<PortValue> {
 }
 
 type Maker = fn() -> Arc<dyn Artifact>;
+/// A kind with an artifact that is made where it is first asked for.
+type Own = (Kind, LazyLock<Arc<dyn Artifact>, Maker>);
 
 /// What stands on ports that no scene fills, a kind each. They are made once a process: the contracts of all cards ask for
 /// them some thousand times.
-fn own() -> &'static [(Kind, LazyLock<Arc<dyn Artifact>, Maker>)] {
-    static OWN: LazyLock<Vec<(Kind, LazyLock<Arc<dyn Artifact>, Maker>)>> = LazyLock::new(|| {
+fn own() -> &'static [Own] {
+    static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
         let all: [(Kind, Maker); 13] = [
             (Body::KIND, || Arc::new(dress::body())),
             (Fabric::KIND, || Arc::new(dress::fabric())),
