@@ -132,13 +132,13 @@ fn goldens() {
             let _ = golden::compare(&golden::Sheet::default(), &sheet);
             // A sheet that agrees with what it is not is no golden.
             let mut other = sheet.clone();
-            for m in other.0.iter_mut().flat_map(|s| &mut s.measures) {
+            for m in other.sections.iter_mut().flat_map(|s| &mut s.measures) {
                 m.value += 1.0 + 2.0 * m.tolerance.abs();
             }
             let seen = |m: &golden::SheetMeasure| m.value.abs() < 1e12 && m.tolerance.abs() < 1e12;
-            let all_seen = sheet.0.iter().flat_map(|s| &s.measures).all(seen);
+            let all_seen = sheet.sections.iter().flat_map(|s| &s.measures).all(seen);
             let differs = !golden::compare(&sheet, &other).differences.is_empty();
-            match sheet.0.iter().all(|s| s.measures.is_empty()) || !all_seen || differs {
+            match sheet.sections.iter().all(|s| s.measures.is_empty()) || !all_seen || differs {
                 true => Ok(()),
                 false => Err("it takes other measures for its own".to_owned()),
             }
