@@ -192,9 +192,13 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Completions { shell } => shell::completions(shell, streams),
         Command::Man { command } => shell::man(&command, streams),
         Command::NewStage(args) => {
-            let (name, role) = (args.name.as_str(), args.role.as_str());
+            let (name, role) = (args.name.as_str(), args.role.as_deref());
             let asked = new_stage::Asked { name, role, dir: args.dir.as_deref(), core: args.core.as_deref() };
             new_stage::new_stage(&asked, registry, streams)
+        }
+        Command::PluginHeader => {
+            streams.say(toile_core::plugin::HEADER.trim_end());
+            exit::DONE
         }
         Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
         Command::Explain(args) => explain::explain(&args, registry, streams),

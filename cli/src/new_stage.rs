@@ -1,68 +1,52 @@
-//! `toile new-stage NAME --role ROLE`: a crate with one stage that builds, loads, and has a test and a benchmark.
+//! `toile new-stage NAME [--role ROLE]`: a crate with one stage that builds, loads, and has a test and a benchmark.
 //!
 //! A template a role stands in `new_stage/`; `NAME` and `CRATE` in it become the stage's and the crate's names.
+//! The crate depends on toile-core by its folder: that of `--core`, or the source tree that this program was built from.
 
 use crate::{Streams, exit};
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
+use toile_core::artifact::OutputFile;
 use toile_core::{Registry, Role, write_files};
 
-/// The roles that have a template.
-const TEMPLATES: [(&str, Role, Template); 9] = [
-    (
-        "denoiser",
-        Role::Denoiser,
-        Template { source: include_str!("new_stage/denoiser.txt"), dependencies: IMAGE },
-    ),
-    (
-        "binariser",
-        Role::Binariser,
-        Template { source: include_str!("new_stage/binariser.txt"), dependencies: IMAGE },
-    ),
-    (
-        "edge-detector",
-        Role::EdgeDetector,
-        Template { source: include_str!("new_stage/edge_detector.txt"), dependencies: "" },
-    ),
-    ("mesher", Role::Mesher, Template { source: include_str!("new_stage/mesher.txt"), dependencies: "" }),
-    (
-        "smoother",
-        Role::Smoother,
-        Template { source: include_str!("new_stage/smoother.txt"), dependencies: "" },
-    ),
-    (
-        "stitcher",
-        Role::Stitcher,
-        Template { source: include_str!("new_stage/stitcher.txt"), dependencies: "" },
-    ),
-    ("draper", Role::Draper, Template { source: include_str!("new_stage/draper.txt"), dependencies: "" }),
-    (
-        "collider",
-        Role::Collider,
-        Template { source: include_str!("new_stage/collider.txt"), dependencies: "" },
-    ),
-    (
-        "texturer",
-        Role::Texturer,
-        Template { source: include_str!("new_stage/texturer.txt"), dependencies: "" },
-    ),
-];
+/// The library and its tests, and what they need beside toile-core.
+fn template(role: Role) -> (&'static str, &'static str) {
+    match role {
+        Role::Reader => (include_str!("new_stage/reader.txt"), PNG),
+        Role::Denoiser => (include_str!("new_stage/denoiser.txt"), IMAGE),
+        Role::Binariser => (include_str!("new_stage/binariser.txt"), IMAGE),
+        Role::EdgeDetector => (include_str!("new_stage/edge_detector.txt"), ""),
+        Role::Style => (include_str!("new_stage/style.txt"), ""),
+        Role::Mesher => (include_str!("new_stage/mesher.txt"), ""),
+        Role::Smoother => (include_str!("new_stage/smoother.txt"), ""),
+        Role::Body => (include_str!("new_stage/body.txt"), ""),
+        Role::Fabric => (include_str!("new_stage/fabric.txt"), ""),
+        Role::Placement => (include_str!("new_stage/placement.txt"), ""),
+        Role::Collider => (include_str!("new_stage/collider.txt"), ""),
+        Role::Stitcher => (include_str!("new_stage/stitcher.txt"), ""),
+        Role::Draper => (include_str!("new_stage/draper.txt"), ""),
+        Role::Texturer => (include_str!("new_stage/texturer.txt"), ""),
+        Role::Writer => (include_str!("new_stage/writer.txt"), ""),
+    }
+}
+
+/// The benchmark, alike for every role.
+const BENCH: &str = include_str!("new_stage/bench.txt");
 
 const IMAGE: &str = "image = { version = \"0.25\", default-features = false }\n";
+const PNG: &str = "image = { version = \"0.25\", default-features = false, features = [\"png\"] }\n";
+
+/// The crate of toile-core in the source tree that this program was built from.
+const BUILT_FROM: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../core");
 
 /// The longest name: it becomes a folder's and a crate's.
 const MAX_NAME: usize = 48;
-
-#[derive(Debug, Clone, Copy)]
-struct Template {
-    source: &'static str,
-    dependencies: &'static str,
-}
 
 /// What is asked for.
 #[derive(Debug)]
 pub(crate) struct Asked<'a> {
     pub(crate) name: &'a str,
-    pub(crate) role: &'a str,
+    pub(crate) role: Option<&'a str>,
     pub(crate) dir: Option<&'a Path>,
     pub(crate) core: Option<&'a Path>,
 }
@@ -70,12 +54,12 @@ pub(crate) struct Asked<'a> {
 /// Writes the crate.
 pub(crate) fn new_stage(asked: &Asked<'_>, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     match written(asked, registry) {
-        Ok(folder) => {
-            let (show, library) = (folder.display(), snake(asked.name));
-            streams.say(format!("wrote {show}"));
+        Ok(Written { folder, name, role }) => {
+            let (show, library) = (folder.display(), snake(&name));
+            streams.say(format!("wrote {show}, the {} {name}", role.as_str()));
             streams.say(format!("  cd {show} && cargo test && cargo build --release"));
-            streams
-                .say(format!("  toile stage {} --plugin {show}/target/release/lib{library}.so", asked.name));
+            let library = format!("{DLL_PREFIX}{library}{DLL_SUFFIX}");
+            streams.say(format!("  toile stage {name} --plugin {show}/target/release/{library}"));
             exit::DONE
         }
         Err((code, message)) => {
@@ -85,72 +69,176 @@ pub(crate) fn new_stage(asked: &Asked<'_>, registry: &Registry, streams: &mut St
     }
 }
 
+/// The crate that was written.
+struct Written {
+    folder: PathBuf,
+    name: String,
+    role: Role,
+}
+
 type Refusal = (u8, String);
 
 fn usage(message: String) -> Refusal {
     (exit::USAGE, message)
 }
 
-fn written(asked: &Asked<'_>, registry: &Registry) -> Result<PathBuf, Refusal> {
-    let template = template(asked.role)?;
-    check_name(asked.name, registry)?;
+fn written(asked: &Asked<'_>, registry: &Registry) -> Result<Written, Refusal> {
+    let name = stage_name(asked.name, registry)?;
+    let role = role(asked.role, &name)?;
+    let (source, dependencies) = template(role);
+    check_own_names(&name, source)?;
     let parent = asked.dir.map_or_else(|| PathBuf::from("."), Path::to_owned);
-    let folder = parent.join(kebab(asked.name));
+    let folder = parent.join(kebab(&name));
     if folder.exists() {
         return Err(usage(format!("{} is there already; choose another name or `--dir`", folder.display())));
     }
-    let core = core_dependency(asked.core)?;
-    let files: Vec<(String, Vec<u8>)> = files(asked.name, &template, &core)
-        .into_iter()
-        .map(|(path, text)| (path.to_owned(), text.into_bytes()))
-        .collect();
-    let files = files.into_iter().map(|(path, bytes)| toile_core::artifact::OutputFile { path, bytes });
-    write_files(&folder, &files.collect::<Vec<_>>())
+    let core = core_dependency(asked.core, Path::new(BUILT_FROM))?;
+    write_files(&folder, &files(&name, source, &manifest(&name, dependencies, &core)))
         .map_err(|e| (exit::INVALID, format!("cannot write {}: {e}", folder.display())))?;
-    Ok(folder)
+    Ok(Written { folder, name, role })
 }
 
-fn template(role: &str) -> Result<Template, Refusal> {
-    let wanted = role.trim().to_lowercase().replace([' ', '_'], "-");
-    if let Some((_, _, template)) = TEMPLATES.iter().find(|(name, ..)| *name == wanted) {
-        return Ok(*template);
-    }
-    let names: Vec<&str> = TEMPLATES.iter().map(|(name, ..)| *name).collect();
-    let is_role = Role::ALL.iter().any(|r| r.as_str().replace(' ', "-") == wanted);
-    let message = match is_role {
-        true => format!("there is no template for a {wanted}; there are {}", names.join(", ")),
-        false => match toile_core::pipeline::nearest(&wanted, names.iter().copied()) {
-            Some(near) => format!("there is no role \"{role}\"; did you mean {near}?"),
-            None => format!("there is no role \"{role}\"; there are {}", names.join(", ")),
-        },
+/// A role as it is written on the command line: `edge-detector`.
+fn role_word(role: Role) -> String {
+    role.as_str().replace(' ', "-")
+}
+
+/// The role of that word; without one that which the stage's name ends with, like `FineMesher`, else a binariser.
+fn role(asked: Option<&str>, name: &str) -> Result<Role, Refusal> {
+    let Some(asked) = asked else {
+        let last = |role: &Role| kebab(name).ends_with(&format!("-{}", role_word(*role)));
+        return Ok(Role::ALL.into_iter().find(last).unwrap_or(Role::Binariser));
     };
-    Err(usage(message))
+    let wanted = asked.trim().to_lowercase().replace([' ', '_'], "-");
+    if let Some(role) = Role::ALL.into_iter().find(|r| role_word(*r) == wanted) {
+        return Ok(role);
+    }
+    let words = Role::ALL.map(role_word);
+    Err(usage(match toile_core::pipeline::nearest(&wanted, words.iter().map(String::as_str)) {
+        Some(near) => format!("there is no role \"{asked}\"; did you mean {near}?"),
+        None => format!("there is no role \"{asked}\"; there are {}", words.join(", ")),
+    }))
 }
 
-/// Names that Rust or Cargo would not take for a crate.
-const RESERVED: [&str; 6] = ["Self", "Test", "Core", "Std", "Alloc", "Box"];
+/// Words that Rust or Cargo do not take for a crate, and crates that the new one depends on.
+const RESERVED: [&str; 64] = [
+    "abstract",
+    "alloc",
+    "as",
+    "async",
+    "await",
+    "become",
+    "box",
+    "break",
+    "const",
+    "continue",
+    "core",
+    "crate",
+    "criterion",
+    "do",
+    "dyn",
+    "else",
+    "enum",
+    "extern",
+    "false",
+    "final",
+    "fn",
+    "for",
+    "gen",
+    "if",
+    "image",
+    "impl",
+    "in",
+    "let",
+    "loop",
+    "macro",
+    "match",
+    "mod",
+    "move",
+    "mut",
+    "override",
+    "priv",
+    "proc_macro",
+    "pub",
+    "ref",
+    "return",
+    "self",
+    "stage",
+    "static",
+    "std",
+    "struct",
+    "super",
+    "test",
+    "toile",
+    "toile_core",
+    "trait",
+    "true",
+    "try",
+    "type",
+    "typeof",
+    "unsafe",
+    "unsized",
+    "use",
+    "virtual",
+    "where",
+    "while",
+    "yield",
+    "build",
+    "deps",
+    "examples",
+];
 
-fn check_name(name: &str, registry: &Registry) -> Result<(), Refusal> {
-    let word =
-        name.starts_with(|c: char| c.is_ascii_uppercase()) && name.chars().all(|c| c.is_ascii_alphanumeric());
-    if !word || name.len() < 2 || name.len() > MAX_NAME || RESERVED.contains(&name) {
-        return Err(usage(format!(
-            "\"{name}\" cannot name a stage; write one word that begins with a capital, like FineMesher"
-        )));
+/// The stage's name: `FineMesher`, also where `fine_mesher` or `fine-mesher` is asked for.
+fn stage_name(asked: &str, registry: &Registry) -> Result<String, Refusal> {
+    let refused =
+        || usage(format!("\"{asked}\" cannot name a stage; write a name like FineMesher or fine_mesher"));
+    let name = camel(asked).ok_or_else(refused)?;
+    if name.len() < 2 || name.len() > MAX_NAME || RESERVED.contains(&snake(&name).as_str()) {
+        return Err(refused());
     }
-    match registry.named(name).next() {
-        Some(card) => {
-            Err(usage(format!("there is a {} `{name}` already; choose another name", card.role.as_str())))
-        }
-        None => Ok(()),
+    let taken = registry.named(&name).next().map(|card| card.role.as_str());
+    match taken {
+        Some(role) => Err(usage(format!("there is a {role} `{name}` already; choose another name"))),
+        None => Ok(name),
     }
 }
 
-/// The line that names toile-core: by its folder, or by this program's version.
-fn core_dependency(core: Option<&Path>) -> Result<String, Refusal> {
-    let Some(path) = core else { return Ok(format!("version = \"{}\"", env!("CARGO_PKG_VERSION"))) };
+/// `fine_mesher` and `fine-mesher` as `FineMesher`, which stays as it is; nothing for what is neither.
+fn camel(asked: &str) -> Option<String> {
+    let letters = |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric());
+    if letters(asked) && asked.starts_with(|c: char| c.is_ascii_uppercase()) {
+        return Some(asked.to_owned());
+    }
+    let lower = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
+    let words: Vec<&str> = asked.split(['_', '-']).collect();
+    let sound = words.iter().all(|w| letters(w) && w.chars().all(lower));
+    let capital = |word: &&str| word[..1].to_uppercase() + &word[1..];
+    (sound && asked.starts_with(|c: char| c.is_ascii_lowercase()))
+        .then(|| words.iter().map(capital).collect())
+}
+
+/// Refuses a name that the crate's own code means something else by, such as `Photo`.
+fn check_own_names(name: &str, source: &str) -> Result<(), Refusal> {
+    let code = source.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let mut words = code.flat_map(|line| line.split(|c: char| !c.is_ascii_alphanumeric() && c != '_'));
+    match words.any(|word| word == name) {
+        true => Err(usage(format!("the crate needs `{name}` for something else; choose another name"))),
+        false => Ok(()),
+    }
+}
+
+/// The line that names toile-core by its folder: the one that is asked for, else that of the source tree.
+fn core_dependency(asked: Option<&Path>, built_from: &Path) -> Result<String, Refusal> {
+    let path = asked.unwrap_or(built_from);
     if !path.join("Cargo.toml").is_file() {
-        return Err((exit::INVALID, format!("there is no crate in {}", path.display())));
+        let message = match asked {
+            Some(_) => format!("there is no crate in {}", path.display()),
+            None => format!(
+                "the source tree that this program was built from is gone from {}; name toile's folder `core` by `--core`",
+                path.display()
+            ),
+        };
+        return Err((exit::INVALID, message));
     }
     let full =
         path.canonicalize().map_err(|e| (exit::INVALID, format!("cannot read {}: {e}", path.display())))?;
@@ -174,17 +262,17 @@ fn snake(name: &str) -> String {
     kebab(name).replace('-', "_")
 }
 
-fn files(name: &str, template: &Template, core: &str) -> [(&'static str, String); 5] {
-    let (source, rest) = template.source.split_once("//// tests\n").unwrap_or((template.source, ""));
-    let (test, bench) = rest.split_once("//// bench\n").unwrap_or((rest, ""));
+fn files(name: &str, source: &str, manifest: &str) -> [OutputFile; 5] {
+    let (source, test) = source.split_once("//// tests\n").unwrap_or((source, ""));
     let fill = |text: &str| text.replace("NAME", name).replace("CRATE", &snake(name));
     [
-        ("Cargo.toml", manifest(name, template.dependencies, core)),
+        ("Cargo.toml", manifest.to_owned()),
         ("src/lib.rs", fill(source)),
         ("tests/stage.rs", fill(test)),
-        ("benches/stage.rs", fill(bench)),
+        ("benches/stage.rs", fill(BENCH)),
         (".gitignore", "target\n".to_owned()),
     ]
+    .map(|(path, text)| OutputFile::new(path, text.into_bytes()))
 }
 
 fn manifest(name: &str, dependencies: &str, core: &str) -> String {
@@ -198,4 +286,43 @@ fn manifest(name: &str, dependencies: &str, core: &str) -> String {
          criterion = {{ version = \"0.8\", default-features = false }}\n\n\
          [[bench]]\nname = \"stage\"\nharness = false\n"
     )
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    #[test]
+    fn a_stage_is_named_in_either_way() {
+        let names = ["FineMesher", "fine_mesher", "fine-mesher", "my_otsu", "my_2nd", "K"].map(camel);
+        let wanted = ["FineMesher", "FineMesher", "FineMesher", "MyOtsu", "My2nd", "K"];
+        assert_eq!(names, wanted.map(|n| Some(n.to_owned())));
+        for none in ["", "fine mesher", "Fine-Mesher", "fine_Mesher", "_fine", "fine__mesher", "1st", "é"] {
+            assert_eq!(camel(none), None, "{none}");
+        }
+    }
+
+    #[test]
+    fn the_role_is_the_one_that_the_name_ends_with() {
+        let of = |name: &str| role(None, name).map(role_word).map_err(|e| e.1);
+        assert_eq!(of("FineMesher"), Ok("mesher".into()));
+        assert_eq!(of("MyEdgeDetector"), Ok("edge-detector".into()));
+        assert_eq!(of("MyOtsu"), Ok("binariser".into()));
+        assert_eq!(of("Somebody"), Ok("binariser".into()));
+    }
+
+    #[test]
+    fn without_a_source_tree_the_core_must_be_named() {
+        let dir = std::env::temp_dir().join("toile-no-such-tree");
+        let (code, message) = core_dependency(None, &dir).unwrap_err();
+        assert_eq!(code, 3);
+        assert_eq!(
+            message,
+            format!(
+                "the source tree that this program was built from is gone from {}; name toile's folder `core` by `--core`",
+                dir.display()
+            )
+        );
+    }
 }

@@ -1,26 +1,25 @@
 //! `toile new-stage`: what it writes builds, loads and passes its own tests; what it refuses it names.
+//!
+//! One crate is built here, that of every role by `.ci/wide`: all share the workspace's target folder, and each still
+//! compiles what its dependencies have other features for.
 #![allow(clippy::unwrap_used)]
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::Path;
 use std::process::Command;
+use toile_core::Role;
 use toile_tests::{Answer, root, toile};
 
-const ROLES: [(&str, &str); 9] = [
-    ("FreshDenoiser", "denoiser"),
-    ("FreshBinariser", "binariser"),
-    ("FreshEdges", "edge-detector"),
-    ("FreshMesher", "mesher"),
-    ("FreshSmoother", "smoother"),
-    ("FreshStitcher", "stitcher"),
-    ("FreshDraper", "draper"),
-    ("FreshCollider", "collider"),
-    ("FreshTexturer", "texturer"),
-];
+fn new_stage(arguments: &[&str], dir: &Path) -> Answer {
+    toile(&[&["new-stage"], arguments, &["--dir", dir.to_str().unwrap()]].concat())
+}
 
-fn new_stage(name: &str, role: &str, dir: &Path) -> Answer {
-    let core = root().join("core").display().to_string();
-    toile(&["new-stage", name, "--role", role, "--dir", dir.to_str().unwrap(), "--core", &core])
+/// Writes a crate; gives its folder's name.
+fn written(arguments: &[&str], dir: &Path) -> String {
+    let answer = new_stage(arguments, dir);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let folder = answer.out.lines().next().unwrap().strip_prefix("wrote ").unwrap();
+    Path::new(folder.split_once(", the ").unwrap().0).file_name().unwrap().to_str().unwrap().to_owned()
 }
 
 /// Runs cargo in a folder with the workspace's lock and target, so that nothing is built twice.
@@ -34,7 +33,6 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
         .args(["--release", "--offline"])
         .current_dir(folder)
         .env("CARGO_TARGET_DIR", target)
-        .env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only")
         .output()
         .unwrap();
     let text = [out.stdout, out.stderr].map(|b| String::from_utf8_lossy(&b).into_owned()).concat();
@@ -42,18 +40,32 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
     text
 }
 
+/// Each contract is a test, kept or not promised, and the crate has one of its own.
+const TESTS: &str = "test result: ok. 10 passed";
+
 #[test]
-fn every_role_builds_and_passes_its_own_tests() {
+fn a_crate_builds_and_passes_its_own_tests() {
     let dir = tempfile::tempdir().unwrap();
-    let folders = ROLES.map(|(name, role)| {
-        let answer = new_stage(name, role, dir.path());
-        assert_eq!(answer.code, 0, "{}", answer.err);
-        let folder = answer.out.lines().next().unwrap().strip_prefix("wrote ").unwrap().to_owned();
-        folder.rsplit('/').next().unwrap().to_owned()
+    let folder = written(&["my_otsu", "--role", "binariser"], dir.path());
+    assert_eq!(folder, "my-otsu");
+    let text = cargo(&dir.path().join(&folder), &["test", "--test", "stage"]);
+    assert!(!text.contains("warning: "), "{text}");
+    assert_eq!(text.matches(TESTS).count(), 1, "{text}");
+    loads("MyOtsu", "my_otsu", "binariser");
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn the_crate_of_every_role_builds_and_passes_its_own_tests() {
+    let dir = tempfile::tempdir().unwrap();
+    let word = |role: Role| role.as_str().replace(' ', "-");
+    let crates = Role::ALL.map(|role| {
+        let name = format!("fresh_{}", word(role).replace('-', "_"));
+        (role, written(&[&name, "--role", &word(role)], dir.path()))
     });
-    // One workspace of all nine, so that cargo is started once.
-    let members: Vec<String> = folders.iter().map(|f| format!("{f:?}")).collect();
-    for folder in &folders {
+    // One workspace of all, so that cargo is started once.
+    let members: Vec<String> = crates.iter().map(|(_, folder)| format!("{folder:?}")).collect();
+    for (_, folder) in &crates {
         let manifest = dir.path().join(folder).join("Cargo.toml");
         let text = std::fs::read_to_string(&manifest).unwrap();
         std::fs::write(&manifest, text.replace("[workspace]\n", "")).unwrap();
@@ -61,45 +73,96 @@ fn every_role_builds_and_passes_its_own_tests() {
     let workspace = format!("[workspace]\nresolver = \"3\"\nmembers = [{}]\n", members.join(", "));
     std::fs::write(dir.path().join("Cargo.toml"), workspace).unwrap();
     let text = cargo(dir.path(), &["test", "--workspace", "--test", "stage"]);
-    assert!(!text.contains("warning: unused"), "{text}");
-    assert_eq!(text.matches("test result: ok. 10 passed").count(), 9, "{text}");
+    assert!(!text.contains("warning: "), "{text}");
+    assert_eq!(text.matches(TESTS).count(), Role::ALL.len(), "{text}");
     // The benchmarks are alike but for their names: one is built and run, once through.
-    cargo(dir.path(), &["test", "-p", "fresh-mesher", "--benches"]);
-    for (name, folder) in ROLES.map(|(name, _)| name).iter().zip(&folders) {
-        loads(name, &folder.replace('-', "_"));
+    cargo(dir.path(), &["test", "-p", "fresh-reader", "--benches"]);
+    for (role, folder) in crates {
+        let name: String = folder.split('-').map(|word| word[..1].to_uppercase() + &word[1..]).collect();
+        loads(&name, &folder.replace('-', "_"), role.as_str());
     }
 }
 
 /// The library that the crate's own tests were linked with is a plugin too.
-fn loads(name: &str, library: &str) {
+fn loads(name: &str, library: &str, role: &str) {
     let program = std::env::current_exe().unwrap();
     let file = program.with_file_name(format!("{DLL_PREFIX}{library}{DLL_SUFFIX}"));
     let answer = toile(&["stage", name, "--plugin", file.to_str().unwrap()]);
     assert_eq!(answer.code, 0, "{}", answer.err);
-    assert!(answer.out.contains("  Deterministic            checked\n"), "{}", answer.out);
+    assert!(answer.out.contains(&format!("{name} ({role}")), "{}", answer.out);
+    assert!(answer.out.contains("  Deterministic            "), "{}", answer.out);
+}
+
+#[test]
+fn the_crate_depends_on_the_source_tree_that_the_program_was_built_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = written(&["FineMesher"], dir.path());
+    let manifest = std::fs::read_to_string(dir.path().join(folder).join("Cargo.toml")).unwrap();
+    let core = root().join("core").canonicalize().unwrap();
+    assert!(
+        manifest.contains(&format!("\ntoile-core = {{ path = {:?} }}\n", core.to_str().unwrap())),
+        "{manifest}"
+    );
+}
+
+#[test]
+fn the_role_is_what_the_name_ends_with_else_a_binariser() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = dir.path();
+    let first = |name: &str| {
+        let answer = new_stage(&[name], at);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        answer.out.lines().next().unwrap().replace(&at.display().to_string(), "")
+    };
+    assert_eq!(first("FineMesher"), "wrote /fine-mesher, the mesher FineMesher");
+    assert_eq!(first("my_edge_detector"), "wrote /my-edge-detector, the edge detector MyEdgeDetector");
+    assert_eq!(first("wool-fabric"), "wrote /wool-fabric, the fabric WoolFabric");
+    assert_eq!(first("my_otsu"), "wrote /my-otsu, the binariser MyOtsu");
+    assert_eq!(first("Somebody"), "wrote /somebody, the binariser Somebody");
+}
+
+#[test]
+fn the_header_of_plugins_is_printed() {
+    let answer = toile(&["plugin-header"]);
+    assert_eq!((answer.code, answer.err.as_str()), (0, ""));
+    assert_eq!(answer.out, std::fs::read_to_string(root().join("core/include/toile_plugin.h")).unwrap());
 }
 
 #[test]
 fn what_cannot_be_is_refused_by_name() {
     let dir = tempfile::tempdir().unwrap();
     let refused = |name: &str, role: &str| {
-        let answer = new_stage(name, role, dir.path());
+        let answer = new_stage(&[name, "--role", role], dir.path());
         assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{name} {role}");
         answer.err
     };
-    let word = "cannot name a stage; write one word that begins with a capital, like FineMesher";
-    for name in ["my mesher", "mesher", "", "Ä", "A", "Fine-Mesher", "../Up", "Self", "1st"] {
+    let word = "cannot name a stage; write a name like FineMesher or fine_mesher";
+    for name in [
+        "my mesher",
+        "",
+        "Ä",
+        "A",
+        "Fine-Mesher",
+        "fine__mesher",
+        "_fine",
+        "../Up",
+        "1st",
+        "Self",
+        "match",
+        "core",
+    ] {
         assert_eq!(refused(name, "mesher"), format!("error: \"{name}\" {word}\n"));
     }
     assert_eq!(
         refused("Otsu", "mesher"),
         "error: there is a binariser `Otsu` already; choose another name\n"
     );
-    let there = "denoiser, binariser, edge-detector, mesher, smoother, stitcher, draper, collider, texturer";
-    assert_eq!(
-        refused("Fine", "writer"),
-        format!("error: there is no template for a writer; there are {there}\n")
-    );
+    let needed =
+        |name: &str| format!("error: the crate needs `{name}` for something else; choose another name\n");
+    assert_eq!(refused("Photo", "binariser"), needed("Photo"));
+    assert_eq!(refused("outline", "mesher"), needed("Outline"));
+    let there = "reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider, \
+                 stitcher, draper, texturer, writer";
     assert_eq!(refused("Fine", "meshr"), "error: there is no role \"meshr\"; did you mean mesher?\n");
     assert_eq!(refused("Fine", "xyz"), format!("error: there is no role \"xyz\"; there are {there}\n"));
     std::fs::create_dir(dir.path().join("fine")).unwrap();
@@ -112,9 +175,8 @@ fn what_cannot_be_is_refused_by_name() {
 #[test]
 fn a_core_that_is_not_there_is_refused() {
     let dir = tempfile::tempdir().unwrap();
-    let (at, core) = (dir.path().to_str().unwrap(), dir.path().join("none"));
-    let core = core.to_str().unwrap();
-    let answer = toile(&["new-stage", "Fine", "--role", "mesher", "--dir", at, "--core", core]);
+    let core = dir.path().join("none").display().to_string();
+    let answer = new_stage(&["Fine", "--role", "mesher", "--core", &core], dir.path());
     assert_eq!((answer.code, answer.err), (3, format!("error: there is no crate in {core}\n")));
     assert!(!dir.path().join("fine").exists());
 }

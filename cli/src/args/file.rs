@@ -64,15 +64,16 @@ pub(crate) struct MigrateArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct NewStageArgs {
-    /// The stage's name, one word that begins with a capital, like FineMesher
+    /// The stage's name, like FineMesher or fine_mesher
     pub(crate) name: String,
-    /// What it is for: denoiser, binariser, edge-detector, mesher, smoother, stitcher, collider or texturer
+    /// What it is for: reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider,
+    /// stitcher, draper, texturer or writer [default: what NAME ends with, else binariser]
     #[arg(long)]
-    pub(crate) role: String,
+    pub(crate) role: Option<String>,
     /// The folder in which the crate's own folder is made [default: the current one]
     #[arg(long)]
     pub(crate) dir: Option<PathBuf>,
-    /// The folder of toile-core, to build against it instead of the published version
+    /// The folder of toile-core to build against [default: that of the source tree that this program was built from]
     #[arg(long, value_name = "PATH")]
     pub(crate) core: Option<PathBuf>,
 }

@@ -53,6 +53,8 @@ pub(crate) enum Command {
     Doctor(DoctorArgs),
     /// Write a crate with a stage of one's own: it builds, loads, has a test and a benchmark
     NewStage(NewStageArgs),
+    /// Print the C header of plugins, for stages in other languages than Rust
+    PluginHeader,
     /// Show one stage's card: what it does, its ports, parameters and promises
     Stage {
         /// The stage's name, like Otsu

@@ -30,3 +30,6 @@ pub use foreign::patience;
 pub use inside::{LastWords, end, name_who_exits, under_way};
 pub use lending::Lending;
 pub use library::{Plugin, Refused, load, plugin_files};
+
+/// The C header of plugins, docs/plugin-abi.md in C.
+pub const HEADER: &str = include_str!("../../include/toile_plugin.h");

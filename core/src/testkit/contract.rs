@@ -1,13 +1,12 @@
 //! One check for each contract.
 
-use super::suite::{cases, default_value, empty_value, large_value};
+use super::suite::{cases, default_value, empty_value, has_empty, is_known, large_value};
 use super::trial::{Outcome, Trial};
-use super::{Case, folder, motion};
+use super::{Case, folder, motion, typed};
 use crate::artifact::*;
 use crate::{
     Arity, Cancel, Card, Contract, ErrorCode, InPort, Inputs, PortValue, Registry, Stage, StageType,
 };
-use std::any::Any;
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
@@ -35,7 +34,7 @@ pub struct Kept {
 
 /// True where the kit can check that contract for a card: what its ports take, the suite holds.
 pub fn is_checked(card: &Card, contract: Contract) -> bool {
-    let known = card.inputs.iter().filter(|p| !p.optional).all(|p| default_value(p).is_some());
+    let known = card.inputs.iter().filter(|p| !p.optional).all(|p| is_known(p.kind));
     let kinds = |k: Kind| {
         card.inputs.iter().any(|p| p.kind == k) && card.outputs.iter().any(|p| p.kind == Panel::KIND)
     };
@@ -49,7 +48,7 @@ pub fn is_checked(card: &Card, contract: Contract) -> bool {
             Contract::Idempotent => card.inputs.first().zip(card.outputs.first()).is_some_and(like),
             Contract::BoundaryPreserving => kinds(Outline::KIND) || kinds(Panel::KIND),
             Contract::RefusesEmpty => {
-                card.inputs.is_empty() || card.inputs.iter().any(|p| !p.optional && empty_value(p).is_some())
+                card.inputs.is_empty() || card.inputs.iter().any(|p| !p.optional && has_empty(p.kind))
             }
         }
 }
@@ -242,11 +241,6 @@ fn boundary_preserving(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String
         outcomes.push((case.name.clone(), outcome));
     }
     tally(&outcomes)
-}
-
-fn typed<T: 'static>(artifact: &dyn Artifact) -> Option<&T> {
-    let any: &dyn Any = artifact;
-    any.downcast_ref()
 }
 
 /// Boundary vertices lie on the outline, its corners are among them, named edges run between the same points.

@@ -53,12 +53,27 @@ pub fn run_one<T: ArtifactType + Clone>(
 ) -> Result<T, StageError> {
     let input: Arc<dyn Artifact> = Arc::new(input.clone());
     let value = |port: &crate::InPort| (port.kind == input.kind()).then(|| suite::value(port, &input));
-    let inputs = Inputs(stage.card().inputs.iter().map(value).collect());
-    let made = stage.run_ports(&inputs, &Context::quiet())?;
+    first_output(stage, &Inputs(stage.card().inputs.iter().map(value).collect()))
+}
+
+/// Runs a stage that takes nothing and gives its first output.
+///
+/// Errors: the stage's own; `internal` where it gives something else.
+pub fn run_bare<T: ArtifactType + Clone>(stage: &dyn Stage) -> Result<T, StageError> {
+    first_output(stage, &Inputs::default())
+}
+
+fn first_output<T: ArtifactType + Clone>(stage: &dyn Stage, inputs: &Inputs) -> Result<T, StageError> {
+    let made = stage.run_ports(inputs, &Context::quiet())?;
     let first = made.first().and_then(|v| v.entries().first().map(|(_, a)| (*a).clone()));
-    let any: Option<Arc<dyn Any + Send + Sync>> = first.map(|a| a as _);
-    let typed = any.and_then(|a| a.downcast::<T>().ok());
-    typed.map(|a| (*a).clone()).ok_or_else(|| StageError::internal("the stage gives something else"))
+    let typed = first.as_ref().and_then(|a| typed::<T>(a.as_ref()));
+    typed.cloned().ok_or_else(|| StageError::internal("the stage gives something else"))
+}
+
+/// An artifact as what it is; nothing where it is something else.
+pub fn typed<T: 'static>(artifact: &dyn Artifact) -> Option<&T> {
+    let any: &dyn Any = artifact;
+    any.downcast_ref()
 }
 
 /// The stage of a card as its example sets it, with the files that the example names laid into `folder`.

@@ -148,25 +148,42 @@ fn scene_value(scene: &Scene, port: &InPort) -> Option<PortValue> {
     }
 }
 
+type Maker = fn() -> Arc<dyn Artifact>;
+/// A kind with an artifact that is made where it is first asked for.
+type Own = (Kind, LazyLock<Arc<dyn Artifact>, Maker>);
+
+/// What stands on ports that no scene fills, a kind each. They are made once a process: the contracts of all cards ask for
+/// them some thousand times.
+fn own() -> &'static [Own] {
+    static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
+        let all: [(Kind, Maker); 13] = [
+            (Body::KIND, || Arc::new(dress::body())),
+            (Fabric::KIND, || Arc::new(dress::fabric())),
+            (SewingPlan::KIND, || Arc::new(dress::plan())),
+            (Garment::KIND, || Arc::new(dress::garment())),
+            (Collider::KIND, || Arc::new(capsules::collider())),
+            (Phases::KIND, || Arc::new(dress::phases())),
+            (Model::KIND, || Arc::new(dress::model())),
+            (RunLog::KIND, || Arc::new(RunLog { pipeline: "suite".into(), ..RunLog::default() })),
+            (Figures::KIND, || Arc::new(Figures::default())),
+            (Photo::KIND, || Arc::new(shapes::photo())),
+            (Mask::KIND, || Arc::new(shapes::mask())),
+            (Outline::KIND, || Arc::new(shapes::outline())),
+            (Panel::KIND, || Arc::new(dress::garment_panel())),
+        ];
+        all.map(|(kind, make)| (kind, LazyLock::new(make))).into()
+    });
+    &OWN
+}
+
+/// True for kinds of which the suite holds something.
+pub fn is_known(kind: Kind) -> bool {
+    own().iter().any(|(known, _)| *known == kind)
+}
+
 /// What stands on a port that no scene fills; nothing for kinds that the suite does not know.
 pub fn default_value(port: &InPort) -> Option<PortValue> {
-    let artifact: Arc<dyn Artifact> = match port.kind {
-        k if k == Body::KIND => Arc::new(dress::body()),
-        k if k == Fabric::KIND => Arc::new(dress::fabric()),
-        k if k == SewingPlan::KIND => Arc::new(dress::plan()),
-        k if k == Garment::KIND => Arc::new(dress::garment()),
-        k if k == Collider::KIND => Arc::new(capsules::collider()),
-        k if k == Phases::KIND => Arc::new(dress::phases()),
-        k if k == Model::KIND => Arc::new(dress::model()),
-        k if k == RunLog::KIND => Arc::new(RunLog { pipeline: "suite".into(), ..RunLog::default() }),
-        k if k == Figures::KIND => Arc::new(Figures::default()),
-        k if k == Photo::KIND => Arc::new(shapes::photo()),
-        k if k == Mask::KIND => Arc::new(shapes::mask()),
-        k if k == Outline::KIND => Arc::new(shapes::outline()),
-        k if k == Panel::KIND => Arc::new(dress::garment_panel()),
-        _ => return None,
-    };
-    Some(value(port, &artifact))
+    own().iter().find(|(kind, _)| *kind == port.kind).map(|(_, artifact)| value(port, artifact))
 }
 
 /// What stands on a port of that card: a draper gets a garment that is sewn.
@@ -211,28 +228,40 @@ fn enlarged_mask(mask: &Mask) -> Mask {
 
 /// The empty artifact of a kind; nothing where the suite knows none.
 pub fn empty_value(port: &InPort) -> Option<PortValue> {
-    let artifact: Arc<dyn Artifact> = match port.kind {
-        k if k == Photo::KIND => Arc::new(shapes::photo_from(RgbImage::new(0, 0))),
-        k if k == Mask::KIND => Arc::new(shapes::mask_from(GrayImage::new(0, 0))),
-        k if k == Outline::KIND => Arc::new(shapes::nothing()),
-        k if k == Panel::KIND => Arc::new(Panel {
-            positions: vec![],
-            triangles: vec![],
-            boundary: vec![],
-            edges: vec![],
-            photo_px: vec![],
-            ..dress::garment_panel()
-        }),
-        k if k == Garment::KIND => Arc::new(dress::no_garment()),
-        k if k == Body::KIND => Arc::new(Body {
-            positions: vec![],
-            triangles: vec![],
-            landmarks: BTreeMap::new(),
-            measurements: BTreeMap::new(),
-        }),
+    empty(port.kind).map(|make| value(port, &make()))
+}
+
+/// True for kinds of which the suite knows an empty artifact.
+pub fn has_empty(kind: Kind) -> bool {
+    empty(kind).is_some()
+}
+
+fn empty(kind: Kind) -> Option<Maker> {
+    Some(match kind {
+        k if k == Photo::KIND => || Arc::new(shapes::photo_from(RgbImage::new(0, 0))),
+        k if k == Mask::KIND => || Arc::new(shapes::mask_from(GrayImage::new(0, 0))),
+        k if k == Outline::KIND => || Arc::new(shapes::nothing()),
+        k if k == Panel::KIND => || {
+            Arc::new(Panel {
+                positions: vec![],
+                triangles: vec![],
+                boundary: vec![],
+                edges: vec![],
+                photo_px: vec![],
+                ..dress::garment_panel()
+            })
+        },
+        k if k == Garment::KIND => || Arc::new(dress::no_garment()),
+        k if k == Body::KIND => || {
+            Arc::new(Body {
+                positions: vec![],
+                triangles: vec![],
+                landmarks: BTreeMap::new(),
+                measurements: BTreeMap::new(),
+            })
+        },
         _ => return None,
-    };
-    Some(value(port, &artifact))
+    })
 }
 
 /// Every case for a card; none where a required port takes a kind that the suite does not know.

@@ -17,6 +17,21 @@ pub struct Dust {
     /// A pixel must differ from every neighbour by more than this.
     #[param(default = 30, min = 1, max = 255, unit = "grey levels")]
     pub step: u8,
+    /// Which specks go.
+    #[param(default = Specks::Both)]
+    pub specks: Specks,
+}
+
+/// Kinds of specks.
+#[choice]
+#[derive(Copy)]
+pub enum Specks {
+    /// Light and dark ones.
+    Both,
+    /// Dust on a dark garment, stuck pixels.
+    Light,
+    /// Dust on a light garment, dead pixels.
+    Dark,
 }
 
 #[stage]
@@ -27,15 +42,15 @@ impl Dust {
         for y in 0..before.height() {
             cx.check()?;
             for x in 0..before.width() {
-                after.put_pixel(x, y, cleaned(before, x, y, self.step));
+                after.put_pixel(x, y, cleaned(before, x, y, self));
             }
         }
         Ok(photo.with_pixels(after))
     }
 }
 
-/// The pixel, each channel held between the levels of its neighbours where it leaves them by more than `step`.
-fn cleaned(photo: &RgbImage, x: u32, y: u32, step: u8) -> Rgb<u8> {
+/// The pixel, each channel held between the levels of its neighbours where it leaves them by more than the step.
+fn cleaned(photo: &RgbImage, x: u32, y: u32, dust: &Dust) -> Rgb<u8> {
     let around = |v: u32, size: u32| v.saturating_sub(1)..(v + 2).min(size);
     let mut range = [[u8::MAX, 0]; 3];
     for v in around(y, photo.height()) {
@@ -47,8 +62,10 @@ fn cleaned(photo: &RgbImage, x: u32, y: u32, step: u8) -> Rgb<u8> {
     }
     let mut pixel = *photo.get_pixel(x, y);
     for (level, [least, most]) in pixel.0.iter_mut().zip(range) {
+        let light = dust.specks != Specks::Dark && level.saturating_sub(most) > dust.step;
+        let dark = dust.specks != Specks::Light && least.saturating_sub(*level) > dust.step;
         // A photo of one pixel has no neighbours, and then least is above most.
-        if least <= most && (level.saturating_sub(most) > step || least.saturating_sub(*level) > step) {
+        if least <= most && (light || dark) {
             *level = (*level).clamp(least, most);
         }
     }

@@ -4,7 +4,7 @@
 use image::{Rgb, RgbImage};
 use toile_core::artifact::Photo;
 use toile_core::testkit;
-use toile_tutorial::Dust;
+use toile_tutorial::{Dust, Specks};
 
 toile_core::contracts!(Dust);
 
@@ -19,4 +19,11 @@ fn photo(speck: Option<(u32, u32)>) -> Photo {
 fn a_speck_goes_and_the_edge_stays() {
     let cleaned: Photo = testkit::run_one(&Dust::default(), &photo(Some((3, 4)))).unwrap();
     assert_eq!(cleaned.pixels, photo(None).pixels);
+}
+
+#[test]
+fn a_light_speck_stays_where_dark_ones_are_asked_for() {
+    let dark = Dust { specks: Specks::Dark, ..Dust::default() };
+    let cleaned: Photo = testkit::run_one(&dark, &photo(Some((3, 4)))).unwrap();
+    assert_eq!(cleaned.pixels, photo(Some((3, 4))).pixels);
 }

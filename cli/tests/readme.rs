@@ -1,0 +1,195 @@
+//! Every command of the README runs, word for word and in the README's order, and ends with exit code 0.
+//!
+//! A command is a line of an indented block, or a piece of code within a line, that begins with `toile `, `cargo ` or `.ci/`.
+//! Those of the program run in a copy of `pipelines`, which some of them change.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What these tests are a part of.
+const OURSELVES: [&str; 2] = ["cargo test --release --workspace", ".ci/wide"];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// The README's commands in its order.
+fn commands() -> Vec<String> {
+    let text = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let pieces = text.lines().flat_map(|line| match line.strip_prefix("    ") {
+        Some(code) => vec![code],
+        None => line.split('`').skip(1).step_by(2).collect(),
+    });
+    let is_command = |piece: &&str| ["toile ", "cargo ", ".ci/"].iter().any(|start| piece.starts_with(start));
+    pieces.filter(is_command).map(str::to_owned).collect()
+}
+
+/// Those that measure for minutes.
+fn is_measurement(command: &str) -> bool {
+    ["toile trade", "toile tune", "toile bench"].iter().any(|start| command.starts_with(start))
+}
+
+/// A folder with a copy of the shipped pipelines.
+fn scratch() -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    copy(&root().join("pipelines"), &dir.path().join("pipelines"));
+    dir
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let to = to.join(entry.file_name());
+        match entry.path().is_dir() {
+            true => copy(&entry.path(), &to),
+            false => drop(std::fs::copy(entry.path(), to).unwrap()),
+        }
+    }
+}
+
+/// The command as a shell runs it, with the program on its path, and with a cache of its own.
+fn shell(command: &str, folder: &Path, cache: &Path) -> Command {
+    let program = Path::new(env!("CARGO_BIN_EXE_toile")).parent().unwrap();
+    let mut path = OsString::from(program);
+    path.push(":");
+    path.push(std::env::var_os("PATH").unwrap_or_default());
+    let mut shell = Command::new("sh");
+    shell.args(["-c", command]).current_dir(folder).env("PATH", path).env("TOILE_CACHE", cache);
+    shell
+}
+
+fn passes(command: &str, folder: &Path, cache: &Path) {
+    let start = Instant::now();
+    let out = shell(command, folder, cache).output().unwrap();
+    let text = [out.stdout, out.stderr].map(|b| String::from_utf8_lossy(&b).into_owned()).concat();
+    assert_eq!(out.status.code(), Some(0), "{command}:\n{text}");
+    eprintln!("{:5.1} s  {command}", start.elapsed().as_secs_f64());
+}
+
+/// A command that goes on until Ctrl-C: it writes what it is for, goes on, and is ended.
+fn goes_on(command: &str, folder: &Path, cache: &Path, writes: &Path) {
+    let mut child = shell(&format!("exec {command}"), folder, cache).stderr(Stdio::null()).spawn().unwrap();
+    let until = Instant::now() + Duration::from_secs(120);
+    while !writes.is_file() && Instant::now() < until {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let ended = child.try_wait().unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(writes.is_file() && ended.is_none(), "{command}: {ended:?}");
+}
+
+#[test]
+fn the_commands_run() {
+    let dir = scratch();
+    let cache = dir.path().join("cache");
+    let ours = |c: &String| c.starts_with("toile ") && !is_measurement(c);
+    let commands: Vec<String> = commands().into_iter().filter(ours).collect();
+    assert!(commands.len() > 20, "{commands:#?}");
+    for command in commands {
+        match command.contains("--watch") {
+            true => {
+                let report = dir.path().join("out/vest/report.html");
+                let _ = std::fs::remove_file(&report);
+                goes_on(&command, dir.path(), &cache, &report);
+            }
+            // The README writes the crate twice: once in its table, once where it tells of stages.
+            false => {
+                let _ = std::fs::remove_dir_all(dir.path().join("my-otsu"));
+                passes(&command, dir.path(), &cache);
+            }
+        }
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn the_measurements_run() {
+    let dir = scratch();
+    let commands: Vec<String> = commands().into_iter().filter(|c| is_measurement(c)).collect();
+    assert!(commands.len() > 5, "{commands:#?}");
+    commands.iter().for_each(|c| passes(c, dir.path(), &dir.path().join("cache")));
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn what_builds_the_program_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let commands: Vec<String> = commands().into_iter().filter(|c| c.starts_with("cargo ")).collect();
+    let built: Vec<&String> = commands.iter().filter(|c| !OURSELVES.contains(&c.as_str())).collect();
+    assert_eq!(built.len(), 2, "{built:?}");
+    for command in built {
+        let mut shell = shell(command, &root(), &dir.path().join("cache"));
+        let status = shell.env("CARGO_INSTALL_ROOT", dir.path()).status().unwrap();
+        assert!(status.success(), "{command}: {status}");
+    }
+    assert!(dir.path().join("bin/toile").is_file());
+}
+
+#[test]
+fn the_tests_are_run_as_the_readme_says() {
+    let commands = commands();
+    let ourselves: Vec<&str> =
+        commands.iter().map(String::as_str).filter(|c| OURSELVES.contains(c)).collect();
+    assert_eq!(ourselves, OURSELVES);
+    let run = std::fs::read_to_string(root().join(".ci/run")).unwrap();
+    assert!(run.lines().any(|line| line == OURSELVES[0]), "{run}");
+    assert!(root().join(OURSELVES[1]).is_file());
+}
+
+#[test]
+fn the_readme_names_the_least_rust_version() {
+    let manifest = std::fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = ")).unwrap();
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    assert!(readme.contains(&format!("Rust {} or newer", version.trim_matches('"'))), "{version}");
+}
+
+/// Files with that ending below a folder, but for what is built.
+fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().map(|e| e.unwrap().path());
+    entries
+        .flat_map(|path| match path.is_dir() {
+            true if path.ends_with("target") || path.ends_with("out") => Vec::new(),
+            true => files(&path, ending),
+            false => Some(path).filter(|p| p.to_string_lossy().ends_with(ending)).into_iter().collect(),
+        })
+        .collect()
+}
+
+#[test]
+fn a_crate_whose_sources_are_not_tested_has_no_tests_in_them() {
+    let manifests = files(&root(), "Cargo.toml");
+    let untested = manifests.iter().filter(|m| {
+        let text = std::fs::read_to_string(m).unwrap();
+        text.split_once("[lib]")
+            .is_some_and(|(_, lib)| lib.split("\n[").next().unwrap().contains("\ntest = false\n"))
+    });
+    let untested: Vec<&Path> = untested.map(|m| m.parent().unwrap()).collect();
+    assert!(untested.len() > 5, "{untested:?}");
+    for source in untested.iter().flat_map(|folder| files(&folder.join("src"), ".rs")) {
+        let text = std::fs::read_to_string(&source).unwrap();
+        assert!(!text.contains("#[test]"), "{} has tests that nobody runs", source.display());
+    }
+}
+
+#[test]
+fn a_test_that_is_left_out_is_one_of_the_wide_ones() {
+    let reasons = [
+        "slow: .ci/wide",
+        "a measurement",
+        "long: all pairs on the 20 x 20 square",
+        "the other process of plugin_files",
+    ];
+    for source in files(&root(), ".rs") {
+        let text = std::fs::read_to_string(&source).unwrap();
+        for line in text.lines().map(str::trim).filter(|line| line.starts_with("#[ignore")) {
+            let said = reasons.iter().any(|reason| line == format!("#[ignore = \"{reason}\"]"));
+            assert!(said, "{}: {line}", source.display());
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Pipelines, scenes, bodies, goldens and locks.
+
+use crate::{fuzz, spoil};
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+use toile_core::lock::Lock;
+use toile_core::pipeline::{load, to_json};
+use toile_core::{Artifact, Cancel, Context, ErrorCode, Inputs, PortValue, Registry, golden, testkit};
+use toile_tests::{PIPELINES, napkin, pipeline, root};
+
+static REGISTRY: LazyLock<Registry> = LazyLock::new(toile::registry);
+
+fn read(path: impl AsRef<Path>) -> Vec<u8> {
+    std::fs::read(path).unwrap()
+}
+
+/// A file that is no UTF-8 is refused before anything reads it as text.
+fn as_text(bytes: &[u8]) -> Option<&str> {
+    std::str::from_utf8(bytes).ok()
+}
+
+#[test]
+fn pipelines() {
+    let seeds = PIPELINES.map(|name| read(pipeline(name)));
+    let base = root().join("pipelines");
+    fuzz(
+        "pipeline",
+        400,
+        |dice| spoil::text(&seeds, dice),
+        |bytes| {
+            let Some(text) = as_text(bytes) else { return Ok(()) };
+            let _ = to_json(text, "fuzz.ron");
+            match load(text, "fuzz.ron", &base, &REGISTRY, &[]) {
+                Err(faults) if faults.faults.is_empty() => Err("it is refused without a fault".to_owned()),
+                Err(faults) if faults.render(false).trim().is_empty() => {
+                    Err("it is refused without a word".to_owned())
+                }
+                Err(faults) => {
+                    match faults.faults.iter().flat_map(|f| &f.labels).find(|l| l.span.end > text.len()) {
+                        Some(l) => Err(format!("a fault points at {:?} of {} bytes", l.span, text.len())),
+                        None => Ok(()),
+                    }
+                }
+                Ok(_) => Ok(()),
+            }
+        },
+    );
+}
+
+/// Runs a stage that reads `file` beside it; what it gives is sound, what it refuses has words. True where it answers.
+fn reads(stage: &str, file: &str, folder: &Path) -> Result<bool, String> {
+    let card = REGISTRY.named(stage).next().ok_or("there is no such stage")?;
+    let stage = REGISTRY.make(card, &format!("(file: \"{file}\")"))?;
+    let cx = Context::new(card.name, folder, Cancel::new(), Arc::new(()));
+    match stage.run_ports(&Inputs::default(), &cx) {
+        Err(e) if e.code == ErrorCode::Internal => Err(format!("it calls it its own fault: {e}")),
+        Err(e) if e.message.is_empty() => Err("it refuses without a word".to_owned()),
+        Err(_) => Ok(false),
+        Ok(made) => made.iter().flat_map(PortValue::entries).try_fold(true, |answers, (_, a)| {
+            let _ = (a.measures(), a.export());
+            a.check().map(|()| answers).map_err(|e| format!("it gave a {} that cannot be: {e}", a.kind()))
+        }),
+    }
+}
+
+/// A box of that size, its feet at 0.
+fn block(x: f64, y: f64, z: f64) -> Vec<u8> {
+    let corner = |k: usize| {
+        let of = |bit: usize, size: f64| if k & bit == 0 { -size / 2.0 } else { size / 2.0 };
+        format!("v {} {} {}\n", of(1, x), of(2, y) + y / 2.0, of(4, z))
+    };
+    let faces = ["1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"];
+    let corners: String = (0..8).map(corner).collect();
+    format!("# a block\no block\n{corners}s off\n{}", faces.map(|f| format!("f {f}\n")).concat()).into_bytes()
+}
+
+#[test]
+fn scenes() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut sewn = napkin::scene();
+    let bare = sewn.to_string();
+    sewn["body"] = serde_json::json!({ "obj": "block.obj", "friction": 0.3 });
+    std::fs::write(dir.path().join("block.obj"), block(0.1, 0.1, 0.1)).unwrap();
+    let shipped: serde_json::Value =
+        serde_json::from_slice(&read(root().join("pipelines/samples/scene/skirt.json"))).unwrap();
+    // What a shipped scene says beside its long lists.
+    let mut head = shipped;
+    for list in ["rest_uv", "positions", "triangles"] {
+        head[list].as_array_mut().unwrap().truncate(30);
+    }
+    let seeds = [bare.into_bytes(), sewn.to_string().into_bytes(), head.to_string().into_bytes()];
+    let scene = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.json"), bytes).unwrap();
+        reads("Scene", "fuzz.json", dir.path())
+    };
+    // What is refused before it is spoilt would be refused for that alone.
+    assert_eq!([&seeds[0], &seeds[1]].map(|seed| scene(seed)), [Ok(true), Ok(true)]);
+    fuzz("scene", 300, |dice| spoil::text(&seeds, dice), |bytes| scene(bytes).map(drop));
+}
+
+/// A body with shoulders and legs, as the reader looks for them.
+fn figure() -> Vec<u8> {
+    let mannequin = REGISTRY.make(REGISTRY.named("Mannequin").next().unwrap(), "()").unwrap();
+    let made = mannequin.run_ports(&Inputs::default(), &Context::quiet()).unwrap();
+    made[0].entries()[0].1.export().swap_remove(0).1
+}
+
+#[test]
+fn bodies() {
+    let dir = tempfile::tempdir().unwrap();
+    let stand = testkit::dress::body().export().swap_remove(0).1;
+    let seeds = [figure(), stand, block(0.5, 1.7, 0.3), block(50.0, 170.0, 30.0)];
+    let body = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.obj"), bytes).unwrap();
+        reads("BodyObj", "fuzz.obj", dir.path())
+    };
+    assert_eq!(body(&seeds[0]), Ok(true));
+    fuzz("body", 60, |dice| spoil::text(&seeds, dice), |bytes| body(bytes).map(drop));
+}
+
+#[test]
+fn goldens() {
+    let seeds =
+        PIPELINES.map(|name| read(root().join("pipelines/goldens").join(name.replace(".ron", ".txt"))));
+    fuzz(
+        "golden",
+        1000,
+        |dice| spoil::text(&seeds, dice),
+        |bytes| {
+            let Some(sheet) = as_text(bytes).and_then(|text| golden::parse(text).ok()) else { return Ok(()) };
+            let _ = golden::compare(&sheet, &golden::Sheet::default());
+            let _ = golden::compare(&golden::Sheet::default(), &sheet);
+            // A sheet that agrees with what it is not is no golden.
+            let mut other = sheet.clone();
+            for m in other.sections.iter_mut().flat_map(|s| &mut s.measures) {
+                m.value += 1.0 + 2.0 * m.tolerance.abs();
+            }
+            let seen = |m: &golden::SheetMeasure| m.value.abs() < 1e12 && m.tolerance.abs() < 1e12;
+            let all_seen = sheet.sections.iter().flat_map(|s| &s.measures).all(seen);
+            let differs = !golden::compare(&sheet, &other).differences.is_empty();
+            match sheet.sections.iter().all(|s| s.measures.is_empty()) || !all_seen || differs {
+                true => Ok(()),
+                false => Err("it takes other measures for its own".to_owned()),
+            }
+        },
+    );
+}
+
+#[test]
+fn locks() {
+    let dir = tempfile::tempdir().unwrap();
+    napkin::write(dir.path()).unwrap();
+    let file = dir.path().join("napkin.ron").display().to_string();
+    let answer = toile_tests::toile(&["lock", &file, "--no-cache"]);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let seeds = [read(format!("{file}.lock"))];
+    let right = Lock::from_text(as_text(&seeds[0]).unwrap()).unwrap();
+    fuzz(
+        "lock",
+        1000,
+        |dice| spoil::text(&seeds, dice),
+        |bytes| {
+            let Some(lock) = as_text(bytes).and_then(|text| Lock::from_text(text).ok()) else {
+                return Ok(());
+            };
+            let (there, back) = (right.differences(&lock), lock.differences(&right));
+            let again = Lock::from_text(&lock.to_text());
+            match again.as_ref() == Ok(&lock) && (lock != right || (there.is_empty() && back.is_empty())) {
+                true => Ok(()),
+                false => Err(format!("it is written as something else: {again:?}")),
+            }
+        },
+    );
+}
