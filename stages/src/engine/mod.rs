@@ -7,7 +7,7 @@ mod lost;
 mod scene;
 mod skin;
 
-pub use fault::{cloth_error, scene_error};
+pub use fault::{OBJ_HINT, cloth_error, scene_error};
 pub use lost::lost;
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSkin;
