@@ -130,7 +130,11 @@ impl Artifact for Fabric {
     fn check(&self) -> Result<(), String> {
         positive("area density", self.area_density)?;
         for (curve, word) in [(&self.warp, "warp"), (&self.weft, "weft"), (&self.shear, "shear")] {
-            ensure(curve.rises(), || format!("its {word} curve does not rise from the origin"))?;
+            ensure(curve.rises(), || {
+                format!(
+                    "its {word} curve does not rise from the origin: strains and forces must be above 0 and rise"
+                )
+            })?;
         }
         let bending =
             [self.bending_warp, self.bending_weft, self.bending_friction_warp, self.bending_friction_weft];

@@ -45,7 +45,7 @@ pub(crate) mod tests;
 pub use fault::{Fault, FaultRecord, Faults, Label};
 pub use json::to_json;
 pub use migrate::{Change, Migrated, Migration, migrate};
-pub use near::nearest;
+pub use near::{hint, nearest};
 use overrides::Given;
 pub use overrides::Override;
 pub use plugins::{PluginUse, asked as plugins_asked};

@@ -23,7 +23,7 @@ pub fn nearest<'a>(name: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// ``did you mean `Otsu`?`` where a candidate is near, and all names where they are few.
-pub(crate) fn hint(name: &str, known: &str, candidates: &[&str]) -> Option<String> {
+pub fn hint(name: &str, known: &str, candidates: &[&str]) -> Option<String> {
     let near = nearest(name, candidates.iter().copied()).map(|n| format!("did you mean `{n}`?"));
     let list = (!candidates.is_empty() && candidates.len() <= SHORT_LIST && !known.is_empty())
         .then(|| format!("{known} {}", quoted(candidates)));

@@ -32,7 +32,7 @@ fn swung(cloth: &Fabric, t: f64) -> Fabric {
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let scene: Scene = match args.first() {
-        Some(file) => scene::read(Path::new(file))?,
+        Some(file) => scene::read(Path::new(file), &scene::Options::default())?.scene,
         None => scene::generate::tube(22, 25),
     };
     let states: usize = args.get(1).map_or(Ok(120), |n| n.parse())?;

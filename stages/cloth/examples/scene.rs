@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: scene SCENE.json RESULT.obj [--graded] [--trace] [--jitter SEED]".into());
     };
     let trace = args.iter().any(|a| a == "--trace");
-    let mut scene = scene::read(Path::new(file))?;
+    let mut scene = scene::read(Path::new(file), &scene::Options::default())?.scene;
     if let Some(seed) = args.iter().position(|a| a == "--jitter").and_then(|k| args.get(k + 1)) {
         scene::generate::jitter(&mut scene, 1e-3, seed.parse()?);
     }
@@ -53,5 +53,5 @@ fn main() -> Result<(), Box<dyn Error>> {
         "residual_n": state.residual, "joined_at_m": state.joined_at, "error": error, "levels": levels,
     });
     println!("{line}");
-    Ok(scene::write_obj(Path::new(out), &state.positions, &scene.triangles)?)
+    Ok(toile_cloth::obj::write(Path::new(out), &state.positions, &scene.triangles)?)
 }

@@ -58,6 +58,16 @@ pub enum ClothError {
         /// What is wrong with it.
         why: &'static str,
     },
+    /// A triangle that is listed twice.
+    #[error("triangles {first} and {second} are the same: both join vertices {}, {} and {}; remove one of them", of[0], of[1], of[2])]
+    TriangleTwice {
+        /// The first of them.
+        first: usize,
+        /// The second.
+        second: usize,
+        /// Their vertices, ascending.
+        of: [u32; 3],
+    },
     /// Nothing to simulate.
     #[error("the scene has no triangles")]
     EmptyScene,

@@ -1,13 +1,14 @@
 //! `BodyObj`: a body from a Wavefront OBJ file.
 //!
-//! Equal vertices are joined, the largest closed piece is kept, turned outwards, upright and
+//! The mesh is read and mended as the engine does it for scenes, the largest piece is kept, turned outwards, upright and
 //! scaled; landmarks and girths are estimated from its slices. Cost: some hundred slices.
 
 use super::estimate::estimate;
 use super::isosurface::TriMesh;
-use super::obj::parse;
 use super::topology::{Pieces, Topology};
+use crate::engine::OBJ_HINT;
 use std::collections::BTreeMap;
+use toile_cloth::obj;
 use toile_core::prelude::*;
 
 /// Heights of people, metres.
@@ -31,6 +32,20 @@ pub enum Units {
     Inches,
 }
 
+impl Units {
+    /// Metres of the unit; none where it is to be guessed.
+    pub(crate) fn metres(self) -> Option<f64> {
+        match self {
+            Units::Guess => None,
+            Units::Metres => Some(1.0),
+            Units::Decimetres => Some(0.1),
+            Units::Centimetres => Some(0.01),
+            Units::Millimetres => Some(0.001),
+            Units::Inches => Some(0.0254),
+        }
+    }
+}
+
 /// The axis that points up in a file.
 #[choice]
 #[derive(Copy, Eq)]
@@ -48,6 +63,7 @@ pub enum Up {
 #[stage(
     role = Body,
     source = "shares of the arm: Drillis and Contini, 1966",
+    version = 2,
     example = "BodyObj(file: \"body.obj\", up: Z)",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -71,12 +87,17 @@ impl BodyObj {
     pub(crate) fn run(&self, cx: &Context) -> Result<Body, StageError> {
         self.named()?;
         let bytes = cx.read(&self.file)?;
-        let text = std::str::from_utf8(&bytes).map_err(|_| {
-            StageError::new(ErrorCode::PatternLoading, format!("\"{}\" is not a text", self.file))
-                .hint("the body must be a Wavefront OBJ file")
-        })?;
         cx.check()?;
-        self.body(parse(text)?, cx)
+        let unread = |e: obj::ObjError| {
+            StageError::new(ErrorCode::PatternLoading, format!("\"{}\": {e}", self.file))
+                .hint(OBJ_HINT)
+                .at("file")
+        };
+        let (mesh, repairs) = obj::repair(obj::parse(&bytes).map_err(unread)?);
+        if let Some(what) = repairs.words() {
+            cx.warn(format!("\"{}\" was repaired: {what}", self.file));
+        }
+        self.body((mesh.vertices.into_iter().map(Point3::from).collect(), mesh.triangles), cx)
     }
 
     /// Whether the file is there.
@@ -97,12 +118,11 @@ impl BodyObj {
 
     /// A body from the file's vertices and triangles.
     fn body(&self, (points, triangles): TriMesh, cx: &Context) -> Result<Body, StageError> {
-        let (points, triangles) = join_equal(&points, &triangles);
         let (pieces, points, triangles) = largest_piece(&points, &triangles);
         if pieces > 1 {
             cx.warn(format!("the body's file holds {pieces} pieces; the largest is taken"));
         }
-        closed(&Topology::of(points.len(), &triangles))?;
+        closed(&Topology::of(points.len(), &triangles), &points)?;
         let mut points: Vec<Point3> = points.iter().map(|p| self.upright(p)).collect();
         let height = self.stand(&mut points)?;
         let triangles = turned_outwards(&points, triangles);
@@ -138,14 +158,7 @@ impl BodyObj {
     /// Metres of the file's unit.
     fn unit(&self, tall: f64) -> Result<f64, StageError> {
         let fits = |u: &f64| tall * u >= HEIGHTS.0 && tall * u <= HEIGHTS.1;
-        let units = match self.units {
-            Units::Guess => vec![1.0, 0.01, 0.001, 0.1],
-            Units::Metres => vec![1.0],
-            Units::Decimetres => vec![0.1],
-            Units::Centimetres => vec![0.01],
-            Units::Millimetres => vec![0.001],
-            Units::Inches => vec![0.0254],
-        };
+        let units = self.units.metres().map_or_else(|| vec![1.0, 0.01, 0.001, 0.1], |u| vec![u]);
         units.iter().copied().find(|u| fits(u)).ok_or_else(|| {
             let as_said = units.first().map_or(tall, |u| tall * u);
             StageError::invalid(format!("the body would be {as_said:.3} m tall"))
@@ -156,36 +169,30 @@ impl BodyObj {
 }
 
 /// Refuses a mesh with holes or turned triangles.
-fn closed(t: &Topology) -> Result<(), StageError> {
+fn closed(t: &Topology, points: &[Point3]) -> Result<(), StageError> {
+    let place = |edge: Option<[u32; 2]>| {
+        let end = |v: u32| {
+            let p = points[v as usize];
+            format!("({}, {}, {})", p.x, p.y, p.z)
+        };
+        edge.map_or(String::new(), |[a, b]| format!(", the first from {} to {} of the file", end(a), end(b)))
+    };
     if t.open > 0 {
-        return Err(StageError::invalid(format!("the body is not closed: {} edges are open", t.open))
+        let message = format!("the body is not closed: {} edges are open{}", t.open, place(t.first_open));
+        return Err(StageError::invalid(message)
             .hint("fill its holes in the program that made it; cloth would fall through them"));
     }
     if t.faulty > 0 {
-        let message =
-            format!("the body's triangles are not turned alike or meet wrongly at {} edges", t.faulty);
+        let message = format!(
+            "the body's triangles are not turned alike or meet wrongly at {} edges{}",
+            t.faulty,
+            place(t.first_faulty)
+        );
         return Err(
             StageError::invalid(message).hint("make its normals consistent in the program that made it")
         );
     }
     Ok(())
-}
-
-/// Joins vertices of equal position and drops triangles that lose their area by it.
-fn join_equal(points: &[Point3], triangles: &[[u32; 3]]) -> TriMesh {
-    let mut first: BTreeMap<[u64; 3], u32> = BTreeMap::new();
-    let mut joined: Vec<Point3> = Vec::new();
-    let mut map = Vec::with_capacity(points.len());
-    for p in points {
-        // Adding zero makes the two zeros one.
-        let key = [p.x + 0.0, p.y + 0.0, p.z + 0.0].map(f64::to_bits);
-        map.push(*first.entry(key).or_insert_with(|| {
-            joined.push(*p);
-            joined.len() as u32 - 1
-        }));
-    }
-    let moved = triangles.iter().map(|t| t.map(|v| map[v as usize]));
-    (joined, moved.filter(|[a, b, c]| a != b && b != c && c != a).collect())
 }
 
 /// The piece with the most triangles, without unused vertices, and the number of pieces.

@@ -8,7 +8,6 @@ mod isosurface;
 mod landmarks;
 mod limb;
 mod mannequin;
-mod obj;
 mod slice;
 mod spline;
 mod topology;

@@ -180,12 +180,16 @@ fn z_up_millimetres(body: &Body) -> String {
 }
 
 /// Reads a body from a text by way of a file.
-fn read(name: &str, text: &str, rest: &str) -> Result<Body, StageError> {
+fn read(name: &str, text: impl AsRef<[u8]>, rest: &str) -> Result<Body, StageError> {
+    read_in(&Context::quiet(), name, text, rest)
+}
+
+fn read_in(cx: &Context, name: &str, text: impl AsRef<[u8]>, rest: &str) -> Result<Body, StageError> {
     let path = std::env::temp_dir().join(format!("toile-body-{}-{name}.obj", std::process::id()));
-    std::fs::write(&path, text).unwrap();
+    std::fs::write(&path, text.as_ref()).unwrap();
     let ron = format!("(file: {:?}{rest})", path.to_str().unwrap());
     let stage: BodyObj = toile_core::param::ron_options().from_str(&ron).unwrap();
-    let result = stage.run(&Context::quiet());
+    let result = stage.run(cx);
     std::fs::remove_file(path).unwrap();
     result
 }
@@ -209,24 +213,79 @@ fn a_mannequin_written_and_read_has_its_landmarks_again() {
 }
 
 #[test]
+fn a_body_as_exporters_leave_it_is_the_clean_one_and_what_was_mended_is_told() {
+    let made = mannequin("(edge: \"20 mm\")").unwrap();
+    let clean = read("clean", z_up_millimetres(&made), ", up: Z").unwrap();
+    let mut text = b"\xEF\xBB\xBF# K\xF6rper\n".to_vec();
+    text.extend(z_up_millimetres(&made).replace("/1 ", "/1 \\\n").bytes());
+    // One corner of the last face has a vertex of its own, the first face stands there twice, one has no area.
+    let text = String::from_utf8_lossy(&text).into_owned();
+    let (head, last) = text.trim_end().rsplit_once("f ").unwrap();
+    let corner: usize = last.split('/').next().unwrap().parse().unwrap();
+    let vertex = z_up_millimetres(&made).lines().nth(corner - 1).unwrap().to_owned();
+    let rest = last.split_once('\n').unwrap().1;
+    let first = made.triangles[0].map(|v| v + 1);
+    let text = format!("{head}{vertex}\nf -1 {rest}\nf {} {} {}\nf 1 1 2\n", first[1], first[2], first[0]);
+    let cx = Context::quiet();
+    let found = read_in(&cx, "mended", text, ", up: Z").unwrap();
+    assert_eq!(
+        (found.positions.len(), found.triangles.len()),
+        (clean.positions.len(), clean.triangles.len())
+    );
+    assert_eq!(found.measurements, clean.measurements);
+    let (_, warnings) = cx.take_notes();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(
+        warnings[0].ends_with(
+            "was repaired: 1 vertex is joined to one at its place, 1 triangle without area is removed, \
+             1 triangle that is listed twice is removed"
+        ),
+        "{warnings:?}"
+    );
+}
+
+#[test]
+fn a_body_file_that_is_none_is_refused_with_its_line() {
+    let e = read("broken", "v 0 0\n", "").unwrap_err();
+    assert_eq!((e.code, e.param), (ErrorCode::PatternLoading, Some("file")));
+    assert!(
+        e.message.ends_with("broken.obj\": line 1 of the OBJ: a vertex needs three numbers"),
+        "{}",
+        e.message
+    );
+    assert_eq!(
+        e.hint.unwrap(),
+        "it must be a Wavefront OBJ with `v` and `f` lines; write it again from the program that made it"
+    );
+    assert!(read("empty", "hello", "").unwrap_err().message.ends_with("the OBJ holds no faces"));
+}
+
+#[test]
 fn bodies_with_holes_or_of_odd_shape_are_refused() {
     let made = mannequin("(edge: \"20 mm\")").unwrap();
     let mut holed = made.clone();
     holed.triangles.truncate(made.triangles.len() - 1);
     let message = |name: &str, text: &str, rest: &str| read(name, text, rest).expect_err("refused").message;
-    assert_eq!(
-        message("hole", &z_up_millimetres(&holed), ", up: Z"),
-        "the body is not closed: 3 edges are open"
-    );
+    let hole = message("hole", &z_up_millimetres(&holed), ", up: Z");
+    assert!(hole.starts_with("the body is not closed: 3 edges are open, the first from ("), "{hole}");
+    // The place is that of the file, where the user looks for it.
+    let [a, b, c] = made.triangles[made.triangles.len() - 1].map(|v| made.positions[v as usize]);
+    let named = [a, b, c]
+        .iter()
+        .filter(|p| hole.contains(&format!("({}, {}, {})", p.x * 1e3, -p.z * 1e3, p.y * 1e3)));
+    assert_eq!(named.count(), 2, "{hole}");
     assert_eq!(
         message("units", &z_up_millimetres(&made), ", up: Z, units: Metres"),
         "the body would be 1720.000 m tall"
     );
     let mut turned = made.clone();
     turned.triangles[0].swap(0, 1);
-    assert_eq!(
-        message("turned", &z_up_millimetres(&turned), ", up: Z"),
-        "the body's triangles are not turned alike or meet wrongly at 3 edges"
+    let words = message("turned", &z_up_millimetres(&turned), ", up: Z");
+    assert!(
+        words.starts_with(
+            "the body's triangles are not turned alike or meet wrongly at 3 edges, the first from ("
+        ),
+        "{words}"
     );
     let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
     assert_eq!(message("shape", tetrahedron, ""), "the body's crotch cannot be found from its shape");

@@ -17,6 +17,10 @@ pub(crate) struct Topology {
     pub faulty: usize,
     /// Pieces that hang together.
     pub components: usize,
+    /// The first open edge.
+    pub first_open: Option<[u32; 2]>,
+    /// The first faulty edge.
+    pub first_faulty: Option<[u32; 2]>,
 }
 
 impl Topology {
@@ -29,10 +33,21 @@ impl Topology {
             .collect();
         half_edges.sort_unstable();
         let (mut edges, mut open, mut faulty) = (0, 0, 0);
+        let (mut first_open, mut first_faulty) = (None, None);
         for group in half_edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
             edges += 1;
-            open += usize::from(group.len() == 1);
-            faulty += usize::from(group.len() > 2 || (group.len() == 2 && group[0].2 == group[1].2));
+            let edge = [group[0].0, group[0].1];
+            match group {
+                [_] => {
+                    open += 1;
+                    first_open = first_open.or(Some(edge));
+                }
+                [a, b] if a.2 != b.2 => {}
+                _ => {
+                    faulty += 1;
+                    first_faulty = first_faulty.or(Some(edge));
+                }
+            }
         }
         let mut pieces = Pieces::new(vertices);
         triangles.iter().for_each(|t| {
@@ -43,7 +58,16 @@ impl Topology {
         triangles.iter().flatten().for_each(|&i| used[i as usize] = true);
         let components = (0..vertices as u32).filter(|&i| used[i as usize] && pieces.root(i) == i).count();
         let vertices = used.iter().filter(|u| **u).count();
-        Topology { vertices, edges, triangles: triangles.len(), open, faulty, components }
+        Topology {
+            vertices,
+            edges,
+            triangles: triangles.len(),
+            open,
+            faulty,
+            components,
+            first_open,
+            first_faulty,
+        }
     }
 
     /// True where every edge has two triangles that run opposite ways.

@@ -1,7 +1,8 @@
 //! The engine's errors as stage errors.
 
 use toile_cloth::error::ClothError;
-use toile_cloth::scene::SceneError;
+use toile_cloth::scene::{FieldFault, SceneError};
+use toile_core::pipeline::hint;
 use toile_core::{ErrorCode, StageError};
 
 /// A fault of the numbers that the engine was given.
@@ -20,20 +21,57 @@ pub fn cloth_error(error: &ClothError) -> StageError {
         _ => ErrorCode::InvalidInput,
     };
     let text = error.to_string();
-    match (error, text.split_once("; ")) {
-        (ClothError::Wind { .. }, Some((text, hint))) => StageError::new(code, text).hint(hint),
+    match error {
+        ClothError::Wind { .. } | ClothError::TriangleTwice { .. } => split(code, &text),
         _ => StageError::new(code, text),
     }
 }
 
 /// A scene file that cannot be used.
 pub fn scene_error(error: &SceneError) -> StageError {
-    match error {
-        SceneError::Cloth(e) => cloth_error(e),
-        SceneError::File { .. } | SceneError::Form { .. } | SceneError::Format { .. } => {
-            StageError::new(ErrorCode::PatternLoading, error.to_string())
-                .hint("docs/scene.md describes the format")
+    let code = match error {
+        SceneError::Cloth(e) => return cloth_error(e),
+        SceneError::Fields(faults) => {
+            let message = format!("not a garment-scene-1: {error}");
+            return StageError::new(ErrorCode::PatternLoading, message).hint(meant(faults));
         }
-        _ => StageError::invalid(error.to_string()),
+        SceneError::File { .. } | SceneError::Form { .. } | SceneError::Format { .. } => {
+            return StageError::new(ErrorCode::PatternLoading, error.to_string())
+                .hint("docs/scene.md describes the format");
+        }
+        SceneError::Obj(_) => {
+            return StageError::new(ErrorCode::PatternLoading, error.to_string()).hint(OBJ_HINT);
+        }
+        SceneError::Unmerged { .. } => {
+            let e = split(ErrorCode::InvalidInput, &error.to_string());
+            let remedy = e.hint.clone().unwrap_or_default();
+            return e.hint(format!("{remedy}, or let `weld: true` join them"));
+        }
+        _ => ErrorCode::InvalidInput,
+    };
+    split(code, &error.to_string())
+}
+
+/// What to do about an OBJ file that cannot be read.
+pub const OBJ_HINT: &str =
+    "it must be a Wavefront OBJ with `v` and `f` lines; write it again from the program that made it";
+
+/// What stands behind the semicolon is the remedy.
+fn split(code: ErrorCode, text: &str) -> StageError {
+    match text.split_once("; ") {
+        Some((text, hint)) => StageError::new(code, text).hint(hint),
+        None => StageError::new(code, text),
     }
+}
+
+/// The names that were probably meant.
+fn meant(faults: &[FieldFault]) -> String {
+    let hint = |f: &FieldFault| match f.known {
+        [] => format!("keep one `{}`", f.field),
+        known => hint(&f.field, &format!("{} has", f.of), known)
+            .unwrap_or_else(|| "docs/scene.md describes the format".into()),
+    };
+    let mut hints: Vec<String> = faults.iter().map(hint).collect();
+    hints.dedup();
+    hints.join("; ")
 }

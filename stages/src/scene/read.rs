@@ -2,13 +2,14 @@
 //!
 //! Method: the engine's reader checks every index and number; the body becomes a collider over boxes along the axes, as
 //! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: bands, strain limits, layers and threads have no place
-//! in a garment; the stage names what it leaves out.
+//! in a garment; the stage names what it leaves out, and what was mended.
 
+use crate::body::Units;
 use crate::collide::{Aabb, BvhScheme, Distances, asked_distances, check_body};
 use crate::engine::{garment_of, lost, scene_error};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use toile_cloth::scene::{self, SceneError};
+use toile_cloth::scene::{self, Loaded, Options, SceneError};
 use toile_core::artifact::{Artifact, Digester};
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Known};
@@ -18,9 +19,11 @@ use toile_core::prelude::*;
 ///
 /// The form is described in docs/scene.md; benchmarks of other programs use it as well. The
 /// garment's vertices keep the order of the file, so that a result can be held against it.
+/// A body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj` does.
 #[stage(
     role = Reader,
     source = "garment-scene-1, docs/scene.md",
+    version = 2,
     example = "Scene(file: \"skirt.json\")",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -31,6 +34,12 @@ pub struct Scene {
     /// When distances to the body are worked out; the results are the same.
     #[param(default = Distances::Asked)]
     pub distances: Distances,
+    /// Whether vertices of a panel that lie on each other, flat and at the start, become one.
+    #[param(default = false)]
+    pub weld: bool,
+    /// The unit of the body's OBJ; `Guess` takes metres, or where the body would be longer than 10 m the unit in which it fits the cloth.
+    #[param(default = Units::Guess)]
+    pub units: Units,
 }
 
 /// Share of the stage's time that distances where they are asked for save, on the skirt.
@@ -41,15 +50,12 @@ impl Scene {
     /// Runs the stage.
     pub fn run(&self, cx: &Context) -> Result<(Garment, Body, Collider, Phases), StageError> {
         self.named()?;
-        let text = text(cx, &self.file)?;
-        let folder = std::path::Path::new(&self.file).parent().map(std::path::Path::to_path_buf);
-        let beside = |obj: &str| {
-            let path = folder.clone().unwrap_or_default().join(obj);
-            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
-            crate::scene::read::text(cx, &path.to_string_lossy()).map_err(unread)
-        };
-        let scene = scene::parse(&text, &beside).map_err(|e| scene_error(&e))?;
-        lost(&scene).into_iter().for_each(|what| cx.warn(what));
+        let Loaded { scene, warnings } = self.load(cx).map_err(|e| match e {
+            Unread::File(e) => e.at("file"),
+            Unread::Scene(e @ SceneError::Unmerged { .. }) => scene_error(&e).at("weld"),
+            Unread::Scene(e) => scene_error(&e).at("file"),
+        })?;
+        warnings.into_iter().chain(lost(&scene)).for_each(|what| cx.warn(what));
         let garment = garment_of(&scene);
         self.check(&garment)?;
         let body = body_of(&scene);
@@ -96,32 +102,37 @@ impl Scene {
 
     /// How much it will read: by reading it, which is a small part of setting it up.
     pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
-        let text = text(cx, &self.file).ok()?;
-        let folder = std::path::Path::new(&self.file).parent().map(std::path::Path::to_path_buf);
-        let beside = |obj: &str| {
-            let path = folder.clone().unwrap_or_default().join(obj);
-            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
-            crate::scene::read::text(cx, &path.to_string_lossy()).map_err(unread)
-        };
-        let scene = scene::parse(&text, &beside).ok()?;
+        let scene = self.load(cx).ok()?.scene;
         let body = scene.body.as_ref().map_or(0, |b| b.triangles.len());
-        let size = Size::new().with(Quantity::Bytes, text.len() as f64);
+        let bytes = cx.read(&self.file).ok()?.len();
+        let size = Size::new().with(Quantity::Bytes, bytes as f64);
         Some(
             size.with(Quantity::Triangles, scene.triangles.len() as f64)
                 .with(Quantity::BodyTriangles, body as f64),
         )
     }
+
+    fn load(&self, cx: &Context) -> Result<Loaded, Unread> {
+        let text = cx.read(&self.file).map_err(Unread::File)?;
+        let folder = std::path::Path::new(&self.file).parent().unwrap_or(std::path::Path::new(""));
+        let beside = |obj: &str| {
+            let path = folder.join(obj);
+            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
+            cx.read(&path.to_string_lossy()).map_err(unread)
+        };
+        let options = Options { weld: self.weld, body_unit: self.units.metres() };
+        scene::parse(&text, &beside, &options).map_err(Unread::Scene)
+    }
+}
+
+/// Why there is no scene: the file is missing, or not one.
+enum Unread {
+    File(StageError),
+    Scene(SceneError),
 }
 
 fn air(a: toile_cloth::force::Air) -> Air {
     Air { density: a.density, normal: a.normal, tangential: a.tangential, wind: a.wind }
-}
-
-fn text(cx: &Context, file: &str) -> Result<String, StageError> {
-    String::from_utf8(cx.read(file)?).map_err(|_| {
-        StageError::new(ErrorCode::PatternLoading, format!("\"{file}\" is not a text"))
-            .hint("docs/scene.md describes the format")
-    })
 }
 
 fn collider(

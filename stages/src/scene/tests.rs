@@ -278,6 +278,124 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
     );
 }
 
+#[test]
+fn names_that_were_meant_are_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let text = to_json(&generate::hang(2), "");
+    let refused = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        std::fs::write(dir.path().join("scene.json"), text.replacen(from, to, 1)).unwrap();
+        let e = read(dir.path(), "scene.json").unwrap_err();
+        assert_eq!((e.code, e.param), (ErrorCode::PatternLoading, Some("file")));
+        (e.message, e.hint.unwrap())
+    };
+    let (message, hint) = refused("\"seams\"", "\"seam\"");
+    assert!(
+        message.starts_with("not a garment-scene-1: unknown field `seam` of the scene at line 1 column "),
+        "{message}"
+    );
+    assert_eq!(hint, "did you mean `seams`?");
+    assert_eq!(refused("\"self_collision\"", "\"self_colision\"").1, "did you mean `self_collision`?");
+    assert_eq!(
+        refused("\"layer\"", "\"layr\"").1,
+        "did you mean `layer`? a panel has `name`, `vertices`, `triangles`, `material`, `body_friction`, `layer`"
+    );
+    assert_eq!(refused("\"pinned\"", "\"seams\": [], \"pinned\"").1, "keep one `seams`");
+}
+
+#[test]
+fn what_was_mended_of_a_scene_is_told_and_faces_by_themselves_are_refused_or_welded() {
+    let clean = generate::drape(4);
+    let corners: Vec<usize> = clean.triangles.iter().flatten().map(|&v| v as usize).collect();
+    let mut scene = clean.clone();
+    scene.rest = corners.iter().map(|&v| clean.rest[v]).collect();
+    scene.positions = corners.iter().map(|&v| clean.positions[v]).collect();
+    scene.triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    scene.panels[0].vertices = 0..corners.len();
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("scene.json"), to_json(&scene, "body.obj")).unwrap();
+    let body = scene.body.as_ref().unwrap();
+    let centimetres: String = body_to_obj(&scene)
+        .lines()
+        .map(|l| match l.strip_prefix("v ") {
+            Some(p) => {
+                let p: Vec<f64> = p.split(' ').map(|x| x.parse::<f64>().unwrap() * 100.0).collect();
+                format!("v {} {} {}\n", p[0], p[1], p[2])
+            }
+            None => format!("{l}\n{l}\n"),
+        })
+        .collect();
+    std::fs::write(dir.path().join("body.obj"), centimetres).unwrap();
+    let cx = Context::new("Scene", dir.path(), Cancel::new(), Arc::new(()));
+    let e = Scene { file: "scene.json".into(), ..Scene::default() }.run(&cx).unwrap_err();
+    assert_eq!((e.code, e.param), (ErrorCode::InvalidInput, Some("weld")));
+    assert_eq!(
+        e.message,
+        "panel 'square' is 32 faces that hang together nowhere: of its 96 vertices 71 lie on others that they are not joined to"
+    );
+    assert_eq!(
+        e.hint.unwrap(),
+        "merge them in the program that wrote the mesh, or let `weld: true` join them"
+    );
+    let (garment, read, ..) =
+        Scene { file: "scene.json".into(), weld: true, ..Scene::default() }.run(&cx).unwrap();
+    assert_eq!((garment.positions.len(), garment.seams[0].pairs.len()), (96, 71));
+    assert_eq!(read.triangles.len(), body.triangles.len());
+    let (_, warnings) = cx.take_notes();
+    assert_eq!(
+        warnings,
+        [
+            format!(
+                "the body's OBJ was repaired: {} triangles that are listed twice are removed",
+                body.triangles.len()
+            ),
+            "the body's OBJ is read in centimetres, as it would be 60.0 m long in metres: it is 0.600 m long"
+                .into(),
+            "71 vertices are joined to others that they lie on".into(),
+        ]
+    );
+}
+
+#[test]
+fn a_welded_mesh_drapes_as_one() {
+    let clean = generate::hang(4);
+    let corners: Vec<usize> = clean.triangles.iter().flatten().map(|&v| v as usize).collect();
+    let mut scene = clean.clone();
+    scene.rest = corners.iter().map(|&v| clean.rest[v]).collect();
+    scene.positions = corners.iter().map(|&v| clean.positions[v]).collect();
+    scene.triangles = (0..corners.len() as u32 / 3).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    scene.panels[0].vertices = 0..corners.len();
+    scene.pinned =
+        (0..corners.len() as u32).filter(|&v| clean.pinned.contains(&(corners[v as usize] as u32))).collect();
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("scene.json"), to_json(&scene, "")).unwrap();
+    let cx = Context::new("Scene", dir.path(), Cancel::new(), Arc::new(()));
+    let read = |weld: bool, scene: &toile_cloth::scene::Scene| {
+        std::fs::write(dir.path().join("scene.json"), to_json(scene, "")).unwrap();
+        let (g, _, c, p) = Scene { file: "scene.json".into(), weld, ..Scene::default() }.run(&cx).unwrap();
+        Rest { graded: false, ..Rest::default() }.run(&g, Some(&c), Some(&p), None, &cx).unwrap()
+    };
+    let (welded, whole) = (read(true, &scene), read(false, &clean));
+    for (p, &v) in welded.positions.iter().zip(&corners) {
+        assert!((p - whole.positions[v]).norm() < 0.01, "{p} for {}", whole.positions[v]);
+    }
+}
+
+#[test]
+fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
+    let scene = generate::curtain(4);
+    let (g, _, c, p) = through_files(&scene).unwrap();
+    let (cx, c, p) = (Context::quiet(), Some(&c), Some(&p));
+    let hung =
+        [Rest::default().run(&g, c, p, None, &cx).unwrap(), ImplicitEuler::default().run(&g, c, p, &cx).unwrap()];
+    for h in hung {
+        for &[corner, pin] in &scene.seams[0].pairs {
+            assert_eq!(h.positions[corner as usize], h.positions[pin as usize]);
+            assert_eq!(h.positions[pin as usize].coords, scene.positions[pin as usize]);
+        }
+    }
+}
+
 /// What `Rest` says of a scene that it cannot bring to rest.
 fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
     let (garment, _, collider, phases) = through_files(scene).unwrap();

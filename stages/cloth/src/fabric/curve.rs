@@ -23,7 +23,7 @@ impl Curve {
     /// Through the origin and these (strain, force) points.
     ///
     /// # Errors
-    /// [`ClothError::NonFiniteInput`] for NaN; [`ClothError::InvalidParameter`] unless strains rise from above 0 and forces never fall.
+    /// [`ClothError::NonFiniteInput`] for NaN; [`ClothError::InvalidParameter`] unless strains and forces rise from above 0.
     pub fn through(points: &[[f64; 2]]) -> Result<Self, ClothError> {
         let mut kept = vec![[0.0; 3]];
         let mut last_slope = 0.0;
@@ -36,8 +36,8 @@ impl Curve {
                 let range = "strains that rise from above 0";
                 return Err(ClothError::InvalidParameter { name: "curve strain", value: strain, range });
             }
-            if force < f {
-                let range = "forces that never fall";
+            if force <= f {
+                let range = "forces that rise from above 0";
                 return Err(ClothError::InvalidParameter { name: "curve force", value: force, range });
             }
             last_slope = (force - f) / (strain - s);

@@ -88,7 +88,7 @@ impl Fabric {
             check_parameter(name, value, |v| v >= 0.0, "0 or more")?;
         }
         for (name, curve) in [("warp", &self.warp), ("weft", &self.weft), ("shear", &self.shear)] {
-            check_parameter(name, curve.slope(0.0), |v| v >= 0.0, "a slope of 0 or more")?;
+            check_parameter(name, curve.slope(0.0), |v| v > 0.0, "a slope above 0 N/m")?;
         }
         let product = self.poisson_squared();
         check_parameter("poisson", product, |v| v < 1.0, "so small that warp and weft stay stable together")

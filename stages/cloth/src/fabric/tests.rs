@@ -17,7 +17,12 @@ fn curve_follows_its_points_and_both_ends() {
 fn bad_curves_are_named() {
     let e = |p: &[[f64; 2]]| Curve::through(p).unwrap_err().to_string();
     assert_eq!(e(&[[0.0, 1.0]]), "curve strain = 0 is out of range: strains that rise from above 0");
-    assert_eq!(e(&[[0.1, -1.0]]), "curve force = -1 is out of range: forces that never fall");
+    assert_eq!(e(&[[0.1, -1.0]]), "curve force = -1 is out of range: forces that rise from above 0");
+    assert_eq!(
+        e(&[[0.1, 1.0], [0.2, 1.0]]),
+        "curve force = 1 is out of range: forces that rise from above 0",
+        "a level piece has no stiffness"
+    );
     assert_eq!(e(&[[f64::NAN, 1.0]]), "curve[0] is not a finite number");
 }
 

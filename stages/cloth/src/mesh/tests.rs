@@ -53,6 +53,10 @@ fn faults_are_named() {
         error(&above, &fins, 0.1),
         "the edge between vertices 0 and 3 is not manifold: more than two triangles share it; separate them"
     );
+    assert_eq!(
+        error(&uv, &[[0, 1, 2], [0, 2, 3], [1, 2, 0]], 0.1),
+        "triangles 0 and 2 are the same: both join vertices 0, 1 and 2; remove one of them"
+    );
     let overlap = [[0, 2, 3], [0, 1, 3]];
     assert_eq!(
         error(&above, &overlap, 0.1),

@@ -46,6 +46,9 @@ pub(super) fn check_indices(triangles: &[[u32; 3]], count: usize) -> Result<(), 
     Ok(())
 }
 
+/// Triangles at one edge among which one that is listed twice is looked for.
+const MOST_SHARING: usize = 16;
+
 /// One triangle's side of an edge, before sides are paired.
 #[derive(Clone, Copy)]
 struct Half {
@@ -92,6 +95,18 @@ fn pair(group: &[Half]) -> Result<Edge, ClothError> {
     let bad = |why| ClothError::NonManifoldEdge { a: group[0].low as usize, b: group[0].high as usize, why };
     let first = group[0];
     let vertices = if first.forward { [first.low, first.high] } else { [first.high, first.low] };
+    let twice = |a: &Half, b: &Half| {
+        let mut of = [a.low, a.high, a.side.opposite];
+        of.sort_unstable();
+        let (first, second) = (a.side.triangle as usize, b.side.triangle as usize);
+        ClothError::TriangleTwice { first, second, of }
+    };
+    let same = |a: &&Half, b: &Half| a.side.opposite == b.side.opposite && a.forward == b.forward;
+    for (k, a) in group.iter().enumerate().take(MOST_SHARING) {
+        if let Some(b) = group[k + 1..].iter().find(|b| same(&a, b)) {
+            return Err(twice(a, b));
+        }
+    }
     match group {
         [one] => Ok(Edge { vertices, rest_length: one.length, sides: (one.side, None) }),
         [one, two] if one.forward != two.forward => {

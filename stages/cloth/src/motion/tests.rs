@@ -27,6 +27,21 @@ fn falling(cells: u32) -> Scene {
 }
 
 #[test]
+fn in_every_solver_a_curtain_hangs_from_pins_that_belong_to_no_triangle() {
+    let scene = generate::curtain(4);
+    let still =
+        Scene { phases: scene.phases.iter().map(|p| Phase { seconds: 0.3, ..p.clone() }).collect(), ..scene };
+    for method in METHODS {
+        let moved = run(&Motion { method, ..Motion::default() }, &still).unwrap();
+        for &[corner, pin] in &still.seams[0].pairs {
+            let place = still.positions[pin as usize];
+            assert_eq!(moved.positions[pin as usize], place, "{method:?}");
+            assert_eq!(moved.positions[corner as usize], place, "{method:?}");
+        }
+    }
+}
+
+#[test]
 fn every_solver_falls_as_galileo_says() {
     let scene = falling(3);
     for method in METHODS {

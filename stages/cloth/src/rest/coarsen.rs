@@ -37,6 +37,7 @@ impl Coarser {
 #[must_use]
 pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     let mut mesh = Mesh::new(fine);
+    let bare: Vec<bool> = mesh.at.iter().map(Vec::is_empty).collect();
     let keep = independent(fine, &mesh);
     // Good triangles first; what is left gets a second chance after its neighbours have gone.
     for _ in 0..2 {
@@ -48,7 +49,10 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     }
     let alive = mesh.alive_triangles();
     let mut number = vec![u32::MAX; fine.rest.len()];
-    let mut kept: Vec<u32> = alive.iter().flatten().copied().collect();
+    // A pin of no triangle holds what is sewn to it on every level.
+    let anchors: Vec<u32> =
+        (0..bare.len() as u32).filter(|&v| bare[v as usize] && fine.pinned[v as usize]).collect();
+    let mut kept: Vec<u32> = alive.iter().flatten().chain(&anchors).copied().collect();
     kept.sort_unstable();
     kept.dedup();
     if kept.len() * 10 > fine.rest.len() * 8 {
@@ -56,7 +60,8 @@ pub fn coarsen(fine: &Pieces) -> Option<Coarser> {
     }
     kept.iter().enumerate().for_each(|(k, &v)| number[v as usize] = k as u32);
     let pieces = restrict(fine, &kept, alive.iter().map(|t| t.map(|v| number[v as usize])).collect());
-    let weights = Locator::new(&pieces).weights(fine);
+    let mut weights = Locator::new(&pieces).weights(fine);
+    anchors.iter().for_each(|&v| weights[v as usize] = ([number[v as usize]; 3], [1.0, 0.0, 0.0]));
     Some(Coarser { pieces, kept, weights })
 }
 

@@ -181,7 +181,8 @@ impl Pieces {
         self.panel[self.triangles[triangle][0] as usize] as usize
     }
 
-    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over these.
+    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over these. A pinned vertex of no triangle
+    /// has no mass to be weighted by and counts as one.
     #[must_use]
     pub fn sew(&self, values: &[Vector3<f64>], weights: &[f64]) -> Vec<Vector3<f64>> {
         let mut is_held = vec![false; self.nodes];
@@ -191,8 +192,9 @@ impl Pieces {
             if is_held[p as usize] && !pinned {
                 continue;
             }
+            let w = if pinned && *w == 0.0 { 1.0 } else { *w };
             let sum = &mut sums[p as usize];
-            sum.0 += v * *w;
+            sum.0 += v * w;
             sum.1 += w;
         }
         sums.into_iter().map(|(v, w)| if w > 0.0 { v / w } else { v }).collect()
@@ -250,7 +252,7 @@ pub(super) fn count_cloths(scene: &Scene) -> usize {
 }
 
 /// Numbers the groups that `pairs` connect, in the order of their first members.
-pub(super) fn groups(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
+pub(crate) fn groups(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
     let mut parent: Vec<u32> = (0..n as u32).collect();
     fn root(parent: &mut [u32], mut i: u32) -> u32 {
         while parent[i as usize] != i {

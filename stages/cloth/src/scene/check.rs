@@ -6,8 +6,8 @@ use crate::fabric::Fabric;
 use crate::force::Air;
 use nalgebra::Vector3;
 
-/// Checks everything.
-pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+/// Checks that every index points at something and every coordinate is finite.
+pub(super) fn check_lists(scene: &Scene) -> Result<(), SceneError> {
     let n = scene.rest.len();
     if scene.triangles.is_empty() {
         return Err(ClothError::EmptyScene.into());
@@ -19,6 +19,20 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     finite("positions", scene.positions.iter().map(is_finite))?;
     refers("triangle", scene.triangles.iter().map(|t| &t[..]), n)?;
     refers("pin", scene.pinned.iter().map(std::slice::from_ref), n)?;
+    refers("seam pair", scene.seams.iter().flat_map(|s| &s.pairs).map(|p| &p[..]), n)?;
+    check_ranges(scene)?;
+    let Some(body) = &scene.body else { return Ok(()) };
+    if body.triangles.is_empty() {
+        return Err(SceneError::EmptyBody);
+    }
+    finite("body", body.vertices.iter().map(is_finite))?;
+    Ok(refers("body triangle", body.triangles.iter().map(|t| &t[..]), body.vertices.len())?)
+}
+
+/// Checks everything.
+pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
+    check_lists(scene)?;
+    check_held(scene)?;
     for phase in &scene.phases {
         finite("gravity", std::iter::once(is_finite(&phase.gravity)))?;
         check_parameter("seconds", phase.seconds, |s| s >= 0.0, "0 s or more")?;
@@ -33,7 +47,23 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
         check_parameter("strain_limit.warp", limit.warp, |v| v > 0.0, "above 0")?;
         check_parameter("strain_limit.weft", limit.weft, |v| v > 0.0, "above 0")?;
     }
-    check_body(scene)
+    if let Some(body) = &scene.body {
+        check_parameter("body.friction", body.friction, |v| v >= 0.0, "0 or more")?;
+    }
+    Ok(())
+}
+
+/// A vertex of no triangle has neither mass nor stiffness: it must be pinned.
+fn check_held(scene: &Scene) -> Result<(), SceneError> {
+    let mut held = vec![false; scene.rest.len()];
+    scene.triangles.iter().flatten().chain(&scene.pinned).for_each(|&v| held[v as usize] = true);
+    let Some(vertex) = held.iter().position(|h| !h) else { return Ok(()) };
+    for seam in &scene.seams {
+        if let Some(pair) = seam.pairs.iter().position(|p| p.contains(&(vertex as u32))) {
+            return Err(SceneError::SewnToNothing { seam: seam.name.clone(), pair, vertex: vertex as u32 });
+        }
+    }
+    Err(SceneError::Loose { vertex })
 }
 
 fn is_finite(p: &Vector3<f64>) -> bool {
@@ -66,6 +96,12 @@ fn check_panels(scene: &Scene) -> Result<(), SceneError> {
         if let Some(friction) = panel.body_friction {
             check_parameter("body_friction", friction, |v| v >= 0.0, "0 or more")?;
         }
+    }
+    Ok(())
+}
+
+fn check_ranges(scene: &Scene) -> Result<(), SceneError> {
+    for panel in &scene.panels {
         let both = [
             ("vertices", &panel.vertices, scene.rest.len()),
             ("triangles", &panel.triangles, scene.triangles.len()),
@@ -81,7 +117,6 @@ fn check_panels(scene: &Scene) -> Result<(), SceneError> {
 }
 
 fn check_seams(scene: &Scene) -> Result<(), SceneError> {
-    refers("seam pair", scene.seams.iter().flat_map(|s| &s.pairs).map(|p| &p[..]), scene.rest.len())?;
     let mut seen: Vec<([u32; 2], usize, usize)> = Vec::new();
     for (s, seam) in scene.seams.iter().enumerate() {
         for (pair, &[a, b]) in seam.pairs.iter().enumerate() {
@@ -153,20 +188,8 @@ fn check_bands(scene: &Scene) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// What rest needs beyond a valid fabric: it must resist stretch from the start, and have a contact layer.
+/// What a scene needs beyond a valid fabric: a contact layer.
 fn check_fabric(fabric: &Fabric) -> Result<(), ClothError> {
     fabric.check()?;
-    check_parameter("warp", fabric.warp.slope(0.0), |v| v > 0.0, "a slope above 0 N/m")?;
-    check_parameter("weft", fabric.weft.slope(0.0), |v| v > 0.0, "a slope above 0 N/m")?;
     check_parameter("thickness", fabric.thickness, |v| v > 0.0, "above 0 m")
-}
-
-fn check_body(scene: &Scene) -> Result<(), SceneError> {
-    let Some(body) = &scene.body else { return Ok(()) };
-    check_parameter("body.friction", body.friction, |v| v >= 0.0, "0 or more")?;
-    if body.triangles.is_empty() {
-        return Err(SceneError::EmptyBody);
-    }
-    finite("body", body.vertices.iter().map(is_finite))?;
-    Ok(refers("body triangle", body.triangles.iter().map(|t| &t[..]), body.vertices.len())?)
 }

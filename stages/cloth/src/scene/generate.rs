@@ -72,6 +72,23 @@ pub fn hang(cells: u32) -> Scene {
     Scene { pinned: corners, ..square(format!("hang_{cells}"), cells, 1.0) }
 }
 
+/// A square metre below two pins of no triangle, 5 cm above its upper corners, to which these are to be sewn.
+#[must_use]
+pub fn curtain(cells: u32) -> Scene {
+    let hung = hang(cells);
+    let mut scene = Scene { name: format!("curtain_{cells}"), self_collision: true, ..hung };
+    scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, p.y + 0.5, 0.0)).collect();
+    let n = scene.rest.len() as u32;
+    let corners = std::mem::replace(&mut scene.pinned, vec![n, n + 1]);
+    for &corner in &corners {
+        scene.rest.push(scene.rest[corner as usize]);
+        scene.positions.push(scene.positions[corner as usize] + Vector3::new(0.0, 0.05, 0.0));
+    }
+    scene.panels[0].vertices.end += 2;
+    scene.seams.push(Seam::new("rail", vec![[corners[0], n], [corners[1], n + 1]]));
+    scene
+}
+
 /// A square metre above a sphere of 0.3 m radius.
 #[must_use]
 pub fn drape(cells: u32) -> Scene {

@@ -6,21 +6,24 @@
 mod build;
 mod check;
 pub mod generate;
-mod obj;
+mod mend;
 mod read;
+mod strict;
+mod units;
 mod write;
 
 #[cfg(test)]
 mod tests;
 
 pub use build::GRAVITY;
-pub use obj::{ObjMesh, parse_obj, write_obj};
-pub use read::{parse, read};
+pub use read::{Load, Loaded, Options, parse, read};
+pub use strict::FieldFault;
 pub use write::{body_to_obj, to_json};
 
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::Air;
+use crate::obj::ObjError;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 use std::path::PathBuf;
@@ -221,13 +224,82 @@ pub enum SceneError {
         /// The value along the weft.
         second: &'static str,
     },
-    /// A line of an OBJ file.
-    #[error("line {line} of the OBJ: {why}")]
-    Obj {
-        /// Counted from 1.
-        line: usize,
-        /// What is wrong.
-        why: &'static str,
+    /// The body's OBJ.
+    #[error(transparent)]
+    Obj(#[from] ObjError),
+    /// Fields that no scene has, or that stand twice.
+    #[error("{}", all(.0))]
+    Fields(Vec<FieldFault>),
+    /// Another direction up.
+    #[error("up is '{found}', but in a scene y is up; turn the scene and its body")]
+    Up {
+        /// What the file says.
+        found: String,
+    },
+    /// Two panels of one name.
+    #[error("panels {first} and {second} are both called '{name}'; give each panel a name of its own")]
+    PanelTwice {
+        /// The name.
+        name: String,
+        /// The first of them, counted from 0.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
+    /// Faces that share no vertices.
+    #[error(
+        "panel '{panel}' is {faces} faces that hang together nowhere: of its {vertices} vertices {coincident} lie on others that they \
+         are not joined to; merge them in the program that wrote the mesh"
+    )]
+    Unmerged {
+        /// The panel.
+        panel: String,
+        /// Its faces that share no vertex with others.
+        faces: usize,
+        /// Its vertices.
+        vertices: usize,
+        /// Those that lie on an earlier one.
+        coincident: usize,
+    },
+    /// A vertex of no triangle that is sewn to cloth and free.
+    #[error(
+        "seam '{seam}': pair {pair} sews vertex {vertex}, which belongs to no triangle; pin it where the seam is to hang, or leave it out"
+    )]
+    SewnToNothing {
+        /// The seam.
+        seam: String,
+        /// Which pair.
+        pair: usize,
+        /// The vertex.
+        vertex: u32,
+    },
+    /// A vertex of no triangle that nothing holds.
+    #[error("vertex {vertex} belongs to no triangle, is not pinned and would fall; leave it out or pin it")]
+    Loose {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// Flat cloth in another unit than where it starts.
+    #[error("edges are {times} times longer in {longer} than in {shorter}; write both in metres")]
+    RestScale {
+        /// The list with the longer edges.
+        longer: &'static str,
+        /// The other.
+        shorter: &'static str,
+        /// How many times.
+        times: String,
+    },
+    /// Lengths that no garment has.
+    #[error("{what} {length} m {axis}; {hint}")]
+    Lengths {
+        /// What is as long as that.
+        what: &'static str,
+        /// How long, m.
+        length: String,
+        /// In which direction.
+        axis: &'static str,
+        /// What to do.
+        hint: String,
     },
     /// A body that is nothing.
     #[error("the body has no triangles; leave it out where there is none")]
@@ -235,4 +307,8 @@ pub enum SceneError {
     /// A fault of the numbers.
     #[error(transparent)]
     Cloth(#[from] ClothError),
+}
+
+fn all(faults: &[FieldFault]) -> String {
+    faults.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
 }

@@ -1,14 +1,32 @@
 //! The JSON form `garment-scene-1`.
 
-use super::{
-    Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, check::check, obj::parse_obj,
-};
+use super::check::{check, check_lists};
+use super::{Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, mend, strict, units};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::{Curve, Fabric};
 use crate::force::Air;
+use crate::obj;
 use nalgebra::{Vector2, Vector3};
-use serde::Deserialize;
+use serde::{Deserialize, de};
 use std::path::Path;
+
+/// How a scene is read.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Options {
+    /// Whether vertices of a panel that lie on each other, flat and at the start, are joined.
+    pub weld: bool,
+    /// Metres of the unit of the body's OBJ; found from its size where it is not said.
+    pub body_unit: Option<f64>,
+}
+
+/// A scene that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// The scene, checked.
+    pub scene: Scene,
+    /// What was mended, and what is odd but allowed: a sentence each.
+    pub warnings: Vec<String>,
+}
 
 #[derive(Deserialize)]
 struct Head {
@@ -16,9 +34,12 @@ struct Head {
 }
 
 #[derive(Deserialize)]
-struct RawScene {
+pub(super) struct RawScene {
+    #[serde(rename = "format")]
+    _format: String,
     #[serde(default)]
     name: String,
+    up: Option<String>,
     rest_uv: Vec<[f64; 2]>,
     positions: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
@@ -34,12 +55,13 @@ struct RawScene {
     material: RawMaterial,
     strain_limit: Option<RawLimit>,
     phases: Vec<RawPhase>,
+    seconds: Option<f64>,
     #[serde(default)]
     self_collision: bool,
 }
 
 #[derive(Deserialize)]
-struct RawPanel {
+pub(super) struct RawPanel {
     name: String,
     vertices: [usize; 2],
     triangles: [usize; 2],
@@ -50,7 +72,7 @@ struct RawPanel {
 }
 
 #[derive(Deserialize)]
-struct RawSeam {
+pub(super) struct RawSeam {
     name: String,
     pairs: Vec<[u32; 2]>,
     #[serde(default = "yes")]
@@ -59,7 +81,7 @@ struct RawSeam {
 }
 
 #[derive(Deserialize)]
-struct RawBand {
+pub(super) struct RawBand {
     name: String,
     vertices: Vec<u32>,
     ratio: f64,
@@ -67,7 +89,7 @@ struct RawBand {
 }
 
 #[derive(Deserialize)]
-struct RawLimit {
+pub(super) struct RawLimit {
     warp: f64,
     weft: f64,
 }
@@ -77,13 +99,13 @@ fn yes() -> bool {
 }
 
 #[derive(Deserialize)]
-struct RawBody {
+pub(super) struct RawBody {
     obj: String,
     friction: f64,
 }
 
 #[derive(Deserialize)]
-struct RawMaterial {
+pub(super) struct RawMaterial {
     area_density: f64,
     stretch: Option<RawCurve>,
     warp: Option<RawCurve>,
@@ -103,15 +125,48 @@ struct RawMaterial {
 }
 
 /// A stiffness, or the points of a curve.
-#[derive(Deserialize, Clone)]
-#[serde(untagged)]
+#[derive(Clone)]
 enum RawCurve {
     Straight(f64),
     Points(Vec<[f64; 2]>),
 }
 
+impl<'de> Deserialize<'de> for RawCurve {
+    fn deserialize<D: de::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Either;
+        impl<'de> de::Visitor<'de> for Either {
+            type Value = RawCurve;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("a stiffness in N/m or a curve [[strain, N/m], ...]")
+            }
+
+            fn visit_f64<E>(self, k: f64) -> Result<RawCurve, E> {
+                Ok(RawCurve::Straight(k))
+            }
+
+            fn visit_u64<E>(self, k: u64) -> Result<RawCurve, E> {
+                Ok(RawCurve::Straight(k as f64))
+            }
+
+            fn visit_i64<E>(self, k: i64) -> Result<RawCurve, E> {
+                Ok(RawCurve::Straight(k as f64))
+            }
+
+            fn visit_seq<A: de::SeqAccess<'de>>(self, mut list: A) -> Result<RawCurve, A::Error> {
+                let mut points = Vec::new();
+                while let Some(point) = list.next_element()? {
+                    points.push(point);
+                }
+                Ok(RawCurve::Points(points))
+            }
+        }
+        from.deserialize_any(Either)
+    }
+}
+
 #[derive(Deserialize)]
-struct RawPhase {
+pub(super) struct RawPhase {
     name: String,
     seconds: f64,
     gravity: [f64; 3],
@@ -119,7 +174,7 @@ struct RawPhase {
 }
 
 #[derive(Deserialize)]
-struct RawAir {
+pub(super) struct RawAir {
     density: f64,
     #[serde(default = "normal")]
     normal: f64,
@@ -141,34 +196,61 @@ fn tangential() -> f64 {
 ///
 /// # Errors
 /// Every [`SceneError`].
-pub fn read(path: &Path) -> Result<Scene, SceneError> {
+pub fn read(path: &Path, options: &Options) -> Result<Loaded, SceneError> {
     let load = |path: &Path| {
-        std::fs::read_to_string(path).map_err(|e| SceneError::File { path: path.into(), why: e.to_string() })
+        std::fs::read(path).map_err(|e| SceneError::File { path: path.into(), why: e.to_string() })
     };
     let folder = path.parent().unwrap_or(Path::new("."));
-    parse(&load(path)?, &|obj| load(&folder.join(obj)))
+    parse(&load(path)?, &|obj| load(&folder.join(obj)), options)
 }
 
-/// Reads a scene's text; `load` gives the text of the OBJ that it names.
+/// What gives the bytes of the OBJ that a scene names.
+pub type Load<'a> = dyn Fn(&str) -> Result<Vec<u8>, SceneError> + 'a;
+
+/// Reads a scene's text; `load` gives the bytes of the OBJ that it names.
 ///
 /// # Errors
 /// Every [`SceneError`].
-pub fn parse(text: &str, load: &dyn Fn(&str) -> Result<String, SceneError>) -> Result<Scene, SceneError> {
+pub fn parse(text: &[u8], load: &Load<'_>, options: &Options) -> Result<Loaded, SceneError> {
+    let text = obj::decode(text);
     let form = |e: serde_json::Error| SceneError::Form { why: e.to_string() };
-    let head: Head = serde_json::from_str(text).map_err(form)?;
+    let head: Head = serde_json::from_slice(&text).map_err(form)?;
     if head.format != "garment-scene-1" {
         return Err(SceneError::Format { found: head.format });
     }
-    let raw: RawScene = serde_json::from_str(text).map_err(form)?;
+    let faults = strict::faults(&text);
+    if !faults.is_empty() {
+        return Err(SceneError::Fields(faults));
+    }
+    let raw: RawScene = serde_json::from_slice(&text).map_err(form)?;
+    if let Some(found) = raw.up.as_ref().filter(|up| !up.eq_ignore_ascii_case("y")) {
+        return Err(SceneError::Up { found: found.clone() });
+    }
+    let mut warnings = Vec::new();
+    warnings.extend(other_seconds(&raw));
     let body = raw.body.as_ref().map(|b| body(b, load)).transpose()?;
-    let scene = build(raw, body)?;
+    let (body, repairs) = body.unzip();
+    let told = repairs.and_then(|r: obj::Repairs| r.words());
+    warnings.extend(told.map(|what| format!("the body's OBJ was repaired: {what}")));
+    let mut scene = build(raw, body)?;
+    check_lists(&scene)?;
+    warnings.extend(units::settle(&mut scene, options.body_unit)?);
+    warnings.extend(mend::mend(&mut scene, options.weld)?);
     check(&scene)?;
-    Ok(scene)
+    Ok(Loaded { scene, warnings })
 }
 
-fn body(raw: &RawBody, load: &dyn Fn(&str) -> Result<String, SceneError>) -> Result<SceneBody, SceneError> {
-    let (vertices, triangles) = parse_obj(&load(&raw.obj)?)?;
-    Ok(SceneBody { vertices, triangles, friction: raw.friction })
+/// A total that is not that of the phases.
+fn other_seconds(raw: &RawScene) -> Option<String> {
+    let sum: f64 = raw.phases.iter().map(|p| p.seconds).sum();
+    let said = raw.seconds.filter(|s| (s - sum).abs() > 1e-9 * sum.abs())?;
+    Some(format!("`seconds` is {said}, but the phases last {sum} s together; the phases count"))
+}
+
+fn body(raw: &RawBody, load: &Load<'_>) -> Result<(SceneBody, obj::Repairs), SceneError> {
+    let (mesh, mut repairs) = obj::repair(obj::parse(&load(&raw.obj)?)?);
+    let obj::Mesh { vertices, triangles } = obj::outer_surface(mesh, &mut repairs);
+    Ok((SceneBody { vertices, triangles, friction: raw.friction }, repairs))
 }
 
 fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
@@ -218,7 +300,7 @@ fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
         .map(|c| (c, name))
         .or(raw.stretch.clone().map(|c| (c, "stretch")))
     {
-        Some((c, name)) => Ok(curve(c, name, true)?),
+        Some((c, name)) => Ok(curve(c, name)?),
         None => Err(lacks("stretch", "warp", "weft")),
     };
     let bending = |own: Option<f64>, name| match own.map(|b| (b, name)).or(raw.bend.map(|b| (b, "bend"))) {
@@ -243,7 +325,7 @@ fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
         warp: tensile(raw.warp, "warp")?,
         weft: tensile(raw.weft, "weft")?,
         poisson: raw.poisson,
-        shear: curve(raw.shear, "shear", false)?,
+        shear: curve(raw.shear, "shear")?,
         bending_warp: bending(raw.bend_warp, "bend_warp")?,
         bending_weft: bending(raw.bend_weft, "bend_weft")?,
         bending_friction_warp: friction(raw.bend_friction_warp, "bend_friction_warp")?,
@@ -254,12 +336,11 @@ fn fabric(raw: RawMaterial, of: &str) -> Result<Fabric, SceneError> {
     })
 }
 
-fn curve(raw: RawCurve, name: &'static str, positive: bool) -> Result<Curve, ClothError> {
+fn curve(raw: RawCurve, name: &'static str) -> Result<Curve, ClothError> {
     match raw {
         RawCurve::Points(points) => Curve::through(&points),
         RawCurve::Straight(k) => {
-            let range = if positive { "above 0 N/m" } else { "0 N/m or more" };
-            check_parameter(name, k, |k| k > 0.0 || (!positive && k == 0.0), range)?;
+            check_parameter(name, k, |k| k > 0.0, "above 0 N/m")?;
             Ok(Curve::linear(k))
         }
     }

@@ -2,8 +2,8 @@
 
 use super::{Panel, Phase, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
+use crate::obj;
 use serde_json::{Value, json};
-use std::fmt::Write as _;
 
 /// The scene as JSON; `body_obj` is the name of the OBJ that holds its body, beside the file.
 ///
@@ -43,14 +43,7 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
 /// The scene's body as OBJ text; empty where it has none.
 #[must_use]
 pub fn body_to_obj(scene: &Scene) -> String {
-    let mut text = String::new();
-    for p in scene.body.iter().flat_map(|b| &b.vertices) {
-        let _ = writeln!(text, "v {:.9} {:.9} {:.9}", p.x, p.y, p.z);
-    }
-    for t in scene.body.iter().flat_map(|b| &b.triangles) {
-        let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
-    }
-    text
+    scene.body.as_ref().map_or_else(String::new, |b| obj::to_text(&b.vertices, &b.triangles))
 }
 
 fn phase(p: &Phase) -> Value {

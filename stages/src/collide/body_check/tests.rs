@@ -54,22 +54,32 @@ fn names_the_fault_and_counts_it() {
 
     let mut open = cube(0.5);
     open.triangles.truncate(10);
-    assert_eq!(fault(&open), "the body is not closed: it has 4 boundary edges");
+    assert_eq!(
+        fault(&open),
+        "the body is not closed: it has 4 boundary edges, the first from (0.500, -0.500, -0.500) to (0.500, 0.500, -0.500) m"
+    );
 
     let mut doubled = cube(0.5);
     doubled.triangles.push(doubled.triangles[0]);
-    assert_eq!(fault(&doubled), "the body is not closed: it has 3 edges with more than two triangles");
+    assert_eq!(
+        fault(&doubled),
+        "the body is not closed: it has 3 edges with more than two triangles, the first from (-0.500, -0.500, -0.500) to (-0.500, 0.500, -0.500) m"
+    );
 
     let mut turned = cube(0.5);
     turned.triangles[0].swap(0, 1);
-    assert_eq!(fault(&turned), "the body is not closed: it has 3 edges whose triangles face opposite ways");
+    assert_eq!(
+        fault(&turned),
+        "the body is not closed: it has 3 edges whose triangles face opposite ways, the first from (-0.500, -0.500, -0.500) to (-0.500, 0.500, -0.500) m"
+    );
 
     let mut both = cube(0.5);
     both.triangles[0].swap(0, 1);
     both.triangles.pop();
     assert_eq!(
         fault(&both),
-        "the body is not closed: it has 3 boundary edges, 3 edges whose triangles face opposite ways"
+        "the body is not closed: it has 3 boundary edges, 3 edges whose triangles face opposite ways, \
+         the first from (-0.500, -0.500, -0.500) to (-0.500, 0.500, -0.500) m"
     );
 
     let mut inward = cube(0.5);

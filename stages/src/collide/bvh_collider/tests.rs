@@ -69,7 +69,10 @@ fn refuses_an_open_body() {
     let mut open = cube(0.5);
     open.triangles.pop();
     let error = BvhCollider::default().run(Some(&open), &Context::quiet()).unwrap_err();
-    assert_eq!(error.message, "the body is not closed: it has 3 boundary edges");
+    assert_eq!(
+        error.message,
+        "the body is not closed: it has 3 boundary edges, the first from (0.500, -0.500, -0.500) to (0.500, -0.500, 0.500) m"
+    );
 }
 
 #[test]

@@ -18,6 +18,26 @@ fn length(x: &[Vec3], path: &[u32]) -> f64 {
 }
 
 #[test]
+fn a_curtain_hangs_from_pins_that_belong_to_no_triangle() {
+    // 24 cells go through several levels, 4 through one.
+    for cells in [4, 24] {
+        let scene = generate::curtain(cells);
+        let [left, right] = scene.seams[0].pairs[..] else { panic!() };
+        for graded in [false, true] {
+            let state =
+                Rest { graded, ..Rest::default() }.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+            let x = &state.positions;
+            for [corner, pin] in [left, right] {
+                assert_eq!(x[pin as usize], scene.positions[pin as usize]);
+                assert_eq!(x[corner as usize], scene.positions[pin as usize]);
+            }
+            let lowest = x.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+            assert!(lowest < 1.05 - 0.95 && x.iter().all(|p| p.y < 1.05 + 1e-6), "{cells}: {lowest}");
+        }
+    }
+}
+
+#[test]
 fn gathers_take_up_a_longer_edge_and_leave_the_shorter_one_alone() {
     let scene = generate::gathered(24, 12, 1.6);
     let state = settle(&scene).unwrap();

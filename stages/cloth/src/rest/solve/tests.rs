@@ -54,8 +54,7 @@ pub(super) fn picture(scene: &Scene, x: &[Vec3], name: &str) {
         triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + x.len() as u32)));
         all.extend(&b.vertices);
     }
-    crate::scene::write_obj(&std::path::Path::new(&folder).join(format!("{name}.obj")), &all, &triangles)
-        .unwrap();
+    crate::obj::write(&std::path::Path::new(&folder).join(format!("{name}.obj")), &all, &triangles).unwrap();
 }
 
 #[test]

@@ -1,0 +1,99 @@
+//! The `v` and `f` lines of an OBJ text.
+
+use super::polygon::cut;
+use super::text::{Lines, decode, words};
+use super::{Mesh, ObjError};
+use nalgebra::Vector3;
+
+/// More vertices than any scanned body has.
+pub const MAX_VERTICES: usize = 4_000_000;
+
+/// As many triangles as that many vertices of a closed mesh have.
+pub const MAX_TRIANGLES: usize = 2 * MAX_VERTICES;
+
+/// Coordinates reach this far from the origin: ten kilometres in millimetres.
+pub const MAX_COORDINATE: f64 = 1e7;
+
+/// A face before it is cut into triangles.
+struct Face {
+    line: usize,
+    /// Its first corner in the list of all, and the one after its last.
+    corners: std::ops::Range<usize>,
+}
+
+/// Reads vertices and faces: `v x y z` and `f a b c`, with whatever stands behind (colours, texture and normal indices).
+///
+/// Indices may be negative, faces may stand before their vertices and have any number of corners; [`decode`] and [`Lines`] tell
+/// which encodings and line endings are read.
+///
+/// # Errors
+/// [`ObjError`] with the line.
+pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
+    let text = decode(bytes);
+    let mut mesh = Mesh::default();
+    let (mut corners, mut faces): (Vec<i64>, Vec<Face>) = (Vec::new(), Vec::new());
+    for (line, content) in Lines::new(&text) {
+        let mut words = words(&content);
+        match words.next() {
+            Some(b"v") => mesh.vertices.push(vertex(words, line)?),
+            Some(b"f") => {
+                let first = corners.len();
+                for word in words {
+                    corners.push(corner(word, mesh.vertices.len(), line)?);
+                }
+                faces.push(Face { line, corners: first..corners.len() });
+            }
+            _ => {}
+        }
+        if mesh.vertices.len() > MAX_VERTICES {
+            return Err(ObjError::TooMany { line, what: "vertices", most: MAX_VERTICES });
+        }
+        if corners.len() > 3 * MAX_TRIANGLES {
+            return Err(ObjError::TooMany { line, what: "triangles", most: MAX_TRIANGLES });
+        }
+    }
+    for face in faces {
+        let count = mesh.vertices.len();
+        let own = &corners[face.corners];
+        if let Some(&index) = own.iter().find(|i| **i as usize >= count) {
+            return Err(ObjError::NoVertex { line: face.line, index: index + 1, count });
+        }
+        let own: Vec<u32> = own.iter().map(|&i| i as u32).collect();
+        match own.len() {
+            0..3 => return Err(ObjError::FewCorners { line: face.line }),
+            n => cut(&own, &mesh.vertices, &mut mesh.triangles)
+                .ok_or(ObjError::Concave { line: face.line, corners: n })?,
+        }
+    }
+    if mesh.triangles.is_empty() { Err(ObjError::NoFaces) } else { Ok(mesh) }
+}
+
+fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<Vector3<f64>, ObjError> {
+    let mut next = || {
+        let word = words.next().ok_or(ObjError::Vertex { line, word: String::new() })?;
+        let number = std::str::from_utf8(word).ok().and_then(|w| w.parse::<f64>().ok());
+        match number.ok_or_else(|| ObjError::Vertex { line, word: clip(word) })? {
+            x if x.abs() <= MAX_COORDINATE => Ok(x),
+            _ => Err(ObjError::Coordinate { line, word: clip(word) }),
+        }
+    };
+    Ok(Vector3::new(next()?, next()?, next()?))
+}
+
+/// The vertex of `7`, `7/1`, `7/1/3` or `7//3`, counted from 0; a negative one counts from the last vertex above it. A positive one
+/// may come later in the file.
+fn corner(word: &[u8], count: usize, line: usize) -> Result<i64, ObjError> {
+    let first = word.split(|b| *b == b'/').next().unwrap_or_default();
+    let index = std::str::from_utf8(first).ok().and_then(|w| w.parse::<i64>().ok());
+    let index = index.ok_or_else(|| ObjError::Corner { line, word: clip(word) })?;
+    match index {
+        1.. => Ok(index - 1),
+        i if i < 0 && i >= -(count as i64) => Ok(count as i64 + i),
+        _ => Err(ObjError::NoVertex { line, index, count }),
+    }
+}
+
+/// The start of a word, fit for a message.
+fn clip(word: &[u8]) -> String {
+    String::from_utf8_lossy(word).chars().take(20).collect()
+}
