@@ -8,7 +8,7 @@ use crate::error::ClothError;
 use crate::force::{Air, AirDrag};
 use crate::mesh::Sheet;
 use crate::rest::solve::Wearer;
-use crate::rest::start::{check_lying, crossing};
+use crate::rest::start::{check_lying, crossing, crossings};
 use crate::solver::{Model, Solver, State};
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
@@ -47,8 +47,8 @@ impl Moving {
         moving.seams = Seams { pairs };
         moving.tree = moving.tree.map(|t| t.sewing(run.pieces.point.clone()));
         if let Some(tree) = &moving.tree {
-            let x = &moving.state.x;
-            if let Some(error) = crossing(run.scene, &run.pieces.panel, x, &tree.crossings(x)) {
+            let (x, panel) = (&moving.state.x, &run.pieces.panel);
+            if let Some(error) = crossing(run.scene, panel, x, &crossings(tree, panel, x)) {
                 return Err(error.into());
             }
             check_lying::<MotionError>(run.scene, &run.pieces, x)?;

@@ -12,8 +12,8 @@ mod seams;
 mod touching;
 
 pub(super) use seams::probably_reversed;
-pub(crate) use touching::crossing;
 pub(super) use touching::crossings_at_start;
+pub(crate) use touching::{crossing, crossings};
 
 use super::assemble::{cloths, layer_thickness};
 use super::pieces::Pieces;

@@ -200,7 +200,7 @@ fn panels_inside_the_body_are_refused_or_moved_out() {
     scene.positions.iter_mut().for_each(|p| p.z *= 0.2);
     let error = settle(&scene).unwrap_err();
     assert!(
-        matches!(&error, RestError::Start(StartError::InBody { vertices, depth, panel, .. }) if *vertices > 20 && *depth > 0.05 && panel == "panel 'front'"),
+        matches!(&error, RestError::Start(StartError::InBody { vertices, depth, panel, .. }) if *vertices > 20 && *depth > 0.05 && panel == "panel 'back'"),
         "{error}"
     );
     let mut scene = generate::drape(12);

@@ -103,13 +103,24 @@ fn a_panel_that_pierces_another_is_named_with_the_place() {
 }
 
 #[test]
+fn panels_that_touch_at_their_borders_do_not_cross() {
+    // A floor and a wall that stands on its edge, and a wall that stands on its middle.
+    for (at, crosses) in [(0.25, false), (0.0, false)] {
+        let mut scene = sheets(2, 0.0);
+        let second = scene.panels[1].vertices.clone();
+        scene.positions[second].iter_mut().for_each(|p| *p = Vec3::new(at, p.y, p.x + 0.25));
+        assert_eq!(told(&scene).is_err(), crosses, "{at} {:?}", told(&scene));
+    }
+}
+
+#[test]
 fn seams_whose_pairs_run_against_each_other_are_named() {
     let mut scene = generate::tube(8, 9);
     turn_round(&mut scene.seams[0]);
     let one = told(&scene).unwrap_err();
     assert_eq!(
         one,
-        "the pairs of seam 'side_left' run against each other: the two sides start 483 mm apart in the mean, and 340 mm if the order \
+        "the pairs of seam 'side_left' run against each other: the two sides start 481 mm apart in the mean, and 340 mm if the order \
          of one is turned round; list the second vertices of the pairs in reverse order"
     );
     turn_round(&mut scene.seams[1]);
@@ -180,7 +191,7 @@ fn vertices_deep_in_the_body_are_told_with_their_panel() {
     scene.positions.iter_mut().for_each(|p| p.z *= 0.2);
     let error = told(&scene).unwrap_err();
     assert!(error.contains(" vertices start inside the body, the deepest by "), "{error}");
-    assert!(error.contains(" mm: of panel 'front' at ("), "{error}");
+    assert!(error.contains(" mm: of panel 'back' at ("), "{error}");
     assert!(
         error
             .ends_with(" m; place the panels outside it, for only what is less than 50 mm deep is moved out"),

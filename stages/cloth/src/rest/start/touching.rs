@@ -9,7 +9,7 @@ use crate::rest::pieces::Pieces;
 use crate::rest::words;
 use crate::scene::Scene;
 use nalgebra::Vector3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 type Vec3 = Vector3<f64>;
 
@@ -32,7 +32,30 @@ pub(in crate::rest) fn crossings_at_start(
     let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
     let layer = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
     let layers = Layers { order: pieces.panel.iter().map(layer).collect(), ..Layers::default() };
-    Ok(tree.crossings(start).into_iter().filter(|(e, t)| !layers.is_ordered(e, t)).collect())
+    let found = crossings(&tree, &pieces.panel, start);
+    Ok(found.into_iter().filter(|(e, t)| !layers.is_ordered(e, t)).collect())
+}
+
+/// How far panels are moved to look whether they cross where a vertex of one lies in another, m: more than lies in a plane by rounding.
+const NUDGE: f64 = 1e-7;
+
+/// Crossings, those of panels included that pass through each other exactly at vertices or along edges, as panels of one grid do: these
+/// cross whichever way they are moved a little, where panels that touch come apart one way.
+pub(crate) fn crossings(tree: &ClothTree, panel: &[u32], x: &[Vec3]) -> Vec<Crossing> {
+    let found = tree.crossings(x);
+    if !found.is_empty() || panel.iter().all(|p| *p == panel[0]) {
+        return found;
+    }
+    // Multiples of irrational numbers, so that no two panels are moved alike.
+    let way = |k: u32| Vector3::new(0.819, 0.671, 0.549).map(|r: f64| (r * f64::from(k)).fract() * NUDGE);
+    let moved = |side: f64| -> Vec<Vec3> { x.iter().zip(panel).map(|(p, k)| p + way(*k) * side).collect() };
+    let panels = |(e, t): &Crossing| sorted([e[0], t[0]].map(|v| panel[v as usize]));
+    let mut ahead = tree.crossings(&moved(1.0));
+    if !ahead.is_empty() {
+        let behind: BTreeSet<[u32; 2]> = tree.crossings(&moved(-1.0)).iter().map(panels).collect();
+        ahead.retain(|c| behind.contains(&panels(c)));
+    }
+    ahead
 }
 
 /// Crossings of the start as an error that names the panels; nothing where there are none.
