@@ -270,9 +270,9 @@ fn bodies_with_holes_or_of_odd_shape_are_refused() {
     assert!(hole.starts_with("the body is not closed: 3 edges are open, the first from ("), "{hole}");
     // The place is that of the file, where the user looks for it.
     let [a, b, c] = made.triangles[made.triangles.len() - 1].map(|v| made.positions[v as usize]);
-    let named = [a, b, c]
-        .iter()
-        .filter(|p| hole.contains(&format!("({}, {}, {})", p.x * 1e3, -p.z * 1e3, p.y * 1e3)));
+    let corners = [a, b, c];
+    let named =
+        corners.iter().filter(|p| hole.contains(&format!("({}, {}, {})", p.x * 1e3, -p.z * 1e3, p.y * 1e3)));
     assert_eq!(named.count(), 2, "{hole}");
     assert_eq!(
         message("units", &z_up_millimetres(&made), ", up: Z, units: Metres"),

@@ -386,8 +386,10 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
     let scene = generate::curtain(4);
     let (g, _, c, p) = through_files(&scene).unwrap();
     let (cx, c, p) = (Context::quiet(), Some(&c), Some(&p));
-    let hung =
-        [Rest::default().run(&g, c, p, None, &cx).unwrap(), ImplicitEuler::default().run(&g, c, p, &cx).unwrap()];
+    let hung = [
+        Rest::default().run(&g, c, p, None, &cx).unwrap(),
+        ImplicitEuler::default().run(&g, c, p, &cx).unwrap(),
+    ];
     for h in hung {
         for &[corner, pin] in &scene.seams[0].pairs {
             assert_eq!(h.positions[corner as usize], h.positions[pin as usize]);
