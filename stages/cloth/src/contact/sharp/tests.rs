@@ -39,8 +39,8 @@ fn a_ball_has_none_and_a_cone_its_tip_and_rim() {
     let around = 32;
     let at = |k: u32| f64::from(k) * std::f64::consts::TAU / f64::from(around);
     let mut vertices = vec![Vec3::y(), Vec3::zeros()];
-    vertices.extend((0..around).map(|k| Vec3::new(at(k).cos(), 0.0, at(k).sin())));
-    let [rim, next] = [|k: u32| 2 + k, |k: u32| 2 + (k + 1) % 32];
+    vertices.extend((0..around).map(|k| Vec3::new(at(k).cos(), 0.0, at(k).sin()) * 0.5));
+    let (rim, next) = (|k: u32| 2 + k, |k: u32| 2 + (k + 1) % 32);
     let triangles: Vec<_> = (0..around).flat_map(|k| [[0, next(k), rim(k)], [1, rim(k), next(k)]]).collect();
     let sharp = Sharp::of(&vertices, &triangles).unwrap();
     assert_eq!(near(&sharp, Kind::VertexTriangle, [-0.1, 0.9, -0.1], [0.1, 1.1, 0.1]).len(), 1);
