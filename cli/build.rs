@@ -1,5 +1,8 @@
 //! Tells the program which commit it was built from; a source tree without git gives the version alone.
 
+// What it prints is for cargo.
+#![allow(clippy::print_stdout)]
+
 use std::path::Path;
 use std::process::Command;
 
