@@ -37,8 +37,8 @@ use clap::Parser;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
-use toile_core::{Registry, panics};
 use toile_core::pipeline::Faults;
+use toile_core::{Registry, panics};
 use toile_trade::apart::Apart;
 
 /// Exit codes of the command.

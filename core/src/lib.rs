@@ -66,8 +66,8 @@ pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
 pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, faults, forecast, plan, run};
 pub use stage::{
-    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, Placed, PluginId, PortValue, Role, Set, Stage,
-    StageMeta, StageType,
+    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, Placed, PluginId, PortValue, Role, Set,
+    Stage, StageMeta, StageType,
 };
 pub use toile_core_derive::{choice, plugin, stage};
 // The `stage` macro's expansion names these.
@@ -78,7 +78,7 @@ pub use {ron, serde, typetag};
 pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
-        Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, Section, SectionValue, Set, Stage,
-        StageError, StageType, choice, stage,
+        Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, Section, SectionValue, Set,
+        Stage, StageError, StageType, choice, stage,
     };
 }

@@ -26,7 +26,10 @@ pub fn quiet() {
         if let Some(at) = info.location() {
             let mut places = PLACES.lock().unwrap_or_else(PoisonError::into_inner);
             places.truncate(KEPT - 1);
-            places.push_front((said(info.payload()).unwrap_or_default(), format!("{}:{}", at.file(), at.line())));
+            places.push_front((
+                said(info.payload()).unwrap_or_default(),
+                format!("{}:{}", at.file(), at.line()),
+            ));
         }
         if loud {
             usual(info);

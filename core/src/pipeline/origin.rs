@@ -68,7 +68,8 @@ impl Origin {
             Some((region, Writer::Option(option, value))) => {
                 let inside = |l: &Label| covers(&region.span, &l.span);
                 let labels = fault.labels.iter().filter(|l| inside(l));
-                let in_option = |l: &Label| Label { span: in_option(region, &option, value, l), text: l.text.clone() };
+                let in_option =
+                    |l: &Label| Label { span: in_option(region, &option, value, l), text: l.text.clone() };
                 fault.labels = labels.map(in_option).collect();
                 if fault.labels.is_empty() {
                     fault.labels.push(Label { span: value..option.len(), text: String::new() });

@@ -208,7 +208,8 @@ fn sound(pipeline: &Pipeline) -> Result<(), RunError> {
             let Feed::Node { node: maker, port } = feed else { continue };
             let is_made = |n: &Node| *maker < index && *port < n.card.outputs.len();
             if !pipeline.nodes.get(*maker).is_some_and(is_made) {
-                let error = StageError::internal("it reads what no stage before it makes").hint(panics::REPORT);
+                let error =
+                    StageError::internal("it reads what no stage before it makes").hint(panics::REPORT);
                 let (stage, span) = (node.id.clone(), node.span.clone());
                 return Err(RunError { stage, entry: String::new(), span, error });
             }
@@ -239,7 +240,8 @@ fn sinks(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<usize>, RunErr
 
 fn unknown_stage(pipeline: &Pipeline, name: &str) -> RunError {
     let ids: Vec<&str> = pipeline.nodes.iter().map(|n| n.id.as_str()).collect();
-    let near = near::nearest(name, ids.iter().copied()).map_or_else(String::new, |n| format!("did you mean `{n}`? "));
+    let near = near::nearest(name, ids.iter().copied())
+        .map_or_else(String::new, |n| format!("did you mean `{n}`? "));
     let error = StageError::invalid(format!("there is no stage `{name}` in this pipeline"))
         .hint(format!("{near}its stages are {}", ids.join(", ")));
     RunError { stage: String::new(), entry: String::new(), span: 0..0, error }

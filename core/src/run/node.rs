@@ -66,10 +66,8 @@ fn guarded(node: &Node, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>,
         Err(payload) if payload.is::<StageError>() => {
             Err(payload.downcast::<StageError>().map_or_else(|_| StageError::internal(""), |e| *e))
         }
-        Err(payload) => {
-            Err(StageError::internal(format!("the stage panicked: {}", panics::words(payload)))
-                .hint(panics::REPORT))
-        }
+        Err(payload) => Err(StageError::internal(format!("the stage panicked: {}", panics::words(payload)))
+            .hint(panics::REPORT)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A stage in its pipeline, before anything runs.
 
-use crate::pipeline::{Feed, Node, Pipeline};
 use crate::Context;
+use crate::pipeline::{Feed, Node, Pipeline};
 
 /// What a stage may look at to check its parameters and files before the run.
 pub struct Placed<'a> {

@@ -42,16 +42,13 @@ impl Preset {
 
     fn typical(&self) -> Result<&'static Typical, StageError> {
         let wanted = self.name.trim().to_lowercase();
-        TYPICAL
-            .iter()
-            .find(|t| t.name == wanted || t.also.contains(&wanted.as_str()))
-            .ok_or_else(|| {
-                let names: Vec<&str> = TYPICAL.iter().map(|t| t.name).collect();
-                let near = nearest(&wanted, &names);
-                StageError::invalid(format!("there is no fabric preset \"{}\"", self.name))
-                    .hint(format!("did you mean \"{near}\"? there are: {}", names.join(", ")))
-                    .at("name")
-            })
+        TYPICAL.iter().find(|t| t.name == wanted || t.also.contains(&wanted.as_str())).ok_or_else(|| {
+            let names: Vec<&str> = TYPICAL.iter().map(|t| t.name).collect();
+            let near = nearest(&wanted, &names);
+            StageError::invalid(format!("there is no fabric preset \"{}\"", self.name))
+                .hint(format!("did you mean \"{near}\"? there are: {}", names.join(", ")))
+                .at("name")
+        })
     }
 }
 

@@ -19,8 +19,8 @@ mod tests;
 pub use decode::{Decoded, MAX_DECODED_BYTES, MAX_PIXELS, MAX_SIDE_PX, decode};
 pub use entry::{MAX_PX_PER_METRE, MAX_WIDTH_M, MIN_PX_PER_METRE, MIN_WIDTH_M, PhotoEntry, PhotoFile};
 pub(crate) use expected::frames;
-pub use photos::{Photos, read_photos};
 pub(crate) use photos::sides;
+pub use photos::{Photos, read_photos};
 
 use toile_core::Registry;
 

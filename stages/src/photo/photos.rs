@@ -1,13 +1,13 @@
 //! The stage that reads a pipeline's photos.
 
+use super::decode::check;
 use super::entry::{scale_fault, width_fault};
 use super::expected;
-use super::decode::check;
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use toile_core::cost::Size;
 use toile_core::StageMeta;
+use toile_core::cost::Size;
 use toile_core::param::ron_options;
 use toile_core::pipeline::{Node, nearest};
 use toile_core::prelude::*;
@@ -47,11 +47,12 @@ impl Photos {
             return vec![none()];
         }
         let of_name = self.photos.keys().filter_map(|name| named(name).err());
-        let of_side = self.photos.iter().filter_map(|(name, entry)| match (resolve(&self.photos, name), entry) {
-            (Err(e), _) => Some(e),
-            (Ok((file, _)), PhotoEntry::File(_)) => look(name, &file.file, placed.cx).err(),
-            (Ok(_), PhotoEntry::MirrorOf(_)) => None,
-        });
+        let of_side =
+            self.photos.iter().filter_map(|(name, entry)| match (resolve(&self.photos, name), entry) {
+                (Err(e), _) => Some(e),
+                (Ok((file, _)), PhotoEntry::File(_)) => look(name, &file.file, placed.cx).err(),
+                (Ok(_), PhotoEntry::MirrorOf(_)) => None,
+            });
         of_name.chain(of_side).collect()
     }
 

@@ -101,7 +101,11 @@ fn twice(side: &EdgeRef) -> StageError {
 }
 
 /// What is wrong with seams by the names of panels and edges alone, as far as these are known before the outlines are.
-pub(super) fn misnamed(seams: &[Seam], panels: Option<&[String]>, edges: Option<&[String]>) -> Vec<StageError> {
+pub(super) fn misnamed(
+    seams: &[Seam],
+    panels: Option<&[String]>,
+    edges: Option<&[String]>,
+) -> Vec<StageError> {
     let (mut used, mut found): (Vec<&EdgeRef>, Vec<StageError>) = (Vec::new(), Vec::new());
     for (i, seam) in seams.iter().enumerate() {
         for (k, side) in [&seam.a, &seam.b].into_iter().enumerate() {

@@ -4,8 +4,11 @@ use super::*;
 
 #[track_caller]
 fn syntax(text: &str, expected: &str, underlined: &[(&str, &str)]) {
-    assert_eq!(faults(text), expected);
-    let labels = places(text).remove(0);
+    let found = read(text).expect_err("the text has a fault");
+    let line = found.lines().into_iter().zip(&found.faults).filter(|(_, f)| f.code == "syntax");
+    let (lines, faults): (Vec<String>, Vec<&super::super::Fault>) = line.unzip();
+    assert_eq!(lines.join("\n"), expected);
+    let labels = super::labels(&found, faults[0]);
     assert_eq!(labels.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect::<Vec<_>>(), underlined);
 }
 
@@ -13,7 +16,7 @@ fn syntax(text: &str, expected: &str, underlined: &[(&str, &str)]) {
 fn brackets_are_closed() {
     syntax("(\n stages: [", "vest.ron:2:10: this `[` is never closed", &[("[", "")]);
     syntax(
-        "(stages: [Otsu()}",
+        "(stages: [Otsu()})",
         "vest.ron:1:17: expected `,` or `]`, found `}`",
         &[("}", ""), ("[", "opened here")],
     );
@@ -26,11 +29,7 @@ fn brackets_are_closed() {
 
 #[test]
 fn entries_have_commas_and_values() {
-    syntax(
-        "(stages: [\n Otsu()\n Canny()])",
-        "vest.ron:3:2: expected `,` or `]`, found `C`",
-        &[("C", ""), ("[", "opened here")],
-    );
+    syntax("(stages: [\n Otsu()\n Canny()])", "vest.ron:2:8: a comma is missing after `Otsu()`", &[("", "")]);
     syntax("(stages: [Otsu(,)])", "vest.ron:1:16: expected a value, found `,`", &[(",", "")]);
     syntax("(stages:", "vest.ron:1:9: expected a value, found the end of the file", &[("", "")]);
     syntax("(photos: {3})", "vest.ron:1:12: expected `:` after the key, found `}`", &[("}", "")]);
@@ -41,14 +40,14 @@ fn entries_have_commas_and_values() {
 
 #[test]
 fn texts_and_comments_are_closed() {
-    syntax("(name: \"vest)", "vest.ron:1:8: this text is never closed", &[("\"", "")]);
+    syntax("(name: \"vest)", "vest.ron:1:8: this text is never closed; write `\"` at its end", &[("\"", "")]);
     syntax("(name: r#\"vest\")", "vest.ron:1:8: this text is never closed", &[("r#\"", "")]);
-    syntax("(name: 'v)", "vest.ron:1:8: this text is never closed", &[("'", "")]);
+    syntax("(name: 'v)", "vest.ron:1:8: this text is never closed; write `'` at its end", &[("'", "")]);
     syntax("(/* name: 3)", "vest.ron:1:2: this comment is never closed", &[("/*", "")]);
     syntax(
         "(name: \"vest,\n plugins: [\"x\"])",
-        "vest.ron:2:13: expected `,` or `)`, found `x`",
-        &[("x", ""), ("(", "opened here"), ("\"", "this text runs over the end of its line")],
+        "vest.ron:1:8: this text is never closed; write `\"` at its end",
+        &[("\"", "")],
     );
 }
 
@@ -162,7 +161,11 @@ fn a_missing_comma_is_named_where_it_is_missing_and_the_rest_is_read() {
     slip("\"52 cm\"),", "\"52 cm\")", "vest.ron:5:53: a comma is missing after `(...)`");
     slip("style: Vest(),", "style: Vest()", "vest.ron:8:18: a comma is missing after `Vest()`");
     slip("    },\n", "    }\n", "vest.ron:7:6: a comma is missing after `{...}`");
-    slip("edge: \"12 mm\"),", "edge: \"12 mm\")", "vest.ron:15:34: a comma is missing after `GridMesher(...)`");
+    slip(
+        "edge: \"12 mm\"),",
+        "edge: \"12 mm\")",
+        "vest.ron:15:34: a comma is missing after `GridMesher(...)`",
+    );
     slip("left\", ", "left\" ", "vest.ron:20:37: a comma is missing after `\"front.side_left\"`");
     slip("Otsu(),", "Otsu();", "vest.ron:13:15: expected `,`, found `;`");
     slip("Otsu(),", "Otsu(),,", "vest.ron:13:16: expected a value, found `,`");
@@ -179,8 +182,16 @@ fn two_missing_commas_are_two_faults() {
 #[test]
 fn a_missing_colon_is_named() {
     slip("radius: 1", "radius 1", "vest.ron:12:33: a colon is missing after `radius`; write `radius: ...`");
-    slip("radius: 1", "radius = 1", "vest.ron:12:34: expected `:` after `radius`, found `=`; write `radius: ...`");
-    slip("style: Vest()", "style Vest()", "vest.ron:8:10: a colon is missing after `style`; write `style: ...`");
+    slip(
+        "radius: 1",
+        "radius = 1",
+        "vest.ron:12:34: expected `:` after `radius`, found `=`; write `radius: ...`",
+    );
+    slip(
+        "style: Vest()",
+        "style Vest()",
+        "vest.ron:8:10: a colon is missing after `style`; write `style: ...`",
+    );
     slip("\"front\": (", "\"front\" (", "vest.ron:5:17: expected `:` after the key, found `(`");
 }
 
@@ -192,7 +203,11 @@ fn a_text_without_one_of_its_quotes_is_named() {
     slip("\"12 mm\"", "\"12 mm", &format!("vest.ron:15:26: {closed}"));
     slip("\"12 mm\"", "12 mm\"", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
     slip("\"12 mm\"", "12 mm", "vest.ron:15:26: `12 mm` is a text and stands in quotes; write `\"12 mm\"`");
-    slip("\"vest\"", "my vest", "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`");
+    slip(
+        "\"vest\"",
+        "my vest",
+        "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`",
+    );
 }
 
 #[test]
@@ -201,7 +216,8 @@ fn a_bracket_that_lacks_its_partner_is_named() {
         format!("vest.ron:{place}: this `{bracket}` is never closed; write `{end}` before `{next}`")
     };
     slip("Report(),\n    ],", "Report(),", &never("11:13", "[", "]", "seams"));
-    slip("Otsu()", "Otsu(", &never("13:13", "(", ")", "Canny"));
+    slip("Otsu()", "Otsu(", "vest.ron:13:13: this `(` is never closed; write `)` before this comma");
+    slip("Otsu(),", "Otsu(", &never("13:13", "(", ")", "Canny"));
     slip("\"52 cm\"),\n    },", "\"52 cm\"),", &never("4:13", "{", "}", "style"));
     slip("Otsu()", "Otsu(]", "vest.ron:13:14: expected `)`, found `]`");
     slip("Otsu()", "Otsu())", "vest.ron:13:15: expected `,` or `]`, found `)`");
@@ -216,5 +232,8 @@ fn a_key_that_stands_twice_in_a_map_is_refused() {
     let labels = places(&text).remove(0);
     assert_eq!(labels[1], ("\"front\"".into(), "first here".into()));
     let plugins = "plugins: [(file: \"a\", file: \"b\")], name:";
-    assert_eq!(faults(&kit::VEST.replacen("name:", plugins, 1)), "vest.ron:3:27: the field `file` is given twice");
+    assert_eq!(
+        faults(&kit::VEST.replacen("name:", plugins, 1)),
+        "vest.ron:3:27: the field `file` is given twice"
+    );
 }
