@@ -3,7 +3,7 @@
 use crate::args::RunArgs;
 use crate::costs::{self, Known};
 use crate::progress::Bar;
-use crate::validate::{Refused, inspect, open, warn};
+use crate::validate::{Refused, inspect, open, warn_unused};
 use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
 use serde_json::json;
 use std::path::PathBuf;
@@ -45,7 +45,7 @@ pub(crate) fn once(
         Err(Refused::File(faults)) => return fail_load(&faults, args.json, streams),
     }
     if args.until.is_none() {
-        warn(&pipeline, registry, streams);
+        warn_unused(&pipeline, registry, streams);
     }
     if let Err(e) = check_folder(&folder(args)) {
         return unwritable(&pipeline, e, args.json, streams);

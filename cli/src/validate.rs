@@ -46,10 +46,16 @@ pub(crate) fn checked(
     Ok(pipeline)
 }
 
-/// Shows what a pipeline does not use.
-pub(crate) fn warn(pipeline: &Pipeline, registry: &Registry, streams: &mut Streams<'_>) {
-    for line in pipeline.warnings(registry).iter().flat_map(Faults::lines) {
-        streams.warn(line);
+/// Shows what is likely a slip in a pipeline that is none the less valid.
+fn warn(warnings: &Faults, streams: &mut Streams<'_>) {
+    warnings.lines().iter().for_each(|line| streams.warn(line));
+}
+
+/// Shows the stages whose results a run does not use.
+pub(crate) fn warn_unused(pipeline: &Pipeline, registry: &Registry, streams: &mut Streams<'_>) {
+    if let Some(mut warnings) = pipeline.warnings(registry) {
+        warnings.faults.retain(|w| w.code == "unused");
+        warn(&warnings, streams);
     }
 }
 
@@ -65,7 +71,7 @@ pub(crate) fn validate(args: &ValidateArgs, registry: &Registry, streams: &mut S
         match checked(path, &args.overrides, registry) {
             Ok(p) if args.json => warnings.extend(p.warnings(registry)),
             Ok(p) => {
-                warn(&p, registry, streams);
+                p.warnings(registry).iter().for_each(|w| warn(w, streams));
                 let line = format!("{}: valid, {} stages", stdin::name(path), p.nodes.len());
                 let words = quality_words(&standings(path, &args.overrides, &p, registry));
                 let words = if words.is_empty() { words } else { format!(", qualities {words}") };

@@ -251,7 +251,13 @@ impl Context {
     /// The full path of an ordinary file within the limit.
     fn readable(&self, path: &str) -> Result<PathBuf, StageError> {
         let full = self.resolve(path);
-        let size = crate::files::ordinary(&full).map_err(|e| unread(path, &io_words(&e)))?.len();
+        let meta = crate::files::ordinary(&full).map_err(|e| match (e.kind(), near_file(path, &full)) {
+            (std::io::ErrorKind::NotFound, Some(near)) => {
+                unread(path, &io_words(&e)).hint(format!("did you mean \"{near}\"? {RELATIVE}"))
+            }
+            _ => unread(path, &io_words(&e)),
+        })?;
+        let size = meta.len();
         match size > MAX_FILE_BYTES {
             true => Err(unread(path, &format!("it has {size} bytes, the limit is {MAX_FILE_BYTES}"))),
             false => Ok(full),
@@ -287,8 +293,25 @@ impl Context {
 }
 
 fn unread(path: &str, why: &str) -> StageError {
-    StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}"))
-        .hint("paths are relative to the pipeline file")
+    StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}")).hint(RELATIVE)
+}
+
+const RELATIVE: &str = "paths are relative to the pipeline file";
+
+/// The most files of a folder that are compared with a name.
+const MAX_FILES: usize = 1000;
+
+/// A file beside one that is not there, with a name so like it that it was probably meant: its path as the pipeline would
+/// write it.
+fn near_file(path: &str, full: &Path) -> Option<String> {
+    let name = full.file_name()?.to_str()?;
+    let files = std::fs::read_dir(full.parent()?).ok()?.take(MAX_FILES).flatten();
+    let mut names: Vec<String> = files.filter_map(|f| f.file_name().into_string().ok()).collect();
+    // A system lists its files in no order.
+    names.sort();
+    let near = crate::pipeline::nearest(name, names.iter().map(String::as_str))?;
+    let start = path.strip_suffix(name)?;
+    Some(format!("{start}{near}"))
 }
 
 /// The system's reason without its number, so that it reads alike everywhere.

@@ -46,6 +46,12 @@ fn a_run_against_a_lock_says_what_differs() {
     assert_eq!(lines[0], "lock: Otsu: bias 0.0 -> 2.0");
     assert!(lines[1].starts_with("lock: Otsu: result ") && lines.len() == 2, "{lines:?}");
 
+    // What is not run has no result, and is no difference; its parameters are.
+    let until = run(dir.path(), &["--until", "NeighbourhoodMean"]);
+    assert_eq!((until.code, until.err.as_str()), (0, ""));
+    let other = run(dir.path(), &["--until", "NeighbourhoodMean", "--set", "stages.Otsu.bias=2.0"]);
+    assert_eq!((other.code, other.err.as_str()), (4, "lock: Otsu: bias 0.0 -> 2.0\n"));
+
     fs::copy(pipeline("samples/vest/back.jpg"), dir.path().join("front.jpg")).unwrap();
     let photo = run(dir.path(), &[]);
     let starts: Vec<&str> = photo.err.lines().map(|l| l.split(" result").next().unwrap()).collect();

@@ -31,6 +31,7 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
     let file = dir.path().join("old.ron");
     let name = file.display().to_string();
     fs::write(&file, OLD).unwrap();
+    fs::copy(pipeline("samples/vest/front.jpg"), dir.path().join("front.jpg")).unwrap();
 
     let refused = toile(&["validate", &name, "--json"]);
     assert_eq!(refused.code, 3);
@@ -68,6 +69,35 @@ fn the_shipped_pipelines_are_up_to_date() {
         let answer = toile(&["migrate", "--check", &pipeline(name)]);
         assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
     }
+}
+
+#[test]
+fn what_validate_refuses_is_not_called_up_to_date() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = dir.path().join("new.ron");
+    let name = file.display().to_string();
+    let new =
+        OLD.replace("LaplacianEdges", "Laplacian").replace("            tugs: 3,            // pull\n", "");
+    fs::copy(pipeline("samples/vest/front.jpg"), dir.path().join("front.jpg")).unwrap();
+    for (right, wrong, words) in [
+        ("Otsu()", "Otzu()", "unknown stage `Otzu`"),
+        ("\"cotton poplin\"", "\"coton poplin\"", "there is no fabric preset \"coton poplin\""),
+        ("Place()", "Place(ease: 2)", "the length 2 has no unit"),
+    ] {
+        fs::write(&file, new.replace(right, wrong)).unwrap();
+        for more in [&["migrate", "--check", &name][..], &["migrate", &name]] {
+            let answer = toile(more);
+            assert_eq!((answer.code, answer.out.as_str()), (3, ""), "{}", answer.err);
+            assert!(answer.err.contains(words), "{}", answer.err);
+        }
+        assert_eq!(toile(&["validate", &name]).code, 3);
+    }
+    // An old file with such a fault is rewritten, and the fault is told.
+    fs::write(&file, OLD.replace("Otsu()", "Otzu()")).unwrap();
+    let answer = toile(&["migrate", &name]);
+    assert_eq!(answer.code, 3);
+    assert!(answer.out.contains("line 9: stage LaplacianEdges -> Laplacian"), "{}", answer.out);
+    assert!(answer.err.contains("unknown stage `Otzu`"), "{}", answer.err);
 }
 
 #[test]

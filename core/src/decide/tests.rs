@@ -94,7 +94,7 @@ fn what_nobody_asks_for_is_left_out_and_runs_when_it_is_asked_for() {
     assert_eq!(unasked(until), [], "what `until` cuts off is the user's own choice");
     let unknown = RunOptions { also: vec!["Shoes".into()], ..RunOptions::default() };
     let error = decisions(&pipeline, &unknown).unwrap_err();
-    assert_eq!(error.to_string(), "Shoes: there is no stage `Shoes` in this pipeline");
+    assert_eq!(error.to_string(), "there is no stage `Shoes` in this pipeline");
 }
 
 #[test]

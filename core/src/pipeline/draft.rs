@@ -13,6 +13,8 @@ pub(super) struct Draft {
     pub(super) id: String,
     /// The name that the file gives it.
     pub(super) name: String,
+    /// The name that was probably meant: others read from it by that.
+    pub(super) meant: Option<&'static str>,
     /// The `id` that the file gives it.
     pub(super) given_id: Option<(String, Range<usize>)>,
     /// The ids that its `from` names.
@@ -40,6 +42,7 @@ impl Draft {
         Draft {
             id: String::new(),
             name: name.to_owned(),
+            meant: None,
             given_id: None,
             from: Vec::new(),
             card,
@@ -73,10 +76,11 @@ pub(super) fn name_all<'a>(drafts: impl Iterator<Item = &'a mut Draft>, faults: 
     }
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     for draft in drafts.into_iter().filter(|d| d.given_id.is_none()) {
-        let count = counts.entry(draft.name.clone()).or_insert(0);
+        let name = draft.meant.unwrap_or(&draft.name).to_owned();
+        let count = counts.entry(name.clone()).or_insert(0);
         loop {
             *count += 1;
-            draft.id = if *count == 1 { draft.name.clone() } else { format!("{}{count}", draft.name) };
+            draft.id = if *count == 1 { name.clone() } else { format!("{name}{count}") };
             if !taken.contains_key(&draft.id) {
                 break;
             }

@@ -12,7 +12,7 @@ use super::fault::Fault;
 use super::words::{a, all_of, bridge, list, required};
 use super::{Feed, near};
 use crate::artifact::{ArtifactType, RunLog};
-use crate::{Arity, Card, InPort, Kind, Registry};
+use crate::{Arity, Card, InPort, Kind, Registry, Section, SectionValue};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
@@ -157,29 +157,34 @@ impl<'a> Graph<'a> {
         self.drafts[maker].card.as_ref()?.outputs.iter().position(|o| o.kind == kind)
     }
 
+    /// A stage as the file calls it: its id, or the field that stands for it.
+    fn called(&self, i: usize) -> &'a str {
+        let draft = &self.drafts[i];
+        let is_its =
+            |s: &&Section| matches!(s.holds, SectionValue::Table { stage, .. } if stage == draft.name);
+        let field = self.registry.sections().iter().find(is_its).filter(|_| draft.is_table);
+        field.map_or(draft.id.as_str(), |s| s.field)
+    }
+
     /// Nothing before the stage makes the kind.
     fn missing(&self, i: usize, kind: Kind) -> Fault {
-        let (taker, kind_words) = (&self.drafts[i], a(kind));
+        let (taker, kind_words, called) = (&self.drafts[i], a(kind), self.called(i));
         let makes = |d: &&Draft| {
             let fresh =
                 |c: &Card| c.outputs.iter().any(|o| o.kind == kind) && !required(c).any(|k| k == kind);
             d.card.as_ref().is_some_and(fresh)
         };
         if let Some(later) = self.drafts[i + 1..].iter().find(makes) {
-            let message =
-                format!("`{}` takes {kind_words}, but `{}` makes it only later", taker.id, later.id);
+            let message = format!("`{called}` takes {kind_words}, but `{}` makes it only later", later.id);
             return Fault::new("order", message)
                 .at(&taker.place, format!("takes {kind_words}"))
                 .at(&later.place, format!("makes {kind_words}"))
-                .hint(format!("put `{}` before `{}`", later.id, taker.id));
+                .hint(format!("put `{}` before `{called}`", later.id));
         }
         let live = self.live.iter().filter(|(_, m)| !m.is_empty()).map(|(k, _)| *k).collect();
-        Fault::new(
-            "missing_input",
-            format!("`{}` takes {kind_words}, but nothing before it makes one", taker.id),
-        )
-        .at(&taker.place, format!("takes {kind_words}"))
-        .hint(bridge(kind, &live, self.registry))
+        Fault::new("missing_input", format!("`{called}` takes {kind_words}, but nothing before it makes one"))
+            .at(&taker.place, format!("takes {kind_words}"))
+            .hint(bridge(kind, &live, self.registry))
     }
 
     /// Several stages make the kind.

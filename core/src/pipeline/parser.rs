@@ -5,112 +5,17 @@
 //! messages cannot name the bracket that was never closed. Cost: one pass over the text. Limits:
 //! nesting up to [`MAX_DEPTH`].
 
+mod meant;
+mod repairs;
+
+pub(super) use repairs::{Meant, Repairs, SyntaxFault};
+
 use super::tree::{Bracket, Entry, Shape, Tree};
-use std::collections::{BTreeMap, BTreeSet};
+use repairs::Repair;
 use std::ops::Range;
 
 /// The deepest nesting; far beyond any pipeline, and safe for the stack.
 pub(super) const MAX_DEPTH: usize = 60;
-
-/// Why a text is no RON.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct SyntaxFault {
-    pub(super) message: String,
-    pub(super) hint: Option<String>,
-    pub(super) span: Range<usize>,
-    /// Other places that it is about, with what is there.
-    pub(super) also: Vec<(Range<usize>, &'static str)>,
-    /// Where the parser stood.
-    at: usize,
-    /// What may have been meant.
-    pub(super) meant: Vec<Meant>,
-}
-
-/// One thing that may have been meant: how the text is to be read, and what is to be said of it then.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Meant {
-    pub(super) repair: Repair,
-    /// Message, hint and place in those words; none where those of the fault serve.
-    pub(super) words: Option<(String, Option<String>, Range<usize>)>,
-}
-
-/// How a faulty text is read all the same.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Repair {
-    /// There is a comma at that byte.
-    Comma(usize),
-    /// There is a comma at that byte in place of what stands there.
-    CommaFor(usize, Range<usize>),
-    /// There is a colon at that byte.
-    Colon(usize),
-    /// The bracket at work is closed at that byte.
-    Close(usize),
-    /// All brackets are closed at the end of the text.
-    CloseAll,
-    /// What stands there is not there.
-    Skip(Range<usize>),
-    /// What stands there closes the bracket at work.
-    Closer(Range<usize>),
-    /// What stands there is one value.
-    Value(Range<usize>),
-}
-
-/// Repairs of a text, each at its byte.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Repairs {
-    commas: BTreeSet<usize>,
-    colons: BTreeSet<usize>,
-    /// How many brackets are closed.
-    closes: BTreeMap<usize, usize>,
-    skips: BTreeMap<usize, usize>,
-    values: BTreeMap<usize, usize>,
-    /// Whether the end of the text closes all brackets.
-    end: bool,
-}
-
-impl Repairs {
-    /// The same with one more.
-    pub(super) fn with(&self, repair: &Repair) -> Self {
-        let mut all = self.clone();
-        match repair {
-            Repair::Comma(at) => {
-                all.commas.insert(*at);
-            }
-            Repair::CommaFor(at, span) => {
-                all.commas.insert(*at);
-                all.skips.insert(span.start, span.end);
-            }
-            Repair::Colon(at) => {
-                all.colons.insert(*at);
-            }
-            Repair::Close(at) => *all.closes.entry(*at).or_default() += 1,
-            Repair::CloseAll => all.end = true,
-            Repair::Skip(span) => {
-                all.skips.insert(span.start, span.end);
-            }
-            Repair::Closer(span) => {
-                *all.closes.entry(span.start).or_default() += 1;
-                all.skips.insert(span.start, span.end);
-            }
-            Repair::Value(span) => {
-                all.values.insert(span.start, span.end);
-            }
-        }
-        all
-    }
-}
-
-impl SyntaxFault {
-    /// Where the parser stood: the farther, the better a text was understood.
-    pub(super) fn reached(&self) -> usize {
-        self.at
-    }
-
-    fn meant(mut self, repair: Repair, words: Option<(String, Option<String>, Range<usize>)>) -> Self {
-        self.meant.push(Meant { repair, words });
-        self
-    }
-}
 
 /// Parses a whole text: one value, with comments and white space around it.
 pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
@@ -119,10 +24,18 @@ pub(super) fn parse(text: &str) -> Result<Tree, SyntaxFault> {
 
 /// Parses a text as it is with the repairs.
 pub(super) fn repaired(text: &str, repairs: &Repairs) -> Result<Tree, SyntaxFault> {
-    let mut p =
-        Parser { text, at: 0, long_text: None, last_text: None, lenient: false, repairs: repairs.clone() };
+    let mut p = Parser {
+        text,
+        at: 0,
+        long_text: None,
+        last_text: None,
+        first: 0,
+        lenient: false,
+        repairs: repairs.clone(),
+    };
     p.eat("\u{feff}");
     p.attributes()?;
+    p.first = p.at;
     if p.rest().is_empty() {
         return Err(fault("there is nothing in it", p.at..p.at));
     }
@@ -151,6 +64,8 @@ struct Parser<'a> {
     long_text: Option<Range<usize>>,
     /// The last text in quotes that was read, whole.
     last_text: Option<Range<usize>>,
+    /// Where the text's own value begins.
+    first: usize,
     /// True after a bracket that a repair closed: its comma may stand before that place.
     lenient: bool,
     repairs: Repairs,
@@ -242,7 +157,7 @@ impl<'a> Parser<'a> {
         }
         if let Some(end) = self.repairs.values.get(&self.at) {
             self.at = *end;
-            return Ok(Tree { span: from..self.at, shape: Shape::Broken });
+            return Ok(Tree::new(from..self.at, Shape::Broken));
         }
         let Some(c) = self.peek() else {
             return Err(fault("expected a value, found the end of the file", self.here()));
@@ -251,7 +166,7 @@ impl<'a> Parser<'a> {
             return self.group(None, from, bracket, depth);
         }
         if self.literal(c)? {
-            return Ok(Tree { span: from..self.at, shape: Shape::Literal });
+            return Ok(Tree::new(from..self.at, Shape::Literal));
         }
         let Some(name) = self.name() else {
             let fault = fault(format!("expected a value, found {}", self.found()), self.here());
@@ -265,7 +180,7 @@ impl<'a> Parser<'a> {
             Some('(') => self.group(Some(name), from, Bracket::Round, depth),
             _ => {
                 self.at = name.end;
-                Ok(Tree { span: name, shape: Shape::Name })
+                Ok(Tree::new(name, Shape::Name))
             }
         }
     }
@@ -333,20 +248,6 @@ impl<'a> Parser<'a> {
         Err(fault.meant(Repair::Value(from..end), Some((words, hint, from..from + open))))
     }
 
-    /// Where a text that lacks its closing quote probably ends: before the comma or bracket behind it, on its own line.
-    fn text_end(&self, from: usize) -> usize {
-        let line = self.text.get(from..).unwrap_or("").split('\n').next().unwrap_or("");
-        from + line.find([',', ')', ']', '}']).unwrap_or(line.trim_end().len())
-    }
-
-    /// The end of what stands here up to a comma, a bracket or the end of the line.
-    fn word_end(&self) -> usize {
-        let line = self.rest().split('\n').next().unwrap_or("");
-        let end = line.find([',', ')', ']', '}', '(', '[', '{']).unwrap_or(line.len());
-        let end = self.at + line[..end].trim_end().len();
-        end.max(self.here().end)
-    }
-
     fn raw(&mut self, open: usize, hashes: usize) -> Result<(), SyntaxFault> {
         let from = self.at;
         let close = format!("\"{}", "#".repeat(hashes));
@@ -375,6 +276,9 @@ impl<'a> Parser<'a> {
                 break;
             }
             self.lenient = false;
+            if self.peek() == Some(',') {
+                return Err(self.no_entry(bracket, &opened));
+            }
             let entry = self.entry(bracket, depth)?;
             let end = entry.value.span.end;
             let missing = self.repairs.commas.contains(&end);
@@ -384,15 +288,14 @@ impl<'a> Parser<'a> {
                 return Err(self.after_entry(bracket, &opened, &entries));
             }
         }
-        Ok(Tree { span: from..self.at, shape: Shape::Group { name, bracket, inside, entries } })
+        Ok(Tree::new(from..self.at, Shape::Group { name, bracket, inside, entries }))
     }
 
     /// Whether the bracket ends here.
     fn closes(&self, bracket: Bracket) -> bool {
         match self.peek() {
             _ if self.repairs.closes.contains_key(&self.at) => true,
-            None => self.repairs.end,
-            Some(c) => c == bracket.close(),
+            c => c == Some(bracket.close()),
         }
     }
 
@@ -415,159 +318,12 @@ impl<'a> Parser<'a> {
                 self.at += c.len_utf8();
                 Ok(true)
             }
-            None if self.repairs.end => Ok(true),
             None | Some(')' | ']' | '}') => {
                 let fault = self.unclosed(opened, &format!("`{}`", bracket.close()));
                 Err(self.closed(fault, bracket, opened, entries))
             }
             Some(_) => Ok(false),
         }
-    }
-
-    /// What may have been meant where another bracket stands than the one that closes.
-    fn closed(
-        &self,
-        fault: SyntaxFault,
-        bracket: Bracket,
-        opened: &Range<usize>,
-        entries: &[Entry],
-    ) -> SyntaxFault {
-        let early = self.early_end(opened, entries).map(|at| {
-            let next =
-                self.text.get(at..).and_then(|t| t.split(['(', ':', '\n']).next()).unwrap_or("").trim();
-            let hint = Some(format!("write `{}` before `{next}`", bracket.close()));
-            let message = format!("this `{}` is never closed", &self.text[opened.clone()]);
-            (at, (message, hint, opened.clone()))
-        });
-        let fault = match early {
-            Some((at, words)) => fault.meant(Repair::Close(at), Some(words)),
-            None => fault,
-        };
-        match self.peek() {
-            None => fault.meant(Repair::CloseAll, None),
-            Some(_) => {
-                let here = self.here();
-                let fault =
-                    fault.meant(Repair::Closer(here.clone()), None).meant(Repair::Close(self.at), None);
-                fault.meant(Repair::Skip(here), None)
-            }
-        }
-    }
-
-    /// Where a bracket that was never closed probably ends: before the first entry on a later line that is of another form than
-    /// those before it.
-    fn early_end(&self, opened: &Range<usize>, entries: &[Entry]) -> Option<usize> {
-        let start = |e: &Entry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
-        let form = |e: &Entry| match &e.key {
-            None => 0,
-            Some(key) if self.text[key.clone()].starts_with('"') => 1,
-            Some(_) => 2,
-        };
-        let later = |e: &&Entry| self.text[opened.end..start(e)].contains('\n');
-        let first = entries.first()?;
-        let is_round = self.text[opened.clone()] == *"(";
-        // A stage's arguments stand on its line, or have names.
-        let lone = is_round && form(first) == 0 && later(&first);
-        if lone {
-            Some(start(first))
-        } else {
-            entries.iter().filter(later).find(|e| form(e) != form(first)).map(start)
-        }
-    }
-
-    /// At the end of the file the bracket is at fault, else what stands here.
-    fn unclosed(&self, opened: &Range<usize>, expected: &str) -> SyntaxFault {
-        match self.peek() {
-            None => {
-                let words = format!("this `{}` is never closed", &self.text[opened.clone()]);
-                SyntaxFault { at: self.at, ..fault(words, opened.clone()) }
-            }
-            Some(_) => {
-                let message = format!("expected {expected}, found {}", self.found());
-                let mut also = vec![(opened.clone(), "opened here")];
-                also.extend(
-                    self.long_text.iter().map(|t| (t.clone(), "this text runs over the end of its line")),
-                );
-                SyntaxFault { also, ..fault(message, self.here()) }
-            }
-        }
-    }
-
-    /// An entry is followed by neither a comma nor the bracket's end.
-    fn after_entry(&self, bracket: Bracket, opened: &Range<usize>, entries: &[Entry]) -> SyntaxFault {
-        let plain = self.unclosed(opened, &format!("`,` or `{}`", bracket.close()));
-        let (Some(entry), Some(c)) = (entries.last(), self.peek()) else {
-            return self.closed(plain, bracket, opened, entries);
-        };
-        if matches!(c, ')' | ']' | '}') {
-            return self.closed(plain, bracket, opened, entries);
-        }
-        if c == ':' && bracket == Bracket::Square {
-            let at = entry.value.span.start;
-            let name = &self.text[entry.value.span.clone()];
-            let hint = Some(format!("write `]` before `{name}`"));
-            let words = ("this `[` is never closed".to_owned(), hint, opened.clone());
-            return plain.meant(Repair::Close(at), Some(words));
-        }
-        let (value, end) = (&entry.value, entry.value.span.end);
-        let shown = shown(self.text, value);
-        let here = self.here();
-        if c == ';' || c == '.' {
-            let words = (format!("expected `,`, found `{c}`"), None, here.clone());
-            return plain.meant(Repair::CommaFor(end, here), Some(words));
-        }
-        let mut fault = plain;
-        if let Some(text) = self.text_before(value) {
-            let to = self.text_end(text.start + 1);
-            let hint = Some("write `\"` at its end".to_owned());
-            let words = ("this text is never closed".to_owned(), hint, text.start..text.start + 1);
-            fault = fault.meant(Repair::Value(text.start..to), Some(words));
-        }
-        // A bare word or number and more words: a text without its quotes.
-        let bare = matches!(value.shape, Shape::Literal | Shape::Name)
-            && !self.text[value.span.clone()].contains('"');
-        let same_line = !self.text[end..self.at].contains('\n');
-        let to = self.bare_end();
-        if bare && same_line && (entry.key.is_some() || bracket != Bracket::Round) && !self.is_field_next() {
-            let words = self.text[value.span.start..to].trim_end_matches('"').to_owned();
-            let hint = Some(format!("write `\"{words}\"`"));
-            let message = format!("`{words}` is a text and stands in quotes");
-            fault =
-                fault.meant(Repair::Value(value.span.start..to), Some((message, hint, value.span.start..to)));
-        }
-        if bracket == Bracket::Round && entry.key.is_none() && value.shape == Shape::Name {
-            let name = &self.text[value.span.clone()];
-            let message = match c {
-                '=' => format!("expected `:` after `{name}`, found `=`"),
-                _ => format!("a colon is missing after `{name}`"),
-            };
-            let hint = Some(format!("write `{name}: ...`"));
-            let at = if c == '=' { here } else { end..end };
-            fault = fault.meant(Repair::Colon(end), Some((message, hint, at)));
-        }
-        let words = (format!("a comma is missing after {shown}"), None, end..end);
-        fault.meant(Repair::Comma(end), Some(words))
-    }
-
-    /// A text that ended just before: it may have run on beyond its end.
-    fn text_before(&self, value: &Tree) -> Option<Range<usize>> {
-        let text = self.last_text.clone().filter(|t| *t == value.span)?;
-        let runs_on = self.text[text.clone()].contains('\n') || text.end == self.at;
-        runs_on.then_some(text)
-    }
-
-    /// The end of a text without quotes, which may have one at its end.
-    fn bare_end(&self) -> usize {
-        let end = self.word_end();
-        let line = self.text.get(end..).unwrap_or("");
-        if line.starts_with('"') { end + 1 } else { end }
-    }
-
-    /// Whether `name:` comes.
-    fn is_field_next(&self) -> bool {
-        let rest = self.rest();
-        let name = rest.find(|c| !is_name(c)).unwrap_or(rest.len());
-        name > 0 && rest[name..].trim_start().starts_with(':')
     }
 
     fn entry(&mut self, bracket: Bracket, depth: usize) -> Result<Entry, SyntaxFault> {
@@ -616,23 +372,6 @@ impl<'a> Parser<'a> {
         }
     }
 }
-
-/// A value as a message names it: short ones whole, of a group its head.
-fn shown(text: &str, value: &Tree) -> String {
-    let own = text.get(value.span.clone()).unwrap_or("");
-    let whole = own.chars().count() <= MAX_SHOWN && !own.contains('\n');
-    match &value.shape {
-        _ if whole => format!("`{own}`"),
-        Shape::Group { name: Some(name), .. } => format!("`{}(...)`", text.get(name.clone()).unwrap_or("")),
-        Shape::Group { bracket: Bracket::Round, .. } => "`(...)`".into(),
-        Shape::Group { bracket: Bracket::Square, .. } => "`[...]`".into(),
-        Shape::Group { bracket: Bracket::Curly, .. } => "`{...}`".into(),
-        _ => "this value".into(),
-    }
-}
-
-/// The longest value that a message repeats, characters.
-const MAX_SHOWN: usize = 24;
 
 /// What may follow in a name; beyond ASCII also marks that join a letter.
 fn is_name(c: char) -> bool {

@@ -95,7 +95,7 @@ impl Reader<'_> {
         let mut fields = Fields::new();
         for entry in entries {
             let Some(key) = &entry.key else {
-                if !entry.value.is_broken() {
+                if !entry.value.is_broken {
                     self.fault("unnamed_value", "a value without a field name", &entry.value.span);
                 }
                 continue;
@@ -128,7 +128,7 @@ impl Reader<'_> {
     }
 
     fn text_value(&mut self, field: &str, value: &Tree) -> Option<String> {
-        if value.is_broken() {
+        if value.is_broken {
             return None;
         }
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
@@ -140,7 +140,7 @@ impl Reader<'_> {
 
     fn stages(&mut self, list: &Tree) -> Vec<Draft> {
         let Shape::Group { bracket: Bracket::Square, entries, .. } = &list.shape else {
-            if list.is_broken() {
+            if list.is_broken {
                 return vec![Draft::unknown(&list.span)];
             }
             self.fault("bad_value", "`stages` wants a list, `[Otsu(), ...]`", &list.head());
@@ -203,6 +203,9 @@ impl Reader<'_> {
         let from = self.named_sources(value.entries());
         let card = self.card(&name, name_span, section, &from);
         let mut draft = Draft::new(&name, &value.span, name_span, card);
+        let is_known =
+            self.registry.card(&name).is_some() || migrate::old_stage(self.registry, &name).is_some();
+        draft.meant = draft.card.as_ref().map(|c| c.name).filter(|_| !is_known);
         match entries {
             Some(entries) => self.arguments(&mut draft, entries),
             None => {
@@ -210,7 +213,7 @@ impl Reader<'_> {
                 self.push(fault.hint(format!("write `{name}()`")));
             }
         }
-        if self.faults.len() == before && !value.is_broken() {
+        if self.faults.len() == before && !value.is_broken {
             self.make(&mut draft);
         }
         draft
@@ -331,7 +334,7 @@ impl Reader<'_> {
 
     /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
-        if value.is_broken() {
+        if value.is_broken {
             return false;
         }
         let Err(e) = doc.check.run(self.at(&value.span), doc) else { return true };

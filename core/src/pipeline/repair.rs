@@ -20,7 +20,10 @@ pub(super) fn read(text: &str) -> (Option<Tree>, Vec<Fault>) {
     let (mut repairs, mut faults) = (Repairs::default(), Vec::new());
     loop {
         let fault = match repaired(text, &repairs) {
-            Ok(tree) => return (Some(tree), faults),
+            Ok(mut tree) => {
+                repairs.mark(&mut tree);
+                return (Some(tree), faults);
+            }
             Err(fault) => fault,
         };
         let best = if text.len() <= MAX_REPAIRED { best(text, &repairs, &fault) } else { None };

@@ -9,6 +9,8 @@ pub(super) struct Tree {
     pub(super) span: Range<usize>,
     /// What it is.
     pub(super) shape: Shape,
+    /// True where something in it has a fault of syntax, which was told: nothing more is to be said of its text.
+    pub(super) is_broken: bool,
 }
 
 /// What a value is.
@@ -18,7 +20,7 @@ pub(super) enum Shape {
     Literal,
     /// A bare name: `Otsu`, `true`.
     Name,
-    /// A value whose text has a fault that was told: nothing more is to be said of it.
+    /// A value that cannot be read.
     Broken,
     /// `Name(...)`, `(...)`, `[...]` or `{...}`.
     Group {
@@ -57,9 +59,9 @@ impl Tree {
         }
     }
 
-    /// True where something in it has a fault that was told.
-    pub(super) fn is_broken(&self) -> bool {
-        self.shape == Shape::Broken || self.entries().iter().any(|e| e.value.is_broken())
+    /// A value in which nothing is broken.
+    pub(super) fn new(span: Range<usize>, shape: Shape) -> Self {
+        Tree { span, shape, is_broken: false }
     }
 
     /// The entry of that key, or of that number where entries have none.

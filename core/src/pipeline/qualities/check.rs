@@ -11,7 +11,7 @@ use std::ops::Range;
 const FIXED: [&str; 2] = ["qualities", "plugins"];
 
 /// The faults that each quality's settings bring into the file, at their places in it. Where the file has faults of its own,
-/// only those that lie in what is set.
+/// only those that lie in what is set: a path may lead nowhere because of them.
 pub(in crate::pipeline) fn settings(text: &str, registry: &Registry) -> Vec<Fault> {
     let qualities = named(text);
     if qualities.is_empty() {
@@ -34,7 +34,7 @@ fn one(text: &str, registry: &Registry, quality: &Quality, file_is_clean: bool) 
     let applied = overrides::apply(text, registry, &given);
     let mut found = Vec::new();
     check(&applied.text, registry, &mut found);
-    let refused = applied.refused.iter().map(|(i, f)| (Some(*i), f.clone()));
+    let refused = applied.refused.iter().map(|(i, f)| (Some(*i), f.clone())).filter(|_| file_is_clean);
     let brought = found.into_iter().map(|f| (applied.origin.number(&f), f));
     let brought = brought.filter(|(i, _)| file_is_clean || i.is_some());
     refused.chain(brought).map(|(i, fault)| placed(quality, i, fault)).collect()

@@ -153,7 +153,7 @@ impl Reader<'_> {
 
     fn words(&mut self, field: &str, value: &Tree) -> Option<String> {
         let parsed = ron_options().from_str(self.at(&value.span)).ok();
-        if parsed.is_none() && !value.is_broken() {
+        if parsed.is_none() && !value.is_broken {
             self.fault("bad_value", format!("`{field}` wants text in quotes"), &value.span);
         }
         parsed

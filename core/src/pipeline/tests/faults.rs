@@ -228,7 +228,7 @@ fn a_clash_is_drawn_with_both_ends_underlined() {
     ·                         ╰── takes a panel
  17 │         Painter(),
     ╰────
-  help: `DelaunayMesher()` and `GridMesher()` make a panel from an outline; put one of them
+  help: `GridMesher()` and `DelaunayMesher()` make a panel from an outline; put one of them
         between
 "#;
     assert_eq!(faults.render(false), expected);

@@ -121,13 +121,13 @@ fn nothing_makes_it() {
     clash(
         &["Canny()"],
         "vest.ron:3:1: `Canny` takes a mask, but nothing before it makes one; \
-         `Local()` and `Otsu()` make a mask from a photo; put one of them before",
+         `Otsu()` and `Local()` make a mask from a photo; put one of them before",
         &[("Canny", "takes a mask")],
     );
     clash(
         &["Taubin()"],
         "vest.ron:3:1: `Taubin` takes a panel, but nothing before it makes one; \
-         `DelaunayMesher()` and `GridMesher()` make a panel from an outline",
+         `GridMesher()` and `DelaunayMesher()` make a panel from an outline",
         &[("Taubin", "takes a panel")],
     );
     assert_eq!(
@@ -200,7 +200,7 @@ fn from_names_what_does_not_fit() {
     clash(
         &["Otsu()", "Canny()", "Taubin(from: \"Canny\")"],
         "vest.ron:5:14: `Taubin` takes a panel, but `Canny` makes an outline; \
-         `DelaunayMesher()` and `GridMesher()` make a panel from an outline; put one of them between",
+         `GridMesher()` and `DelaunayMesher()` make a panel from an outline; put one of them between",
         &[("\"Canny\"", "takes a panel"), ("Canny", "makes an outline")],
     );
     clash(

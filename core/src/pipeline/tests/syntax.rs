@@ -4,8 +4,11 @@ use super::*;
 
 #[track_caller]
 fn syntax(text: &str, expected: &str, underlined: &[(&str, &str)]) {
-    assert_eq!(faults(text), expected);
-    let labels = places(text).remove(0);
+    let found = read(text).expect_err("the text has a fault");
+    let line = found.lines().into_iter().zip(&found.faults).filter(|(_, f)| f.code == "syntax");
+    let (lines, faults): (Vec<String>, Vec<&super::super::Fault>) = line.unzip();
+    assert_eq!(lines.join("\n"), expected);
+    let labels = super::labels(&found, faults[0]);
     assert_eq!(labels.iter().map(|(a, b)| (a.as_str(), b.as_str())).collect::<Vec<_>>(), underlined);
 }
 
@@ -13,7 +16,7 @@ fn syntax(text: &str, expected: &str, underlined: &[(&str, &str)]) {
 fn brackets_are_closed() {
     syntax("(\n stages: [", "vest.ron:2:10: this `[` is never closed", &[("[", "")]);
     syntax(
-        "(stages: [Otsu()}",
+        "(stages: [Otsu()})",
         "vest.ron:1:17: expected `,` or `]`, found `}`",
         &[("}", ""), ("[", "opened here")],
     );
@@ -26,11 +29,7 @@ fn brackets_are_closed() {
 
 #[test]
 fn entries_have_commas_and_values() {
-    syntax(
-        "(stages: [\n Otsu()\n Canny()])",
-        "vest.ron:3:2: expected `,` or `]`, found `C`",
-        &[("C", ""), ("[", "opened here")],
-    );
+    syntax("(stages: [\n Otsu()\n Canny()])", "vest.ron:2:8: a comma is missing after `Otsu()`", &[("", "")]);
     syntax("(stages: [Otsu(,)])", "vest.ron:1:16: expected a value, found `,`", &[(",", "")]);
     syntax("(stages:", "vest.ron:1:9: expected a value, found the end of the file", &[("", "")]);
     syntax("(photos: {3})", "vest.ron:1:12: expected `:` after the key, found `}`", &[("}", "")]);
@@ -41,14 +40,14 @@ fn entries_have_commas_and_values() {
 
 #[test]
 fn texts_and_comments_are_closed() {
-    syntax("(name: \"vest)", "vest.ron:1:8: this text is never closed", &[("\"", "")]);
+    syntax("(name: \"vest)", "vest.ron:1:8: this text is never closed; write `\"` at its end", &[("\"", "")]);
     syntax("(name: r#\"vest\")", "vest.ron:1:8: this text is never closed", &[("r#\"", "")]);
-    syntax("(name: 'v)", "vest.ron:1:8: this text is never closed", &[("'", "")]);
+    syntax("(name: 'v)", "vest.ron:1:8: this text is never closed; write `'` at its end", &[("'", "")]);
     syntax("(/* name: 3)", "vest.ron:1:2: this comment is never closed", &[("/*", "")]);
     syntax(
         "(name: \"vest,\n plugins: [\"x\"])",
-        "vest.ron:2:13: expected `,` or `)`, found `x`",
-        &[("x", ""), ("(", "opened here"), ("\"", "this text runs over the end of its line")],
+        "vest.ron:1:8: this text is never closed; write `\"` at its end",
+        &[("\"", "")],
     );
 }
 
@@ -217,7 +216,8 @@ fn a_bracket_that_lacks_its_partner_is_named() {
         format!("vest.ron:{place}: this `{bracket}` is never closed; write `{end}` before `{next}`")
     };
     slip("Report(),\n    ],", "Report(),", &never("11:13", "[", "]", "seams"));
-    slip("Otsu()", "Otsu(", &never("13:13", "(", ")", "Canny"));
+    slip("Otsu()", "Otsu(", "vest.ron:13:13: this `(` is never closed; write `)` before this comma");
+    slip("Otsu(),", "Otsu(", &never("13:13", "(", ")", "Canny"));
     slip("\"52 cm\"),\n    },", "\"52 cm\"),", &never("4:13", "{", "}", "style"));
     slip("Otsu()", "Otsu(]", "vest.ron:13:14: expected `)`, found `]`");
     slip("Otsu()", "Otsu())", "vest.ron:13:15: expected `,` or `]`, found `)`");

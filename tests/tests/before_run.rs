@@ -1,0 +1,190 @@
+//! What `validate` finds beside the form of a file, and what a run refuses before its first stage.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use toile_tests::{Answer, pipeline, toile, without_rest};
+
+/// The vest without its solver, its samples where they are, with `from` replaced by `to` each.
+fn vest(dir: &Path, changes: &[(&str, &str)]) -> String {
+    let text = without_rest(&fs::read_to_string(pipeline("vest.ron")).unwrap());
+    let mut text = text.replace("samples/", &format!("{}samples/", pipeline("")));
+    for (from, to) in changes {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let file = dir.join("vest.ron");
+    fs::write(&file, text).unwrap();
+    file.display().to_string()
+}
+
+fn words(answer: &Answer) -> String {
+    answer.err.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+#[test]
+fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_element() {
+    let dir = tempfile::tempdir().unwrap();
+    let seams = "seams: [ Match(\"front.side_left\", \"back.side_lft\"), Match(\"frnt.hem\", \"back.hem\") ],\n    stages: [";
+    let file = vest(
+        dir.path(),
+        &[
+            ("vest/front.jpg", "vest/none.jpg"),
+            ("cotton poplin", "coton poplin"),
+            ("low: 20", "low: 90"),
+            ("Glb()", "Glb(name: \"a/b\")"),
+            ("\"172 cm\"", "\"172 mm\""),
+            ("stages: [", seams),
+        ],
+    );
+    let text = fs::read_to_string(&file).unwrap();
+    let answer = toile(&["validate", "--json", &file]);
+    assert_eq!(answer.code, 3);
+    let said: Value = serde_json::from_str(&answer.out).unwrap();
+    let faults: Vec<(String, String)> = said["faults"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|f| {
+            let number = |key: &str| f[key].as_u64().unwrap() as usize;
+            let line = text.lines().nth(number("line") - 1).unwrap();
+            let rest: String = line.chars().skip(number("column") - 1).take(12).collect();
+            let message = f["message"].as_str().unwrap().split(&pipeline("")).collect::<String>();
+            (rest, format!("{message}; {}", f["hint"].as_str().unwrap_or("")))
+        })
+        .collect();
+    let starts: Vec<(&str, &str)> =
+        faults.iter().map(|(at, what)| (at.as_str(), what.split("; ").next().unwrap())).collect();
+    let place: String = format!("\"{}", pipeline("")).chars().take(12).collect();
+    assert_eq!(
+        starts,
+        [
+            (place.as_str(), "Photos: cannot read \"samples/vest/none.jpg\": no such file"),
+            ("\"172 mm\", bu", "Mannequin: nobody has a height of 17.2 cm"),
+            ("\"coton popli", "Preset: there is no fabric preset \"coton poplin\""),
+            ("\"back.side_l", "Seams: the panel \"back\" has no edge \"side_lft\""),
+            ("\"frnt.hem\", ", "Seams: there is no panel \"frnt\""),
+            ("90, high: 60", "Canny: `low` is 90, above `high`, which is 60"),
+            (
+                "\"a/b\"), Obj(",
+                "Glb: the file name \"a/b\" has a character other than letters, digits, space, '-', '_' and '.'"
+            ),
+        ]
+    );
+    assert!(faults[3].1.ends_with("did you mean \"back.side_left\"?"), "{:?}", faults[3]);
+    assert!(faults[4].1.ends_with("did you mean \"front.hem\"?"), "{:?}", faults[4]);
+
+    // A run says the same before any stage runs, and writes nothing.
+    let out = dir.path().join("out").display().to_string();
+    let run = toile(&["run", &file, "--json", "--out", &out]);
+    assert_eq!(run.code, 3);
+    let run: Value = serde_json::from_str(&run.out).unwrap();
+    assert_eq!(run["faults"], said["faults"]);
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn a_run_until_a_stage_asks_only_the_stages_that_it_runs() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = vest(dir.path(), &[("cotton poplin", "coton poplin")]);
+    let out = dir.path().join("out").display().to_string();
+    assert_eq!(toile(&["validate", &file]).code, 3);
+    let run = toile(&["run", &file, "--until", "Otsu", "--out", &out]);
+    assert_eq!(run.code, 0, "{}", run.err);
+}
+
+#[test]
+fn a_photo_is_looked_at_by_its_header() {
+    let dir = tempfile::tempdir().unwrap();
+    let whole = fs::read(pipeline("samples/vest/front.jpg")).unwrap();
+    for (name, bytes, what) in [
+        ("cut.jpg", &whole[..5000], "ends before its picture does"),
+        ("text.jpg", b"hello", "is not a JPEG or PNG picture"),
+        ("empty.jpg", b"", "is empty"),
+    ] {
+        let path = dir.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let set = format!("photos.front.file={:?}", path.display().to_string());
+        let answer = toile(&["validate", &pipeline("vest.ron"), "--set", &set]);
+        assert_eq!(answer.code, 3);
+        assert!(words(&answer).contains(what), "{}", answer.err);
+        // The option is shown, and no line of the file.
+        assert!(
+            answer.err.contains("[command line:1:") && !answer.err.contains("vest.ron:"),
+            "{}",
+            answer.err
+        );
+    }
+}
+
+#[test]
+fn near_names_of_stages_on_the_command_line() {
+    let vest = pipeline("vest.ron");
+    for (command, meant) in [
+        (&["run", &vest, "--until", "Otzu"][..], "Otsu"),
+        (&["run", &vest, "--also", "Preveiw"], "Preview"),
+        (&["why", &vest, "Setle"], "Settle"),
+        (&["explain", &vest, "--until", "GridMehser"], "GridMesher"),
+    ] {
+        let answer = toile(command);
+        assert_eq!(answer.code, 3, "{command:?}");
+        let asked = command[command.len() - 1];
+        let head = format!(
+            "× there is no stage `{asked}` in this pipeline help: did you mean `{meant}`? its stages are Photos, "
+        );
+        assert!(words(&answer).starts_with(&head), "{}", answer.err);
+    }
+}
+
+#[test]
+fn what_is_not_used_is_a_warning() {
+    let dir = tempfile::tempdir().unwrap();
+    let warned = |file: &str| {
+        let answer = toile(&["validate", file]);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        answer.err.replace(file, "vest.ron")
+    };
+    for name in toile_tests::PIPELINES {
+        assert_eq!(warned(&pipeline(name)), "");
+    }
+    let file = vest(dir.path(), &[("Report(),", "Report(), Refine(),")]);
+    let line = fs::read_to_string(&file).unwrap().lines().position(|l| l.contains("Refine(")).unwrap() + 1;
+    let expected = format!(
+        "warning: vest.ron:{line}:44: nothing uses what `Refine` makes; it is left out of a run; \
+         put a stage that takes a garment behind it, or take it away\n"
+    );
+    assert_eq!(warned(&file), expected);
+    let json: Value = serde_json::from_str(&toile(&["validate", "--json", &file]).out).unwrap();
+    assert_eq!((&json["valid"], &json["warnings"][0]["code"]), (&true.into(), &"unused".into()));
+
+    let file = vest(dir.path(), &[("Glb(), Obj(), Preview(), Report(),", "Report(),")]);
+    let text = fs::read_to_string(&file).unwrap();
+    let line = text.lines().position(|l| l.trim() == "stages: [").unwrap() + 1;
+    let said = warned(&file);
+    let last = said.lines().last().unwrap();
+    let head = format!("warning: vest.ron:{line}:5: the pipeline writes no garment; ");
+    assert!(last.starts_with(&head) && last.ends_with(" write a model; put one of them last"), "{said}");
+}
+
+#[test]
+fn a_stage_after_the_report_is_no_panic_and_what_is_written_is_judged() {
+    let dir = tempfile::tempdir().unwrap();
+    let out = dir.path().join("out").display().to_string();
+    let triangles = |end: &str| {
+        let file = vest(dir.path(), &[("Glb(), Obj(), Preview(), Report(),", end)]);
+        let run = toile(&["run", &file, "--json", "--out", &out]);
+        assert_eq!(run.code, 4, "{end}: {}{}", run.out, run.err);
+        let json: Value = serde_json::from_str(&run.out).unwrap();
+        json["garment"]["triangles"].as_u64().unwrap() as usize
+    };
+    let was = triangles("GarmentObj(), Report(),");
+    for late in ["Refine(parts: 2)", "PlaneSmoother()", "BvhCollider()"] {
+        assert_eq!(triangles(&format!("GarmentObj(), Report(), {late},")), was, "{late}");
+    }
+    // What is written after the report is what is judged.
+    let judged = triangles("Report(), Refine(parts: 2), GarmentObj(),");
+    let written = fs::read_to_string(format!("{out}/garment.obj")).unwrap();
+    assert_eq!(judged, written.lines().filter(|l| l.starts_with("f ")).count());
+    assert!(judged > 3 * was);
+}

@@ -1,0 +1,132 @@
+//! Typical slips in every shipped pipeline: each is one fault, at its place, with the name that was meant.
+#![allow(clippy::unwrap_used)]
+
+use serde_json::Value;
+use std::fs;
+use toile_tests::{PIPELINES, pipeline, toile};
+
+/// What stands in the file, the slip with `^` before the place of its fault, what is said, and the hint's beginning.
+type Slip = (&'static str, &'static str, &'static str, &'static str);
+
+const SLIPS: [Slip; 34] = [
+    // names of stages, parameters, fields and choices
+    ("Otsu()", "^Otzu()", "unknown stage `Otzu`", "did you mean `Otsu`?"),
+    ("GraphCut()", "^GrahpCut()", "unknown stage `GrahpCut`", "did you mean `GraphCut`?"),
+    ("PlaneSmoother(", "^PlaneSmother(", "unknown stage `PlaneSmother`", "did you mean `PlaneSmoother`?"),
+    ("Refine(parts", "^Refien(parts", "unknown stage `Refien`", "did you mean `Refine`?"),
+    ("GarmentObj(", "^GarmentOjb(", "unknown stage `GarmentOjb`", "did you mean `GarmentObj`?"),
+    ("style: Vest()", "style: ^Vset()", "unknown stage `Vset`", "did you mean `Vest`?"),
+    ("body: Mannequin(", "body: ^Manequin(", "unknown stage `Manequin`", "did you mean `Mannequin`?"),
+    ("lambda: 0.5", "^lamda: 0.5", "unknown parameter `lamda`", "did you mean `lambda`?"),
+    ("from_here: true", "^form_here: true", "unknown parameter `form_here`", "did you mean `from_here`?"),
+    ("Scene(file:", "Scene(^fiel:", "unknown parameter `fiel`", "did you mean `file`?"),
+    ("graded: false", "^gradet: false", "unknown parameter `gradet`", "did you mean `graded`?"),
+    ("stages: [", "^stagse: [", "unknown field `stagse`", "did you mean `stages`?"),
+    ("fabric: Preset", "^fabirc: Preset", "unknown field `fabirc`", "did you mean `fabric`?"),
+    (
+        "mask: Eight",
+        "mask: ^Eigth",
+        "`mask` wants Four | Eight: there is no choice `Eigth`",
+        "did you mean `Eight`?",
+    ),
+    // values
+    ("ease: \"2 cm\"", "ease: ^2", "`ease`: the length 2 has no unit", "write \"2 mm\" or \"2 cm\""),
+    ("lambda: 0.5", "lambda: ^5", "`lambda` is 5, above its greatest value 1", ""),
+    ("high: 60", "high: ^\"60\"", "`high` wants a number, found `\"60\"`", ""),
+    ("from_here: true", "from_here: ^yes", "`from_here` wants true | false, found `yes`", ""),
+    // what lies outside the file
+    ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", "did you mean \"samples/"),
+    (
+        "MirrorOf(\"front\")",
+        "^MirrorOf(\"frnt\")",
+        "Photos: photo \"back\" is to mirror \"frnt\", which there is not",
+        "did you mean \"front\"?",
+    ),
+    (
+        "file: \"samples/scene/skirt.json\"",
+        "file: ^\"samples/scene/skrit.json\"",
+        "Scene: cannot read \"samples/scene/skrit.json\": no such file",
+        "did you mean \"samples/scene/skirt.json\"?",
+    ),
+    (
+        "name: \"cotton ",
+        "name: ^\"coton ",
+        "Preset: there is no fabric preset \"coton ",
+        "did you mean \"cotton ",
+    ),
+    (
+        "\"172 cm\"",
+        "^\"172 mm\"",
+        "Mannequin: nobody has a height of 17.2 cm",
+        "a height of 80.0 cm to 210.0 cm would fit",
+    ),
+    // commas, colons, quotes and brackets
+    ("ease: \"2 cm\"),", "ease: \"2 cm\")^", "a comma is missing after `Place(ease: \"2 cm\")`", ""),
+    ("low: 20,", "low: 20^", "a comma is missing after `20`", ""),
+    ("name: \"result\"),", "name: \"result\")^", "a comma is missing after `GarmentObj(...)`", ""),
+    ("lambda: 0.5", "lambda^ 0.5", "a colon is missing after `lambda`", "write `lambda: ...`"),
+    ("ease: \"2 cm\"", "ease: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
+    ("ease: \"2 cm\"", "ease: ^2 cm", "`2 cm` is a text and stands in quotes", "write `\"2 cm\"`"),
+    ("Glb()", "^Glb", "`Glb` needs brackets", "write `Glb()`"),
+    ("(lambda: 0.5)", "^(lambda: 0.5", "this `(` is never closed", "write `)` before `Place`"),
+    // what stands twice, and settings of qualities
+    ("\"back\":", "^\"front\":", "the key \"front\" is given twice", ""),
+    ("low: 20,", "low: 20, ^low: 20,", "the field `low` is given twice", ""),
+    ("[\"stages.Refine.parts", "[^\"stages.Refin.parts", "quality `", "did you mean `stages.Refine.parts`?"),
+];
+
+/// The place of `^` and the text without it; none where the slip has none.
+fn marked(slip: &str) -> (Option<usize>, String) {
+    (slip.find('^'), slip.replacen('^', "", 1))
+}
+
+fn validated(text: &str, dir: &std::path::Path) -> (u8, Vec<Value>) {
+    let file = dir.join("slip.ron");
+    fs::write(&file, text).unwrap();
+    let answer = toile(&["validate", "--json", &file.display().to_string()]);
+    let said: Value = serde_json::from_str(&answer.out).unwrap();
+    (answer.code, said["faults"].as_array().unwrap().clone())
+}
+
+#[test]
+fn each_slip_is_one_fault_at_its_place_with_the_name_that_was_meant() {
+    let dir = tempfile::tempdir().unwrap();
+    let samples = fs::canonicalize(pipeline("samples")).unwrap();
+    std::os::unix::fs::symlink(samples, dir.path().join("samples")).unwrap();
+    let (mut tried, mut wrong) = ([0; SLIPS.len()], Vec::new());
+    for name in PIPELINES {
+        let whole = fs::read_to_string(pipeline(name)).unwrap();
+        assert_eq!(validated(&whole, dir.path()), (0, Vec::new()), "{name}");
+        // The head of a file is comments, which tell how it is run.
+        let head = whole.find("\n(\n").unwrap();
+        for (i, (right, slip, message, hint)) in SLIPS.iter().enumerate() {
+            let Some(at) = whole[head..].find(right).map(|at| head + at) else { continue };
+            let (mark, slip) = marked(slip);
+            let text = format!("{}{slip}{}", &whole[..at], &whole[at + right.len()..]);
+            let (code, faults) = validated(&text, dir.path());
+            let said = |key: &str| faults[0][key].as_str().unwrap_or("").to_owned();
+            let place = mark.map(|mark| {
+                let before = &text[..at + mark];
+                let line = before.matches('\n').count() + 1;
+                (line, before.rsplit('\n').next().unwrap().chars().count() + 1)
+            });
+            let found = faults
+                .first()
+                .map(|f| (f["line"].as_u64().unwrap() as usize, f["column"].as_u64().unwrap() as usize));
+            let is_right = code == 3
+                && faults.len() == 1
+                && said("message").starts_with(message)
+                && said("hint").starts_with(hint)
+                && (place.is_none() || place == found);
+            if !is_right {
+                wrong.push(format!(
+                    "{name}: {right} -> {slip}: {code}, wanted {place:?} {message}; {hint}\n  {faults:#?}"
+                ));
+            }
+            tried[i] += 1;
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let untried: Vec<&str> = SLIPS.iter().zip(tried).filter(|(_, n)| *n == 0).map(|(s, _)| s.0).collect();
+    assert!(untried.is_empty(), "no pipeline has {untried:?}");
+}
