@@ -4,6 +4,7 @@ use super::polygon::cut;
 use super::text::{Lines, decode, words};
 use super::{Mesh, ObjError};
 use nalgebra::Vector3;
+use std::collections::HashMap;
 
 /// More vertices than any scanned body has.
 pub const MAX_VERTICES: usize = 4_000_000;
@@ -52,6 +53,9 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
             return Err(ObjError::TooMany { line, what: "triangles", most: MAX_TRIANGLES });
         }
     }
+    // A face that is listed again, from another corner on or the other way round, is cut as the first time, so that its triangles
+    // are found to be the same. Only looked up, never walked through.
+    let mut known: HashMap<Vec<u32>, (Vec<u32>, std::ops::Range<usize>)> = HashMap::new();
     for face in faces {
         let count = mesh.vertices.len();
         let own = &corners[face.corners];
@@ -61,11 +65,34 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
         let own: Vec<u32> = own.iter().map(|&i| i as u32).collect();
         match own.len() {
             0..3 => return Err(ObjError::FewCorners { line: face.line }),
-            n => cut(&own, &mesh.vertices, &mut mesh.triangles)
-                .ok_or(ObjError::Concave { line: face.line, corners: n })?,
+            3 => mesh.triangles.push([own[0], own[1], own[2]]),
+            n => {
+                let first = mesh.triangles.len();
+                let mut key = own.clone();
+                key.sort_unstable();
+                match known.get(&key) {
+                    Some((earlier, range)) => {
+                        let again: Vec<[u32; 3]> = mesh.triangles[range.clone()].to_vec();
+                        let turned = follower(&own, key[0]) != follower(earlier, key[0]);
+                        let as_listed = |t: [u32; 3]| if turned { [t[0], t[2], t[1]] } else { t };
+                        mesh.triangles.extend(again.into_iter().map(as_listed));
+                    }
+                    None => {
+                        cut(&own, &mesh.vertices, &mut mesh.triangles)
+                            .ok_or(ObjError::Concave { line: face.line, corners: n })?;
+                        known.insert(key, (own, first..mesh.triangles.len()));
+                    }
+                }
+            }
         }
     }
     if mesh.triangles.is_empty() { Err(ObjError::NoFaces) } else { Ok(mesh) }
+}
+
+/// The corner behind another one of a face.
+fn follower(face: &[u32], corner: u32) -> Option<u32> {
+    let at = face.iter().position(|c| *c == corner)?;
+    Some(face[(at + 1) % face.len()])
 }
 
 fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<Vector3<f64>, ObjError> {

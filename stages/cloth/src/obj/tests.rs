@@ -176,6 +176,9 @@ fn what_bounds_nothing_is_dropped_and_counted() {
         told.unwrap(),
         "2 triangles without area are removed, 2 triangles that are listed twice are removed, 1 vertex that no face uses is left out"
     );
+    let (mesh, told) = body(format!("{CUBE}f 3 4 2 1\n"));
+    assert_eq!(mesh, cube(), "the first face again, from its second corner on");
+    assert_eq!(told.unwrap(), "2 triangles that are listed twice are removed");
     // Double-sided: every face the other way round as well.
     let back: String = CUBE
         .lines()
