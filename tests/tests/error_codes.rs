@@ -159,8 +159,8 @@ fn vest(change: &str) -> (u8, Value) {
 fn pattern_loading() {
     let (code, said) = vest("photos.front.file=\"gone.jpg\"");
     assert_eq!(
-        (code, &said["error"], &said["message"]),
-        (3, &"pattern_loading".into(), &"cannot read \"gone.jpg\": no such file".into())
+        (code, &said["faults"][0]["code"], &said["faults"][0]["message"]),
+        (3, &"pattern_loading".into(), &"Photos: cannot read \"gone.jpg\": no such file".into())
     );
 }
 

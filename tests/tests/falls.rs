@@ -98,10 +98,10 @@ fn a_skirt_too_wide_is_an_error_with_a_remedy() {
 }
 
 #[test]
-fn a_body_in_centimetres_is_told_by_its_size() {
+fn a_body_in_centimetres_is_read_so_and_told() {
     let (answer, _) = Skirt::new().scaled_body(100.0).run("Rest()");
-    assert_eq!(answer.code, 4, "{}", answer.err);
-    assert!(words(&answer).contains("the body is 105.00 m tall"), "{}", answer.err);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(words(&answer).contains("the body's OBJ is read in centimetres"), "{}", answer.err);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use toile_tests::{PIPELINES, pipeline, toile};
 /// What stands in the file, the slip with `^` before the place of its fault, what is said, and the hint's beginning.
 type Slip = (&'static str, &'static str, &'static str, &'static str);
 
-const SLIPS: [Slip; 34] = [
+const SLIPS: [Slip; 33] = [
     // names of stages, parameters, fields and choices
     ("Otsu()", "^Otzu()", "unknown stage `Otzu`", "did you mean `Otsu`?"),
     ("GraphCut()", "^GrahpCut()", "unknown stage `GrahpCut`", "did you mean `GraphCut`?"),
@@ -30,18 +30,12 @@ const SLIPS: [Slip; 34] = [
         "did you mean `Eight`?",
     ),
     // values
-    ("ease: \"2 cm\"", "ease: ^2", "`ease`: the length 2 has no unit", "write \"2 mm\" or \"2 cm\""),
-    ("lambda: 0.5", "lambda: ^5", "`lambda` is 5, above its greatest value 1", ""),
+    ("ease: \"2 cm\"", "ease: ^2", "`ease`: the length 2 has no unit; write \"2 mm\" or \"2 cm\"", ""),
+    ("lambda: 0.5", "lambda: ^5", "`lambda` is 5, above its greatest value ", ""),
     ("high: 60", "high: ^\"60\"", "`high` wants a number, found `\"60\"`", ""),
     ("from_here: true", "from_here: ^yes", "`from_here` wants true | false, found `yes`", ""),
     // what lies outside the file
-    ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", "did you mean \"samples/"),
-    (
-        "MirrorOf(\"front\")",
-        "^MirrorOf(\"frnt\")",
-        "Photos: photo \"back\" is to mirror \"frnt\", which there is not",
-        "did you mean \"front\"?",
-    ),
+    ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", ""),
     (
         "file: \"samples/scene/skirt.json\"",
         "file: ^\"samples/scene/skrit.json\"",
@@ -54,12 +48,7 @@ const SLIPS: [Slip; 34] = [
         "Preset: there is no fabric preset \"coton ",
         "did you mean \"cotton ",
     ),
-    (
-        "\"172 cm\"",
-        "^\"172 mm\"",
-        "Mannequin: nobody has a height of 17.2 cm",
-        "a height of 80.0 cm to 210.0 cm would fit",
-    ),
+    ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets
     ("ease: \"2 cm\"),", "ease: \"2 cm\")^", "a comma is missing after `Place(ease: \"2 cm\")`", ""),
     ("low: 20,", "low: 20^", "a comma is missing after `20`", ""),

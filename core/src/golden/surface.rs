@@ -227,7 +227,7 @@ mod tests {
         let garment = dress::garment();
         let mut finer = garment.clone();
         // Each triangle cut in three at its middle.
-        for t in garment.triangles[garment.panels[1].triangles.clone()].to_vec() {
+        for t in garment.triangles[garment.panels[1].triangles.clone()].iter().copied() {
             let middle = finer.positions.len() as u32;
             let mean = |p: [Point3; 3]| Point3::from((p[0].coords + p[1].coords + p[2].coords) / 3.0);
             finer.positions.push(mean(t.map(|v| garment.positions[v as usize])));

@@ -54,7 +54,7 @@ fn write_surface(f: &mut std::fmt::Formatter<'_>, surface: &Surface) -> std::fmt
     for panel in &surface.panels {
         writeln!(f, "panel {}", panel.name)?;
         for Place { flat: [u, v], space, .. } in &panel.places {
-            let [x, y, z] = space.map(|c| hundredths(c));
+            let [x, y, z] = space.map(hundredths);
             writeln!(f, "{u} {v} {x} {y} {z}")?;
         }
     }

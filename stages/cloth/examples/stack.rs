@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use toile_cloth::rest::solve::{LevelReport, Rest, RestError, Rested};
-use toile_cloth::scene::{self, generate};
+use toile_cloth::scene::generate;
 
 const USAGE: &str = "stack SHEETS CELLS SECONDS [STATE.obj] [--trace]";
 

@@ -197,7 +197,7 @@ fn read_in(cx: &Context, name: &str, text: impl AsRef<[u8]>, rest: &str) -> Resu
 #[test]
 fn a_mannequin_written_and_read_has_its_landmarks_again() {
     let made = mannequin("()").unwrap();
-    let found = read("again", &z_up_millimetres(&made), ", up: Z").unwrap();
+    let found = read("again", z_up_millimetres(&made), ", up: Z").unwrap();
     assert_eq!(found.triangles.len(), made.triangles.len());
     assert!((found.volume() / made.volume() - 1.0).abs() < 1e-6);
     for (name, tolerance) in [("bust", 0.03), ("waist", 0.03), ("hip", 0.03), ("shoulder_width", 0.15)] {

@@ -92,7 +92,6 @@ impl Rest {
         garment: &Garment,
         collider: Option<&Collider>,
         phases: Option<&Phases>,
-        body: Option<&Body>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
         check_garment(garment)?;
@@ -107,7 +106,7 @@ impl Rest {
         };
         let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
-        let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()).with_edges_of(body));
+        let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
         let result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));

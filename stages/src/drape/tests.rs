@@ -60,8 +60,7 @@ fn a_sheet_on_a_ball_comes_to_rest_on_it() {
 fn rest_tells_what_force_is_left_and_how_often_it_began_again() {
     let cx = Context::quiet();
     let body = Capsules::torso().collider();
-    let draped =
-        Rest::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, None, &cx).unwrap();
+    let draped = Rest::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, &cx).unwrap();
     assert!(draped.status.converged);
     let figures = cx.take_notes().0;
     let told: Vec<(&str, &str)> = figures.iter().map(|f| (f.name.as_str(), f.unit)).collect();

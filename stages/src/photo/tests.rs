@@ -128,7 +128,7 @@ fn wrong_sets_are_refused() {
     assert_eq!(text("{}").to_string(), "there are no photos");
     let error = text(r#"{"back": MirrorOf("fornt"), "front": (file: "a.png")}"#);
     assert_eq!(error.to_string(), "photo \"back\" is to mirror \"fornt\", which there is not");
-    assert_eq!(error.hint.unwrap(), "the photos are \"back\", \"front\"");
+    assert_eq!(error.hint.unwrap(), "did you mean \"front\"? the photos are \"back\", \"front\"");
     let error = text(r#"{"../front": (file: "a.png")}"#);
     assert_eq!(error.to_string(), "a photo is named \"../front\", as no file can be");
     assert_eq!(error.hint.unwrap(), "name it after the garment's side: \"front\", \"back\"");

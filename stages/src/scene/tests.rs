@@ -56,7 +56,7 @@ fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
     let cx = Context::quiet();
     // On edges of 13 cm a graded skirt slides lower, where it is strained by 7 %.
     let rest = Rest { graded: false, ..Rest::default() };
-    let draped = rest.run(&garment, Some(&collider), Some(&phases), None, &cx).unwrap();
+    let draped = rest.run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
     assert!(draped.status.converged && draped.status.max_speed < 1e-3, "{:?}", draped.status);
     assert_eq!(draped.seam_gap_max(), 0.0);
     assert!(draped.seams.iter().all(|s| s.state == SeamState::Closed) && draped.check().is_ok());
@@ -70,7 +70,7 @@ fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
 fn rest_holds_what_is_pinned() {
     let (garment, _, collider, phases) = through_files(&generate::hang(6)).unwrap();
     let cx = Context::quiet();
-    let draped = Rest::default().run(&garment, Some(&collider), Some(&phases), None, &cx).unwrap();
+    let draped = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
     for &p in &garment.pinned {
         assert_eq!(draped.positions[p as usize], garment.positions[p as usize]);
     }
@@ -96,7 +96,7 @@ fn a_pin_on_a_seam_stays_where_it_is_and_the_other_side_comes_to_it() {
     scene.pinned = vec![a];
     let (garment, _, collider, phases) = through_files(&scene).unwrap();
     let rest = Rest { join_gap: Length::mm(20.0), graded: false, ..Rest::default() };
-    let draped = rest.run(&garment, Some(&collider), Some(&phases), None, &Context::quiet()).unwrap();
+    let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
     assert_eq!(draped.positions[a as usize], garment.positions[a as usize]);
     assert_eq!(draped.positions[b as usize], garment.positions[a as usize]);
 }
@@ -111,7 +111,7 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
     let way = 0.5 * 9.81 * seconds * seconds;
     let fallen = [
-        Rest::default().run(&g, c, p, None, &cx).unwrap(),
+        Rest::default().run(&g, c, p, &cx).unwrap(),
         ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
         Xpbd { drag: 0.0, ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
         Projective { drag: 0.0, ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
@@ -162,7 +162,7 @@ fn rest_names_the_stages_that_rest_in_wind_and_wind_needs_air() {
     let mut scene = in_air(Some(Air { wind: nalgebra::Vector3::new(3.0, 0.0, 4.0), ..Air::still(1.2) }));
     scene.pinned = vec![0, 1];
     let (g, _, c, p) = through_files(&scene).unwrap();
-    let e = Rest::default().run(&g, Some(&c), Some(&p), None, &cx).unwrap_err();
+    let e = Rest::default().run(&g, Some(&c), Some(&p), &cx).unwrap_err();
     assert_eq!(e.code, ErrorCode::InvalidInput);
     assert_eq!(e.message, "wind of 5 m/s has no potential, so this solver finds no state of rest in it");
     assert_eq!(
@@ -234,7 +234,7 @@ fn a_stopped_rest_stops() {
     let cancel = Cancel::new();
     cancel.cancel();
     let cx = Context::new("Rest", Path::new("."), cancel, Arc::new(()));
-    let error = Rest::default().run(&garment, Some(&collider), Some(&phases), None, &cx).unwrap_err();
+    let error = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap_err();
     assert_eq!(error.code, ErrorCode::Cancelled);
 }
 
@@ -265,8 +265,10 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
     };
     let mut scene = generate::tube(4, 5);
     scene.body.as_mut().unwrap().triangles.clear();
-    let words = "the body has no triangles; leave it out where there is none".to_owned();
-    assert_eq!(refused(&scene), (ErrorCode::InvalidInput, words, None));
+    let hint =
+        "it must be a Wavefront OBJ with `v` and `f` lines; write it again from the program that made it";
+    let words = "the OBJ holds no faces".to_owned();
+    assert_eq!(refused(&scene), (ErrorCode::PatternLoading, words, Some(hint.to_owned())));
     // The reader takes each number; no garment can have them all.
     let mut scene = generate::hang(2);
     scene.panels.clear();
@@ -373,7 +375,7 @@ fn a_welded_mesh_drapes_as_one() {
     let read = |weld: bool, scene: &toile_cloth::scene::Scene| {
         std::fs::write(dir.path().join("scene.json"), to_json(scene, "")).unwrap();
         let (g, _, c, p) = Scene { file: "scene.json".into(), weld, ..Scene::default() }.run(&cx).unwrap();
-        Rest { graded: false, ..Rest::default() }.run(&g, Some(&c), Some(&p), None, &cx).unwrap()
+        Rest { graded: false, ..Rest::default() }.run(&g, Some(&c), Some(&p), &cx).unwrap()
     };
     let (welded, whole) = (read(true, &scene), read(false, &clean));
     for (p, &v) in welded.positions.iter().zip(&corners) {
@@ -386,10 +388,8 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
     let scene = generate::curtain(4);
     let (g, _, c, p) = through_files(&scene).unwrap();
     let (cx, c, p) = (Context::quiet(), Some(&c), Some(&p));
-    let hung = [
-        Rest::default().run(&g, c, p, None, &cx).unwrap(),
-        ImplicitEuler::default().run(&g, c, p, &cx).unwrap(),
-    ];
+    let hung =
+        [Rest::default().run(&g, c, p, &cx).unwrap(), ImplicitEuler::default().run(&g, c, p, &cx).unwrap()];
     for h in hung {
         for &[corner, pin] in &scene.seams[0].pairs {
             assert_eq!(h.positions[corner as usize], h.positions[pin as usize]);
@@ -402,7 +402,7 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
 fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
     let (garment, _, collider, phases) = through_files(scene).unwrap();
     let rest = Rest { graded: false, ..Rest::default() };
-    rest.run(&garment, Some(&collider), Some(&phases), None, &Context::quiet()).unwrap_err()
+    rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap_err()
 }
 
 #[test]

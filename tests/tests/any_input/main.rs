@@ -21,7 +21,7 @@ use toile_core::{Arity, Cancel, Card, Context, ErrorCode, InPort, Inputs, PortVa
 /// A solver that finds nothing wrong would go on for seconds: it is stopped after this.
 const PATIENCE: Duration = Duration::from_millis(250);
 /// Cases a stage; `PROPTEST_CASES=1000` looks longer, as `.ci/wide` does.
-const CASES: u32 = 8;
+const CASES: u32 = 24;
 
 static POOL: LazyLock<Pool> = LazyLock::new(Pool::new);
 

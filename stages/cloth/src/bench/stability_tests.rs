@@ -70,7 +70,7 @@ fn bad_parameters_are_named_before_the_first_step() {
     let usual = Case::default();
     assert_eq!(text(Case { density: 0.0, ..usual }), "density = 0 is out of range: above 0 kg/m^2");
     assert_eq!(text(Case { density: -1.0, ..usual }), "density = -1 is out of range: above 0 kg/m^2");
-    assert_eq!(text(Case { stiffness: -5.0, ..usual }), "warp = -5 is out of range: a slope of 0 or more");
+    assert_eq!(text(Case { stiffness: -5.0, ..usual }), "warp = -5 is out of range: a slope above 0 N/m");
     assert_eq!(text(Case { stiffness: f64::NAN, ..usual }), "warp[0] is not a finite number");
     assert_eq!(text(Case { bending: -1.0, ..usual }), "bending_warp = -1 is out of range: 0 or more");
     assert_eq!(text(Case { dt: 0.0, ..usual }), "dt = 0 is out of range: above 0 s");

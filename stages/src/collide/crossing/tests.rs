@@ -1,4 +1,4 @@
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::panic, clippy::unwrap_used, clippy::expect_used)]
 
 use super::super::testing::{Cloth, cube, numbers, sheet, soup, sphere};
 use super::super::volume::{KDop, Obb, Sphere};

@@ -49,10 +49,10 @@ fn a_skirt_beside_the_body_is_told_on_the_coarsest_mesh() {
 }
 
 #[test]
-fn a_skirt_too_wide_slides_off_and_is_told_on_a_coarse_mesh() {
+fn a_skirt_too_wide_slides_off_and_is_told() {
     for graded in [false, true] {
-        let (fallen, finest) = fall(&skirt(|s| wider(s, 1.4)), graded);
-        assert_eq!((fallen.start, finest < 1000), (Start::Around, true), "{finest} nodes");
+        let (fallen, _) = fall(&skirt(|s| wider(s, 1.4)), graded);
+        assert_eq!(fallen.start, Start::Around);
         assert_eq!(
             fallen.to_string(),
             "the cloth of 'front' and 'back' finds no hold on the body and falls past it; place it around the body, cut it narrower \
