@@ -151,7 +151,7 @@ fn a_surface_that_moved_is_told_with_its_stage_figure_and_place() {
     let out = dir.path().join("out").display().to_string();
     let set = "scene.file=\"moved.json\"";
     let mut scene = napkin::scene();
-    scene["material"]["bend"] = serde_json::json!(2e-3);
+    scene["material"]["stretch"] = serde_json::json!(50.0);
     fs::write(dir.path().join("moved.json"), scene.to_string()).unwrap();
     let answer = toile(&["golden", "check", &file, "--set", set, "--out", &out]);
     assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);

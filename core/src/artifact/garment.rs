@@ -1,7 +1,7 @@
 //! Panels in space, sewn or about to be.
 
 use super::body::{obj_text, vertex_normals};
-use super::sound::{ensure, finite, indices, length};
+use super::sound::{alike, ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
 use std::ops::Range;
 use std::sync::Arc;
@@ -120,24 +120,16 @@ impl Garment {
 
     /// Two triangles of a panel that share an edge run along it in opposite ways: both have the same side up.
     fn check_sides(&self, panel: &GarmentPanel) -> Result<(), String> {
-        let own = self.triangles.iter().enumerate().skip(panel.triangles.start).take(panel.triangles.len());
-        let mut sides: Vec<([u32; 2], usize)> = own
-            .flat_map(|(i, t)| (0..3).map(move |k| ([t[k], t[(k + 1) % 3]], i)))
-            .filter(|([a, b], _)| a != b)
-            .collect();
-        sides.sort_unstable();
-        let Some(alike) = sides.windows(2).find(|w| w[0].0 == w[1].0) else { return Ok(()) };
-        let (one, other) = (alike[0].1, alike[1].1);
-        let sorted = |i: usize| {
-            let mut t = self.triangles[i];
-            t.sort_unstable();
-            t
-        };
-        let what = match sorted(one) == sorted(other) {
-            true => "are one and the same",
-            false => "disagree on which side is up",
-        };
-        Err(format!("triangles {one} and {other} of panel \"{}\" {what}", panel.name))
+        let first = panel.triangles.start;
+        match alike(self.triangles.get(panel.triangles.clone()).unwrap_or_default()) {
+            None => Ok(()),
+            Some(([one, other], what)) => Err(format!(
+                "triangles {} and {} of panel \"{}\" {what}",
+                first + one,
+                first + other,
+                panel.name
+            )),
+        }
     }
 
     /// The panel that owns a vertex.

@@ -1,6 +1,6 @@
 //! A meshed piece of flat cloth.
 
-use super::sound::{ensure, finite, finite_figure, indices, length};
+use super::sound::{alike, ensure, finite, finite_figure, indices, length};
 use super::{Artifact, ArtifactType, Digester, InnerKind, Kind, Measures, Point2, polygon_area};
 
 /// A named stretch of the panel's boundary.
@@ -106,7 +106,10 @@ impl Panel {
         };
         match self.triangles.iter().position(turned) {
             Some(i) => Err(format!("triangle {i} is turned over: its vertices run clockwise")),
-            None => Ok(()),
+            None => match alike(&self.triangles) {
+                Some(([one, other], what)) => Err(format!("triangles {one} and {other} {what}")),
+                None => Ok(()),
+            },
         }
     }
 

@@ -49,3 +49,23 @@ pub(super) fn length(word: &str, is: usize, should: usize) -> Sound {
 pub(super) fn ensure(holds: bool, message: impl FnOnce() -> String) -> Sound {
     if holds { Ok(()) } else { Err(message()) }
 }
+
+/// The first two triangles that run along one side in the same way, and what that means: in a sheet, two that share a side run
+/// along it in opposite ways.
+pub(super) fn alike(triangles: &[[u32; 3]]) -> Option<([usize; 2], &'static str)> {
+    let of = |(i, t): (usize, &[u32; 3])| {
+        let t = *t;
+        (0..3).map(move |k| ([t[k], t[(k + 1) % 3]], i))
+    };
+    let all = triangles.iter().enumerate().flat_map(of);
+    let mut sides: Vec<([u32; 2], usize)> = all.filter(|([a, b], _)| a != b).collect();
+    sides.sort_unstable();
+    let pair = sides.windows(2).find(|w| w[0].0 == w[1].0)?;
+    let both = [pair[0].1, pair[1].1];
+    let [one, other] = both.map(|i| {
+        let mut t = triangles[i];
+        t.sort_unstable();
+        t
+    });
+    Some((both, if one == other { "are one and the same" } else { "disagree on which side is up" }))
+}
