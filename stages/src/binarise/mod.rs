@@ -44,5 +44,5 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Global>().add::<Otsu>().add::<Local>().add::<Background>().add::<GraphCut>();
+    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>();
 }
