@@ -27,7 +27,7 @@ const MOST_DIP: f64 = 1e-4;
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
-/// exactly, cloth is kept out of the body, off its sharp edges and corners, too, and out of itself. Where it does not come to rest in
+/// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
 /// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
 /// `coarsest` saves it. Cloth that misses the body or slides off it is an error, as
