@@ -6,15 +6,14 @@ use std::path::Path;
 use toile_cloth::scene::{Scene, body_to_obj, generate, to_json};
 use toile_tests::{pipeline, toile};
 
-/// Where the vertices of a scene come to rest by `pipelines/scene.ron`, mm.
-fn at_rest(dir: &Path, scene: &Scene, more: &[&str]) -> Vec<[f64; 3]> {
+/// Where the vertices of a scene come to rest by `pipelines/scene.ron`, mm; `code` is the exit code that it must end with.
+fn at_rest(dir: &Path, scene: &Scene, code: u8, more: &[&str]) -> Vec<[f64; 3]> {
     fs::write(dir.join("scene.json"), to_json(scene, "body.obj")).unwrap();
     fs::write(dir.join("body.obj"), body_to_obj(scene)).unwrap();
     let (file, out) = (dir.join("scene.json"), dir.join("out").display().to_string());
     let set = format!("scene.file={:?}", file.display().to_string());
     let answer = toile(&[&["run", &pipeline("scene.ron"), "--set", &set, "--out", &out], more].concat());
-    // On a ball of facets the square ends through some of their edges, which is told; asked is where it lies.
-    assert!(matches!(answer.code, 0 | 4), "{}{}", answer.out, answer.err);
+    assert_eq!(answer.code, code, "{}{}", answer.out, answer.err);
     let text = fs::read_to_string(dir.join("out/result.obj")).unwrap();
     let vertex = |l: &str| {
         let c: Vec<f64> = l.strip_prefix("v ")?.split(' ').map(|c| c.parse::<f64>().unwrap() * 1e3).collect();
@@ -25,13 +24,13 @@ fn at_rest(dir: &Path, scene: &Scene, more: &[&str]) -> Vec<[f64; 3]> {
 
 /// How far 95 % of the vertices end at most from where they end without the move, over starts of which every vertex is moved by
 /// 1 mm, mm.
-fn spread(scene: &Scene, starts: u64, more: &[&str]) -> f64 {
+fn spread(scene: &Scene, starts: u64, code: u8, more: &[&str]) -> f64 {
     let dir = tempfile::tempdir().unwrap();
-    let own = at_rest(dir.path(), scene, more);
+    let own = at_rest(dir.path(), scene, code, more);
     let apart = |seed: u64| {
         let mut moved = scene.clone();
         generate::jitter(&mut moved, 1e-3, seed);
-        let there = at_rest(dir.path(), &moved, more);
+        let there = at_rest(dir.path(), &moved, code, more);
         let far = |(a, b): (&[f64; 3], &[f64; 3])| {
             a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
         };
@@ -45,15 +44,16 @@ fn spread(scene: &Scene, starts: u64, more: &[&str]) -> f64 {
 #[test]
 fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
     let skirt = generate::tube(16, 16);
-    let default = spread(&skirt, 4, &[]);
+    let default = spread(&skirt, 4, 0, &[]);
     assert!(default < 2.5, "{default}");
     // The choice that is fast leaves the folds to chance, or this test would tell nothing.
-    let fast = spread(&skirt, 4, &["--set", "stages.Rest.graded=false"]);
+    let fast = spread(&skirt, 4, 0, &["--set", "stages.Rest.graded=false"]);
     assert!(fast > 3.0, "{fast}");
 }
 
 #[test]
 fn a_square_over_a_ball_from_moved_starts_ends_near() {
-    let default = spread(&generate::drape(22), 3, &[]);
+    // On a ball of facets the square ends through some of their edges, which is told; asked is where it lies.
+    let default = spread(&generate::drape(22), 3, 4, &[]);
     assert!(default < 30.0, "{default}");
 }

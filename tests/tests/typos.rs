@@ -8,7 +8,7 @@ use toile_tests::{PIPELINES, pipeline, toile};
 /// What stands in the file, the slip with `^` before the place of its fault, what is said, and the hint's beginning.
 type Slip = (&'static str, &'static str, &'static str, &'static str);
 
-const SLIPS: [Slip; 31] = [
+const SLIPS: [Slip; 32] = [
     // names of stages, parameters, fields and choices
     ("Otsu()", "^Otzu()", "unknown stage `Otzu`", "did you mean `Otsu`?"),
     ("GraphCut()", "^GrahpCut()", "unknown stage `GrahpCut`", "did you mean `GraphCut`?"),
@@ -46,6 +46,12 @@ const SLIPS: [Slip; 31] = [
         "name: ^\"coton ",
         "Preset: there is no fabric preset \"coton ",
         "did you mean \"cotton ",
+    ),
+    (
+        "\"back\":  MirrorOf(\"front\")",
+        "\"back\":  ^MirrorOf(\"frnt\")",
+        "Photos: photo \"back\" is to mirror \"frnt\", which there is not",
+        "did you mean \"front\"?",
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets

@@ -1,34 +1,21 @@
 //! A pipeline's collision scheme as the engine's skin.
 
 use nalgebra::Vector3;
-use std::sync::Arc;
 use toile_cloth::contact::body::Nearest;
-use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
-use toile_core::artifact::{Body, BodyContact, Collide, Point3};
+use toile_core::artifact::{BodyContact, Collide, Point3};
 
 /// The body of a collision scheme: one call a question, whatever the number of points.
 #[derive(Debug, Clone)]
 pub struct SchemeSkin<'a> {
     scheme: &'a dyn Collide,
-    sharp: Option<Arc<Sharp>>,
 }
 
 impl<'a> SchemeSkin<'a> {
-    /// The body that `scheme` keeps cloth out of, whose sharp edges nobody looks for.
+    /// The body that `scheme` keeps cloth out of. It tells distances and no mesh, so that its sharp edges are not known.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
-        Self { scheme, sharp: None }
-    }
-
-    /// The same with the sharp edges of `body`, where it is given: a scheme tells distances, no mesh.
-    #[must_use]
-    pub fn with_edges_of(self, body: Option<&Body>) -> Self {
-        let of = |b: &Body| {
-            let places: Vec<Vector3<f64>> = b.positions.iter().map(|p| p.coords).collect();
-            Sharp::of(&places, &b.triangles).map(Arc::new)
-        };
-        Self { sharp: body.and_then(of), ..self }
+        Self { scheme }
     }
 }
 
@@ -76,10 +63,6 @@ impl Skin for SchemeSkin<'_> {
             at = found.first()?.point;
         }
         Some(at.coords.dot(direction))
-    }
-
-    fn sharp(&self) -> Option<Arc<Sharp>> {
-        self.sharp.clone()
     }
 }
 

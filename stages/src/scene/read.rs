@@ -81,7 +81,7 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the file and the body's beside it are there. What stands in them is read by the run, at once: scenes come first.
+    /// Whether the file is there. What stands in it, and the body's file beside it, is read by the run, at once: scenes come first.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let there = self.named().and_then(|()| placed.cx.look(&self.file));
         there.map_err(|e| e.at("file")).err().into_iter().collect()
