@@ -1,6 +1,7 @@
 //! Panels in space, sewn or about to be.
 
 use super::body::{obj_text, vertex_normals};
+use super::gathers;
 use super::sound::{alike, ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
 use std::ops::Range;
@@ -159,25 +160,39 @@ impl Garment {
         edges
     }
 
+    /// Every mesh edge once, ascending, with its flat length, metres: the mean of what its triangles say, whose corners are drawn together
+    /// along gathered seams.
+    fn flat_lengths(&self) -> Vec<([u32; 2], f64)> {
+        let corners = gathers::corners(self);
+        let mut sides: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * corners.len());
+        for (t, c) in self.triangles.iter().zip(&corners) {
+            for k in 0..3 {
+                let (a, b) = (t[k], t[(k + 1) % 3]);
+                sides.push(([a.min(b), a.max(b)], (c[k] - c[(k + 1) % 3]).norm()));
+            }
+        }
+        sides.sort_unstable_by_key(|s| s.0);
+        let mean = |s: &[([u32; 2], f64)]| (s[0].0, s.iter().map(|s| s.1).sum::<f64>() / s.len() as f64);
+        sides.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
+    }
+
     /// Absolute strain of every mesh edge, ascending.
     pub fn edge_strains(&self) -> Vec<f64> {
-        let mut strains: Vec<f64> = self
-            .edges()
-            .into_iter()
-            .map(|[a, b]| {
-                let flat = (self.rest[a as usize] - self.rest[b as usize]).norm();
-                let now = (self.positions[a as usize] - self.positions[b as usize]).norm();
-                (now / flat - 1.0).abs()
-            })
-            .collect();
+        let flat = self.flat_lengths();
+        let strain = |([a, b], flat): &([u32; 2], f64)| {
+            let now = (self.positions[*a as usize] - self.positions[*b as usize]).norm();
+            (now / flat - 1.0).abs()
+        };
+        let mut strains: Vec<f64> = flat.iter().map(strain).collect();
         strains.sort_by(f64::total_cmp);
         strains
     }
 
-    /// Flat and present area of a panel, square metres.
+    /// Flat and present area of a panel, square metres; flat as its gathers leave it.
     pub fn panel_areas(&self, panel: &GarmentPanel) -> (f64, f64) {
-        self.triangles[panel.triangles.clone()].iter().fold((0.0, 0.0), |(flat, now), t| {
-            let [a, b, c] = t.map(|i| self.rest[i as usize]);
+        let corners = gathers::corners(self);
+        let both = self.triangles[panel.triangles.clone()].iter().zip(&corners[panel.triangles.clone()]);
+        both.fold((0.0, 0.0), |(flat, now), (t, &[a, b, c])| {
             let [p, q, r] = t.map(|i| self.positions[i as usize]);
             (flat + (b - a).perp(&(c - a)).abs() / 2.0, now + (q - p).cross(&(r - p)).norm() / 2.0)
         })
@@ -185,13 +200,16 @@ impl Garment {
 
     /// Flat and present length of a panel's boundary, metres.
     pub fn panel_boundaries(&self, panel: &GarmentPanel) -> (f64, f64) {
+        let flat = self.flat_lengths();
         let n = panel.boundary.len();
+        let length = |a: usize, b: usize| {
+            let key = [a.min(b) as u32, a.max(b) as u32];
+            let cut = || (self.rest[b] - self.rest[a]).norm();
+            flat.binary_search_by_key(&key, |f| f.0).map_or_else(|_| cut(), |k| flat[k].1)
+        };
         (0..n).fold((0.0, 0.0), |(flat, now), k| {
             let (a, b) = (panel.boundary[k] as usize, panel.boundary[(k + 1) % n] as usize);
-            (
-                flat + (self.rest[b] - self.rest[a]).norm(),
-                now + (self.positions[b] - self.positions[a]).norm(),
-            )
+            (flat + length(a, b), now + (self.positions[b] - self.positions[a]).norm())
         })
     }
 

@@ -13,6 +13,7 @@ mod fabric;
 mod figures;
 mod files;
 mod garment;
+mod gathers;
 mod gauge;
 mod geometry;
 mod locate;

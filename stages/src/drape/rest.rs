@@ -71,6 +71,10 @@ pub struct Rest {
     /// `Refine`) and shall keep its folds. Nothing is graded then.
     #[param(default = false, way)]
     pub from_here: bool,
+    /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
+    /// The sewn garment is then taken out of itself.
+    #[param(default = false, way)]
+    pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
     /// always double. The state that is found keeps `speed` either way.
     #[param(default = Precision::Mixed)]
@@ -156,6 +160,7 @@ impl Rest {
             budget: Duration::from_secs_f64(self.time_limit),
             graded: self.graded,
             from_here: self.from_here,
+            sew_through: self.sew_through,
             precision: self.precision.into(),
             asleep: self.asleep,
         }

@@ -17,7 +17,6 @@ pub fn lost(scene: &Scene) -> Vec<String> {
         bands.map(|b| format!("its elastic bands ({b}) are left out: a garment holds none")),
         scene.strain_limit.map(|_| limit.to_owned()),
         seams(|s| !s.joined).map(|s| format!("its seams {s} are joined: a garment has no threads")),
-        seams(|s| s.gather.is_some()).map(|s| format!("the gathers of its seams {s} are left out")),
         panels(&|p| p.layer != 0).map(|p| format!("the layers of its panels {p} are left out")),
         panels(&|p| p.body_friction.is_some()).map(|p| {
             format!(

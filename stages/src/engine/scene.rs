@@ -86,9 +86,23 @@ fn seams(garment: &Garment) -> Vec<Seam> {
     let mut known = BTreeSet::new();
     let mut seam = |s: &GarmentSeam| {
         let is_new = |p: &&[u32; 2]| known.insert([p[0].min(p[1]), p[0].max(p[1])]);
-        Seam::new(s.name.clone(), s.pairs.iter().filter(is_new).copied().collect())
+        let seam = Seam::new(s.name.clone(), s.pairs.iter().filter(is_new).copied().collect());
+        let gather = match s.kind {
+            SeamKind::Matched => None,
+            SeamKind::Gathered => Some(gather(&seam.pairs, &garment.rest)),
+        };
+        Seam { gather, ..seam }
     };
     garment.seams.iter().map(&mut seam).collect()
+}
+
+/// How many times longer one side of a seam is than the other.
+fn gather(pairs: &[[u32; 2]], rest: &[Point2]) -> f64 {
+    let side = |k: usize| -> f64 {
+        pairs.windows(2).map(|w| (rest[w[1][k] as usize] - rest[w[0][k] as usize]).norm()).sum()
+    };
+    let (a, b) = (side(0), side(1));
+    if a.min(b) > 0.0 { a.max(b) / a.min(b) } else { 1.0 }
 }
 
 /// A scene as a garment, at its start.
@@ -110,7 +124,7 @@ pub fn garment_of(scene: &Scene) -> Garment {
 fn garment_seam(s: &Seam) -> GarmentSeam {
     GarmentSeam {
         name: s.name.clone(),
-        kind: SeamKind::Matched,
+        kind: if s.gather.is_some() { SeamKind::Gathered } else { SeamKind::Matched },
         pairs: s.pairs.clone(),
         state: SeamState::Open,
     }

@@ -10,6 +10,7 @@ pub mod past;
 pub mod sharp;
 pub mod skin;
 pub(crate) mod start;
+pub(crate) mod thinner;
 pub mod tree;
 
 #[cfg(test)]

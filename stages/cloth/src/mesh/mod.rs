@@ -13,6 +13,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 
 pub use topology::{Edge, Side};
 
+use self::topology::Facing;
 use crate::error::{ClothError, check_parameter};
 
 /// Rest-shape quality (1 equilateral, 0 no area) below which a triangle is refused. A right triangle of aspect 1 : 1000 has
@@ -56,6 +57,29 @@ impl Sheet {
         rest: Vec<[Vector2<f64>; 3]>,
         density: f64,
     ) -> Result<Self, ClothError> {
+        Self::facing(vertex_count, triangles, rest, density, Facing::Alike)
+    }
+
+    /// The same of sewn panels: a seam may join the right side of one to the wrong side of the other, which is then an edge like any other.
+    ///
+    /// # Errors
+    /// See [`Sheet::new`].
+    pub fn sewn(
+        vertex_count: usize,
+        triangles: Vec<[u32; 3]>,
+        rest: Vec<[Vector2<f64>; 3]>,
+        density: f64,
+    ) -> Result<Self, ClothError> {
+        Self::facing(vertex_count, triangles, rest, density, Facing::Any)
+    }
+
+    fn facing(
+        vertex_count: usize,
+        triangles: Vec<[u32; 3]>,
+        rest: Vec<[Vector2<f64>; 3]>,
+        density: f64,
+        facing: Facing,
+    ) -> Result<Self, ClothError> {
         check_parameter("density", density, |d| d > 0.0, "above 0 kg/m^2")?;
         if triangles.is_empty() {
             return Err(ClothError::EmptyScene);
@@ -64,7 +88,7 @@ impl Sheet {
         for (index, corners) in rest.iter().enumerate() {
             check_corners(index, &triangles[index], corners)?;
         }
-        let (edges, triangle_edges) = topology::edges(&triangles, &rest)?;
+        let (edges, triangle_edges) = topology::edges(&triangles, &rest, facing)?;
         let areas: Vec<f64> = rest.iter().map(signed_area).collect();
         let masses = lump(vertex_count, &triangles, &areas, density);
         let inverse_rest = rest.iter().map(inverse).collect();

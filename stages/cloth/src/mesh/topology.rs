@@ -59,9 +59,19 @@ struct Half {
     side: Side,
 }
 
+/// Which sides of two triangles may meet at an edge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Facing {
+    /// Both have the same side up.
+    Alike,
+    /// A seam may sew the right side of one to the wrong side of the other, as a collar that folds over is.
+    Any,
+}
+
 pub(super) fn edges(
     triangles: &[[u32; 3]],
     rest: &[[Vector2<f64>; 3]],
+    facing: Facing,
 ) -> Result<(Vec<Edge>, Vec<[u32; 3]>), ClothError> {
     let mut halves: Vec<Half> = (0..triangles.len())
         .flat_map(|t| (0..3).map(move |corner| (t, corner)))
@@ -74,7 +84,7 @@ pub(super) fn edges(
         for h in group {
             of_triangle[h.side.triangle as usize][h.side.corner as usize] = edges.len() as u32;
         }
-        edges.push(pair(group)?);
+        edges.push(pair(group, facing)?);
     }
     Ok((edges, of_triangle))
 }
@@ -91,7 +101,7 @@ fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) 
     }
 }
 
-fn pair(group: &[Half]) -> Result<Edge, ClothError> {
+fn pair(group: &[Half], facing: Facing) -> Result<Edge, ClothError> {
     let bad = |why| ClothError::NonManifoldEdge { a: group[0].low as usize, b: group[0].high as usize, why };
     let first = group[0];
     let vertices = if first.forward { [first.low, first.high] } else { [first.high, first.low] };
@@ -109,7 +119,7 @@ fn pair(group: &[Half]) -> Result<Edge, ClothError> {
     }
     match group {
         [one] => Ok(Edge { vertices, rest_length: one.length, sides: (one.side, None) }),
-        [one, two] if one.forward != two.forward => {
+        [one, two] if one.forward != two.forward || facing == Facing::Any => {
             let rest_length = 0.5 * (one.length + two.length);
             Ok(Edge { vertices, rest_length, sides: (one.side, Some(two.side)) })
         }

@@ -15,7 +15,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
-pub use parse::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES, parse};
+pub use parse::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES, count_triangles, parse};
 pub use pieces::is_flat;
 pub use repair::{JOIN, Repairs, repair};
 pub(crate) use repair::{first_of_each, joined};

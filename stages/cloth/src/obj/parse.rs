@@ -95,6 +95,16 @@ fn follower(face: &[u32], corner: u32) -> Option<u32> {
     Some(face[(at + 1) % face.len()])
 }
 
+/// How many triangles the faces of an OBJ text have before anything is mended; what is wrong with it is not looked for.
+#[must_use]
+pub fn count_triangles(bytes: &[u8]) -> usize {
+    let of = |(_, line): (usize, std::borrow::Cow<'_, [u8]>)| {
+        let mut words = words(&line);
+        if words.next() == Some(b"f") { words.count().saturating_sub(2) } else { 0 }
+    };
+    Lines::new(&decode(bytes)).map(of).sum()
+}
+
 fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<Vector3<f64>, ObjError> {
     let mut next = || {
         let word = words.next().ok_or(ObjError::Vertex { line, word: String::new() })?;

@@ -338,3 +338,10 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn faces_are_counted_as_they_are_cut() {
+    let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n# f 1 2 3\nf 1 2 3 4\nf 1 2 \\\n3\nf 1\n";
+    assert_eq!(count_triangles(text), 3);
+    assert_eq!(count_triangles(b""), 0);
+}

@@ -113,7 +113,7 @@ impl Pieces {
     /// The sheet after sewing: every sewn point a node.
     pub fn sewn_sheet(&self, cloths: &[&Fabric]) -> Result<Sheet, ClothError> {
         let nodes = self.triangles.iter().map(|t| t.map(|v| self.node[v as usize])).collect();
-        Sheet::new(self.nodes, nodes, self.corners(), 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
+        Sheet::sewn(self.nodes, nodes, self.corners(), 1.0)?.weighing(|t| cloths[self.cloth(t)].density)
     }
 
     /// The pieces as they are cut, where gathers have changed the sheets; nothing where none do.

@@ -55,6 +55,9 @@ impl<'a> Plan<'a> {
         }
         // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
         while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
+            if rest.sew_through {
+                break;
+            }
             let crossings = crossings_at_start(scene, coarse, start)?;
             let Some(error) = crossing(scene, &coarse.panel, start, &crossings) else { break };
             if coarser.pop().is_none() {

@@ -26,7 +26,7 @@ use super::pile::pile_of;
 use super::plan::Plan;
 pub use super::real::Precision;
 pub use super::start::StartError;
-use super::start::{check, check_lying};
+use super::start::{check, check_lying, moved_out};
 pub use super::tangled::Load;
 use super::tangled::tangled;
 use super::unrest::Unbalanced;
@@ -59,6 +59,9 @@ pub struct Rest {
     pub graded: bool,
     /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a coarser mesh keeps its folds.
     pub from_here: bool,
+    /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep them open, and the sewn
+    /// garment is taken out of itself.
+    pub sew_through: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
     /// Whether what rests sleeps while few nodes move, which settle by themselves.
@@ -76,6 +79,7 @@ impl Default for Rest {
             budget: Duration::from_secs(600),
             graded: false,
             from_here: false,
+            sew_through: false,
             precision: Precision::default(),
             asleep: true,
         }
@@ -159,8 +163,11 @@ impl Rest {
         scene.check_still()?;
         let pile = pile_of(scene);
         let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
-        let start = check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
-        if !self.from_here {
+        let start = match self.sew_through {
+            true => moved_out(scene, wearer.map(|w| w.skin)),
+            false => check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
+        };
+        if !self.from_here && !self.sew_through {
             check_lying::<RestError>(scene, &Pieces::new(scene), &start)?;
         }
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);

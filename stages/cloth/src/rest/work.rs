@@ -167,7 +167,8 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let tree = self.plan.scene.self_collision.then(|| self.plan.tree(sheet, layout, sewing));
+        let meets = self.plan.scene.self_collision && !(sewing && self.plan.rest.sew_through);
+        let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
         let (mut stop, mut is_late) = (None, false);
@@ -222,7 +223,7 @@ impl<'a> Work<'a> {
     }
 
     /// The level's nodes, sewn or open, carried to the finest vertices.
-    fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
+    pub(super) fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let k = self.level_of(x);
         let vertices =
             if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
