@@ -67,9 +67,8 @@ pub(super) fn made(
     }
     let inside_out = area < 0.0;
     let mut edges = vec![None; raw.edges.len()];
-    let n = links.len();
     for (k, l) in links.iter().enumerate() {
-        edges[l.edge] = Some(if inside_out { (n - 1 - k, !l.flipped) } else { (k, l.flipped) });
+        edges[l.edge] = Some((k, l.flipped));
     }
     let pose = pose(raw, scale.unit);
     let ends = raw.edges.iter().map(|e| e.ends.map(|v| pose.at(raw.vertices[v] * scale.unit))).collect();
@@ -209,13 +208,11 @@ fn simple(raw: &RawPanel, links: &[Link], outer: &PatternLoop, unit: f64) -> Res
     Err(Damage::Crosses { panel: raw.name.clone(), edge, other, x: near.x, y: near.y })
 }
 
-/// The loop seen from the other side: x mirrored, and run through backwards so that it is counter-clockwise.
+/// The loop seen from the other side: x mirrored, which makes a clockwise one counter-clockwise.
 fn mirrored(l: &PatternLoop) -> PatternLoop {
     let to = |p: Point2| Point2::new(-p.x, p.y);
-    let n = l.corners.len();
-    let corners = (0..n).map(|k| to(l.corners[(n - k) % n])).collect();
-    let turned = |e: &PieceEdge| PieceEdge { name: e.name.clone(), curve: e.curve.moved(to, true).turned() };
-    PatternLoop { corners, edges: l.edges.iter().rev().map(turned).collect() }
+    let edge = |e: &PieceEdge| PieceEdge { name: e.name.clone(), curve: e.curve.moved(to, true) };
+    PatternLoop { corners: l.corners.iter().map(|p| to(*p)).collect(), edges: l.edges.iter().map(edge).collect() }
 }
 
 /// The place of the file's own flat coordinates.
