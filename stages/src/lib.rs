@@ -11,6 +11,7 @@ pub mod engine;
 pub mod fabric;
 pub mod measure;
 pub mod mesh;
+pub mod pattern;
 pub mod photo;
 pub mod place;
 pub mod render;
@@ -36,6 +37,7 @@ pub fn register(registry: &mut Registry) {
     fabric::register(registry);
     place::register(registry);
     scene::register(registry);
+    pattern::register(registry);
     collide::register(registry);
     stitch::register(registry);
     drape::register(registry);
@@ -51,6 +53,7 @@ fn sections(registry: &mut Registry) {
     registry.section(Section::stage("style", Role::Style));
     registry.section(Section::table("seams", "Seams", "seams"));
     registry.section(Section::stage("scene", Role::Reader));
+    registry.section(Section::stage("pattern", Role::Reader));
     registry.section(Section::stage("body", Role::Body));
     registry.section(Section::stage("fabric", Role::Fabric));
 }

@@ -38,7 +38,7 @@ pub enum SeamState {
 pub struct GarmentSeam {
     /// Its name, `front.hem + back.hem`.
     pub name: String,
-    /// Matched or gathered.
+    /// How its sides meet.
     pub kind: SeamKind,
     /// Vertices that end up in one place.
     pub pairs: Vec<[u32; 2]>,
@@ -246,7 +246,7 @@ impl Artifact for Garment {
         d.indices(self.weld.iter().copied());
         d.count(self.pinned.len()).indices(self.pinned.iter().copied());
         for seam in &self.seams {
-            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied());
+            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied()).floats(seam.kind.figures());
         }
     }
 
@@ -286,6 +286,7 @@ impl Artifact for Garment {
         finite("rest position", self.rest.iter().map(|p| &p.coords))?;
         indices("a triangle", n, self.triangles.iter().flatten())?;
         indices("a seam", n, self.seams.iter().flat_map(|s| s.pairs.iter().flatten()))?;
+        self.seams.iter().try_for_each(|s| s.kind.check())?;
         indices("a weld", n, self.weld.iter())?;
         indices("a pin", n, self.pinned.iter())?;
         let least = |(i, &w): (usize, &u32)| w as usize <= i && self.weld[w as usize] == w;

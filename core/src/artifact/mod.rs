@@ -22,9 +22,11 @@ mod measures;
 mod model;
 mod outline;
 mod panel;
+mod pattern;
 mod phases;
 mod photo;
 mod runlog;
+mod seam_kind;
 mod sewing;
 mod shared;
 mod sound;
@@ -45,10 +47,15 @@ pub use measures::{Measure, Measures};
 pub use model::{Material, Mesh, Model, Texture};
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
+pub use pattern::{
+    BodyPart, EdgeCurve, EdgePath, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern, PatternLoop,
+    PatternSeam, Piece, PieceEdge, PieceLine, Pose,
+};
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
 pub use runlog::{RunLog, StageRecord};
-pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SeamKind, SewingPlan};
+pub use seam_kind::{PleatFold, SeamKind};
+pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
 pub use shared::Shared;
 
 use std::any::Any;

@@ -36,6 +36,8 @@ pub enum InnerKind {
     Pleat,
     /// A fold line.
     Fold,
+    /// Where another piece is sewn on.
+    Placement,
 }
 
 /// A line inside the panel that must lie on mesh edges.
@@ -47,6 +49,8 @@ pub struct InnerLine {
     pub kind: InnerKind,
     /// Vertices from its start, metres.
     pub points: Vec<Point2>,
+    /// Divisions agreed with the edge or line it is sewn to; none where it is not sewn, or its partner is known by its place.
+    pub gauge: Option<Gauge>,
 }
 
 /// How pattern coordinates map to the photo: `px = origin + (x, -y) * px_per_metre`, x mirrored
@@ -111,7 +115,7 @@ pub struct Outline {
     pub holes: Vec<Loop>,
     /// Named edges, counter-clockwise, covering the outer loop. Empty until a style names them.
     pub edges: Vec<Edge>,
-    /// Darts, pleats, folds.
+    /// Darts, pleats, folds, lines where other pieces are sewn on.
     pub inner: Vec<InnerLine>,
     /// Where the outline lies in its photo.
     pub frame: Option<PhotoFrame>,
@@ -180,6 +184,9 @@ impl Artifact for Outline {
         }
         for line in &self.inner {
             d.text(&line.name).floats(line.points.iter().flat_map(|p| [p.x, p.y]));
+            if let Some(gauge) = &line.gauge {
+                gauge.digest(d);
+            }
         }
     }
 
@@ -214,6 +221,8 @@ impl Artifact for Outline {
         for line in &self.inner {
             ensure(line.points.len() >= 2, || format!("inner line \"{}\" has no length", line.name))?;
             finite("inner point", line.points.iter().map(|p| &p.coords))?;
+            let sound = line.gauge.is_none_or(|g| g.is_sound());
+            ensure(sound, || format!("inner line \"{}\" has no length to divide", line.name))?;
         }
         self.frame.as_ref().map_or(Ok(()), |f| {
             finite("photo origin", [&f.origin_px.coords])?;

@@ -1,7 +1,7 @@
 //! Which edges are sewn to which, and where each panel goes on the body.
 
 use super::sound::finite;
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, SeamKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -40,26 +40,17 @@ impl std::fmt::Display for EdgeRef {
     }
 }
 
-/// How the two sides of a seam meet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SeamKind {
-    /// Equal lengths, point by point.
-    Matched,
-    /// The longer side is gathered evenly onto the shorter.
-    Gathered,
-}
-
 /// Two edges that are sewn together.
 ///
 /// Both run counter-clockwise around their own panels, so a seam pairs the start of `a` with the
 /// **end** of `b`, as two pieces laid face to face meet. `reversed` pairs start with start.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Seam {
     /// One edge.
     pub a: EdgeRef,
     /// The other.
     pub b: EdgeRef,
-    /// Matched or gathered.
+    /// How they meet.
     pub kind: SeamKind,
     /// True where start is sewn to start.
     pub reversed: bool,
@@ -120,7 +111,8 @@ impl Artifact for SewingPlan {
     fn digest(&self, d: &mut Digester) {
         d.text("sewing").count(self.seams.len());
         for s in &self.seams {
-            d.text(&s.name()).count(usize::from(s.kind == SeamKind::Gathered)).count(usize::from(s.reversed));
+            s.kind.digest(d.text(&s.name()));
+            d.count(usize::from(s.reversed));
         }
         for (name, p) in &self.placements {
             d.text(name).text(p.landmark).count(usize::from(p.behind)).floats([p.anchor.x, p.anchor.y]);
@@ -134,6 +126,7 @@ impl Artifact for SewingPlan {
     }
 
     fn check(&self) -> Result<(), String> {
+        self.seams.iter().try_for_each(|s| s.kind.check())?;
         finite("anchor", self.placements.values().map(|p| &p.anchor.coords))
     }
 

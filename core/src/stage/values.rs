@@ -150,6 +150,15 @@ impl<A: Output, B: Output> Output for (A, B) {
     }
 }
 
+impl<A: Output, B: Output, C: Output> Output for (A, B, C) {
+    fn ports() -> Vec<OutPort> {
+        [A::ports(), B::ports(), C::ports()].concat()
+    }
+    fn pack(self) -> Vec<PortValue> {
+        [self.0.pack(), self.1.pack(), self.2.pack()].concat()
+    }
+}
+
 impl<A: Output, B: Output, C: Output, D: Output> Output for (A, B, C, D) {
     fn ports() -> Vec<OutPort> {
         [A::ports(), B::ports(), C::ports(), D::ports()].concat()

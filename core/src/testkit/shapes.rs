@@ -150,7 +150,7 @@ pub fn darted() -> Outline {
         ("waist", waist),
         ("side_right", vec![p(-0.24, 0.6), p(-0.3, 0.0)]),
     ]);
-    let line = |name: &str, kind, points| InnerLine { name: name.into(), kind, points };
+    let line = |name: &str, kind, points| InnerLine { name: name.into(), kind, points, gauge: None };
     outline.inner = vec![
         line("dart_a", InnerKind::Dart, vec![a, tip]),
         line("dart_b", InnerKind::Dart, vec![tip, b]),

@@ -1,4 +1,4 @@
-//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, and a prepared scene.
+//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, and two sewing patterns.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the first argument, and as the second a factor for the photos' resolution:
@@ -10,6 +10,7 @@ mod garment;
 mod ground;
 mod near;
 mod noise;
+mod pattern;
 mod print;
 mod render;
 mod scene;
@@ -35,6 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         write(&folder.join("vest"), side, &enlarged(vest_shot(side), factor), &garment::vest(side))?;
         write(&folder.join("tshirt"), side, &enlarged(tshirt_shot(side), factor), &garment::tshirt(side))?;
     }
+    pattern::write(&folder.join("pattern"))?;
     scene::write(&folder.join("scene"))
 }
 

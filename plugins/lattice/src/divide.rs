@@ -241,7 +241,8 @@ fn lines(outline: &Outline, loops: &mut [Vec<Stretch>], h: f64) -> Vec<Stretch> 
             }
         }
     }
-    let mut lines: Vec<Stretch> = all.into_iter().map(|p| inner_stretch(p, h)).collect();
+    let own = outline.inner.iter().map(|l| l.gauge);
+    let mut lines: Vec<Stretch> = all.into_iter().zip(own).map(|(p, g)| inner_stretch(p, h, g)).collect();
     let ends: Vec<[Point2; 2]> = lines.iter().map(|l| [l.points[0], l.points[l.points.len() - 1]]).collect();
     for (i, line) in lines.iter_mut().enumerate() {
         for end in ends.iter().enumerate().filter(|(j, _)| *j != i).flat_map(|(_, e)| e) {
@@ -255,13 +256,13 @@ fn lines(outline: &Outline, loops: &mut [Vec<Stretch>], h: f64) -> Vec<Stretch> 
     lines
 }
 
-fn inner_stretch(points: Vec<Point2>, h: f64) -> Stretch {
+fn inner_stretch(points: Vec<Point2>, h: f64, gauge: Option<Gauge>) -> Stretch {
     let joint = |k: &usize| {
         let (u, v) = (points[*k] - points[k - 1], points[k + 1] - points[*k]);
         u.perp(&v).atan2(u.dot(&v)).abs() > INNER_CORNER.to_radians() || u.norm().min(v.norm()) >= h / 2.0
     };
     let corners: Vec<usize> = (1..points.len() - 1).filter(joint).collect();
-    Stretch::new(None, points, &corners, None)
+    Stretch::new(None, points, &corners, gauge)
 }
 
 /// Two legs of a dart meet in a point and are sewn to each other: both take what either needs.

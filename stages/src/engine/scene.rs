@@ -1,6 +1,6 @@
 //! Garments as the engine's scenes and back.
 
-use super::cloth_error;
+use super::{cloth_error, joined};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -29,8 +29,9 @@ pub struct Setting {
 /// The scene of a garment; the body answers for itself.
 ///
 /// # Errors
-/// A fabric whose curves the engine does not take.
+/// A fabric whose curves the engine does not take, a kind of seam that it does not carry out.
 pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageError> {
+    garment.seams.iter().try_for_each(|s| joined(s.kind, &s.name))?;
     let mut panels = Vec::with_capacity(garment.panels.len());
     for p in &garment.panels {
         let material = fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;

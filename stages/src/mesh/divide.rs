@@ -71,8 +71,14 @@ impl Cuts {
     /// Equal parts for a target edge length `h` (metres): as many as its gauge says on a named edge, else as many as keep
     /// the chords true.
     pub(crate) fn even(layout: &Layout<'_>, h: f64) -> Result<Self, StageError> {
-        let own: Vec<usize> =
-            layout.lines.iter().map(|l| fine_enough(&l.path, &l.marks, 1 + l.marks.len(), h)).collect();
+        let own: Vec<usize> = layout
+            .lines
+            .iter()
+            .map(|l| match l.inner.gauge {
+                Some(gauge) => gauge.divisions(h).max(1 + l.marks.len()),
+                None => fine_enough(&l.path, &l.marks, 1 + l.marks.len(), h),
+            })
+            .collect();
         // The two legs of a dart end on one point and are sewn to each other, so they get the count of the longer.
         let count = |i: usize| layout.legs(i).into_iter().map(|j| own[j]).fold(own[i], usize::max);
         Ok(Cuts {

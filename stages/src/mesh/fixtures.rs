@@ -164,7 +164,7 @@ pub(crate) fn darted() -> Outline {
     let waist = outline.edge_points(&outline.edges[2]);
     let (a, b) = (waist[60], waist[45]);
     let tip = p(0.105, 0.45);
-    let inner = |name: &str, kind, points| InnerLine { name: name.into(), kind, points };
+    let inner = |name: &str, kind, points| InnerLine { name: name.into(), kind, points, gauge: None };
     outline.inner = vec![
         inner("dart_a", InnerKind::Dart, vec![a, tip]),
         inner("dart_b", InnerKind::Dart, vec![tip, b]),

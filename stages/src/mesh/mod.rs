@@ -6,7 +6,7 @@
 mod angles;
 mod assemble;
 mod check;
-mod crossing;
+pub(crate) mod crossing;
 mod delaunay;
 mod divide;
 #[cfg(test)]

@@ -315,7 +315,7 @@ fn what_cannot_be_meshed_is_refused_in_words() {
         InvalidInput,
         "hole 1 lies outside the cloth",
     );
-    let inner = |points| vec![InnerLine { name: "fold".into(), kind: InnerKind::Fold, points }];
+    let inner = |points| vec![InnerLine { name: "fold".into(), kind: InnerKind::Fold, points, gauge: None }];
     let lined = |points| Outline { inner: inner(points), ..square.clone() };
     is(
         &lined(vec![p(0.1, 0.1), p(0.5, 0.2)]),
@@ -433,7 +433,7 @@ proptest! {
         h in 0.008..0.05f64,
     ) {
         let points = fold.into_iter().map(|(x, y)| p(x, y)).collect();
-        let inner = vec![InnerLine { name: "fold".into(), kind: InnerKind::Fold, points }];
+        let inner = vec![InnerLine { name: "fold".into(), kind: InnerKind::Fold, points, gauge: None }];
         let outline = Outline { inner, ..disc() };
         for mesher in MESHERS {
             if let Ok(panel) = mesher(&outline, h) {

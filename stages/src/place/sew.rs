@@ -1,5 +1,6 @@
 //! Seams as vertex pairs of the garment.
 
+use crate::engine::joined;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
@@ -12,6 +13,7 @@ pub(crate) fn seams(plan: &SewingPlan, panels: &Offsets) -> Result<Vec<GarmentSe
 }
 
 fn pair(seam: &Seam, panels: &Offsets) -> Result<GarmentSeam, StageError> {
+    joined(seam.kind, &seam.name())?;
     let a = vertices(&seam.a, panels)?;
     let mut b = vertices(&seam.b, panels)?;
     if a.len() != b.len() {

@@ -167,7 +167,12 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
     let difference = (a - b).abs() / a.max(b);
     let words = format!("{} is {:.1} mm long, {} {:.1} mm", seam.a, a * 1e3, seam.b, b * 1e3);
     match seam.kind {
-        SeamKind::Gathered => Ok(()),
+        SeamKind::Gathered
+        | SeamKind::Dart
+        | SeamKind::Pleat(_)
+        | SeamKind::Elastic { .. }
+        | SeamKind::Patch
+        | SeamKind::Folded { .. } => Ok(()),
         SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(StageError::invalid(
             format!("{words}: they differ by {:.1} %, too much to be sewn flat", 100.0 * difference),
         )

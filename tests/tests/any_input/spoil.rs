@@ -180,6 +180,7 @@ fn outline(e: &Edit, o: &mut Outline) {
             name: "dart".into(),
             kind: InnerKind::Dart,
             points: vec![Point2::new(e.number, 0.1), Point2::new(0.0, e.number), o.outer.points[0]],
+            gauge: None,
         }),
         _ => o.frame = None,
     }

@@ -109,15 +109,35 @@ fn edge_of(r: &Reader<'_>) -> Result<Edge, String> {
     })
 }
 
-const INNER_KINDS: [(&str, InnerKind); 3] =
-    [("dart", InnerKind::Dart), ("pleat", InnerKind::Pleat), ("fold", InnerKind::Fold)];
+const INNER_KINDS: [(&str, InnerKind); 4] = [
+    ("dart", InnerKind::Dart),
+    ("pleat", InnerKind::Pleat),
+    ("fold", InnerKind::Fold),
+    ("placement", InnerKind::Placement),
+];
 
 fn inner_fields(l: &InnerLine) -> Record<'_> {
-    Record::new().text("name", &l.name).text("kind", word(&INNER_KINDS, &l.kind)).list("points", &l.points)
+    let record = Record::new()
+        .text("name", &l.name)
+        .text("kind", word(&INNER_KINDS, &l.kind))
+        .list("points", &l.points);
+    match &l.gauge {
+        Some(gauge) => record.owned("gauge", gauge.numbers()),
+        None => record,
+    }
 }
 
 fn inner_of(r: &Reader<'_>) -> Result<InnerLine, String> {
-    Ok(InnerLine { name: r.text("name")?, kind: value(&INNER_KINDS, r, "kind")?, points: r.list("points")? })
+    let gauge = r.find("gauge").map(|_| {
+        Gauge::from_numbers(&r.list::<f64>("gauge")?)
+            .ok_or_else(|| "`gauge` is no gauge of a line".to_owned())
+    });
+    Ok(InnerLine {
+        name: r.text("name")?,
+        kind: value(&INNER_KINDS, r, "kind")?,
+        points: r.list("points")?,
+        gauge: gauge.transpose()?,
+    })
 }
 
 fn frame_fields(f: &PhotoFrame) -> Record<'_> {

@@ -10,6 +10,7 @@
 mod bytes;
 mod flat;
 mod list;
+mod pattern;
 mod plan;
 mod read;
 mod solid;
@@ -22,7 +23,7 @@ pub use read::Reader;
 use super::{Artifact, ArtifactType, Kind};
 use std::sync::Arc;
 
-/// The deepest nesting of records; the artifacts need three.
+/// The deepest nesting of records; the artifacts need four.
 pub const MAX_DEPTH: usize = 8;
 
 /// An artifact type that can be made again from its record.
@@ -77,7 +78,7 @@ pub fn kind_named(name: &str) -> Option<Kind> {
 type Make = fn(&Record<'_>) -> Result<Arc<dyn Artifact>, String>;
 
 /// Every kind that has a record.
-const MAKERS: [(Kind, Make); 12] = [
+const MAKERS: [(Kind, Make); 13] = [
     maker::<super::Photo>(),
     maker::<super::Mask>(),
     maker::<super::Outline>(),
@@ -86,6 +87,7 @@ const MAKERS: [(Kind, Make); 12] = [
     maker::<super::Garment>(),
     maker::<super::Model>(),
     maker::<super::Fabric>(),
+    maker::<super::Pattern>(),
     maker::<super::SewingPlan>(),
     maker::<super::Phases>(),
     maker::<super::Figures>(),

@@ -53,8 +53,16 @@ impl Stored for Fabric {
     }
 }
 
-pub(super) const SEAM_KINDS: [(&str, SeamKind); 2] =
-    [("matched", SeamKind::Matched), ("gathered", SeamKind::Gathered)];
+/// A seam's kind as its word, and its figures where it has any.
+pub(super) fn kind_fields<'a>(record: Record<'a>, kind: SeamKind) -> Record<'a> {
+    let (record, figures) = (record.text("kind", kind.word()), kind.figures());
+    if figures.is_empty() { record } else { record.owned("kind_figures", figures) }
+}
+
+pub(super) fn kind_of(r: &Reader<'_>) -> Result<SeamKind, String> {
+    let figures = if r.find("kind_figures").is_some() { r.list("kind_figures")? } else { Vec::new() };
+    SeamKind::of(&r.text("kind")?, &figures)
+}
 
 const LIMBS: [(&str, Limb); 4] = [
     ("torso", Limb::Torso),
@@ -81,28 +89,20 @@ impl Stored for SewingPlan {
 }
 
 fn seam_fields(s: &Seam) -> Record<'_> {
-    Record::new()
-        .records("a", [edge_fields(&s.a)])
-        .records("b", [edge_fields(&s.b)])
-        .text("kind", word(&SEAM_KINDS, &s.kind))
-        .flag("reversed", s.reversed)
+    let sides = Record::new().records("a", [edge_fields(&s.a)]).records("b", [edge_fields(&s.b)]);
+    kind_fields(sides, s.kind).flag("reversed", s.reversed)
 }
 
 fn seam_of(r: &Reader<'_>) -> Result<Seam, String> {
     let side = |name| edge_of(&r.maybe(name)?.ok_or_else(|| format!("the field `{name}` is missing"))?);
-    Ok(Seam {
-        a: side("a")?,
-        b: side("b")?,
-        kind: value(&SEAM_KINDS, r, "kind")?,
-        reversed: r.flag("reversed")?,
-    })
+    Ok(Seam { a: side("a")?, b: side("b")?, kind: kind_of(r)?, reversed: r.flag("reversed")? })
 }
 
-fn edge_fields(e: &EdgeRef) -> Record<'_> {
+pub(super) fn edge_fields(e: &EdgeRef) -> Record<'_> {
     Record::new().text("panel", &e.panel).text("edge", &e.edge)
 }
 
-fn edge_of(r: &Reader<'_>) -> Result<EdgeRef, String> {
+pub(super) fn edge_of(r: &Reader<'_>) -> Result<EdgeRef, String> {
     Ok(EdgeRef { panel: r.text("panel")?, edge: r.text("edge")? })
 }
 

@@ -4,7 +4,7 @@ use super::super::{
     Body, Garment, GarmentPanel, GarmentSeam, Material, Mesh, Model, Point3, SeamState, SolveStatus, Texture,
 };
 use super::flat::{rgb, value, word};
-use super::plan::SEAM_KINDS;
+use super::plan::{kind_fields, kind_of};
 use super::{Reader, Record, Stored};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -105,9 +105,7 @@ fn range([start, end]: [u64; 2]) -> Range<usize> {
 const SEAM_STATES: [(&str, SeamState); 2] = [("open", SeamState::Open), ("closed", SeamState::Closed)];
 
 fn seam_fields(s: &GarmentSeam) -> Record<'_> {
-    Record::new()
-        .text("name", &s.name)
-        .text("kind", word(&SEAM_KINDS, &s.kind))
+    kind_fields(Record::new().text("name", &s.name), s.kind)
         .list("pairs", &s.pairs)
         .text("state", word(&SEAM_STATES, &s.state))
 }
@@ -115,7 +113,7 @@ fn seam_fields(s: &GarmentSeam) -> Record<'_> {
 fn seam_of(r: &Reader<'_>) -> Result<GarmentSeam, String> {
     Ok(GarmentSeam {
         name: r.text("name")?,
-        kind: value(&SEAM_KINDS, r, "kind")?,
+        kind: kind_of(r)?,
         pairs: r.list("pairs")?,
         state: value(&SEAM_STATES, r, "state")?,
     })

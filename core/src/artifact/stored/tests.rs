@@ -30,6 +30,7 @@ fn outline() -> Outline {
             name: "dart".into(),
             kind: InnerKind::Dart,
             points: vec![Point2::new(0.01, 0.01), Point2::new(0.02, 0.02)],
+            gauge: None,
         }],
         frame: Some(PhotoFrame { origin_px: Point2::new(1.0, 2.0), px_per_metre: 900.0, mirrored: false }),
     }
@@ -186,6 +187,7 @@ fn every_kind() -> Vec<Arc<dyn Artifact>> {
         Arc::new(body()),
         Arc::new(model()),
         Arc::new(plan()),
+        Arc::new(super::super::pattern::tests::tunic()),
         Arc::new(phases()),
         Arc::new(figures()),
         Arc::new(OutputFiles::one("a/b.txt", b"content".to_vec())),
@@ -254,7 +256,7 @@ proptest! {
 
     /// Damaged bytes are refused or give a sound artifact; nothing panics or claims memory.
     #[test]
-    fn damaged_bytes_never_panic(which in 0..12usize, cut in any::<prop::sample::Index>(),
+    fn damaged_bytes_never_panic(which in 0..13usize, cut in any::<prop::sample::Index>(),
         at in any::<prop::sample::Index>(), byte in any::<u8>()) {
         let artifact = every_kind().swap_remove(which);
         let mut bytes = encode(artifact.as_ref()).unwrap();

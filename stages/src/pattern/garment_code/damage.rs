@@ -1,0 +1,138 @@
+//! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what to do.
+
+use thiserror::Error;
+use toile_core::pipeline::nearest;
+use toile_core::{ErrorCode, StageError};
+
+/// Why a file is refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(super) enum Damage {
+    #[error("it is no JSON: {what} at line {line} column {column}")]
+    Syntax { what: String, line: usize, column: usize },
+    #[error("{word} at line {line} column {column} is no number")]
+    NoNumber { word: &'static str, line: usize, column: usize },
+    #[error("it has {bytes} bytes, {most} are the most")]
+    Large { bytes: usize, most: usize },
+    #[error("{of} has {count} {what}, {most} are the most")]
+    Many { what: &'static str, of: String, count: usize, most: usize },
+    #[error("{of} has no `{field}`")]
+    Missing { field: String, of: String },
+    #[error("{at} is {found}, {wanted} is wanted")]
+    Type { at: String, found: &'static str, wanted: &'static str },
+    #[error("there are no panels")]
+    NoPanels,
+    #[error("two panels are called \"{panel}\"")]
+    Doubled { panel: String },
+    #[error("`panel_order` names the panel \"{panel}\", which is missing")]
+    MissingPanel { panel: String },
+    #[error("`units_in_meter` is {value}, it must be above 0 and at most 1e6")]
+    Units { value: f64 },
+    #[error("`curvature_coords` is \"{word}\", it is \"relative\" or \"absolute\"")]
+    Coordinates { word: String },
+    #[error("{at} is {value}, beyond what cloth reaches")]
+    Far { at: String, value: f64 },
+    #[error("panel \"{panel}\" has {edges} edges, 2 are the least")]
+    FewEdges { panel: String, edges: usize },
+    #[error("edge {edge} of panel \"{panel}\" names vertex {vertex}, the panel has {count}")]
+    NoVertex { panel: String, edge: usize, vertex: f64, count: usize },
+    #[error(
+        "edge {edge} of panel \"{panel}\" has the curvature \"{kind}\" with {params} parameters, which is none"
+    )]
+    Curvature { panel: String, edge: usize, kind: String, params: usize },
+    #[error("edge {edge} of panel \"{panel}\" has no length and is stitched")]
+    NoLength { panel: String, edge: usize },
+    #[error(
+        "the loop of panel \"{panel}\" is open: edge {edge} ends {gap_mm:.1} mm from where edge {next} starts"
+    )]
+    Open { panel: String, edge: usize, next: usize, gap_mm: f64 },
+    #[error(
+        "panel \"{panel}\" crosses itself: edge {edge} meets edge {other} near ({x:.1}, {y:.1}) in the file's units"
+    )]
+    Crosses { panel: String, edge: usize, other: usize, x: f64, y: f64 },
+    #[error("panel \"{panel}\" encloses no area")]
+    NoArea { panel: String },
+    #[error("stitch {stitch} has {sides} sides, 2 are wanted")]
+    Sides { stitch: usize, sides: usize },
+    #[error("stitch {stitch} ends with \"{word}\", which is no word of the format")]
+    Word { stitch: usize, word: String },
+    #[error("stitch {stitch} sews panel \"{panel}\", which the file does not have")]
+    NoPanel { stitch: usize, panel: String, known: Vec<String> },
+    #[error("stitch {stitch} sews edge {edge} of panel \"{panel}\", which has {count} edges")]
+    NoEdge { stitch: usize, panel: String, edge: f64, count: usize },
+    #[error("stitch {stitch} sews edge {edge} of panel \"{panel}\" to itself")]
+    Itself { stitch: usize, panel: String, edge: usize },
+    #[error("stitches {stitch} and {other} sew the same edges in opposite directions")]
+    Contradiction { stitch: usize, other: usize },
+    #[error("{what}")]
+    Unsewable { what: String, remedy: &'static str },
+}
+
+impl Damage {
+    /// What the user may do about it.
+    pub(super) fn remedy(&self) -> String {
+        match self {
+            Damage::Syntax { .. } => "write the file again with the program that made it".into(),
+            Damage::NoNumber { .. } => "give the number that is meant; JSON knows no such word".into(),
+            Damage::Large { .. } | Damage::Many { .. } => "no garment needs so many: is it the file that is meant?".into(),
+            Damage::Missing { .. } | Damage::Type { .. } => {
+                "GarmentCode writes `pattern` with `panels` and `stitches`, and `properties`; is it a `_specification.json`?".into()
+            }
+            Damage::NoPanels => "draft the garment again; an empty pattern cannot be sewn".into(),
+            Damage::Doubled { .. } => "give each panel a name of its own".into(),
+            Damage::MissingPanel { .. } => "add the panel, or take its name out of `panel_order`".into(),
+            Damage::Units { .. } => "write 100 for centimetres".into(),
+            Damage::Coordinates { .. } => "GarmentCode writes \"relative\"".into(),
+            Damage::Far { .. } => "correct the number, or `units_in_meter`".into(),
+            Damage::FewEdges { .. } => "draw the panel as a closed loop of edges".into(),
+            Damage::NoVertex { .. } => "vertices are counted from 0".into(),
+            Damage::Curvature { .. } => {
+                "`quadratic` has 1 control point, `cubic` 2, `circle` a radius and two flags".into()
+            }
+            Damage::NoLength { .. } => "draw the edge, or take its stitch out".into(),
+            Damage::Open { .. } => "close the loop: gaps of up to 5 mm are closed by themselves".into(),
+            Damage::Crosses { .. } | Damage::NoArea { .. } => "draw the panel so that its edges meet at corners alone".into(),
+            Damage::Sides { .. } => "a stitch names two edges; three panels in one seam are two stitches".into(),
+            Damage::Word { .. } => "the only word is \"right_wrong\"".into(),
+            Damage::NoPanel { panel, known, .. } => match nearest(panel, known.iter().map(String::as_str)) {
+                Some(near) => format!("did you mean \"{near}\"?"),
+                None => "add the panel, or take the stitch out".into(),
+            },
+            Damage::NoEdge { .. } => "edges are counted from 0".into(),
+            Damage::Itself { .. } => "cut the edge in two and sew its halves".into(),
+            Damage::Contradiction { .. } => "keep the stitch that is meant".into(),
+            Damage::Unsewable { remedy, .. } => (*remedy).into(),
+        }
+    }
+
+    /// As an error of the stage that reads `file`.
+    pub(super) fn error(&self, file: &str) -> StageError {
+        let code = match self {
+            Damage::Crosses { .. } | Damage::NoArea { .. } => ErrorCode::DegenerateTriangles,
+            Damage::Syntax { .. }
+            | Damage::NoNumber { .. }
+            | Damage::Large { .. }
+            | Damage::Many { .. }
+            | Damage::Missing { .. }
+            | Damage::Type { .. }
+            | Damage::NoPanels
+            | Damage::Doubled { .. }
+            | Damage::MissingPanel { .. }
+            | Damage::Units { .. }
+            | Damage::Coordinates { .. }
+            | Damage::Far { .. }
+            | Damage::FewEdges { .. }
+            | Damage::NoVertex { .. }
+            | Damage::Curvature { .. }
+            | Damage::NoLength { .. }
+            | Damage::Open { .. }
+            | Damage::Sides { .. }
+            | Damage::Word { .. }
+            | Damage::NoPanel { .. }
+            | Damage::NoEdge { .. }
+            | Damage::Itself { .. }
+            | Damage::Contradiction { .. }
+            | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
+        };
+        StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at("file")
+    }
+}

@@ -1,0 +1,306 @@
+//! The fields of a GarmentCode file, each of its type and within its bounds; what they mean is not looked at yet.
+
+use super::damage::Damage;
+use super::json::Json;
+use std::collections::BTreeSet;
+use toile_core::prelude::*;
+
+/// Panels of one file.
+const MOST_PANELS: usize = 500;
+/// Edges of all panels, and vertices.
+const MOST_EDGES: usize = 5_000;
+/// Stitches of one file.
+const MOST_STITCHES: usize = 2_000;
+/// Coordinates in the file's units.
+const FARTHEST: f64 = 1e6;
+
+/// A file in its own units.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RawFile {
+    /// Units in a metre, where the file says.
+    pub units: Option<f64>,
+    /// Whether control points are given in the panel's coordinates, not relative to the edge's chord.
+    pub absolute: bool,
+    pub panels: Vec<RawPanel>,
+    pub stitches: Vec<RawStitch>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RawPanel {
+    pub name: String,
+    pub translation: Vector3,
+    /// Euler angles, degrees.
+    pub rotation: Vector3,
+    pub vertices: Vec<Point2>,
+    pub edges: Vec<RawEdge>,
+    pub label: Option<String>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RawEdge {
+    /// The vertices at its start and end.
+    pub ends: [usize; 2],
+    pub curve: RawCurve,
+    pub label: Option<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum RawCurve {
+    Line,
+    Quadratic([Point2; 1]),
+    Cubic([Point2; 2]),
+    Circle { radius: f64, large: bool, right: bool },
+}
+
+/// An edge of a panel, both by their numbers.
+pub(super) type Side = (usize, usize);
+
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct RawStitch {
+    pub sides: [Side; 2],
+    /// Whether start meets start.
+    pub right_wrong: bool,
+}
+
+impl RawFile {
+    pub(super) fn of(json: &Json) -> Result<Self, Damage> {
+        let pattern = object(json, "pattern", "the file")?;
+        let properties = json.field("properties").filter(|p| **p != Json::Null);
+        let units = properties.and_then(|p| p.field("units_in_meter")).filter(|u| **u != Json::Null);
+        let units = units.map(|u| number(u, "`units_in_meter`")).transpose()?;
+        if let Some(value) = units.filter(|u| !(*u > 0.0 && *u <= FARTHEST)) {
+            return Err(Damage::Units { value });
+        }
+        let absolute = match properties.and_then(|p| p.field("curvature_coords")) {
+            None | Some(Json::Null) => false,
+            Some(Json::Text(word)) if word == "relative" => false,
+            Some(Json::Text(word)) if word == "absolute" => true,
+            Some(Json::Text(word)) => return Err(Damage::Coordinates { word: short(word) }),
+            Some(other) => return Err(wrong("`curvature_coords`", other, "a text")),
+        };
+        let panels = panels(pattern)?;
+        order(pattern, &panels)?;
+        let stitches = list(pattern, "stitches", "`pattern`")?;
+        most("stitches", "the file", stitches.len(), MOST_STITCHES)?;
+        let stitches = stitches.iter().enumerate().map(|(i, s)| stitch(i, s, &panels));
+        let stitches = stitches.collect::<Result<_, _>>()?;
+        Ok(RawFile { units, absolute, panels, stitches })
+    }
+}
+
+fn panels(pattern: &Json) -> Result<Vec<RawPanel>, Damage> {
+    let Json::Object(fields) = object(pattern, "panels", "`pattern`")? else { return Err(Damage::NoPanels) };
+    if fields.is_empty() {
+        return Err(Damage::NoPanels);
+    }
+    most("panels", "the file", fields.len(), MOST_PANELS)?;
+    let mut names = BTreeSet::new();
+    let (mut out, mut edges, mut vertices) = (Vec::new(), 0, 0);
+    for (name, value) in fields {
+        if !names.insert(name) {
+            return Err(Damage::Doubled { panel: short(name) });
+        }
+        let panel = panel(name, value)?;
+        (edges, vertices) = (edges + panel.edges.len(), vertices + panel.vertices.len());
+        most("edges", "the file", edges, MOST_EDGES)?;
+        most("vertices", "the file", vertices, MOST_EDGES)?;
+        out.push(panel);
+    }
+    Ok(out)
+}
+
+/// Every panel that the file's order of panels names is there.
+fn order(pattern: &Json, panels: &[RawPanel]) -> Result<(), Damage> {
+    let Some(Json::List(order)) = pattern.field("panel_order") else { return Ok(()) };
+    let known: BTreeSet<&str> = panels.iter().map(|p| p.name.as_str()).collect();
+    let missing = order.iter().find_map(|n| match n {
+        Json::Text(name) if !known.contains(name.as_str()) => Some(name),
+        _ => None,
+    });
+    missing.map_or(Ok(()), |panel| Err(Damage::MissingPanel { panel: short(panel) }))
+}
+
+fn panel(name: &str, value: &Json) -> Result<RawPanel, Damage> {
+    let at = format!("panel \"{}\"", short(name));
+    let three = |field: &str| -> Result<Vector3, Damage> {
+        let [x, y, z] = numbers(part(value, field, &at)?, &format!("`{field}` of {at}"))?;
+        Ok(Vector3::new(x, y, z))
+    };
+    let vertices = list(value, "vertices", &at)?;
+    most("vertices", &at, vertices.len(), MOST_EDGES)?;
+    let vertex = |(i, v): (usize, &Json)| point(v, &format!("vertex {i} of {at}"));
+    let vertices = vertices.iter().enumerate().map(vertex).collect::<Result<Vec<_>, _>>()?;
+    let edges = list(value, "edges", &at)?;
+    most("edges", &at, edges.len(), MOST_EDGES)?;
+    let edges = edges.iter().enumerate().map(|(i, e)| edge(i, e, name, vertices.len()));
+    let edges = edges.collect::<Result<Vec<_>, _>>()?;
+    if edges.len() < 2 {
+        return Err(Damage::FewEdges { panel: short(name), edges: edges.len() });
+    }
+    Ok(RawPanel {
+        name: name.to_owned(),
+        translation: three("translation")?,
+        rotation: three("rotation")?,
+        vertices,
+        edges,
+        label: label(value),
+    })
+}
+
+fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, Damage> {
+    let at = format!("edge {i} of panel \"{}\"", short(panel));
+    let ends: [f64; 2] = numbers(part(value, "endpoints", &at)?, &format!("`endpoints` of {at}"))?;
+    let vertex = |n: f64| match n >= 0.0 && n.fract() == 0.0 && n < count as f64 {
+        true => Ok(n as usize),
+        false => Err(Damage::NoVertex { panel: short(panel), edge: i, vertex: n, count }),
+    };
+    let curve = match value.field("curvature") {
+        None | Some(Json::Null) => RawCurve::Line,
+        Some(c) => curve(i, c, panel, &at)?,
+    };
+    Ok(RawEdge { ends: [vertex(ends[0])?, vertex(ends[1])?], curve, label: label(value) })
+}
+
+fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Damage> {
+    let of = format!("curvature of {at}");
+    if let Json::List(_) = value {
+        return Ok(RawCurve::Quadratic([point(value, &of)?]));
+    }
+    let Json::Text(kind) = part(value, "type", &of)? else {
+        return Err(wrong(&format!("`type` of the {of}"), value, "a text"));
+    };
+    let params = list(value, "params", &of)?;
+    let flag = |v: &Json| match v {
+        Json::Flag(flag) => Ok(*flag),
+        other => number(other, &format!("a flag of the {of}")).map(|n| n != 0.0),
+    };
+    match (kind.as_str(), params) {
+        ("quadratic", [a]) => Ok(RawCurve::Quadratic([point(a, &of)?])),
+        ("cubic", [a, b]) => Ok(RawCurve::Cubic([point(a, &of)?, point(b, &of)?])),
+        ("circle", [radius, large, right]) => Ok(RawCurve::Circle {
+            radius: within(number(radius, &format!("radius of {at}"))?, &format!("radius of {at}"))?,
+            large: flag(large)?,
+            right: flag(right)?,
+        }),
+        _ => Err(Damage::Curvature { panel: short(panel), edge: i, kind: short(kind), params: params.len() }),
+    }
+}
+
+fn stitch(i: usize, value: &Json, panels: &[RawPanel]) -> Result<RawStitch, Damage> {
+    let Json::List(parts) = value else { return Err(wrong(&format!("stitch {i}"), value, "a list")) };
+    let sides = parts.iter().filter(|p| !matches!(p, Json::Text(_))).count();
+    let [a, b, words @ ..] = parts.as_slice() else { return Err(Damage::Sides { stitch: i, sides }) };
+    if sides != 2 {
+        return Err(Damage::Sides { stitch: i, sides });
+    }
+    let mut right_wrong = false;
+    for word in words {
+        match word {
+            Json::Text(word) if word == "right_wrong" => right_wrong = true,
+            Json::Text(word) => return Err(Damage::Word { stitch: i, word: short(word) }),
+            _ => return Err(Damage::Sides { stitch: i, sides: parts.len() }),
+        }
+    }
+    let side = |value: &Json| {
+        let at = format!("a side of stitch {i}");
+        let Json::Text(name) = part(value, "panel", &at)? else {
+            return Err(wrong(&format!("`panel` of {at}"), value.field("panel").unwrap_or(value), "a text"));
+        };
+        let known = || panels.iter().map(|p| p.name.clone()).collect();
+        let panel = panels.iter().position(|p| p.name == *name);
+        let panel = panel.ok_or_else(|| Damage::NoPanel { stitch: i, panel: short(name), known: known() })?;
+        let edge = number(part(value, "edge", &at)?, &format!("`edge` of {at}"))?;
+        let count = panels[panel].edges.len();
+        match edge >= 0.0 && edge.fract() == 0.0 && edge < count as f64 {
+            true => Ok((panel, edge as usize)),
+            false => Err(Damage::NoEdge { stitch: i, panel: short(name), edge, count }),
+        }
+    };
+    let sides = [side(a)?, side(b)?];
+    if sides[0] == sides[1] {
+        let (panel, edge) = sides[0];
+        return Err(Damage::Itself { stitch: i, panel: short(&panels[panel].name), edge });
+    }
+    Ok(RawStitch { sides, right_wrong })
+}
+
+fn label(value: &Json) -> Option<String> {
+    match value.field("label") {
+        Some(Json::Text(label)) if !label.is_empty() => Some(label.clone()),
+        _ => None,
+    }
+}
+
+fn part<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, Damage> {
+    match value {
+        Json::Object(_) => {
+            value.field(field).ok_or_else(|| Damage::Missing { field: field.into(), of: of.into() })
+        }
+        other => Err(wrong(of, other, "an object")),
+    }
+}
+
+fn object<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a Json, Damage> {
+    match part(value, field, of)? {
+        found @ Json::Object(_) => Ok(found),
+        other => Err(wrong(&format!("`{field}` of {of}"), other, "an object")),
+    }
+}
+
+fn list<'a>(value: &'a Json, field: &str, of: &str) -> Result<&'a [Json], Damage> {
+    match part(value, field, of)? {
+        Json::List(found) => Ok(found),
+        other => Err(wrong(&format!("`{field}` of {of}"), other, "a list")),
+    }
+}
+
+fn number(value: &Json, at: &str) -> Result<f64, Damage> {
+    match value {
+        Json::Number(n) => Ok(*n),
+        other => Err(wrong(at, other, "a number")),
+    }
+}
+
+/// A list of so many numbers, none of them beyond what a garment reaches.
+fn numbers<const N: usize>(value: &Json, at: &str) -> Result<[f64; N], Damage> {
+    let Json::List(found) = value else { return Err(wrong(at, value, "a list")) };
+    if found.len() != N {
+        let count = format!("{at} has {} numbers, {N} are wanted", found.len());
+        return Err(Damage::Unsewable {
+            what: count,
+            remedy: "points in the plane have 2 numbers, in space 3",
+        });
+    }
+    let mut out = [0.0; N];
+    for (to, v) in out.iter_mut().zip(found) {
+        *to = within(number(v, at)?, at)?;
+    }
+    Ok(out)
+}
+
+fn within(value: f64, at: &str) -> Result<f64, Damage> {
+    match value.abs() <= FARTHEST {
+        true => Ok(value),
+        false => Err(Damage::Far { at: at.to_owned(), value }),
+    }
+}
+
+fn point(value: &Json, at: &str) -> Result<Point2, Damage> {
+    numbers::<2>(value, at).map(|[x, y]| Point2::new(x, y))
+}
+
+fn most(what: &'static str, of: &str, count: usize, most: usize) -> Result<(), Damage> {
+    match count <= most {
+        true => Ok(()),
+        false => Err(Damage::Many { what, of: of.to_owned(), count, most }),
+    }
+}
+
+fn wrong(at: &str, found: &Json, wanted: &'static str) -> Damage {
+    Damage::Type { at: at.to_owned(), found: found.words(), wanted }
+}
+
+/// A name as it stands in a message.
+fn short(name: &str) -> String {
+    name.chars().take(60).collect()
+}

@@ -1,0 +1,190 @@
+//! Stitches of the file as seams of the pattern: which ends meet, what is stitched twice, what runs the wrong way.
+//!
+//! The start of the first edge meets the end of the second, both as the file gives them, unless `right_wrong` stands with the
+//! stitch. A stitch certainly runs the wrong way where
+//! - its edges share a vertex of their panel and would not meet there: the legs of a dart;
+//! - its mirror image in the file runs the other way, and the placed edges side with that;
+//! - it has no mirror image, and its placed edges run clearly side by side where they should run against each other.
+//!
+//! In 55 files of GarmentCode and its forerunner none of the 1519 stitches is one of these.
+//! Cost: stitches squared.
+
+use super::damage::Damage;
+use super::panel::Made;
+use super::read::{RawPanel, RawStitch};
+use std::collections::BTreeMap;
+use toile_core::prelude::*;
+
+/// Edges whose directions in space agree by more than this cosine run clearly the same way.
+const CLEAR: f64 = 0.5;
+/// Shorter edges lie too freely to tell, metres.
+const SHORTEST: f64 = 0.05;
+/// Of two mirror images that run in opposite ways, the wrong one agrees by this much more.
+const LEANING: f64 = 0.1;
+/// Mirror images of edges end this near to each other, metres.
+const NEAR: f64 = 0.01;
+
+/// A stitch as it is read: its number, its edges and whether start meets end.
+#[derive(Debug, Clone, Copy)]
+struct Stitch<'a> {
+    number: usize,
+    raw: &'a RawStitch,
+    start_to_end: bool,
+}
+
+/// The seams of the stitches. What is dropped or turned is told.
+pub(super) fn seams(
+    stitches: &[RawStitch],
+    panels: &[RawPanel],
+    made: &[Made],
+    told: &mut Vec<String>,
+) -> Result<Vec<PatternSeam>, Damage> {
+    let once = once(stitches, panels, told)?;
+    let turned: Vec<bool> = wrong_ways(&once, panels, made);
+    let mut out = Vec::with_capacity(once.len());
+    for (s, turn) in once.iter().zip(turned) {
+        if turn {
+            told.push(format!("stitch {} ({}) runs the wrong way: turned", s.number, words(s.raw, panels)));
+        }
+        out.push(seam(s.raw, s.start_to_end != turn, made));
+    }
+    Ok(out)
+}
+
+/// Every stitch once.
+fn once<'a>(
+    stitches: &'a [RawStitch],
+    panels: &[RawPanel],
+    told: &mut Vec<String>,
+) -> Result<Vec<Stitch<'a>>, Damage> {
+    let mut seen: BTreeMap<[(usize, usize); 2], usize> = BTreeMap::new();
+    let mut out: Vec<Stitch<'a>> = Vec::new();
+    for (number, raw) in stitches.iter().enumerate() {
+        let mut key = raw.sides;
+        key.sort_unstable();
+        match seen.get(&key).map(|&i| &out[i]) {
+            None => {
+                seen.insert(key, out.len());
+                out.push(Stitch { number, raw, start_to_end: !raw.right_wrong });
+            }
+            Some(first) if first.start_to_end != raw.right_wrong => told.push(format!(
+                "stitch {number} ({}) is stitch {} again: left out",
+                words(raw, panels),
+                first.number
+            )),
+            Some(first) => return Err(Damage::Contradiction { stitch: first.number, other: number }),
+        }
+    }
+    Ok(out)
+}
+
+fn words(s: &RawStitch, panels: &[RawPanel]) -> String {
+    let side = |(panel, edge): (usize, usize)| format!("edge {edge} of \"{}\"", panels[panel].name);
+    format!("{} to {}", side(s.sides[0]), side(s.sides[1]))
+}
+
+fn seam(s: &RawStitch, start_to_end: bool, made: &[Made]) -> PatternSeam {
+    let side = |(panel, edge): (usize, usize), against: bool| {
+        let piece = &made[panel].piece;
+        // Edges without length are never stitched.
+        let (k, flipped) = made[panel].edges[edge].unwrap_or((0, false));
+        let at = EdgeRef { panel: piece.name.clone(), edge: piece.outer.edges[k].name.clone() };
+        EdgeUse { edge: at, reversed: flipped != against }
+    };
+    let [a, b] = [side(s.sides[0], false), side(s.sides[1], start_to_end)];
+    let kind = if is_dart(s, made) { SeamKind::Dart } else { SeamKind::Matched };
+    PatternSeam { name: format!("{} + {}", a.edge, b.edge), kind, sides: vec![vec![a], vec![b]] }
+}
+
+/// The corner of a piece at which two of its edges meet, as the number of the corner.
+fn shared_corner(s: &RawStitch, made: &[Made]) -> Option<usize> {
+    let [(p, a), (q, b)] = s.sides;
+    let (a, b) = (made[p].edges[a]?.0, made[p].edges.get(b).copied().flatten()?.0);
+    let n = made[p].piece.outer.edges.len();
+    match p == q {
+        true if (a + 1) % n == b => Some(b),
+        true if (b + 1) % n == a => Some(a),
+        _ => None,
+    }
+}
+
+/// Two neighbouring edges that make a notch: the piece turns inwards where they meet.
+fn is_dart(s: &RawStitch, made: &[Made]) -> bool {
+    shared_corner(s, made).is_some_and(|k| {
+        let corners = &made[s.sides[0].0].piece.outer.corners;
+        let n = corners.len();
+        let (before, here, after) = (corners[(k + n - 1) % n], corners[k], corners[(k + 1) % n]);
+        (here - before).perp(&(after - here)) < 0.0
+    })
+}
+
+/// For each stitch whether it certainly runs the wrong way.
+fn wrong_ways(stitches: &[Stitch<'_>], panels: &[RawPanel], made: &[Made]) -> Vec<bool> {
+    let leans: Vec<f64> = stitches.iter().map(|s| leaning(s, made)).collect();
+    let images: Vec<Option<(usize, bool)>> = (0..stitches.len()).map(|i| image(i, stitches, made)).collect();
+    let wrong = |i: usize| {
+        let s = &stitches[i];
+        if let Some(meets) = meets_at_corner(s.raw, panels) {
+            return meets != s.start_to_end;
+        }
+        match images[i] {
+            Some((_, true)) => false,
+            Some((j, false)) => leans[i] > LEANING && leans[i] > leans[j] + LEANING,
+            None => leans[i] > CLEAR && shortest(s.raw, made) > SHORTEST,
+        }
+    };
+    (0..stitches.len()).map(wrong).collect()
+}
+
+/// For neighbouring edges of one panel whether they meet there start to end; none for others, and for both ends.
+fn meets_at_corner(s: &RawStitch, panels: &[RawPanel]) -> Option<bool> {
+    let [(p, a), (q, b)] = s.sides;
+    if p != q {
+        return None;
+    }
+    let [a, b] = [a, b].map(|e| panels[p].edges[e].ends);
+    match (a[0] == b[1] || a[1] == b[0], a[0] == b[0] || a[1] == b[1]) {
+        (true, false) => Some(true),
+        (false, true) => Some(false),
+        _ => None,
+    }
+}
+
+/// The cosine between the directions in which the two sides run in space, as they are sewn: -1 where that cannot be better for
+/// ends that meet start to end ... given as +1 for the worst.
+fn leaning(s: &Stitch<'_>, made: &[Made]) -> f64 {
+    let [a, b] = s.raw.sides.map(|(p, e)| made[p].ends[e][1] - made[p].ends[e][0]);
+    let cosine = a.dot(&b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE);
+    if s.start_to_end { cosine } else { -cosine }
+}
+
+fn shortest(s: &RawStitch, made: &[Made]) -> f64 {
+    let length = |(p, e): (usize, usize)| (made[p].ends[e][1] - made[p].ends[e][0]).norm();
+    length(s.sides[0]).min(length(s.sides[1]))
+}
+
+/// Another stitch that is this one's mirror image about the middle of the body, and whether it runs the same way.
+fn image(i: usize, stitches: &[Stitch<'_>], made: &[Made]) -> Option<(usize, bool)> {
+    let ends = |k: usize| stitches[k].raw.sides.map(|(p, e)| made[p].ends[e]);
+    let mirrored = ends(i).map(|side| side.map(|q| Point3::new(-q.x, q.y, q.z)));
+    // The same edge, from its start (false) or from its end (true).
+    let alike = |x: &[Point3; 2], y: &[Point3; 2]| {
+        let near = |a: &Point3, b: &Point3| (a - b).norm() <= NEAR;
+        let straight = near(&x[0], &y[0]) && near(&x[1], &y[1]);
+        let turned = near(&x[0], &y[1]) && near(&x[1], &y[0]);
+        match (straight, turned) {
+            (true, false) => Some(false),
+            (false, true) => Some(true),
+            _ => None,
+        }
+    };
+    let both = |x: &[[Point3; 2]; 2], y: &[[Point3; 2]; 2]| {
+        let same = alike(&x[0], &y[0]).zip(alike(&x[1], &y[1]));
+        same.or_else(|| alike(&x[0], &y[1]).zip(alike(&x[1], &y[0])))
+    };
+    let others = (0..stitches.len()).filter(|&j| j != i);
+    others.filter_map(|j| both(&mirrored, &ends(j)).map(|turns| (j, turns))).next().map(|(j, (a, b))| {
+        // Turning one of the two edges turns which ends meet.
+        (j, (stitches[i].start_to_end != (a != b)) == stitches[j].start_to_end)
+    })
+}

@@ -1,0 +1,53 @@
+//! How many of the file's units make a metre.
+//!
+//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A file that says so is believed. Where it says
+//! nothing, or something with which no panel is of that size, the first of the usual units is taken with which one is; that is
+//! told. Limit: a file for a doll that says so is taken for a wrong one.
+
+use super::damage::Damage;
+use super::read::RawFile;
+use toile_core::artifact::Point2;
+
+/// The size of the largest panel, metres.
+const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
+/// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's templates, millimetres,
+/// inches, metres.
+const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
+/// What GarmentCode writes.
+const DEFAULT: f64 = 100.0;
+
+/// Metres in a unit.
+pub(super) fn metres(file: &RawFile, told: &mut Vec<String>) -> Result<f64, Damage> {
+    let size = file.panels.iter().map(|p| extent(&p.vertices)).fold(0.0, f64::max);
+    let fits = |units: f64| (PLAUSIBLE.0..=PLAUSIBLE.1).contains(&(size / units));
+    let said = file.units.unwrap_or(DEFAULT);
+    if file.units.is_none() {
+        told.push("the file does not say its units: read as centimetres".to_owned());
+    }
+    if fits(said) {
+        return Ok(1.0 / said);
+    }
+    match USUAL.into_iter().find(|u| fits(*u)) {
+        Some(units) => {
+            told.push(format!(
+                "with {said} units in a metre the largest panel is {:.3} m long: read with {units:.4} units in a metre, {:.3} m",
+                size / said,
+                size / units
+            ));
+            Ok(1.0 / units)
+        }
+        None => Err(Damage::Unsewable {
+            what: format!("the largest panel is {size} units long, which is no garment in any usual unit"),
+            remedy: "write 100 as `units_in_meter` for centimetres",
+        }),
+    }
+}
+
+/// The longer side of the box around the points.
+fn extent(points: &[Point2]) -> f64 {
+    let span = |of: fn(&Point2) -> f64| {
+        let all = || points.iter().map(of);
+        all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
+    };
+    if points.is_empty() { 0.0 } else { span(|p| p.x).max(span(|p| p.y)) }
+}
