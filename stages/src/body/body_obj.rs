@@ -14,6 +14,9 @@ use toile_core::prelude::*;
 /// Heights of people, metres.
 const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
+/// A body whose feet and middle are nearer to the origin than this in every direction stays where it is, metres.
+const AT_ORIGIN: f64 = 0.05;
+
 /// The unit of a file's numbers.
 #[choice]
 #[derive(Copy, Eq)]
@@ -63,7 +66,7 @@ pub enum Up {
 #[stage(
     role = Body,
     source = "shares of the arm: Drillis and Contini, 1966",
-    version = 2,
+    version = 3,
     example = "BodyObj(file: \"body.obj\", up: Z)",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -143,7 +146,7 @@ impl BodyObj {
         Point3::new(p.x * cos + p.z * sin, p.y, p.z * cos - p.x * sin)
     }
 
-    /// Scales to metres, puts the feet to 0 and the middle to x = 0 and z = 0; returns the height.
+    /// Scales to metres and puts the feet to 0 and the middle to x = 0 and z = 0, unless it stands there already; returns the height.
     fn stand(&self, points: &mut [Point3]) -> Result<f64, StageError> {
         let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
         for p in points.iter() {
@@ -151,6 +154,8 @@ impl BodyObj {
         }
         let unit = self.unit(hi.y - lo.y)?;
         let base = Point3::new((lo.x + hi.x) / 2.0, lo.y, (lo.z + hi.z) / 2.0);
+        // Patterns and other files may count on the place of a body that stands there already.
+        let base = if base.coords.amax() * unit < AT_ORIGIN { Point3::origin() } else { base };
         points.iter_mut().for_each(|p| *p = Point3::from((*p - base) * unit));
         Ok((hi.y - lo.y) * unit)
     }

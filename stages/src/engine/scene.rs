@@ -89,7 +89,12 @@ fn seams(garment: &Garment) -> Vec<Seam> {
         let is_new = |p: &&[u32; 2]| known.insert([p[0].min(p[1]), p[0].max(p[1])]);
         let seam = Seam::new(s.name.clone(), s.pairs.iter().filter(is_new).copied().collect());
         let gather = match s.kind {
-            SeamKind::Matched => None,
+            SeamKind::Matched
+            | SeamKind::Dart
+            | SeamKind::Pleat(_)
+            | SeamKind::Elastic { .. }
+            | SeamKind::Patch
+            | SeamKind::Folded { .. } => None,
             SeamKind::Gathered => Some(gather(&seam.pairs, &garment.rest)),
         };
         Seam { gather, ..seam }

@@ -1,5 +1,6 @@
 //! Placement: flat panels into space around the body.
 
+mod arrange;
 mod carry;
 mod depth;
 mod fit;
@@ -9,6 +10,7 @@ mod refine;
 mod sew;
 mod whole;
 
+pub use arrange::Arrange;
 pub use carry::Carry;
 pub use lift::Lift;
 pub use panels::Place;
@@ -19,6 +21,7 @@ use toile_core::Registry;
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Place>();
+    registry.add::<Arrange>();
     registry.add::<Carry>();
     registry.add::<Refine>();
 }

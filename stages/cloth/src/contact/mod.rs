@@ -10,7 +10,6 @@ pub mod past;
 pub mod sharp;
 pub mod skin;
 pub(crate) mod start;
-pub(crate) mod thinner;
 pub mod tree;
 
 #[cfg(test)]

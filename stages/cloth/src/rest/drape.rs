@@ -43,7 +43,8 @@ impl<'a> Work<'a> {
                 }
                 self.bring(k, &mut level, &mut bending, progress)
             })?;
-            if level.system.is_tangled() {
+            // What was sewn through itself may come free on a finer mesh; nothing is gained by sewing it there anew.
+            if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {
                 return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
             }
             if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {

@@ -1,6 +1,6 @@
 //! Panels are sewn, on the coarsest level.
 
-use super::assemble::{Wearer, assemble, spacing, strongest};
+use super::assemble::{assemble, spacing, strongest};
 use super::error::MOST_EDGES;
 use super::graded::stages;
 use super::newton::Pace;
@@ -9,7 +9,6 @@ use super::start::probably_reversed;
 use super::system::System;
 use super::thread::Thread;
 use super::work::Work;
-use crate::contact::thinner::Thinner;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
 use nalgebra::Vector3;
@@ -34,12 +33,6 @@ const MORE_THAN_LINEAR: f64 = 3.0;
 
 /// The share of an edge that a gap may be wide where cloth is taken out of itself after sewing.
 const SNAPPED: f64 = 0.3;
-
-/// By how much the body is thinner while seams are pulled from far, one after the other, m.
-pub(super) const THINNER: [f64; 3] = [0.035, 0.02, 0.008];
-
-/// Steps in which a body that grows pushes cloth out.
-const HOLDING: usize = 10;
 
 /// Steps in which cloth without seams is pressed flat.
 const PRESSING: usize = 10;
@@ -80,7 +73,7 @@ impl Work<'_> {
         for (k, stiff) in std::iter::once(first).chain(probe).chain(softer).enumerate() {
             // Cloth too stiff to go round the body has been squeezed out of its place: above the arms, off the shoulders.
             x.copy_from_slice(&start);
-            force = self.pull_round(sheet, pairs, x, stiff, progress)?;
+            force = self.pull(sheet, pairs, x, stiff, progress)?;
             let gap = widest(x, pairs);
             let is_probe = k == 1 && probe.is_some();
             if if is_probe { self.is_wide(gap) } else { gap <= self.most_gap() } {
@@ -97,61 +90,6 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Closes seams round a body that may first be thin and then grows to what it is; the force a metre that it took.
-    fn pull_round(
-        &mut self,
-        sheet: &Sheet,
-        pairs: &[[u32; 2]],
-        x: &mut [Vec3],
-        stiff: f64,
-        progress: &mut Progress<'_>,
-    ) -> Result<f64, RestError> {
-        if let (true, Some(wearer)) = (self.plan.rest.sew_through, self.plan.body) {
-            let mut force = 0.0;
-            for (k, by) in THINNER.into_iter().enumerate() {
-                let thin = Thinner { skin: wearer.skin, by };
-                let wearer = Some(Wearer { skin: &thin, ..wearer });
-                if k == 0 {
-                    force = self.pull(sheet, pairs, x, stiff, wearer, progress)?;
-                } else {
-                    self.hold(sheet, pairs, x, stiff, force, wearer, progress)?;
-                }
-            }
-            self.hold(sheet, pairs, x, stiff, force, self.plan.body, progress)?;
-        }
-        self.pull(sheet, pairs, x, stiff, self.plan.body, progress)
-    }
-
-    /// Lets the body push out the cloth that lies in it, with seams that pull.
-    #[allow(clippy::too_many_arguments)]
-    fn hold(
-        &mut self,
-        sheet: &Sheet,
-        pairs: &[[u32; 2]],
-        x: &mut [Vec3],
-        stiff: f64,
-        force: f64,
-        body: Option<Wearer<'_>>,
-        progress: &mut Progress<'_>,
-    ) -> Result<(), RestError> {
-        let coarsest = self.plan.pieces.len() - 1;
-        let spacing = spacing(&self.plan.pieces[coarsest], pairs);
-        let mut system = self.open(sheet, stiff, body)?;
-        system.threads = self.threads(pairs, force * spacing);
-        let pace = Pace {
-            first: 0.05,
-            longest: 1.0,
-            steps: HOLDING,
-            speed: self.plan.rest.speed,
-            farthest: 0.05,
-            ..self.pace()
-        };
-        let report =
-            self.run(&mut system, sheet, &self.plan.starts[coarsest], x, &pace, &|_| false, progress)?;
-        self.reports.push(report);
-        Ok(())
-    }
-
     fn threads(&self, pairs: &[[u32; 2]], force: f64) -> Vec<Thread> {
         let soft = 2.0 * self.plan.rest.join_gap;
         pairs.iter().map(|nodes| Thread { nodes: *nodes, force, soft }).collect()
@@ -164,7 +102,6 @@ impl Work<'_> {
         pairs: &[[u32; 2]],
         x: &mut [Vec3],
         stiff: f64,
-        body: Option<Wearer<'_>>,
         progress: &mut Progress<'_>,
     ) -> Result<f64, RestError> {
         let coarsest = self.plan.pieces.len() - 1;
@@ -177,7 +114,7 @@ impl Work<'_> {
                 break;
             }
             before = gap;
-            let mut system = self.open(sheet, stiff, body)?;
+            let mut system = self.open(sheet, stiff)?;
             system.threads = self.threads(pairs, pull * spacing);
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
@@ -213,28 +150,21 @@ impl Work<'_> {
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
-        let report = self.run(
-            &mut self.open(sheet, grade.first(), self.plan.body)?,
-            sheet,
-            &layout,
-            x,
-            &pace,
-            &|_| false,
-            progress,
-        )?;
+        let report =
+            self.run(&mut self.open(sheet, grade.first())?, sheet, &layout, x, &pace, &|_| false, progress)?;
         self.reports.push(report);
         Ok(())
     }
 
     /// Weightless cloth before it is sewn, so many times stiffer.
-    fn open<'b>(
-        &'b self,
-        sheet: &Sheet,
-        stiff: f64,
-        body: Option<Wearer<'b>>,
-    ) -> Result<System<'b>, RestError> {
-        let mut system =
-            assemble(self.plan.scene, body, &self.plan.pieces[self.plan.pieces.len() - 1], sheet, true)?;
+    fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
+        let mut system = assemble(
+            self.plan.scene,
+            self.plan.body,
+            &self.plan.pieces[self.plan.pieces.len() - 1],
+            sheet,
+            true,
+        )?;
         if self.plan.rest.graded {
             system.elastic.stiffen(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);

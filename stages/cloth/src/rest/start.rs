@@ -17,12 +17,10 @@ pub(crate) use touching::{crossing, crossings};
 
 use super::assemble::{cloths, layer_thickness};
 use super::pieces::Pieces;
-use super::sew::THINNER;
 use super::words::{both, list, place};
 use crate::contact::body::Nearest;
 use crate::contact::skin::Skin;
 use crate::contact::start::{DEEPEST, clear_start};
-use crate::contact::thinner::Thinner;
 use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::scene::Scene;
@@ -161,7 +159,6 @@ pub(crate) fn check<E: From<StartError> + From<ClothError>>(
 /// Where the vertices start, those inside the body moved out to its nearest point, however deep they are.
 pub(crate) fn moved_out(scene: &Scene, skin: Option<&dyn Skin>) -> Vec<Vec3> {
     let Some(skin) = skin else { return scene.positions.clone() };
-    let skin = Thinner { skin, by: THINNER[0] };
     let near = skin.nearest(&scene.positions, &vec![f64::INFINITY; scene.positions.len()]);
     let out = |(p, n): (&Vec3, Option<Nearest>)| match n {
         Some(n) if n.distance < scene.material.thickness => n.point + n.normal * scene.material.thickness,

@@ -223,7 +223,7 @@ impl<'a> Work<'a> {
     }
 
     /// The level's nodes, sewn or open, carried to the finest vertices.
-    pub(super) fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
+    fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let k = self.level_of(x);
         let vertices =
             if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };

@@ -1,0 +1,102 @@
+//! `Arrange`: the pieces of a pattern into space around the body, with their seams.
+//!
+//! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves, cuffs) are bent to cylinders around it, as the
+//! arrangement points of garment CAD do: halves before and behind the arm that are sewn to each other share one cylinder, whose girth
+//! is theirs, or the arm's where that is more. Poses that were made for a body whose origin is its middle are raised onto the
+//! floor.
+//!
+//! Cost: some milliseconds. Limits: pieces without a pose are refused; trunk and legs keep the flat places of the file, from which
+//! `Rest(sew_through: true)` sews them.
+
+mod limb;
+mod tubes;
+
+use super::sew::{Offsets, seams};
+use super::whole::{offsets, whole};
+use limb::Limb;
+use std::collections::BTreeMap;
+use toile_core::prelude::*;
+
+/// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
+const BELOW: f64 = 0.1;
+
+/// The height of that origin as a share of the body's: that of a standing figure whose origin lies at its waist.
+const MIDDLE: f64 = 0.65;
+
+/// Arranges the pieces of a sewing pattern around the body, ready to be sewn.
+///
+/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. What was moved is in the log.
+#[stage(
+    role = Placement,
+    source = "arrangement of pattern pieces around limbs, as in garment CAD",
+    example = "Arrange(bend: true)",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct Arrange {
+    /// Whether sleeves and cuffs are bent around the arms; flat where the pattern puts them otherwise.
+    #[param(default = true)]
+    bend: bool,
+    /// Least distance of a bent piece from the arm.
+    #[param(default = Length::cm(2.0), min = 0.0, max = 0.5)]
+    clearance: Length,
+}
+
+#[stage]
+impl Arrange {
+    pub(crate) fn run(
+        &self,
+        pattern: &Pattern,
+        panels: Set<Panel>,
+        plan: &SewingPlan,
+        body: &Body,
+        fabric: &Fabric,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
+        let offsets = offsets(&panels)?;
+        let seams = seams(plan, &offsets)?;
+        let mut places = posed(pattern, &offsets)?;
+        self.raise(&mut places, body, cx);
+        if self.bend {
+            for limb in Limb::arms(body) {
+                let bent =
+                    tubes::bend(&limb, pattern, &mut places, &seams, &offsets, self.clearance.metres());
+                bent.into_iter().for_each(|what| cx.warn(what));
+            }
+        }
+        cx.check()?;
+        let points: Vec<Point3> = places.into_values().flatten().collect();
+        Ok(whole(&offsets, seams, fabric, points))
+    }
+
+    /// Raises poses that were made around a body's middle.
+    fn raise(&self, places: &mut BTreeMap<String, Vec<Point3>>, body: &Body, cx: &Context) {
+        let lowest = places.values().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        if lowest >= -BELOW {
+            return;
+        }
+        let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+        let by = MIDDLE * top;
+        places.values_mut().flatten().for_each(|p| p.y += by);
+        cx.warn(format!(
+            "the pattern reaches {:.0} cm below the floor: its places are taken for those around a body's middle and raised by {:.0} cm",
+            -lowest * 1e2,
+            by * 1e2
+        ));
+    }
+}
+
+/// The vertices of every panel where its piece's pose puts them, in the order of the offsets.
+fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Vec<Point3>>, StageError> {
+    let place = |(name, (_, panel)): (&&str, &(usize, &Panel))| {
+        let piece = pattern.piece(name).ok_or_else(|| {
+            StageError::invalid(format!("the pattern has no piece \"{name}\""))
+                .hint("let the panels be those of the pattern: no stage between may rename them")
+        })?;
+        let pose = piece.pose.ok_or_else(|| {
+            StageError::invalid(format!("nothing says where the piece \"{name}\" stands"))
+                .hint("give its pattern places around the body, as GarmentCode files have")
+        })?;
+        Ok(((*name).to_owned(), panel.positions.iter().map(|p| pose.at(*p)).collect()))
+    };
+    offsets.iter().map(place).collect()
+}

@@ -1,0 +1,62 @@
+//! An arm as an axis with a radius.
+
+use toile_core::prelude::*;
+
+/// Vertices farther than this from the axis are of another part of the body, metres.
+const REACH: f64 = 0.13;
+
+/// An arm: its axis from the shoulder to the wrist, and which way is up and forward around it.
+#[derive(Debug, Clone)]
+pub(super) struct Limb {
+    /// `left arm` or `right arm`.
+    pub(super) name: &'static str,
+    /// The middle of the arm's root.
+    pub(super) root: Point3,
+    /// Unit direction of the axis.
+    pub(super) axis: Vector3,
+    /// Unit direction forward, at right angles to the axis.
+    pub(super) front: Vector3,
+    /// Unit direction up, at right angles to both.
+    pub(super) up: Vector3,
+    /// Distance along the axis and from it of each vertex near it, metres.
+    skin: Vec<(f64, f64)>,
+}
+
+impl Limb {
+    /// The two arms of a body; those whose landmarks it has.
+    pub(super) fn arms(body: &Body) -> Vec<Limb> {
+        let sides = [("left arm", "left"), ("right arm", "right")];
+        sides.into_iter().filter_map(|(name, side)| Limb::arm(body, name, side)).collect()
+    }
+
+    fn arm(body: &Body, name: &'static str, side: &str) -> Option<Limb> {
+        let at = |part: &str| body.landmarks.get(&format!("{part}_{side}")).copied();
+        let root = nalgebra::center(&at("shoulder")?, &at("armpit")?);
+        let axis = (at("wrist")? - root).try_normalize(1e-6)?;
+        let forward = Vector3::z();
+        let front = (forward - axis * axis.dot(&forward)).try_normalize(1e-6)?;
+        let upward = Vector3::y();
+        let level = upward - axis * axis.dot(&upward);
+        let up = (level - front * front.dot(&level)).try_normalize(1e-6)?;
+        let near = |p: &Point3| {
+            let along = (p - root).dot(&axis);
+            let off = (p - root - axis * along).norm();
+            (along > 0.0 && off < REACH).then_some((along, off))
+        };
+        let skin = body.positions.iter().filter_map(near).collect();
+        Some(Limb { name, root, axis, front, up, skin })
+    }
+
+    /// Whether a point is on the arm's side of the body.
+    pub(super) fn has(&self, p: &Point3) -> bool {
+        p.x * self.root.x > 0.0
+    }
+
+    /// The greatest distance of the skin from the axis over a stretch of it, metres; the root counts for what lies above it.
+    pub(super) fn radius(&self, from: f64, to: f64) -> f64 {
+        let clear = 0.25 * REACH * 2.0;
+        let (from, to) = (from.max(clear), to.max(2.0 * clear));
+        let over = self.skin.iter().filter(|(s, _)| (from..=to).contains(s));
+        over.map(|(_, r)| *r).fold(0.0, f64::max)
+    }
+}
