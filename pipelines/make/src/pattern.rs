@@ -162,7 +162,7 @@ const CUFF_END: P = [56.0, 112.0];
 
 /// A shirt: front, back, sleeves in two halves each, a stand collar in two halves, cuffs in two halves each.
 fn shirt() -> Garment {
-    let (hem, armpit, shoulder, neck) = ([26.0, 0.0], [26.0, 36.0], [19.5, 57.4], [7.0, 62.0]);
+    let (hem, armpit, shoulder, neck) = ([27.0, 0.0], [27.0, 33.5], [19.5, 57.4], [8.0, 61.6]);
     let torso = |name: &str, depth: f64, scoop: f64, z: f64| {
         let corners = [
             [-hem[0], 0.0],
@@ -188,9 +188,9 @@ fn shirt() -> Garment {
         Panel::new(name, "body", &corners, &edges, [0.0, 85.0, z])
     };
     let (front_scoop, back_scoop) = (0.16, 0.10);
-    let front = torso("front", 7.5, front_scoop, 22.0);
+    let front = torso("front", 9.0, front_scoop, 22.0);
     let back = torso("back", 2.0, back_scoop, 22.0).behind("back");
-    let (low, high) = ([-10.0, 35.0], [10.0, 42.0]);
+    let (low, high) = ([-11.5, 34.0], [11.5, 42.0]);
     let sleeve = |name: &str, scoop: f64, z: f64| {
         // The cap is eased into the armhole by a hundredth.
         let armhole = length(armpit, shoulder, [0.3, scoop]) * 1.01;
@@ -213,7 +213,7 @@ fn shirt() -> Garment {
     let mut panels = vec![
         front,
         back,
-        collar("collar_front", 7.5, 16.0),
+        collar("collar_front", 9.0, 16.0),
         collar("collar_back", 2.0, 16.0).behind("collar_back"),
     ];
     for (part, of) in [("sleeve", true), ("cuff", false)] {
@@ -265,7 +265,7 @@ fn trousers() -> Garment {
             [at - dart / 2.0, high],
             [middle, high],
             [0.0, 78.0],
-            [fork, 66.0],
+            [fork, 63.0],
         ];
         let edges = [
             line("hem"),
