@@ -1,7 +1,9 @@
 //! A pipeline's collision scheme as the engine's skin.
 
 use nalgebra::Vector3;
+use std::sync::{Arc, OnceLock};
 use toile_cloth::contact::body::Nearest;
+use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 
@@ -9,13 +11,15 @@ use toile_core::artifact::{BodyContact, Collide, Point3};
 #[derive(Debug, Clone)]
 pub struct SchemeSkin<'a> {
     scheme: &'a dyn Collide,
+    /// Found when a solver first asks.
+    sharp: OnceLock<Option<Arc<Sharp>>>,
 }
 
 impl<'a> SchemeSkin<'a> {
-    /// The body that `scheme` keeps cloth out of. It tells distances and no mesh, so that its sharp edges are not known.
+    /// The body that `scheme` keeps cloth out of. Its sharp edges are known where the scheme shows a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
-        Self { scheme }
+        Self { scheme, sharp: OnceLock::new() }
     }
 }
 
@@ -63,6 +67,15 @@ impl Skin for SchemeSkin<'_> {
             at = found.first()?.point;
         }
         Some(at.coords.dot(direction))
+    }
+
+    fn sharp(&self) -> Option<Arc<Sharp>> {
+        let find = || {
+            let surface = self.scheme.surface()?;
+            let places: Vec<Vector3<f64>> = surface.positions.iter().map(|p| p.coords).collect();
+            Sharp::of(&places, surface.triangles).map(Arc::new)
+        };
+        self.sharp.get_or_init(find).clone()
     }
 }
 
