@@ -125,7 +125,9 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
         let (name_text, doc, ty) = (name.to_string(), doc_text(&field.attrs), &field.ty);
         let plain = name_text.trim_start_matches("r#");
         if GENERIC.contains(&plain) {
-            let message = format!("every stage has a field `{plain}` of its own in a pipeline file: give the parameter another name");
+            let message = format!(
+                "every stage has a field `{plain}` of its own in a pipeline file: give the parameter another name"
+            );
             return Err(syn::Error::new_spanned(&name, message));
         }
         if doc.is_empty() {

@@ -280,7 +280,7 @@ impl System<'_> {
         let Some(s) = &mut self.support else { return };
         s.stiffen();
         let ridges = &mut self.ridges;
-        ridges.iter_mut().for_each(|r| r.touch(x));
+        ridges.iter_mut().for_each(|r| r.touch(s, x));
         s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];
