@@ -13,7 +13,7 @@ use super::part::Cut;
 use super::pattern::{Pattern, add_at};
 use super::press::Press;
 use super::rub::{Rub, SOFT};
-use super::support::Support;
+use super::support::{NUDGE, Support};
 use crate::contact::pair::Kind;
 use crate::contact::sharp::{Sharp, Side};
 use crate::mesh::Sheet;
@@ -267,7 +267,7 @@ impl Ridges {
 
     /// Looks for cloth that the body passes through at `x`: each edge and each corner is then pushed back over the nearest feature.
     pub(super) fn look_for_pierced(&mut self, support: &Support<'_>, x: &[Vec3]) {
-        let deepest = (DEEPEST * self.longest).max(2.0 * self.thickness);
+        let deepest = self.deepest();
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
         self.pierced = self.sunk(support, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
         self.pierced.sort_unstable();
@@ -305,6 +305,18 @@ impl Ridges {
         by_part.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         by_part.dedup_by_key(|p| p.0);
         by_part.into_iter().map(|p| (p.0, p.2)).collect()
+    }
+
+    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or its edges lead into the body, as
+    /// through a thin plate, where no side of a feature tells.
+    pub(super) fn is_pierced(&self, support: &Support<'_>, x: &[Vec3]) -> bool {
+        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
+        !leads_in(support, &pairs, x).is_empty() || !self.sunk(support, &pairs, x, self.deepest()).is_empty()
+    }
+
+    /// How far behind a feature cloth is pushed back over it, m.
+    fn deepest(&self) -> f64 {
+        (DEEPEST * self.longest).max(2.0 * self.thickness)
     }
 
     /// The pairs that touch at `x`, with the distance that they have, negative where the body passes through the cloth.
@@ -514,6 +526,20 @@ impl Ridges {
         self.stiffness.iter_mut().for_each(|s| *s *= factor);
         self.contacts.iter_mut().for_each(|c| c.load *= factor);
     }
+}
+
+/// The edges of the cloth among `pairs` that lead into the body from their first node, outside it.
+fn leads_in(support: &Support<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> =
+        pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let from: Vec<Vec3> = edges.iter().map(|e| x[e[0] as usize]).collect();
+    let way: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
+    let mut ends = way.clone();
+    support.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
+    let changed = edges.into_iter().zip(way.iter().zip(&ends)).filter(|(_, (way, end))| way != end);
+    changed.map(|(e, _)| e).collect()
 }
 
 /// The mean way that contacts of the same cloth have slid.

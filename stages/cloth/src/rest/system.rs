@@ -186,6 +186,12 @@ impl System<'_> {
         }
     }
 
+    /// Whether a sharp edge or corner of the body passes through the cloth at `x`.
+    #[must_use]
+    pub fn is_pierced(&self, x: &[Vec3]) -> bool {
+        matches!((&self.ridges, &self.support), (Some(r), Some(s)) if r.is_pierced(s, x))
+    }
+
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
