@@ -3,6 +3,7 @@
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
 use toile_cloth::contact::body::Nearest;
+use toile_cloth::contact::facets::Facets;
 use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
 use toile_core::artifact::{BodyContact, Collide, Point3};
@@ -13,13 +14,22 @@ pub struct SchemeSkin<'a> {
     scheme: &'a dyn Collide,
     /// Found when a solver first asks.
     sharp: OnceLock<Option<Arc<Sharp>>>,
+    facets: OnceLock<Option<Facets>>,
 }
 
 impl<'a> SchemeSkin<'a> {
-    /// The body that `scheme` keeps cloth out of. Its sharp edges are known where the scheme shows a mesh.
+    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where the scheme shows a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
-        Self { scheme, sharp: OnceLock::new() }
+        Self { scheme, sharp: OnceLock::new(), facets: OnceLock::new() }
+    }
+}
+
+impl SchemeSkin<'_> {
+    /// Vertices and triangles of the body, where the scheme shows them.
+    fn mesh(&self) -> Option<(Vec<Vector3<f64>>, &[[u32; 3]])> {
+        let surface = self.scheme.surface()?;
+        Some((surface.positions.iter().map(|p| p.coords).collect(), surface.triangles))
     }
 }
 
@@ -70,12 +80,13 @@ impl Skin for SchemeSkin<'_> {
     }
 
     fn sharp(&self) -> Option<Arc<Sharp>> {
-        let find = || {
-            let surface = self.scheme.surface()?;
-            let places: Vec<Vector3<f64>> = surface.positions.iter().map(|p| p.coords).collect();
-            Sharp::of(&places, surface.triangles).map(Arc::new)
-        };
+        let find = || self.mesh().and_then(|(x, triangles)| Sharp::of(&x, triangles)).map(Arc::new);
         self.sharp.get_or_init(find).clone()
+    }
+
+    fn facets(&self) -> Option<&Facets> {
+        let find = || self.mesh().and_then(|(x, triangles)| Facets::of(&x, triangles));
+        self.facets.get_or_init(find).as_ref()
     }
 }
 

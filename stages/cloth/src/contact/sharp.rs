@@ -9,7 +9,7 @@
 //! O(log m) for a look at the m features. Limits: a rounded edge of many small angles is none.
 
 use super::pair::Kind;
-use super::tree::{Bounds, Branch, halves};
+use super::tree::{Bounds, Over, halves};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -59,8 +59,7 @@ pub enum Side {
 pub struct Sharp {
     /// In the order of the tree.
     features: Vec<Feature>,
-    branches: Vec<Branch>,
-    boxes: Vec<Bounds>,
+    over: Over,
 }
 
 impl Feature {
@@ -95,8 +94,8 @@ impl Sharp {
             (0..features.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
         let (order, branches) = halves(&segments, &layout);
         let features: Vec<Feature> = order.iter().map(|&k| features[k as usize].clone()).collect();
-        let boxes = fitted(&branches, &features);
-        Some(Self { features, branches, boxes })
+        let over = Over::new(branches, |f| bounds(&features[f as usize]));
+        Some(Self { features, over })
     }
 
     /// A feature.
@@ -124,47 +123,17 @@ impl Sharp {
     /// Visits every feature of a kind whose box meets that from `low` to `high`, in the order of the tree.
     pub fn within(&self, kind: Kind, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
         let around = Bounds { low: *low, high: *high };
-        // The tree is as deep as the logarithm of its size.
-        let mut stack = [0u32; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let k = stack[depth] as usize;
-            if !self.boxes[k].meets(&around) {
-                continue;
+        self.over.within(&around, |f| {
+            let feature = &self.features[f as usize];
+            if feature.kind == kind && bounds(feature).meets(&around) {
+                visit(f);
             }
-            let branch = self.branches[k];
-            if branch.count == 0 {
-                (stack[depth], stack[depth + 1]) = (branch.first + 1, branch.first);
-                depth += 2;
-                continue;
-            }
-            for f in branch.first..branch.first + branch.count {
-                let feature = &self.features[f as usize];
-                if feature.kind == kind && bounds(feature).meets(&around) {
-                    visit(f);
-                }
-            }
-        }
+        });
     }
 }
 
 fn bounds(f: &Feature) -> Bounds {
     Bounds { low: f.ends[0].inf(&f.ends[1]), high: f.ends[0].sup(&f.ends[1]) }
-}
-
-fn fitted(branches: &[Branch], features: &[Feature]) -> Vec<Bounds> {
-    let mut boxes = vec![Bounds { low: Vec3::zeros(), high: Vec3::zeros() }; branches.len()];
-    for (k, b) in branches.iter().enumerate().rev() {
-        let first = b.first as usize;
-        boxes[k] = match b.count {
-            0 => boxes[first].with(&boxes[first + 1]),
-            n => features[first + 1..first + n as usize]
-                .iter()
-                .fold(bounds(&features[first]), |all, f| all.with(&bounds(f))),
-        };
-    }
-    boxes
 }
 
 /// An edge of the mesh: its ends, the lower one first, and the corners across it.
