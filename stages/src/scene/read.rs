@@ -50,11 +50,7 @@ impl Scene {
     /// Runs the stage.
     pub fn run(&self, cx: &Context) -> Result<(Garment, Body, Collider, Phases), StageError> {
         self.named()?;
-        let Loaded { scene, warnings } = self.load(cx).map_err(|e| match e {
-            Unread::File(e) => e.at("file"),
-            Unread::Scene(e @ SceneError::Unmerged { .. }) => scene_error(&e).at("weld"),
-            Unread::Scene(e) => scene_error(&e).at("file"),
-        })?;
+        let Loaded { scene, warnings } = self.load(cx).map_err(Unread::told)?;
         warnings.into_iter().chain(lost(&scene)).for_each(|what| cx.warn(what));
         let garment = garment_of(&scene);
         self.check(&garment)?;
@@ -81,10 +77,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the file is there. What stands in it, and the body's file beside it, is read by the run, at once: scenes come first.
+    /// Whether the file and that of its body are there and have their forms. What they say is checked by the run, at once: scenes come
+    /// first.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        let there = self.named().and_then(|()| placed.cx.look(&self.file));
-        there.map_err(|e| e.at("file")).err().into_iter().collect()
+        let form = || {
+            let text = placed.cx.read(&self.file).map_err(Unread::File)?;
+            scene::check_form(&text, &|obj| self.beside(obj, placed.cx)).map_err(Unread::Scene)
+        };
+        let sound = self.named().map_err(|e| e.at("file")).and_then(|()| form().map_err(Unread::told));
+        sound.err().into_iter().collect()
     }
 
     /// A file whose numbers the reader takes and no garment, body or motion can have.
@@ -112,16 +113,17 @@ impl Scene {
         )
     }
 
+    /// The bytes of the OBJ that the scene's file names.
+    fn beside(&self, obj: &str, cx: &Context) -> Result<Vec<u8>, SceneError> {
+        let folder = std::path::Path::new(&self.file).parent().unwrap_or(std::path::Path::new(""));
+        let path = folder.join(obj);
+        cx.read(&path.to_string_lossy()).map_err(|e| SceneError::File { path, why: e.message })
+    }
+
     fn load(&self, cx: &Context) -> Result<Loaded, Unread> {
         let text = cx.read(&self.file).map_err(Unread::File)?;
-        let folder = std::path::Path::new(&self.file).parent().unwrap_or(std::path::Path::new(""));
-        let beside = |obj: &str| {
-            let path = folder.join(obj);
-            let unread = |e: StageError| SceneError::File { path: path.clone(), why: e.message };
-            cx.read(&path.to_string_lossy()).map_err(unread)
-        };
         let options = Options { weld: self.weld, body_unit: self.units.metres() };
-        scene::parse(&text, &beside, &options).map_err(Unread::Scene)
+        scene::parse(&text, &|obj| self.beside(obj, cx), &options).map_err(Unread::Scene)
     }
 }
 
@@ -129,6 +131,17 @@ impl Scene {
 enum Unread {
     File(StageError),
     Scene(SceneError),
+}
+
+impl Unread {
+    /// The error, at the parameter that mends it.
+    fn told(self) -> StageError {
+        match self {
+            Unread::File(e) => e.at("file"),
+            Unread::Scene(e @ SceneError::Unmerged { .. }) => scene_error(&e).at("weld"),
+            Unread::Scene(e) => scene_error(&e).at("file"),
+        }
+    }
 }
 
 fn air(a: toile_cloth::force::Air) -> Air {

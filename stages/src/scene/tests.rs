@@ -79,7 +79,8 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
         let rest = Rest { graded: false, ..Rest::default() };
         let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
         assert!(draped.status.converged, "{k}");
-        assert_eq!(body_crossings(&draped.positions, &draped.triangles, &body), [], "{k}");
+        let pairs = body_crossings(&draped.positions, &draped.triangles, &body);
+        assert!(pairs.is_empty(), "{k}: {pairs:?}");
     }
 }
 

@@ -89,12 +89,17 @@ pub fn curtain(cells: u32) -> Scene {
     scene
 }
 
+/// A ball of 0.3 m radius as a body, with `around` meridians.
+#[must_use]
+pub fn ball(around: u32) -> SceneBody {
+    let (vertices, triangles) = sphere(0.3, around);
+    SceneBody { vertices, triangles, friction: 0.4 }
+}
+
 /// A square metre above a sphere of 0.3 m radius.
 #[must_use]
 pub fn drape(cells: u32) -> Scene {
-    let (vertices, triangles) = sphere(0.3, 48);
-    let body = Some(SceneBody { vertices, triangles, friction: 0.4 });
-    Scene { body, self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
+    Scene { body: Some(ball(48)), self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
 }
 
 /// A box from `low` to `high` as a body, two triangles a face: a table, a plate, a blade.
