@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::fabric::Fabric;
 use crate::scene::{SceneBody, generate};
 
 /// Whether the way from `p` to `q` passes through a triangle.
@@ -69,8 +68,13 @@ fn what_hangs_over_a_blade_hangs_on_both_sides() {
         let own = state.positions.iter().filter(|p| p.x * side > 0.0);
         own.map(|p| p.y).fold(f64::INFINITY, f64::min)
     };
-    // Half a metre on each side, but for the fold.
-    assert!([1.0, -1.0].iter().all(|s| (lowest(*s) + 0.49).abs() < 0.02), "{} {}", lowest(1.0), lowest(-1.0));
+    // Half a metre on each side, but for half of the cell that lies over the blade: cloth folds at its vertices.
+    assert!(
+        [1.0, -1.0].iter().all(|s| (lowest(*s) + 0.5 * 10.0 / 11.0).abs() < 0.01),
+        "{} {}",
+        lowest(1.0),
+        lowest(-1.0)
+    );
 }
 
 #[test]
@@ -78,18 +82,7 @@ fn cloth_passes_through_no_facet_of_a_coarse_ball() {
     for (around, bend, cells) in [(12, 1e-5, 12), (16, 1e-2, 22), (24, 1e-5, 22), (48, 1e-3, 22)] {
         let mut scene = generate::drape(cells);
         scene.body = Some(generate::ball(around));
-        scene.material = Fabric::isotropic(0.15, 500.0, 50.0, bend);
+        (scene.material.bending_warp, scene.material.bending_weft) = (bend, bend);
         rests_outside(&format!("ball_{around}_{cells}"), &scene);
     }
-}
-
-#[test]
-fn cloth_that_a_coarser_mesh_leaves_on_both_sides_of_a_plate_begins_again() {
-    let restarts = [(0.2, 17), (0.9, 17), (1.2, 14)].map(|(turn, cells)| {
-        let plate = generate::block([-0.24, -0.002, -0.17], [0.24, 0.0, 0.17]);
-        let mut scene = generate::cover(plate, cells, turn);
-        scene.material = Fabric::isotropic(0.4, 500.0, 50.0, 1e-5);
-        rests_outside(&format!("plate_{cells}_{turn}"), &scene).restarts
-    });
-    assert!(restarts.iter().sum::<usize>() > 0, "{restarts:?}: a test of what does not happen");
 }
