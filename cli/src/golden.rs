@@ -5,7 +5,7 @@
 
 use crate::args::{AcceptArgs, CheckArgs, Overrides};
 use crate::run::{fail_run, run_quietly};
-use crate::validate::open;
+use crate::validate::checked;
 use crate::{Streams, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
@@ -147,7 +147,7 @@ fn each(
             worst = worst.max(streams.refuse(false, e));
             continue;
         }
-        let code = match open(path, overrides, registry) {
+        let code = match checked(path, overrides, registry) {
             Ok(pipeline) => match work(&pipeline, path, streams) {
                 Ok(code) => code,
                 Err(e) => fail_run(&pipeline, &e, false, streams),

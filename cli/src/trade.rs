@@ -2,14 +2,14 @@
 
 use crate::args::{Overrides, StudyArgs, TradeArgs};
 use crate::progress::with_budget;
-use crate::run::fail_load;
-use crate::validate::open;
+use crate::run::{fail_load, fail_run};
+use crate::validate::{Refused, inspect, open};
 use crate::{Streams, ablate, at_hand, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 use toile_core::pipeline::Pipeline;
-use toile_core::{Length, Registry, StageError, write_files};
+use toile_core::{Length, Registry, RunOptions, StageError, write_files};
 use toile_trade::default_knobs::default_knobs;
 use toile_trade::knob::KnobSpec;
 use toile_trade::measure::Bench;
@@ -24,6 +24,9 @@ pub(crate) fn run(args: &TradeArgs, registry: &Registry, streams: &mut Streams<'
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if let Err(code) = inspected(&pipeline, args.until.clone(), streams) {
+        return code;
+    }
     if args.ablate {
         return ablate::run(args, &source, &pipeline, streams);
     }
@@ -121,6 +124,18 @@ pub(crate) fn opened<'a>(
         registry,
     };
     Ok((source, pipeline))
+}
+
+/// Asks the stages that will run what is wrong with their parameters and files: a measurement would tell it of its first run alone.
+pub(crate) fn inspected(
+    pipeline: &Pipeline,
+    until: Option<String>,
+    streams: &mut Streams<'_>,
+) -> Result<(), u8> {
+    inspect(pipeline, &RunOptions { until, ..RunOptions::default() }).map_err(|refused| match refused {
+        Refused::Run(e) => fail_run(pipeline, &e, false, streams),
+        Refused::File(faults) => fail_load(&faults, false, streams),
+    })
 }
 
 /// How runs are made.

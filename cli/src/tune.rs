@@ -2,7 +2,7 @@
 
 use crate::args::{Overrides, TuneArgs};
 use crate::progress::with_budget;
-use crate::trade::{Asked, bench, default_folder, failed, measured, opened};
+use crate::trade::{Asked, bench, default_folder, failed, inspected, measured, opened};
 use crate::{Streams, exit, interrupt, qualities, stdin};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -25,6 +25,9 @@ pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_
         Ok(opened) => opened,
         Err(code) => return code,
     };
+    if let Err(code) = inspected(&pipeline, None, streams) {
+        return code;
+    }
     if !args.qualities.is_empty() {
         return qualities::run(args, &source, &pipeline, streams);
     }

@@ -93,6 +93,73 @@ fn a_run_until_a_stage_asks_only_the_stages_that_it_runs() {
 }
 
 #[test]
+fn commands_that_run_a_pipeline_many_times_say_first_what_a_run_would_refuse() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = vest(dir.path(), &[("vest/front.jpg", "vest/none.jpg"), ("cotton poplin", "coton poplin")]);
+    let out = dir.path().join("out").display().to_string();
+    let missing = ["no such file", "there is no fabric preset \"coton poplin\""];
+    for command in [
+        &["golden", "check", "--allow-missing", &file][..],
+        &["golden", "accept", &file],
+        &["trade", &file, "--out", &out, "--budget", "10s"],
+        &["tune", &file, "--max-error", "5 mm"],
+    ] {
+        let answer = toile(command);
+        assert_eq!(answer.code, 3, "{command:?}: {}", answer.err);
+        // All of them, and not the first that a run meets.
+        for text in missing {
+            assert!(words(&answer).contains(text), "{command:?}: {}", answer.err);
+        }
+    }
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn what_cannot_be_read_of_scenes_and_bodies_comes_out_with_all_other_faults() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(dir.path().join(name), text).unwrap();
+    let scene = |body: &str| {
+        let head = "{\"format\": \"garment-scene-1\", \"rest_uv\": [], \"positions\": [], \"triangles\": [], \"phases\": [],";
+        let cloth = "\"material\": {\"area_density\": 0.1, \"stretch\": 500, \"shear\": 50, \"bend\": 1e-5, \"friction\": 0.4, \"thickness\": 1e-3}";
+        format!("{head} {cloth}, \"body\": {{\"obj\": \"{body}\", \"friction\": 0.4}}}}")
+    };
+    write("cut.json", "{\"format\": \"garment-scene-1\", \"rest_uv\": [[0, 0],");
+    write("slip.json", &scene("body.obj").replace("\"phases\"", "\"fases\""));
+    write("bad_body.json", &scene("bad.obj"));
+    write("no_body.json", &scene("none.obj"));
+    write("bad.obj", "v 0 0 zero\n");
+    let file = dir.path().join("p.ron").display().to_string();
+    for (stages, what) in [
+        ("scene: Scene(file: \"cut.json\")", "EOF while parsing"),
+        ("scene: Scene(file: \"slip.json\")", "`fases`"),
+        ("scene: Scene(file: \"bad_body.json\")", "line 1 of the OBJ: a vertex needs three numbers"),
+        ("scene: Scene(file: \"no_body.json\")", "none.obj"),
+    ] {
+        write("p.ron", &format!("(name: \"p\", {stages}, stages: [Rest(), GarmentObj(name: \"a/b\")])"));
+        let answer = toile(&["validate", &file]);
+        assert_eq!(answer.code, 3, "{}", answer.err);
+        for text in [what, "the file name \"a/b\" has a character"] {
+            assert!(words(&answer).contains(text), "{text}: {}", answer.err);
+        }
+    }
+    let body = dir.path().join("bad.obj").display().to_string();
+    let vest = vest(
+        dir.path(),
+        &[
+            (
+                "Mannequin(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")",
+                &format!("BodyObj(file: {body:?})"),
+            ),
+            ("cotton poplin", "coton poplin"),
+        ],
+    );
+    let answer = toile(&["validate", &vest]);
+    for text in ["line 1 of the OBJ: a vertex needs three numbers", "there is no fabric preset"] {
+        assert!(words(&answer).contains(text), "{text}: {}", answer.err);
+    }
+}
+
+#[test]
 fn a_photo_is_looked_at_by_its_header() {
     let dir = tempfile::tempdir().unwrap();
     let whole = fs::read(pipeline("samples/vest/front.jpg")).unwrap();

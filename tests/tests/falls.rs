@@ -76,11 +76,22 @@ const SKIRT: &str = "the cloth of 'front' and 'back'";
 #[test]
 fn a_skirt_that_misses_its_body_is_an_error_with_a_remedy() {
     for draper in ["Rest()", "Rest(graded: false)"] {
-        for (aside, start) in [([0.6, 0.0, 0.0], "starts 0."), ([0.0, 0.0, 0.4], "starts 0.")] {
+        for (aside, start, back) in [
+            (
+                [0.6, 0.0, 0.0],
+                "its middle starts 0.600 m beside the body's",
+                "move it by (-0.60, 0.00, 0.00) m",
+            ),
+            (
+                [0.0, 0.0, 0.3],
+                "its middle starts 0.300 m beside the body's",
+                "move it by (0.00, 0.00, -0.30) m",
+            ),
+        ] {
             let (answer, metrics) = Skirt::new().moved(aside).run(draper);
             assert_eq!((answer.code, metrics), (4, None), "{}", answer.err);
             let words = words(&answer);
-            for text in [SKIRT, "falls past the body", start, "the same unit of length"] {
+            for text in [SKIRT, "falls past the body", start, back, "the same unit of length"] {
                 assert!(words.contains(text), "`{text}` is not in {words}");
             }
         }

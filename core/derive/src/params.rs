@@ -7,6 +7,9 @@ use syn::parse::Parser;
 use syn::punctuated::Punctuated;
 use syn::{Expr, Fields, Ident, ItemStruct, Lit, LitInt, LitStr, Meta, Token};
 
+/// Fields that every stage has in a pipeline file; the loader takes them for itself.
+const GENERIC: [&str; 2] = ["id", "from"];
+
 /// What stands in `#[stage(...)]`.
 #[derive(Default)]
 struct StageArgs {
@@ -120,6 +123,13 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
         let args = param_args(field)?;
         let Some(name) = field.ident.clone() else { continue };
         let (name_text, doc, ty) = (name.to_string(), doc_text(&field.attrs), &field.ty);
+        let plain = name_text.trim_start_matches("r#");
+        if GENERIC.contains(&plain) {
+            let message = format!(
+                "every stage has a field `{plain}` of its own in a pipeline file: give the parameter another name"
+            );
+            return Err(syn::Error::new_spanned(&name, message));
+        }
         if doc.is_empty() {
             return Err(syn::Error::new_spanned(&name, "a parameter needs a doc comment"));
         }
@@ -247,5 +257,37 @@ mod tests {
             refused(quote!(coarser = "less")),
             "expected default, min, max, unit, trades, finer or way"
         );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use syn::parse_quote;
+
+    fn refused(item: ItemStruct) -> String {
+        expand(quote!(role = Binariser), item).map_or_else(|e| e.to_string(), |_| "accepted".into())
+    }
+
+    #[test]
+    fn a_parameter_has_no_name_that_every_stage_has_for_a_field() {
+        let with = |name: Ident| -> ItemStruct {
+            parse_quote! {
+                /// A stage.
+                struct Mine {
+                    /// A parameter.
+                    #[param(default = 1.0)]
+                    #name: f64,
+                }
+            }
+        };
+        for name in ["from", "id"] {
+            let words = format!(
+                "every stage has a field `{name}` of its own in a pipeline file: give the parameter another name"
+            );
+            assert_eq!(refused(with(quote::format_ident!("{name}"))), words);
+            assert_eq!(refused(with(quote::format_ident!("r#{name}"))), words);
+        }
+        assert_eq!(refused(with(quote::format_ident!("from_here"))), "accepted");
     }
 }

@@ -51,6 +51,15 @@ pub struct ColliderCard {
     pub penalty: Option<f64>,
 }
 
+/// The mesh of a body, lent: closed, facing outwards.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Surface<'a> {
+    /// Its vertices, metres.
+    pub positions: &'a [Point3],
+    /// Its triangles, as indices of vertices.
+    pub triangles: &'a [[u32; 3]],
+}
+
 /// A collision scheme. Called in the solver's inner loop, so it works on slices and may keep
 /// scratch memory in `&self`; no lock is held while a query runs, so that queries may be made from
 /// inside a thread pool.
@@ -96,6 +105,13 @@ pub trait Collide: Send + Sync + std::fmt::Debug {
     /// Pairs of cloth triangles that cross each other, lower index first, ascending: an edge of one
     /// pierces the other, the two sharing no node. Touching is no crossing.
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]>;
+
+    /// The body's mesh, from which a solver finds edges and corners that are too sharp for the distances of single
+    /// vertices. `None` where there is no body or the scheme keeps no mesh: cloth may then cross sharp edges of the body
+    /// between its vertices. The C interface has no place for it: a scheme of a plugin answers `None`.
+    fn surface(&self) -> Option<Surface<'_>> {
+        None
+    }
 }
 
 /// A collision scheme made for one body.

@@ -248,6 +248,9 @@ impl Artifact for Garment {
         for seam in &self.seams {
             d.text(&seam.name).indices(seam.pairs.iter().flatten().copied()).floats(seam.kind.figures());
         }
+        let SolveStatus { steps, converged, energy, max_speed, on_body } = &self.status;
+        d.count(*steps).count(usize::from(*converged)).floats([*energy, *max_speed]);
+        d.count(on_body.len()).floats(on_body.iter().copied());
     }
 
     fn measures(&self) -> Measures {

@@ -33,7 +33,7 @@ mod sound;
 pub mod stored;
 
 pub use body::{Body, Landmark};
-pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact};
+pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact, Surface};
 pub use digest::{Digest, Digester};
 pub use fabric::{Curve, Fabric};
 pub use figures::{Figures, GarmentFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures};

@@ -88,29 +88,33 @@ pub struct BodyObj {
 #[stage]
 impl BodyObj {
     pub(crate) fn run(&self, cx: &Context) -> Result<Body, StageError> {
-        self.named()?;
-        let bytes = cx.read(&self.file)?;
+        let mesh = self.read(cx)?;
         cx.check()?;
-        let unread = |e: obj::ObjError| {
-            StageError::new(ErrorCode::PatternLoading, format!("\"{}\": {e}", self.file))
-                .hint(OBJ_HINT)
-                .at("file")
-        };
-        let (mesh, repairs) = obj::repair(obj::parse(&bytes).map_err(unread)?);
+        let (mesh, repairs) = obj::repair(mesh);
         if let Some(what) = repairs.words() {
             cx.warn(format!("\"{}\" was repaired: {what}", self.file));
         }
         self.body((mesh.vertices.into_iter().map(Point3::from).collect(), mesh.triangles), cx)
     }
 
-    /// Whether the file is there.
+    /// Whether the file is there and can be read.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        let there = self.named().and_then(|()| placed.cx.look(&self.file));
-        there.map_err(|e| e.at("file")).err().into_iter().collect()
+        self.read(placed.cx).map_err(|e| e.at("file")).err().into_iter().collect()
     }
 }
 
 impl BodyObj {
+    /// The mesh of the file, as it stands there.
+    fn read(&self, cx: &Context) -> Result<obj::Mesh, StageError> {
+        self.named()?;
+        let bytes = cx.read(&self.file)?;
+        obj::parse(&bytes).map_err(|e| {
+            StageError::new(ErrorCode::PatternLoading, format!("\"{}\": {e}", self.file))
+                .hint(OBJ_HINT)
+                .at("file")
+        })
+    }
+
     fn named(&self) -> Result<(), StageError> {
         if self.file.is_empty() {
             let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the body from");

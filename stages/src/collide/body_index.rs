@@ -15,7 +15,7 @@ use super::crossing::volume;
 use super::lattice::Lattice;
 use super::volume::BoundingVolume;
 use rayon::prelude::*;
-use toile_core::artifact::{Body, BodyContact, Point3, Vector3};
+use toile_core::artifact::{Body, BodyContact, Point3, Surface, Vector3};
 use toile_core::{Context, StageError};
 
 /// Triangles a leaf of the static hierarchy.
@@ -31,6 +31,8 @@ const CHUNK: usize = 128;
 /// The skin of a body.
 #[derive(Debug)]
 pub struct BodyIndex<V> {
+    positions: Vec<Point3>,
+    triangles: Vec<[u32; 3]>,
     bvh: Bvh<V>,
     corners: Vec<Corners>,
     normals: Vec<FeatureNormals>,
@@ -65,11 +67,18 @@ impl<V: BoundingVolume> BodyIndex<V> {
         let bvh = Bvh::fitted(items, LEAF, |t| corners[t as usize]);
         cx.check()?;
         let normals = feature_normals(&body.triangles, &corners);
-        let index = BodyIndex { bvh, corners, normals, lattice: Lattice::around(&body.positions) };
+        let lattice = Lattice::around(&body.positions);
+        let (positions, triangles) = (body.positions.clone(), body.triangles.clone());
+        let index = BodyIndex { positions, triangles, bvh, corners, normals, lattice };
         if distances == Distances::Ahead {
             index.lattice.fill(cx, |p, bound| index.distance_within(p, bound))?;
         }
         Ok(index)
+    }
+
+    /// The mesh that it was made of.
+    pub fn surface(&self) -> Surface<'_> {
+        Surface { positions: &self.positions, triangles: &self.triangles }
     }
 
     /// The closest point of the skin, where it is within `bound` of `p`.

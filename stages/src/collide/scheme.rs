@@ -6,7 +6,7 @@ use super::cloth_tree::ClothTree;
 use super::volume::BoundingVolume;
 use super::{crossing, self_collision};
 use std::sync::{Mutex, PoisonError};
-use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact};
+use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact, Surface};
 use toile_core::{Context, StageError};
 
 /// Trees kept for the next query: one a garment is enough, a few let garments run side by side.
@@ -118,6 +118,10 @@ impl<V: BoundingVolume> Collide for BvhScheme<V> {
 
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
         self.with_passing_tree(positions, triangles, |tree| crossing::crossings(tree, positions))
+    }
+
+    fn surface(&self) -> Option<Surface<'_>> {
+        self.body.as_ref().map(BodyIndex::surface)
     }
 }
 

@@ -36,7 +36,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 15,
+    version = 16,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)

@@ -1,7 +1,10 @@
 //! A pipeline's collision scheme as the engine's skin.
 
 use nalgebra::Vector3;
+use std::sync::{Arc, OnceLock};
 use toile_cloth::contact::body::Nearest;
+use toile_cloth::contact::facets::Facets;
+use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 
@@ -9,13 +12,24 @@ use toile_core::artifact::{BodyContact, Collide, Point3};
 #[derive(Debug, Clone)]
 pub struct SchemeSkin<'a> {
     scheme: &'a dyn Collide,
+    /// Found when a solver first asks.
+    sharp: OnceLock<Option<Arc<Sharp>>>,
+    facets: OnceLock<Option<Facets>>,
 }
 
 impl<'a> SchemeSkin<'a> {
-    /// The body that `scheme` keeps cloth out of. It tells distances and no mesh, so that its sharp edges are not known.
+    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where the scheme shows a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
-        Self { scheme }
+        Self { scheme, sharp: OnceLock::new(), facets: OnceLock::new() }
+    }
+}
+
+impl SchemeSkin<'_> {
+    /// Vertices and triangles of the body, where the scheme shows them.
+    fn mesh(&self) -> Option<(Vec<Vector3<f64>>, &[[u32; 3]])> {
+        let surface = self.scheme.surface()?;
+        Some((surface.positions.iter().map(|p| p.coords).collect(), surface.triangles))
     }
 }
 
@@ -63,6 +77,16 @@ impl Skin for SchemeSkin<'_> {
             at = found.first()?.point;
         }
         Some(at.coords.dot(direction))
+    }
+
+    fn sharp(&self) -> Option<Arc<Sharp>> {
+        let find = || self.mesh().and_then(|(x, triangles)| Sharp::of(&x, triangles)).map(Arc::new);
+        self.sharp.get_or_init(find).clone()
+    }
+
+    fn facets(&self) -> Option<&Facets> {
+        let find = || self.mesh().and_then(|(x, triangles)| Facets::of(&x, triangles));
+        self.facets.get_or_init(find).as_ref()
     }
 }
 

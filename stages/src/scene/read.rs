@@ -51,11 +51,7 @@ impl Scene {
     /// Runs the stage.
     pub fn run(&self, cx: &Context) -> Result<(Garment, Body, Collider, Phases), StageError> {
         self.named()?;
-        let Loaded { scene, warnings } = self.load(cx).map_err(|e| match e {
-            Unread::File(e) => e.at("file"),
-            Unread::Scene(e @ SceneError::Unmerged { .. }) => scene_error(&e).at("weld"),
-            Unread::Scene(e) => scene_error(&e).at("file"),
-        })?;
+        let Loaded { scene, warnings } = self.load(cx).map_err(Unread::told)?;
         warnings.into_iter().chain(lost(&scene)).for_each(|what| cx.warn(what));
         let garment = garment_of(&scene);
         self.check(&garment)?;
@@ -82,10 +78,15 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the file is there. What stands in it, and the body's file beside it, is read by the run, at once: scenes come first.
+    /// Whether the file and that of its body are there and have their forms. What they say is checked by the run, at once: scenes come
+    /// first.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        let there = self.named().and_then(|()| placed.cx.look(&self.file));
-        there.map_err(|e| e.at("file")).err().into_iter().collect()
+        let form = || {
+            let text = placed.cx.read(&self.file).map_err(Unread::File)?;
+            scene::check_form(&text, &|obj| self.beside(obj, placed.cx)).map_err(Unread::Scene)
+        };
+        let sound = self.named().map_err(|e| e.at("file")).and_then(|()| form().map_err(Unread::told));
+        sound.err().into_iter().collect()
     }
 
     /// A file whose numbers the reader takes and no garment, body or motion can have.
@@ -107,7 +108,7 @@ impl Scene {
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         let counted: Counted = serde_json::from_slice(text).ok()?;
         let body = match counted.body {
-            Some(body) => obj::count_triangles(&cx.read(&self.beside(&body.obj)).ok()?),
+            Some(body) => obj::count_triangles(&self.beside(&body.obj, cx).ok()?),
             None => 0,
         };
         let size = Size::new().with(Quantity::Bytes, bytes.len() as f64);
@@ -117,20 +118,17 @@ impl Scene {
         )
     }
 
-    /// The path of a file beside the scene's.
-    fn beside(&self, name: &str) -> String {
+    /// The bytes of the OBJ that the scene's file names.
+    fn beside(&self, obj: &str, cx: &Context) -> Result<Vec<u8>, SceneError> {
         let folder = std::path::Path::new(&self.file).parent().unwrap_or(std::path::Path::new(""));
-        folder.join(name).to_string_lossy().into_owned()
+        let path = folder.join(obj);
+        cx.read(&path.to_string_lossy()).map_err(|e| SceneError::File { path, why: e.message })
     }
 
     fn load(&self, cx: &Context) -> Result<Loaded, Unread> {
         let text = cx.read(&self.file).map_err(Unread::File)?;
-        let beside = |obj: &str| {
-            let path = self.beside(obj);
-            cx.read(&path).map_err(|e| SceneError::File { path: path.into(), why: e.message })
-        };
         let options = Options { weld: self.weld, body_unit: self.units.metres() };
-        scene::parse(&text, &beside, &options).map_err(Unread::Scene)
+        scene::parse(&text, &|obj| self.beside(obj, cx), &options).map_err(Unread::Scene)
     }
 }
 
@@ -150,6 +148,17 @@ struct CountedBody {
 enum Unread {
     File(StageError),
     Scene(SceneError),
+}
+
+impl Unread {
+    /// The error, at the parameter that mends it.
+    fn told(self) -> StageError {
+        match self {
+            Unread::File(e) => e.at("file"),
+            Unread::Scene(e @ SceneError::Unmerged { .. }) => scene_error(&e).at("weld"),
+            Unread::Scene(e) => scene_error(&e).at("file"),
+        }
+    }
 }
 
 fn air(a: toile_cloth::force::Air) -> Air {

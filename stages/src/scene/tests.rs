@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::Scene;
+use crate::collide::crossing::body_crossings;
 use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, SpringDraper, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
@@ -64,6 +65,23 @@ fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
     collider.scheme.body_contacts(&draped.positions, 0.0, &mut inside);
     assert!(inside.is_empty(), "{inside:?}");
     assert!(draped.edge_strains().last().unwrap() < &0.05);
+}
+
+#[test]
+fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
+    let bodies = [
+        generate::block([-0.3, -0.5, -0.3], [0.3, 0.0, 0.3]),
+        generate::block([-0.25, -0.002, -0.4], [0.25, 0.0, 0.4]),
+        generate::block([-0.001, -0.3, -0.6], [0.001, 0.0, 0.6]),
+    ];
+    for (k, body) in bodies.into_iter().enumerate() {
+        let (garment, body, collider, phases) = through_files(&generate::cover(body, 12, 0.3)).unwrap();
+        let rest = Rest { graded: false, ..Rest::default() };
+        let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
+        assert!(draped.status.converged, "{k}");
+        let pairs = body_crossings(&draped.positions, &draped.triangles, &body);
+        assert!(pairs.is_empty(), "{k}: {pairs:?}");
+    }
 }
 
 #[test]

@@ -5,11 +5,12 @@
 //! the caller knows an upper bound, which it does after every small step.
 
 use super::closest::{Feature, on_triangle};
+use super::facets::Facets;
 use super::sharp::Sharp;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 type Vec3 = Vector3<f64>;
 
@@ -30,6 +31,8 @@ pub struct Body {
     normals: Vec<[Vec3; 7]>,
     boxes: Vec<Node>,
     sharp: Option<Arc<Sharp>>,
+    /// Made when they are first asked for.
+    facets: OnceLock<Option<Facets>>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -70,7 +73,8 @@ impl Body {
         let corners = sorted.iter().map(|t| t.map(|v| vertices[v as usize])).collect();
         let normals = order.iter().map(|&t| all[t as usize]).collect();
         let sharp = Sharp::of(&vertices, triangles).map(Arc::new);
-        let mut body = Self { vertices, triangles: sorted, corners, normals, boxes, sharp };
+        let mut body =
+            Self { vertices, triangles: sorted, corners, normals, boxes, sharp, facets: OnceLock::new() };
         body.fit();
         body
     }
@@ -91,6 +95,12 @@ impl Body {
     #[must_use]
     pub fn sharp(&self) -> Option<Arc<Sharp>> {
         self.sharp.clone()
+    }
+
+    /// Its triangles, for cloth that may pass through them; none of an empty body.
+    #[must_use]
+    pub fn facets(&self) -> Option<&Facets> {
+        self.facets.get_or_init(|| Facets::of(&self.vertices, &self.triangles)).as_ref()
     }
 
     fn fit(&mut self) {

@@ -3,6 +3,7 @@
 pub mod body;
 pub mod ccd;
 pub mod closest;
+pub mod facets;
 pub mod give_way;
 pub mod limit;
 pub mod pair;

@@ -42,8 +42,8 @@ pub struct Fallen {
 /// Where cloth started that fell past the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Start {
-    /// Beside it, so far, m.
-    Beside(f64),
+    /// Beside it: the level way from the body's middle to the cloth's, m.
+    Beside(Vec3),
     /// Wholly below it, so far, m.
     Below(f64),
     /// Around or above it.
@@ -54,11 +54,16 @@ impl std::fmt::Display for Fallen {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { cloth, body, .. } = self;
         match self.start {
-            Start::Beside(gap) => write!(
-                f,
-                "the cloth of {cloth} falls past the body: it starts {gap:.3} m beside it, and the body is {body:.2} m tall; place it \
-                 around or above the body, and see that both are in the same unit of length"
-            ),
+            Start::Beside(way) => {
+                // No "-0.00".
+                let [x, y, z] = [-way.x, -way.y, -way.z].map(|v| (v * 100.0).round() / 100.0 + 0.0);
+                write!(
+                    f,
+                    "the cloth of {cloth} falls past the body: its middle starts {:.3} m beside the body's; move it by ({x:.2}, {y:.2}, \
+                     {z:.2}) m, around or above the body, which is {body:.2} m tall, and see that both are in the same unit of length",
+                    way.norm()
+                )
+            }
             Start::Below(gap) => write!(
                 f,
                 "the cloth of {cloth} falls away from the body: it starts {gap:.2} m below it, and the body is {body:.2} m tall; place it \
@@ -168,16 +173,20 @@ impl BodyBox {
     #[must_use]
     pub fn start(&self, x: &[Vec3]) -> Start {
         let mut gaps = [0.0; 3];
+        let mut way = Vec3::zeros();
         for (k, axis) in self.axes.iter().enumerate() {
             let along = || x.iter().map(|p| p.dot(axis));
             let (low, high) =
                 (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max));
             gaps[k] = (self.low[k] - high).max(if k == 0 { 0.0 } else { low - self.high[k] }).max(0.0);
+            if k > 0 {
+                way += axis * (0.5 * (low + high) - 0.5 * (self.low[k] + self.high[k]));
+            }
         }
         match gaps {
             [0.0, 0.0, 0.0] => Start::Around,
             [below, 0.0, 0.0] => Start::Below(below),
-            [_, a, b] => Start::Beside(a.hypot(b)),
+            _ => Start::Beside(way),
         }
     }
 }

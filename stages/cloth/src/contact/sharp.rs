@@ -5,10 +5,11 @@
 //! angles of the mesh, and each knows on which side of it a point lies: outside where its closest point of the surface is on the
 //! feature (the point is in the feature's normal cone), inside where the point is hidden behind all faces that meet there.
 //!
-//! Cost: O(n) for the body's triangles, O(log m) for a look at the m features. Limits: a rounded edge of many small angles is none.
+//! Cost: O(n) for the body's triangles, of which only those about vertices where the surface bends are looked at edge by edge;
+//! O(log m) for a look at the m features. Limits: a rounded edge of many small angles is none.
 
 use super::pair::Kind;
-use super::tree::{Bounds, Branch, halves};
+use super::tree::{Bounds, Over, halves};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -20,6 +21,10 @@ const SHARP_EDGE: f64 = 0.719;
 /// Cosine of the angle between a face and the mean of all about a corner from which on that is sharp: 45 degrees; a
 /// corner of a box has 55.
 const SHARP_CORNER: f64 = 0.707;
+
+/// Cosine of half the angle of a sharp edge, and a little less: a vertex of whose faces none stands farther from their mean has no
+/// sharp edge, for of two faces one stands from any direction at least half as far as they stand from each other.
+const BENDS: f64 = 0.9275;
 
 /// Cosine of the angle from which on an edge of a sharp corner counts: 1 degree.
 const BENT: f64 = 0.9998;
@@ -54,8 +59,7 @@ pub enum Side {
 pub struct Sharp {
     /// In the order of the tree.
     features: Vec<Feature>,
-    branches: Vec<Branch>,
-    boxes: Vec<Bounds>,
+    over: Over,
 }
 
 impl Feature {
@@ -90,8 +94,8 @@ impl Sharp {
             (0..features.len() as u32).map(|k| [2 * k, 2 * k + 1, 2 * k + 1]).collect();
         let (order, branches) = halves(&segments, &layout);
         let features: Vec<Feature> = order.iter().map(|&k| features[k as usize].clone()).collect();
-        let boxes = fitted(&branches, &features);
-        Some(Self { features, branches, boxes })
+        let over = Over::new(branches, |f| bounds(&features[f as usize]));
+        Some(Self { features, over })
     }
 
     /// A feature.
@@ -119,47 +123,17 @@ impl Sharp {
     /// Visits every feature of a kind whose box meets that from `low` to `high`, in the order of the tree.
     pub fn within(&self, kind: Kind, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
         let around = Bounds { low: *low, high: *high };
-        // The tree is as deep as the logarithm of its size.
-        let mut stack = [0u32; 64];
-        let mut depth = 1;
-        while depth > 0 {
-            depth -= 1;
-            let k = stack[depth] as usize;
-            if !self.boxes[k].meets(&around) {
-                continue;
+        self.over.within(&around, |f| {
+            let feature = &self.features[f as usize];
+            if feature.kind == kind && bounds(feature).meets(&around) {
+                visit(f);
             }
-            let branch = self.branches[k];
-            if branch.count == 0 {
-                (stack[depth], stack[depth + 1]) = (branch.first + 1, branch.first);
-                depth += 2;
-                continue;
-            }
-            for f in branch.first..branch.first + branch.count {
-                let feature = &self.features[f as usize];
-                if feature.kind == kind && bounds(feature).meets(&around) {
-                    visit(f);
-                }
-            }
-        }
+        });
     }
 }
 
 fn bounds(f: &Feature) -> Bounds {
     Bounds { low: f.ends[0].inf(&f.ends[1]), high: f.ends[0].sup(&f.ends[1]) }
-}
-
-fn fitted(branches: &[Branch], features: &[Feature]) -> Vec<Bounds> {
-    let mut boxes = vec![Bounds { low: Vec3::zeros(), high: Vec3::zeros() }; branches.len()];
-    for (k, b) in branches.iter().enumerate().rev() {
-        let first = b.first as usize;
-        boxes[k] = match b.count {
-            0 => boxes[first].with(&boxes[first + 1]),
-            n => features[first + 1..first + n as usize]
-                .iter()
-                .fold(bounds(&features[first]), |all, f| all.with(&bounds(f))),
-        };
-    }
-    boxes
 }
 
 /// An edge of the mesh: its ends, the lower one first, and the corners across it.
@@ -177,8 +151,13 @@ fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
         (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default()
     };
     let faces: Vec<Vec3> = triangles.iter().map(face).collect();
-    let edges = edges(vertices, triangles, &faces);
-    let mut corner = sharp_corners(vertices.len(), triangles, &faces);
+    let means = means(vertices.len(), triangles, &faces);
+    let bends = far_from_mean(triangles, &faces, &means, BENDS);
+    if !bends.contains(&true) {
+        return Vec::new();
+    }
+    let edges = edges(vertices, triangles, &faces, &bends);
+    let mut corner = far_from_mean(triangles, &faces, &means, SHARP_CORNER);
     let at_corner = |e: &Edge| e.ends.iter().any(|&v| corner[v as usize]);
     let sharp: Vec<bool> =
         edges.iter().map(|e| e.cosine < SHARP_EDGE || e.cosine < BENT && at_corner(e)).collect();
@@ -211,49 +190,46 @@ fn features(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Feature> {
     all
 }
 
-/// Corners of which a face stands far from the mean of all.
-fn sharp_corners(count: usize, triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<bool> {
+/// The sums of the normals of all faces about each vertex.
+fn means(count: usize, triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<Vec3> {
     let mut means = vec![Vec3::zeros(); count];
     for (t, n) in triangles.iter().zip(faces) {
         t.iter().for_each(|&v| means[v as usize] += n);
     }
-    let mut sharp = vec![false; count];
-    for (t, n) in triangles.iter().zip(faces) {
-        for &v in t {
-            let mean = &means[v as usize];
-            sharp[v as usize] |= mean.dot(n) < SHARP_CORNER * mean.norm();
-        }
-    }
-    sharp
+    means
 }
 
-/// The edges of two faces each, in the order of their lower ends.
-fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<Edge> {
-    // Sorted by counting: a body has many edges, and few of them are sharp.
-    let side = |t: &[u32; 3], k: usize| (t[k].min(t[(k + 1) % 3]), t[k].max(t[(k + 1) % 3]), t[(k + 2) % 3]);
-    let mut starts = vec![0u32; vertices.len() + 1];
-    triangles.iter().for_each(|t| (0..3).for_each(|k| starts[side(t, k).0 as usize + 1] += 1));
-    (0..vertices.len()).for_each(|v| starts[v + 1] += starts[v]);
-    let mut next = starts.clone();
-    let mut halves = vec![(0u32, 0u32, 0u32); 3 * triangles.len()];
-    for (f, t) in triangles.iter().enumerate() {
-        for k in 0..3 {
-            let (low, high, across) = side(t, k);
-            halves[next[low as usize] as usize] = (high, f as u32, across);
-            next[low as usize] += 1;
+/// Vertices of which a face stands farther from the mean of all than an angle whose cosine is `least`.
+fn far_from_mean(triangles: &[[u32; 3]], faces: &[Vec3], means: &[Vec3], least: f64) -> Vec<bool> {
+    let bounds: Vec<f64> = means.iter().map(|m| least * m.norm()).collect();
+    let mut far = vec![false; means.len()];
+    for (t, n) in triangles.iter().zip(faces) {
+        for v in t.map(|v| v as usize) {
+            far[v] |= means[v].dot(n) <= bounds[v];
         }
     }
-    let mut all = Vec::with_capacity(halves.len() / 2);
-    for low in 0..vertices.len() {
-        let own = &mut halves[starts[low] as usize..starts[low + 1] as usize];
-        own.sort_unstable();
-        for pair in own.chunk_by(|a, b| a.0 == b.0) {
-            let [(high, f, v), (_, g, w)] = *pair else { continue };
-            let (n, m) = (&faces[f as usize], &faces[g as usize]);
-            let is_convex = n.dot(&(vertices[w as usize] - vertices[low])) < 0.0;
-            let cosine = if is_convex { n.dot(m) } else { 1.0 };
-            all.push(Edge { ends: [low as u32, high], across: [v, w], cosine });
+    far
+}
+
+/// The edges of two faces each with an end of those `asked`, in the order of their lower ends.
+fn edges(vertices: &[Vec3], triangles: &[[u32; 3]], faces: &[Vec3], asked: &[bool]) -> Vec<Edge> {
+    let mut halves = Vec::new();
+    for (f, t) in triangles.iter().enumerate().filter(|(_, t)| t.iter().any(|&v| asked[v as usize])) {
+        for k in 0..3 {
+            let (a, b, across) = (t[k], t[(k + 1) % 3], t[(k + 2) % 3]);
+            if asked[a as usize] || asked[b as usize] {
+                halves.push((a.min(b), a.max(b), f as u32, across));
+            }
         }
+    }
+    halves.sort_unstable();
+    let mut all = Vec::with_capacity(halves.len() / 2);
+    for pair in halves.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        let [(low, high, f, v), (_, _, g, w)] = *pair else { continue };
+        let (n, m) = (&faces[f as usize], &faces[g as usize]);
+        let is_convex = n.dot(&(vertices[w as usize] - vertices[low as usize])) < 0.0;
+        let cosine = if is_convex { n.dot(m) } else { 1.0 };
+        all.push(Edge { ends: [low, high], across: [v, w], cosine });
     }
     all
 }

@@ -3,6 +3,7 @@
 //! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`Skin`].
 
 use super::body::{Body, Nearest};
+use super::facets::Facets;
 use super::sharp::Sharp;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -28,6 +29,11 @@ pub trait Skin: Send + Sync + std::fmt::Debug {
     fn sharp(&self) -> Option<Arc<Sharp>> {
         None
     }
+
+    /// Its triangles, if it is a mesh.
+    fn facets(&self) -> Option<&Facets> {
+        None
+    }
 }
 
 impl Skin for Body {
@@ -48,5 +54,9 @@ impl Skin for Body {
 
     fn sharp(&self) -> Option<Arc<Sharp>> {
         Body::sharp(self)
+    }
+
+    fn facets(&self) -> Option<&Facets> {
+        Body::facets(self)
     }
 }

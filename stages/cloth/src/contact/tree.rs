@@ -6,8 +6,11 @@
 
 mod lie;
 mod meet;
+mod over;
 mod part;
 mod slab;
+
+pub(super) use over::Over;
 
 use super::ccd::approach;
 use super::pair::{Kind, Pair};

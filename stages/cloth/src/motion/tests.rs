@@ -275,8 +275,8 @@ fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
         });
         assert_eq!(
             error.unwrap_err().to_string(),
-            "the cloth of 'square' falls past the body: it starts 0.200 m beside it, and the body is 0.60 m tall; place it around or \
-             above the body, and see that both are in the same unit of length"
+            "the cloth of 'square' falls past the body: its middle starts 1.000 m beside the body's; move it by (-1.00, 0.00, 0.00) m, \
+             around or above the body, which is 0.60 m tall, and see that both are in the same unit of length"
         );
         // 0.62 m of free fall.
         assert!((end - (2.0_f64 * 0.62 / 9.81).sqrt()).abs() < 0.01, "{method:?}: {end}");

@@ -2,12 +2,15 @@
 //!
 //! Vertices rest a thickness outside; on a curved body the triangle between them hangs nearer, by the square of its length over eight radii,
 //! and dips in where the mesh is coarse. Here triangles near the body are looked at on a lattice of points, and what each
-//! lacks is handed to its corners, which then stand off farther. Cost: a distance a lattice point, once the cloth is at
-//! rest. Limits: features of the body that are finer than the lattice.
+//! lacks is handed to its corners, which then stand off farther. Where the body shows its triangles, what passes through these between the
+//! points is found as well: an edge between two facets is finer than the lattice. Cost: a distance a lattice point and a look at the body's
+//! tree a triangle, once the cloth is at rest. Limits: features finer than the lattice of a body that shows no triangles.
 
+use crate::contact::facets::Facets;
 use crate::contact::skin::Skin;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 type Vec3 = Vector3<f64>;
 
@@ -16,6 +19,12 @@ const SPACING: f64 = 0.006;
 
 /// Most points along an edge.
 const MOST: usize = 8;
+
+/// Triangles that one task looks after.
+const CHUNK: usize = 64;
+
+/// Places at which a triangle passes through facets that are looked at, with the middles between them.
+const MOST_PLACES: usize = 12;
 
 /// The least distance that lattice points must keep, m.
 pub const GAP: f64 = 2e-4;
@@ -30,7 +39,7 @@ pub struct Clearance {
     pub lacks: Vec<f64>,
     /// The deepest point inside the body, m; 0 where none is.
     pub depth: f64,
-    /// Triangles that dip in.
+    /// How many dips there are: triangles that dip in, and such as pass through facets.
     pub triangles: usize,
 }
 
@@ -65,7 +74,37 @@ pub fn clearance(sheet: &Sheet, body: &dyn Skin, x: &[Vec3]) -> Clearance {
             (out.triangles, last) = (out.triangles + 1, t);
         }
     }
+    if let Some(facets) = body.facets() {
+        add_crossings(sheet, body, facets, x, &near, &mut out);
+    }
     out
+}
+
+/// Adds what triangles with a node `near` the body lack that pass through its facets: as deep as the middles lie between the places where
+/// they do.
+fn add_crossings(
+    sheet: &Sheet,
+    body: &dyn Skin,
+    facets: &Facets,
+    x: &[Vec3],
+    near: &[bool],
+    out: &mut Clearance,
+) {
+    let asked: Vec<&[u32; 3]> =
+        sheet.triangles().iter().filter(|t| t.iter().any(|&v| near[v as usize])).collect();
+    let places: Vec<Vec<Vec3>> =
+        asked.par_iter().with_min_len(CHUNK).map(|t| facets.crossings(&t.map(|v| x[v as usize]))).collect();
+    for (t, places) in asked.iter().zip(&places).filter(|(_, p)| !p.is_empty()) {
+        let places = &places[..places.len().min(MOST_PLACES)];
+        let middles: Vec<Vec3> =
+            (0..places.len()).flat_map(|i| places[..=i].iter().map(move |p| (places[i] + p) * 0.5)).collect();
+        let deep = body.nearest(&middles, &vec![f64::INFINITY; middles.len()]);
+        let depth = deep.into_iter().flatten().map(|n| -n.distance).fold(0.0, f64::max);
+        for &v in *t {
+            out.lacks[v as usize] = out.lacks[v as usize].max(GAP + depth);
+        }
+        (out.triangles, out.depth) = (out.triangles + 1, out.depth.max(depth));
+    }
 }
 
 /// Hands the lattice's points but the corners to `visit`.

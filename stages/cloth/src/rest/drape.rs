@@ -22,6 +22,9 @@ const SPAN: (f64, f64, f64) = (0.05, 1.0, 0.1);
 /// First step of pseudo-time on the finest mesh, s: what a coarser one leaves has little speed.
 const FIRST_AT_END: f64 = 0.15;
 
+/// Steps in which cloth that a coarser mesh left on both sides of a sharp edge must come out over it.
+const FREEING: usize = 20;
+
 /// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
 const LONGEST: f64 = 10.0;
 
@@ -37,12 +40,18 @@ impl<'a> Work<'a> {
             level.begin(std::mem::take(&mut self.x), slides, is_handed);
             // Another thread makes the next finer level ready meanwhile; below the finest there is none, and nobody asks.
             ready = Err(ClothError::EmptyScene.into());
-            rayon::in_place_scope(|scope| {
+            let is_free = rayon::in_place_scope(|scope| {
                 if k > 0 {
                     scope.spawn(|_| ready = plan.level(k - 1));
                 }
-                self.bring(k, &mut level, &mut bending, progress)
+                if !self.free(k, &mut level, progress)? {
+                    return Ok(false);
+                }
+                self.bring(k, &mut level, &mut bending, progress).map(|()| true)
             })?;
+            if !is_free {
+                return Ok(Draped::Pierced { finer: plan.pieces[k].points });
+            }
             // What was sewn through itself may come free on a finer mesh; nothing is gained by sewing it there anew.
             if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {
                 return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
@@ -59,6 +68,21 @@ impl<'a> Work<'a> {
             self.x = plan.finer(k, &level.x);
         }
         Err(ClothError::EmptyScene.into())
+    }
+
+    /// Lets level `k` come out over sharp edges and corners of the body that its coarser mesh came to lie on both sides of; whether it
+    /// has. From its own start no mesh comes to cross one.
+    fn free(
+        &mut self,
+        k: usize,
+        level: &mut Level<'a>,
+        progress: &mut Progress<'_>,
+    ) -> Result<bool, RestError> {
+        if k + 1 == self.plan.pieces.len() || !level.system.is_pierced(&level.x) {
+            return Ok(true);
+        }
+        self.settle(level, 1.0, Pace { steps: FREEING, ..self.pace() }, progress)?;
+        Ok(!level.system.is_pierced(&level.x))
     }
 
     /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it was left by the level before, and

@@ -13,7 +13,7 @@ use super::part::Cut;
 use super::pattern::{Pattern, add_at};
 use super::press::Press;
 use super::rub::{Rub, SOFT};
-use super::support::Support;
+use super::support::{NUDGE, Support};
 use crate::contact::pair::Kind;
 use crate::contact::sharp::{Sharp, Side};
 use crate::mesh::Sheet;
@@ -102,7 +102,14 @@ pub struct Ridges {
     contacts: Vec<Contact>,
 }
 
+/// What of cloth and body a pair is about that is pushed out over one feature only: an edge of the cloth, or a corner of the body.
+type Part = [u32; 3];
+
 impl Pair {
+    fn part(&self) -> Part {
+        if self.count() == 2 { self.nodes } else { [u32::MAX, u32::MAX, self.feature] }
+    }
+
     fn count(&self) -> usize {
         if self.nodes[1] == self.nodes[2] { 2 } else { 3 }
     }
@@ -260,32 +267,56 @@ impl Ridges {
 
     /// Looks for cloth that the body passes through at `x`: each edge and each corner is then pushed back over the nearest feature.
     pub(super) fn look_for_pierced(&mut self, support: &Support<'_>, x: &[Vec3]) {
-        let deepest = (DEEPEST * self.longest).max(2.0 * self.thickness);
-        let near = |p: Pair| {
+        let deepest = self.deepest();
+        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
+        self.pierced = self.sunk(support, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
+        self.pierced.sort_unstable();
+    }
+
+    /// Adds what the body has come to pass through since: cloth that is led around the end of a feature may sink behind another.
+    fn look_again_for_pierced(&mut self, support: &Support<'_>, x: &[Vec3]) {
+        let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
+        let sunk = self.sunk(support, &self.pairs, x, self.thickness);
+        self.pierced.extend(sunk.into_iter().filter(|(part, _)| !known.contains(part)).map(|p| p.1));
+        self.pierced.sort_unstable();
+    }
+
+    /// The pairs of which the cloth lies behind the feature, less than `deepest` and inside the body: the nearest of each part.
+    fn sunk(&self, support: &Support<'_>, pairs: &[Pair], x: &[Vec3], deepest: f64) -> Vec<(Part, Pair)> {
+        let near = |p: &Pair| {
             let near = p.near(&self.sharp, x);
             let is_in = near.inside
                 && near.distance < deepest
                 && self.sharp.feature(p.feature).side(&near.off) == Side::In;
-            is_in.then_some((p, near))
+            is_in.then_some((*p, near))
         };
-        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
-        let hidden: Vec<(Pair, Near)> = pairs.into_iter().filter_map(near).collect();
+        let hidden: Vec<(Pair, Near)> = pairs.iter().filter_map(near).collect();
+        if hidden.is_empty() {
+            return Vec::new();
+        }
         let point = |(p, n): &(Pair, Near)| {
             (0..p.count()).map(|k| x[p.nodes[k] as usize] * n.weights[k]).sum::<Vec3>()
         };
         let points: Vec<Vec3> = hidden.iter().map(point).collect();
         let inside = support.body.nearest(&points, &vec![deepest; points.len()]);
         let sunk = hidden.iter().zip(inside).filter(|(_, n)| n.is_some_and(|n| n.distance < 0.0));
-        let mut by_part: Vec<([u32; 3], f64, Pair)> = sunk
-            .map(|((p, n), _)| {
-                let part = if p.count() == 2 { p.nodes } else { [u32::MAX, u32::MAX, p.feature] };
-                (part, n.distance, *p)
-            })
-            .collect();
+        let mut by_part: Vec<(Part, f64, Pair)> =
+            sunk.map(|((p, n), _)| (p.part(), n.distance, *p)).collect();
         by_part.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
         by_part.dedup_by_key(|p| p.0);
-        self.pierced = by_part.into_iter().map(|p| p.2).collect();
-        self.pierced.sort_unstable();
+        by_part.into_iter().map(|p| (p.0, p.2)).collect()
+    }
+
+    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or its edges lead into the body, as
+    /// through a thin plate, where no side of a feature tells.
+    pub(super) fn is_pierced(&self, support: &Support<'_>, x: &[Vec3]) -> bool {
+        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
+        !leads_in(support, &pairs, x).is_empty() || !self.sunk(support, &pairs, x, self.deepest()).is_empty()
+    }
+
+    /// How far behind a feature cloth is pushed back over it, m.
+    fn deepest(&self) -> f64 {
+        (DEEPEST * self.longest).max(2.0 * self.thickness)
     }
 
     /// The pairs that touch at `x`, with the distance that they have, negative where the body passes through the cloth.
@@ -330,12 +361,13 @@ impl Ridges {
     }
 
     /// Finds the contacts at `x`, and what friction holds of them: call it at the start of each step.
-    pub(super) fn touch(&mut self, x: &[Vec3]) {
+    pub(super) fn touch(&mut self, support: &Support<'_>, x: &[Vec3]) {
         let sharp = &self.sharp;
         self.pierced.retain(|p| {
             let near = p.near(sharp, x);
             sharp.feature(p.feature).side(&near.off) == Side::In || !near.inside
         });
+        self.look_again_for_pierced(support, x);
         let before = std::mem::take(&mut self.contacts);
         let ways: Vec<Vec3> = before
             .iter()
@@ -494,6 +526,20 @@ impl Ridges {
         self.stiffness.iter_mut().for_each(|s| *s *= factor);
         self.contacts.iter_mut().for_each(|c| c.load *= factor);
     }
+}
+
+/// The edges of the cloth among `pairs` that lead into the body from their first node, outside it.
+fn leads_in(support: &Support<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> =
+        pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let from: Vec<Vec3> = edges.iter().map(|e| x[e[0] as usize]).collect();
+    let way: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
+    let mut ends = way.clone();
+    support.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
+    let changed = edges.into_iter().zip(way.iter().zip(&ends)).filter(|(_, (way, end))| way != end);
+    changed.map(|(e, _)| e).collect()
 }
 
 /// The mean way that contacts of the same cloth have slid.

@@ -229,6 +229,8 @@ mod layer_friction_tests;
 #[cfg(test)]
 mod sewn_tests;
 #[cfg(test)]
+mod sharp_tests;
+#[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod truth_tests;

@@ -186,6 +186,12 @@ impl System<'_> {
         }
     }
 
+    /// Whether a sharp edge or corner of the body passes through the cloth at `x`.
+    #[must_use]
+    pub fn is_pierced(&self, x: &[Vec3]) -> bool {
+        matches!((&self.ridges, &self.support), (Some(r), Some(s)) if r.is_pierced(s, x))
+    }
+
     /// Energy at `x`, J; `touches` and `anchors` are those of the step's start.
     #[must_use]
     pub fn value(&self, x: &[Vec3]) -> f64 {
@@ -280,7 +286,7 @@ impl System<'_> {
         let Some(s) = &mut self.support else { return };
         s.stiffen();
         let ridges = &mut self.ridges;
-        ridges.iter_mut().for_each(|r| r.touch(x));
+        ridges.iter_mut().for_each(|r| r.touch(s, x));
         s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];

@@ -22,7 +22,7 @@ use std::time::Instant;
 type Vec3 = Vector3<f64>;
 
 /// How often nodes are moved out where triangles dip into the body.
-const CLEARINGS: usize = 4;
+const CLEARINGS: usize = 8;
 
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
@@ -88,11 +88,12 @@ impl<'a> Work<'a> {
     ) -> Result<(), RestError> {
         let pace = Pace { first: CLEAR_STEP, one_by_one: false, ..*pace };
         for _ in 0..CLEARINGS {
-            let Some(Clearance { lacks, depth, .. }) = self.plan.body.map(|w| clearance(sheet, w.skin, x))
+            let Some(Clearance { lacks, depth, triangles }) =
+                self.plan.body.map(|w| clearance(sheet, w.skin, x))
             else {
                 break;
             };
-            if depth == 0.0 {
+            if triangles == 0 {
                 self.dip = Some(depth);
                 break;
             }

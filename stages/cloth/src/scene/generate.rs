@@ -89,12 +89,36 @@ pub fn curtain(cells: u32) -> Scene {
     scene
 }
 
+/// A ball of 0.3 m radius as a body, with `around` meridians.
+#[must_use]
+pub fn ball(around: u32) -> SceneBody {
+    let (vertices, triangles) = sphere(0.3, around);
+    SceneBody { vertices, triangles, friction: 0.4 }
+}
+
 /// A square metre above a sphere of 0.3 m radius.
 #[must_use]
 pub fn drape(cells: u32) -> Scene {
-    let (vertices, triangles) = sphere(0.3, 48);
-    let body = Some(SceneBody { vertices, triangles, friction: 0.4 });
-    Scene { body, self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
+    Scene { body: Some(ball(48)), self_collision: true, ..square(format!("drape_{cells}"), cells, 0.32) }
+}
+
+/// A box from `low` to `high` as a body, two triangles a face: a table, a plate, a blade.
+#[must_use]
+pub fn block(low: [f64; 3], high: [f64; 3]) -> SceneBody {
+    let corner = |i: usize| Vector3::from_fn(|k, _| if i >> k & 1 == 1 { high[k] } else { low[k] });
+    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    SceneBody { vertices: (0..8).map(corner).collect(), triangles, friction: 0.4 }
+}
+
+/// A square metre above a body whose top lies at height 0, turned about the vertical, rad.
+#[must_use]
+pub fn cover(body: SceneBody, cells: u32, turn: f64) -> Scene {
+    let (sin, cos) = turn.sin_cos();
+    let mut scene =
+        Scene { body: Some(body), self_collision: true, ..square(format!("cover_{cells}"), cells, 0.02) };
+    scene.positions.iter_mut().for_each(|p| (p.x, p.z) = (cos * p.x + sin * p.z, cos * p.z - sin * p.x));
+    scene
 }
 
 /// So many square sheets of half the size over each other, 4 mm apart, above the ball of [`drape`].

@@ -16,7 +16,7 @@ mod write;
 mod tests;
 
 pub use build::GRAVITY;
-pub use read::{Load, Loaded, Options, parse, read};
+pub use read::{Load, Loaded, Options, check_form, parse, read};
 pub use strict::FieldFault;
 pub use write::{body_to_obj, to_json};
 

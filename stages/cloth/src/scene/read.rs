@@ -212,20 +212,7 @@ pub type Load<'a> = dyn Fn(&str) -> Result<Vec<u8>, SceneError> + 'a;
 /// # Errors
 /// Every [`SceneError`].
 pub fn parse(text: &[u8], load: &Load<'_>, options: &Options) -> Result<Loaded, SceneError> {
-    let text = obj::decode(text);
-    let form = |e: serde_json::Error| SceneError::Form { why: e.to_string() };
-    let head: Head = serde_json::from_slice(&text).map_err(form)?;
-    if head.format != "garment-scene-1" {
-        return Err(SceneError::Format { found: head.format });
-    }
-    let faults = strict::faults(&text);
-    if !faults.is_empty() {
-        return Err(SceneError::Fields(faults));
-    }
-    let raw: RawScene = serde_json::from_slice(&text).map_err(form)?;
-    if let Some(found) = raw.up.as_ref().filter(|up| !up.eq_ignore_ascii_case("y")) {
-        return Err(SceneError::Up { found: found.clone() });
-    }
+    let raw = fields(text)?;
     let mut warnings = Vec::new();
     warnings.extend(other_seconds(&raw));
     let body = raw.body.as_ref().map(|b| body(b, load)).transpose()?;
@@ -238,6 +225,36 @@ pub fn parse(text: &[u8], load: &Load<'_>, options: &Options) -> Result<Loaded, 
     warnings.extend(mend::mend(&mut scene, options.weld)?);
     check(&scene)?;
     Ok(Loaded { scene, warnings })
+}
+
+/// Looks whether a scene's text has the form and its OBJ can be read, and at nothing that stands in them: a small part of reading it.
+///
+/// # Errors
+/// [`SceneError`] as [`parse`] gives it.
+pub fn check_form(text: &[u8], load: &Load<'_>) -> Result<(), SceneError> {
+    match fields(text)?.body {
+        Some(body) => Ok(obj::parse(&load(&body.obj)?).map(|_| ())?),
+        None => Ok(()),
+    }
+}
+
+/// The fields of a scene's text.
+fn fields(text: &[u8]) -> Result<RawScene, SceneError> {
+    let text = obj::decode(text);
+    let form = |e: serde_json::Error| SceneError::Form { why: e.to_string() };
+    let head: Head = serde_json::from_slice(&text).map_err(form)?;
+    if head.format != "garment-scene-1" {
+        return Err(SceneError::Format { found: head.format });
+    }
+    let faults = strict::faults(&text);
+    if !faults.is_empty() {
+        return Err(SceneError::Fields(faults));
+    }
+    let raw: RawScene = serde_json::from_slice(&text).map_err(form)?;
+    match raw.up.as_ref().filter(|up| !up.eq_ignore_ascii_case("y")) {
+        Some(found) => Err(SceneError::Up { found: found.clone() }),
+        None => Ok(raw),
+    }
 }
 
 /// A total that is not that of the phases.

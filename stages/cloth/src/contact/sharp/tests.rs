@@ -3,12 +3,9 @@ use super::*;
 use crate::contact::body::Body;
 use crate::scene::generate;
 
-/// A box from `low` to `high`, two triangles a face.
 fn block(low: [f64; 3], high: [f64; 3]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let corner = |i: usize| Vec3::from_fn(|k, _| if i >> k & 1 == 1 { high[k] } else { low[k] });
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    ((0..8).map(corner).collect(), triangles)
+    let body = generate::block(low, high);
+    (body.vertices, body.triangles)
 }
 
 fn near(sharp: &Sharp, kind: Kind, low: [f64; 3], high: [f64; 3]) -> Vec<u32> {

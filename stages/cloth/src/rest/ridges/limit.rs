@@ -18,12 +18,17 @@ const ROUNDS: usize = 4;
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
 
+/// Distance that a pair keeps which gives way, as a share of the thickness, or of its own where that is less; and the least share of its
+/// own that it keeps of a long way. A contact presses only from a thickness on: what would lose all of its way to a feature far away never
+/// came to lie on it.
+const KEPT: (f64, f64) = (0.5, 0.15);
+
 /// Nearer than this the two sides of a feature are not told apart, m.
 const TOUCHING: f64 = 1e-9;
 
 impl Ridges {
-    /// Takes from `moves` what leads the closest points of pairs that would meet together, where nodes are not `held`; whose moves
-    /// have changed.
+    /// Takes from `moves` what leads the closest points of pairs that would meet too near together, where nodes are not `held`; whose
+    /// moves have changed.
     pub(in super::super) fn give_way(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
         let mut pushed = vec![false; x.len()];
         for _ in 0..ROUNDS {
@@ -42,7 +47,8 @@ impl Ridges {
         let near = pair.near(&self.sharp, x);
         let normal = near.off / near.distance;
         let own = || (0..pair.count()).map(|k| (pair.nodes[k] as usize, near.weights[k]));
-        let apart = own().map(|(i, w)| moves[i].dot(&normal) * w).sum::<f64>();
+        let kept = (KEPT.0 * self.thickness.min(near.distance)).max(KEPT.1 * near.distance);
+        let apart = own().map(|(i, w)| moves[i].dot(&normal) * w).sum::<f64>() + near.distance - kept;
         let sum = own().filter(|(i, _)| !held[*i]).map(|(_, w)| w * w).sum::<f64>();
         if apart >= 0.0 || sum == 0.0 {
             return;

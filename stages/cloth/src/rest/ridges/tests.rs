@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use crate::rest::system::System;
 use crate::rest::trial::on_its_body;
+use crate::scene::Scene;
 use crate::scene::generate;
-use crate::scene::{Scene, SceneBody};
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -10,12 +10,8 @@ type Vec3 = Vector3<f64>;
 /// A sheet of 1 m, three cells a side, none of its vertices over the blade of 2 mm that stands below its middle; its height is a
 /// plane's.
 fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
-    let (low, high) = ([-0.001, -0.3, -0.6], [0.001, 0.0, 0.6]);
-    let corner = |i: usize| Vec3::from_fn(|k, _| if i >> k & 1 == 1 { high[k] } else { low[k] });
-    let quads = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
-    let triangles = quads.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
     let mut scene = generate::drape(3);
-    scene.body = Some(SceneBody { vertices: (0..8).map(corner).collect(), triangles, friction: 0.4 });
+    scene.body = Some(generate::block([-0.001, -0.3, -0.6], [0.001, 0.0, 0.6]));
     let x = scene.positions.iter().map(|p| Vec3::new(p.x, height + slope * p.x, p.z)).collect();
     (scene, x)
 }
@@ -23,7 +19,8 @@ fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
 fn ready(system: &mut System<'_>, x: &[Vec3]) {
     system.look_for_pierced(x);
     system.seek_ridges(x);
-    system.ridges.as_mut().unwrap().touch(x);
+    let support = system.support.clone().unwrap();
+    system.ridges.as_mut().unwrap().touch(&support, x);
 }
 
 /// The lowest height at which the sheet's edges pass over the blade's middle, m.

@@ -180,8 +180,8 @@ fn what_has_no_rest_is_named() {
     beside.positions.iter_mut().for_each(|p| p.x += 3.0);
     assert_eq!(
         settle(&beside).unwrap_err().to_string(),
-        "the cloth of 'square' falls past the body: it starts 2.200 m beside it, and the body is 0.60 m tall; place it around or above \
-         the body, and see that both are in the same unit of length"
+        "the cloth of 'square' falls past the body: its middle starts 3.000 m beside the body's; move it by (-3.00, 0.00, 0.00) m, \
+         around or above the body, which is 0.60 m tall, and see that both are in the same unit of length"
     );
 }
 
