@@ -42,6 +42,7 @@ pub(super) fn corners(garment: &Garment) -> Vec<[Point2; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::artifact::{GarmentSeam, SeamState};
     use crate::testkit::dress;
 
     #[test]
@@ -50,5 +51,48 @@ mod tests {
         let cut: Vec<[Point2; 3]> =
             garment.triangles.iter().map(|t| t.map(|v| garment.rest[v as usize])).collect();
         assert_eq!(corners(&garment), cut);
+        assert!(garment.edge_strains().iter().all(|s| *s < 1e-9));
+    }
+
+    /// The garment with a front that is twice as large as its back, gathered along one seam.
+    fn gathered() -> Garment {
+        let mut garment = dress::garment();
+        let seam = garment.seams.swap_remove(0);
+        garment.seams = vec![GarmentSeam { kind: SeamKind::Gathered, state: SeamState::Closed, ..seam }];
+        let front = garment.panels[0].vertices.clone();
+        garment.rest[front].iter_mut().for_each(|p| *p *= 2.0);
+        garment
+    }
+
+    #[test]
+    fn the_longer_side_of_a_gathered_seam_counts_as_long_as_the_shorter() {
+        let garment = gathered();
+        let corners = corners(&garment);
+        let sewn = |t: &[u32; 3], k: usize| {
+            let on = |v: u32| garment.seams[0].pairs.iter().any(|p| p.contains(&v));
+            on(t[k]) && on(t[(k + 1) % 3])
+        };
+        let mut lengths = Vec::new();
+        for (t, c) in garment.triangles.iter().zip(&corners) {
+            lengths.extend((0..3).filter(|&k| sewn(t, k)).map(|k| (c[k] - c[(k + 1) % 3]).norm()));
+        }
+        // As many sides on the front as on the back, and all of the back's length.
+        let half = lengths.len() / 2;
+        assert!(half > 0);
+        let back = &lengths[half..];
+        assert!(lengths.iter().all(|l| back.iter().any(|b| (b - l).abs() < 1e-12)), "{lengths:?}");
+    }
+
+    #[test]
+    fn what_is_not_on_the_gathered_seam_keeps_its_size() {
+        let (garment, plain) = (gathered(), dress::garment());
+        let inner = |g: &Garment| {
+            let free = |t: &&[u32; 3]| !t.iter().any(|v| g.seams[0].pairs.iter().any(|p| p.contains(v)));
+            g.triangles.iter().position(|t| free(&t))
+        };
+        let k = inner(&garment).unwrap_or_default();
+        let area = |c: &[Point2; 3]| (c[1] - c[0]).perp(&(c[2] - c[0])) / 2.0;
+        let cut = plain.triangles[k].map(|v| plain.rest[v as usize]);
+        assert!((area(&corners(&garment)[k]) - 4.0 * area(&cut)).abs() < 1e-12);
     }
 }

@@ -100,3 +100,6 @@ fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Vec<Po
     };
     offsets.iter().map(place).collect()
 }
+
+#[cfg(test)]
+mod tests;

@@ -162,3 +162,48 @@ fn a_strain_limit_holds_or_is_named() {
         error => panic!("{error}"),
     }
 }
+
+/// A skirt whose front panel starts through its back panel: its hem behind it, where the wearer is not.
+fn crossed() -> Scene {
+    let mut scene = generate::tube(12, 16);
+    let low = |x: &[Vec3]| x.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let high = |x: &[Vec3]| x.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    let range = scene.panels[0].vertices.clone();
+    let (from, to) = (low(&scene.positions[range.clone()]), high(&scene.positions[range.clone()]));
+    let side = scene.positions[range.start].z.signum();
+    let back = scene.positions[scene.panels[1].vertices.start].z.abs();
+    for p in &mut scene.positions[range] {
+        let down = (to - p.y) / (to - from);
+        p.z -= side * 4.0 * back * (down - 0.4).max(0.0);
+    }
+    scene
+}
+
+#[test]
+fn panels_that_start_through_each_other_are_sewn_through_and_come_free() {
+    let scene = crossed();
+    let plain = Rest { graded: true, ..Rest::default() };
+    let refused = plain.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert!(matches!(refused, RestError::Start(StartError::Crossing { .. })), "{refused}");
+    let through = Rest { sew_through: true, ..plain };
+    let state = through.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "sewn_through");
+    assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+    let middle = x.iter().map(|p| p.y).sum::<f64>() / x.len() as f64;
+    let as_ever = plain.solve(&generate::tube(12, 16), &mut |_| ControlFlow::Continue(())).unwrap().positions;
+    let wanted = as_ever.iter().map(|p| p.y).sum::<f64>() / x.len() as f64;
+    assert!((middle - wanted).abs() < 0.05, "{middle} {wanted}");
+}
+
+#[test]
+fn a_seam_may_sew_a_right_side_to_a_wrong_side() {
+    // The dart's panel with one half mirrored: its triangles run the other way round where the two halves meet.
+    let mut scene = generate::gathered(8, 4, 1.0 + 1e-9);
+    scene.seams.iter_mut().for_each(|s| s.gather = None);
+    let frill = scene.panels[0].clone();
+    scene.rest[frill.vertices.clone()].iter_mut().for_each(|p| p.x = -p.x);
+    scene.triangles[frill.triangles].iter_mut().for_each(|t| t.swap(1, 2));
+    let state = settle(&scene).unwrap();
+    assert_eq!((gap(&scene, &state.positions), crossings(&scene, &state.positions)), (0.0, 0));
+}
