@@ -7,8 +7,8 @@
 use std::error::Error;
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::prelude::*;
 use toile_core::Cancel;
+use toile_core::prelude::*;
 use toile_stages::pattern::GarmentCode;
 
 fn main() -> Result<(), Box<dyn Error>> {

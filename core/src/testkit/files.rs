@@ -6,8 +6,17 @@ use crate::{Cancel, Card, Context, Inputs, PortValue, Registry};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
-/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
+/// Two rectangles of 50 x 60 cm, sewn at their sides, as GarmentCode writes them.
+const PATTERN: &str = r#"{"pattern": {"panels": {
+"front": {"translation": [-25, 80, 20], "rotation": [0, 0, 0], "vertices": [[0, 0], [50, 0], [50, 60], [0, 60]],
+ "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}], "label": "body"},
+"back": {"translation": [-25, 80, -20], "rotation": [0, 0, 0], "vertices": [[0, 0], [0, 60], [50, 60], [50, 0]],
+ "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}], "label": "body"}},
+"stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 2}], [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 0}]]},
+"properties": {"units_in_meter": 100, "curvature_coords": "relative"}}"#;
+
+/// Lays the files that an example names into a folder: pictures, a body as OBJ, a GarmentCode pattern under its usual ending,
+/// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
@@ -16,6 +25,7 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
     };
     for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
         match name.rsplit_once('.').map(|(_, extension)| extension) {
+            _ if name.ends_with("_specification.json") => lay(name, PATTERN.as_bytes())?,
             Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
             Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,

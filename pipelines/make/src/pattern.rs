@@ -38,7 +38,14 @@ fn bent(name: &'static str, along: f64, across: f64) -> Edge {
 
 impl Panel {
     fn new(name: &str, label: &'static str, corners: &[P], edges: &[Edge], at: [f64; 3]) -> Self {
-        Panel { name: name.to_owned(), label, corners: corners.to_vec(), edges: edges.to_vec(), at, turn: 0.0 }
+        Panel {
+            name: name.to_owned(),
+            label,
+            corners: corners.to_vec(),
+            edges: edges.to_vec(),
+            at,
+            turn: 0.0,
+        }
     }
 
     /// The same panel for the other side of the body: mirrored about x = 0, still counter-clockwise.
@@ -91,7 +98,8 @@ fn length(from: P, to: P, [along, across]: P) -> f64 {
     let d = [to[0] - from[0], to[1] - from[1]];
     let control = [from[0] + along * d[0] - across * d[1], from[1] + along * d[1] + across * d[0]];
     let at = |t: f64| {
-        let of = |k: usize| (1.0 - t) * (1.0 - t) * from[k] + 2.0 * t * (1.0 - t) * control[k] + t * t * to[k];
+        let of =
+            |k: usize| (1.0 - t) * (1.0 - t) * from[k] + 2.0 * t * (1.0 - t) * control[k] + t * t * to[k];
         [of(0), of(1)]
     };
     let chord = |k: u32| {
@@ -130,7 +138,8 @@ impl Garment {
         };
         let stitches = self.stitches.iter().map(|[a, b]| Ok::<_, String>(json!([side(a)?, side(b)?])));
         let stitches = stitches.collect::<Result<Vec<_>, _>>()?;
-        let panels: serde_json::Map<String, Value> = self.panels.iter().map(|p| (p.name.clone(), p.json())).collect();
+        let panels: serde_json::Map<String, Value> =
+            self.panels.iter().map(|p| (p.name.clone(), p.json())).collect();
         let order: Vec<&str> = self.panels.iter().map(|p| p.name.as_str()).collect();
         Ok(json!({
             "pattern": { "panels": panels, "stitches": stitches, "panel_order": order },
@@ -155,8 +164,16 @@ const CUFF_END: P = [56.0, 112.0];
 fn shirt() -> Garment {
     let (hem, armpit, shoulder, neck) = ([26.0, 0.0], [26.0, 36.0], [19.5, 57.4], [7.0, 62.0]);
     let torso = |name: &str, depth: f64, scoop: f64, z: f64| {
-        let corners =
-            [[-hem[0], 0.0], hem, armpit, shoulder, neck, [-neck[0], neck[1]], [-shoulder[0], shoulder[1]], [-armpit[0], armpit[1]]];
+        let corners = [
+            [-hem[0], 0.0],
+            hem,
+            armpit,
+            shoulder,
+            neck,
+            [-neck[0], neck[1]],
+            [-shoulder[0], shoulder[1]],
+            [-armpit[0], armpit[1]],
+        ];
         let edges = [
             line("hem"),
             line("side_left"),
@@ -193,12 +210,18 @@ fn shirt() -> Garment {
         let edges = [line("neck"), line("end_left"), line("edge"), line("end_right")];
         Panel::new(name, "body", &corners, &edges, [0.0, 148.0, z])
     };
-    let mut panels = vec![front, back, collar("collar_front", 7.5, 16.0), collar("collar_back", 2.0, 16.0).behind("collar_back")];
+    let mut panels = vec![
+        front,
+        back,
+        collar("collar_front", 7.5, 16.0),
+        collar("collar_back", 2.0, 16.0).behind("collar_back"),
+    ];
     for (part, of) in [("sleeve", true), ("cuff", false)] {
         let made = |name: &str, scoop: f64| if of { sleeve(name, scoop, 10.0) } else { cuff(name, 9.0) };
         let front = made(&format!("left_{part}_front"), front_scoop);
         let back = made("", back_scoop).behind(&format!("left_{part}_back"));
-        let others = [front.mirrored(&format!("right_{part}_front")), back.mirrored(&format!("right_{part}_back"))];
+        let others =
+            [front.mirrored(&format!("right_{part}_front")), back.mirrored(&format!("right_{part}_back"))];
         panels.extend([front, back]);
         panels.extend(others);
     }
@@ -316,7 +339,9 @@ fn trousers() -> Garment {
 
 /// The files: names and contents.
 pub(crate) fn files() -> Result<[(&'static str, String); 2], Box<dyn Error>> {
-    let text = |g: &Garment| -> Result<String, Box<dyn Error>> { Ok(serde_json::to_string_pretty(&g.json()?)? + "\n") };
+    let text = |g: &Garment| -> Result<String, Box<dyn Error>> {
+        Ok(serde_json::to_string_pretty(&g.json()?)? + "\n")
+    };
     Ok([("shirt_specification.json", text(&shirt())?), ("trousers_specification.json", text(&trousers())?)])
 }
 

@@ -212,7 +212,10 @@ fn simple(raw: &RawPanel, links: &[Link], outer: &PatternLoop, unit: f64) -> Res
 fn mirrored(l: &PatternLoop) -> PatternLoop {
     let to = |p: Point2| Point2::new(-p.x, p.y);
     let edge = |e: &PieceEdge| PieceEdge { name: e.name.clone(), curve: e.curve.moved(to, true) };
-    PatternLoop { corners: l.corners.iter().map(|p| to(*p)).collect(), edges: l.edges.iter().map(edge).collect() }
+    PatternLoop {
+        corners: l.corners.iter().map(|p| to(*p)).collect(),
+        edges: l.edges.iter().map(edge).collect(),
+    }
 }
 
 /// The place of the file's own flat coordinates.

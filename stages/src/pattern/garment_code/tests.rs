@@ -82,7 +82,8 @@ fn every_kind_of_curve_has_the_length_of_its_closed_form_in_any_unit() {
         f["properties"]["units_in_meter"] = json!(units);
         let (p, told) = read(&f).unwrap();
         assert_eq!(told, Vec::<String>::new());
-        let exact = [0.4 * parabola, 0.4 * parabola, 0.4 * parabola, 0.4 * PI / 2.0_f64.sqrt() / 2.0, 0.2 * PI, 0.4];
+        let exact =
+            [0.4 * parabola, 0.4 * parabola, 0.4 * parabola, 0.4 * PI / 2.0_f64.sqrt() / 2.0, 0.2 * PI, 0.4];
         for (found, exact) in lengths(&p.pieces[0]).into_iter().zip(exact) {
             assert!((found - exact).abs() < 1e-9, "{found} for {exact} at {units}");
         }
@@ -109,10 +110,14 @@ fn arcs_bulge_to_the_side_that_the_flags_say() {
 #[test]
 fn control_points_may_be_given_in_the_panels_coordinates() {
     let mut f = tube();
-    f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!({ "type": "quadratic", "params": [[25.0, -5.0]] });
+    f["pattern"]["panels"]["front"]["edges"][0]["curvature"] =
+        json!({ "type": "quadratic", "params": [[25.0, -5.0]] });
     f["properties"]["curvature_coords"] = json!("absolute");
     let (p, _) = read(&f).unwrap();
-    assert_eq!(p.piece("front").unwrap().outer.edges[0].curve, EdgeCurve::Quadratic { control: Point2::new(0.25, -0.05) });
+    assert_eq!(
+        p.piece("front").unwrap().outer.edges[0].curve,
+        EdgeCurve::Quadratic { control: Point2::new(0.25, -0.05) }
+    );
 }
 
 /// The points of a seam's side in space, from its start to its end.
@@ -202,7 +207,10 @@ fn a_stitch_against_its_mirror_image_or_its_place_is_turned() {
     assert!(!p.lower().unwrap().plan.seams[1].reversed);
     // One side alone has none; its place tells.
     f["pattern"]["stitches"].as_array_mut().unwrap().remove(0);
-    assert_eq!(read(&f).unwrap().1, ["stitch 0 (edge 3 of \"front\" to edge 0 of \"back\") runs the wrong way: turned"]);
+    assert_eq!(
+        read(&f).unwrap().1,
+        ["stitch 0 (edge 3 of \"front\" to edge 0 of \"back\") runs the wrong way: turned"]
+    );
     // Both turned alike: that is meant.
     let mut f = tube();
     for k in 0..2 {
@@ -229,14 +237,17 @@ fn small_damage_is_repaired_and_told() {
     assert_eq!(said, ["the loop of panel \"front\" was open by 0.500 mm between edges 0 and 1: closed"]);
     assert_eq!(p.pieces.iter().find(|p| p.name == "front").unwrap().outer.corners.len(), 4);
     // A stitch that stands twice.
-    let (p, said) = told(&|f| f["pattern"]["stitches"].as_array_mut().unwrap().push(stitch(("back", 2), ("front", 1))));
+    let (p, said) =
+        told(&|f| f["pattern"]["stitches"].as_array_mut().unwrap().push(stitch(("back", 2), ("front", 1))));
     assert_eq!(said, ["stitch 2 (edge 2 of \"back\" to edge 1 of \"front\") is stitch 0 again: left out"]);
     assert_eq!(p.seams.len(), 2);
     // Units that cannot be.
     let (p, said) = told(&|f| f["properties"]["units_in_meter"] = json!(1));
     assert_eq!(
         said,
-        ["with 1 units in a metre the largest panel is 60.000 m long: read with 100.0000 units in a metre, 0.600 m"]
+        [
+            "with 1 units in a metre the largest panel is 60.000 m long: read with 100.0000 units in a metre, 0.600 m"
+        ]
     );
     assert!((lengths(&p.pieces[0])[0] - 0.5).abs() < 1e-12);
     let (_, said) = told(&|f| drop(f.as_object_mut().unwrap().remove("properties")));
@@ -255,7 +266,8 @@ fn small_damage_is_repaired_and_told() {
     let (_, said) = told(&|f| f["pattern"]["panels"]["front"]["label"] = json!("tail"));
     assert_eq!(said, ["panel \"front\" has the label \"tail\", which is no part of the body"]);
     let (p, said) = told(&|f| {
-        f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!({ "type": "circle", "params": [10, 0, 1] });
+        f["pattern"]["panels"]["front"]["edges"][0]["curvature"] =
+            json!({ "type": "circle", "params": [10, 0, 1] });
     });
     assert_eq!(
         said,
@@ -292,17 +304,31 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
         (d.to_string(), d.remedy())
     };
     let again = "write the file again with the program that made it".to_owned();
-    assert_eq!(text(b"{\n \"pattern\": [1,\n}"), ("it is no JSON: expected value at line 3 column 1".into(), again.clone()));
+    assert_eq!(
+        text(b"{\n \"pattern\": [1,\n}"),
+        ("it is no JSON: expected value at line 3 column 1".into(), again.clone())
+    );
     assert_eq!(text(b""), ("it is no JSON: EOF while parsing a value at line 1 column 0".into(), again));
     assert_eq!(
         text(b"{\"pattern\": {\n\"x\": NaN}}"),
-        ("NaN at line 2 column 6 is no number".into(), "give the number that is meant; JSON knows no such word".into())
+        (
+            "NaN at line 2 column 6 is no number".into(),
+            "give the number that is meant; JSON knows no such word".into()
+        )
     );
     let form = "GarmentCode writes `pattern` with `panels` and `stitches`, and `properties`; is it a `_specification.json`?";
     assert_eq!(text(b"{}"), ("the file has no `pattern`".into(), form.to_owned()));
     assert_eq!(text(b"[]"), ("the file is a list, an object is wanted".into(), form.to_owned()));
-    refused(|f| f["pattern"]["panels"] = json!({}), "there are no panels", "draft the garment again; an empty pattern cannot be sewn");
-    refused(|f| f["pattern"]["panels"] = json!([]), "`panels` of `pattern` is a list, an object is wanted", form);
+    refused(
+        |f| f["pattern"]["panels"] = json!({}),
+        "there are no panels",
+        "draft the garment again; an empty pattern cannot be sewn",
+    );
+    refused(
+        |f| f["pattern"]["panels"] = json!([]),
+        "`panels` of `pattern` is a list, an object is wanted",
+        form,
+    );
     refused(
         |f| drop(f["pattern"]["panels"]["back"].as_object_mut().unwrap().remove("rotation")),
         "panel \"back\" has no `rotation`",
@@ -346,7 +372,10 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
     );
     let twice = br#"{"pattern": {"panels": {"a": {"translation": [0,0,0], "rotation": [0,0,0], "vertices": [[0,0],[9,0],[9,9]],
         "edges": [{"endpoints": [0,1]}, {"endpoints": [1,2]}, {"endpoints": [2,0]}]}, "a": {}}, "stitches": []}}"#;
-    assert_eq!(text(twice), ("two panels are called \"a\"".into(), "give each panel a name of its own".into()));
+    assert_eq!(
+        text(twice),
+        ("two panels are called \"a\"".into(), "give each panel a name of its own".into())
+    );
     let commas = [b"[".as_slice(), &b"1,".repeat(3_000_000), b"1]"].concat();
     assert_eq!(text(&commas), ("the file has 3000001 values, 2000000 are the most".into(), many.to_owned()));
     let long = vec![b' '; (16 << 20) + 1];
@@ -374,12 +403,18 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
     );
     let params = "`quadratic` has 1 control point, `cubic` 2, `circle` a radius and two flags";
     refused(
-        |f| f["pattern"]["panels"]["front"]["edges"][2]["curvature"] = json!({ "type": "spline", "params": [1, 2] }),
+        |f| {
+            f["pattern"]["panels"]["front"]["edges"][2]["curvature"] =
+                json!({ "type": "spline", "params": [1, 2] })
+        },
         "edge 2 of panel \"front\" has the curvature \"spline\" with 2 parameters, which is none",
         params,
     );
     refused(
-        |f| f["pattern"]["panels"]["front"]["edges"][2]["curvature"] = json!({ "type": "cubic", "params": [[0, 1]] }),
+        |f| {
+            f["pattern"]["panels"]["front"]["edges"][2]["curvature"] =
+                json!({ "type": "cubic", "params": [[0, 1]] })
+        },
         "edge 2 of panel \"front\" has the curvature \"cubic\" with 1 parameters, which is none",
         params,
     );
@@ -408,7 +443,10 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
     f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!([0.5, 3.0]);
     let e = read(&f).unwrap_err().error("a.json");
     assert_eq!((e.code, e.param), (ErrorCode::DegenerateTriangles, Some("file")));
-    assert!(e.message.starts_with("\"a.json\": panel \"front\" crosses itself: edge 0 meets edge 2 near ("), "{e}");
+    assert!(
+        e.message.starts_with("\"a.json\": panel \"front\" crosses itself: edge 0 meets edge 2 near ("),
+        "{e}"
+    );
 }
 
 #[test]
@@ -416,7 +454,11 @@ fn damage_of_stitches_is_refused_with_its_number() {
     let sides = "a stitch names two edges; three panels in one seam are two stitches";
     let push = |f: &mut Value, s: Value| f["pattern"]["stitches"].as_array_mut().unwrap().push(s);
     refused(|f| push(f, json!([side("front", 0)])), "stitch 2 has 1 sides, 2 are wanted", sides);
-    refused(|f| push(f, json!([side("front", 0), side("back", 1), side("back", 3)])), "stitch 2 has 3 sides, 2 are wanted", sides);
+    refused(
+        |f| push(f, json!([side("front", 0), side("back", 1), side("back", 3)])),
+        "stitch 2 has 3 sides, 2 are wanted",
+        sides,
+    );
     refused(
         |f| push(f, json!([side("front", 0), side("back", 3), "wrong_right"])),
         "stitch 2 ends with \"wrong_right\", which is no word of the format",
