@@ -2,10 +2,10 @@
 //! symmetry; never for a person to trust blindly.
 //!
 //! Method: a candidate is a pair of edges, or an edge and a chain of two, of nearly equal lengths, which may meet start to end as
-//! pieces do that are seen from outside; the edges must run alike along the grain. Hems are left out: an end of a piece across the
-//! grain is sewn to no end of the same side of another piece, and to its own mirror image never. A candidate whose mirror image
-//! is none is dropped. Of what is left the best is taken, then the best of what that leaves. Cost: edges squared. Limits: lengths
-//! must agree, so that gathers and long eases are not found; a piece that is drawn upside down is not seen.
+//! pieces do that are seen from outside; the edges must run alike along the grain. Hems, necks and waists are left out: an end of a
+//! piece across the grain that covers its middle is sewn to no end on the same side of another piece, unless one of them is a
+//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves. Cost: edges
+//! squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is not seen.
 
 use toile_core::prelude::*;
 
@@ -19,6 +19,8 @@ const ACROSS: f64 = 0.45;
 const END: f64 = 0.12;
 /// A piece this many times longer than wide is a band.
 const BAND: f64 = 4.0;
+/// The legs of a dart open by no more than this, degrees.
+const NOTCH: f64 = 35.0;
 /// Nothing of less confidence is proposed.
 const LEAST: f64 = 0.5;
 
@@ -40,6 +42,8 @@ struct Candidate {
     /// From its start to its end, as a share of its length.
     way: Vector2,
     end: End,
+    /// Whether it lies over or under the middle of its piece.
+    middle: bool,
     band: bool,
     notches: Vec<f64>,
 }
@@ -99,6 +103,9 @@ fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {
         (true, _, true) => End::High,
         _ => End::None,
     };
+    let middle = (x.0 + x.1) / 2.0;
+    let left = own.iter().map(|q| q.x).fold(f64::INFINITY, f64::min);
+    let right = own.iter().map(|q| q.x).fold(f64::NEG_INFINITY, f64::max);
     let mut before = 0.0;
     let mut notches = Vec::new();
     for (&k, path) in edges.iter().zip(&paths) {
@@ -114,6 +121,7 @@ fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {
         length,
         way: (end - start) / length.max(1e-9),
         end: end_of,
+        middle: left < middle && middle < right,
         band: wide.max(tall) >= BAND * wide.min(tall),
         notches,
     }
@@ -131,9 +139,12 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
     if apart > near || shared {
         return None;
     }
+    if a.piece == b.piece && !within(a, b, &pieces[a.piece]) {
+        return None;
+    }
     let image = mirror_of(&pieces[a.piece].name, &pieces[b.piece].name);
     let ends = match (a.end, b.end) {
-        (End::Low, End::Low) | (End::High, End::High) => a.band || b.band,
+        (End::Low, End::Low) | (End::High, End::High) => a.band || b.band || !(a.middle || b.middle),
         (End::None, End::None) => true,
         // A free end, or one that is sewn to a side of another piece: a band's.
         _ if a.piece == b.piece => false,
@@ -155,11 +166,32 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         Some(false) => 0.8,
         None => 0.92,
     };
-    let own = if a.piece == b.piece { 0.95 } else { 1.0 };
+    // An edge always fits its own mirror image: a seam in the middle where nothing else fits.
+    let own = if image {
+        0.7
+    } else if a.piece == b.piece {
+        0.95
+    } else {
+        1.0
+    };
     let sides = if symmetric(a, pieces) == symmetric(b, pieces) || banded { 1.0 } else { 0.3 };
     // What runs along the grain is a seam more often than what ends a piece.
     let end = if a.end == End::None && b.end == End::None { 1.0 } else { 0.85 };
     Some(0.98 * exact * chain * notches * own * sides * end)
+}
+
+/// Whether two edges of one piece may be sewn to each other: an edge of an unfolded piece is not sewn to its image, one end of a
+/// piece not to itself, and edges that meet in a corner only as narrow a notch as a dart.
+fn within(a: &Candidate, b: &Candidate, piece: &Piece) -> bool {
+    let n = piece.outer.edges.len();
+    let name = |k: usize| piece.outer.edges[k].name.as_str();
+    let images = |i: usize, j: usize| name(i).strip_suffix("_m") == Some(name(j));
+    let image = a.edges.iter().any(|&i| b.edges.iter().any(|&j| images(i, j) || images(j, i)));
+    let follows = |x: &Candidate, y: &Candidate| (x.edges[x.edges.len() - 1] + 1) % n == y.edges[0];
+    let corner = follows(a, b) || follows(b, a);
+    let opening = a.way.normalize().dot(&-b.way.normalize()).clamp(-1.0, 1.0).acos();
+    let end = a.end != End::None && a.end == b.end;
+    !image && !end && (!corner || opening <= NOTCH.to_radians())
 }
 
 /// Whether notches lie at the same lengths, one edge run through backwards; none where neither has any.

@@ -28,7 +28,7 @@ struct Sidecar {
 #[serde(deny_unknown_fields)]
 struct Entry {
     #[serde(default)]
-    name: Option<String>,
+    name: String,
     #[serde(default)]
     kind: Kind,
     sides: Vec<Vec<String>>,
@@ -92,7 +92,7 @@ pub(super) fn read(bytes: &[u8], file: &str, pieces: &[Piece]) -> Result<Vec<Pat
                     None => e,
                 }
             })?;
-        let name = entry.name.clone().unwrap_or_else(|| name(&sides));
+        let name = if entry.name.is_empty() { name(&sides) } else { entry.name.clone() };
         Ok(PatternSeam { name, kind: entry.kind.seam(), sides })
     };
     sidecar.seams.iter().enumerate().map(seam).collect()

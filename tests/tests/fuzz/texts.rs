@@ -114,6 +114,19 @@ fn garment_code() {
     fuzz("garment_code", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
 }
 
+#[test]
+fn dxf() {
+    let dir = tempfile::tempdir().unwrap();
+    testkit::files::files_for(&REGISTRY, "DxfPattern(file: \"small.dxf\")", dir.path()).unwrap();
+    let seeds = [read(dir.path().join("small.dxf"))];
+    let pattern = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.dxf"), bytes).unwrap();
+        reads("DxfPattern", "fuzz.dxf", dir.path())
+    };
+    assert_eq!(pattern(&seeds[0]), Ok(true));
+    fuzz("dxf", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
+}
+
 /// A body with shoulders and legs, as the reader looks for them.
 fn figure() -> Vec<u8> {
     let mannequin = REGISTRY.make(REGISTRY.named("Mannequin").next().unwrap(), "()").unwrap();

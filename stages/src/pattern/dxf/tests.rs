@@ -111,7 +111,7 @@ fn half_pieces_are_turned_unfolded_and_scaled() {
         ]
     );
     let front = &pieces[0];
-    assert_eq!(names(front).len(), 8);
+    assert_eq!(names(front).len(), 9);
     let length = |name: &str| front.path(name).unwrap().length();
     // Neck and hem run through the middle; the V of the neck stays two edges.
     assert!((length("edge_4") - 0.5).abs() < 1e-9, "{:?}", names(front));
