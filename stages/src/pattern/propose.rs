@@ -7,6 +7,7 @@
 //! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves. Cost: edges
 //! squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is not seen.
 
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 /// Shorter edges are not told apart, metres.
@@ -21,6 +22,10 @@ const END: f64 = 0.12;
 const BAND: f64 = 4.0;
 /// The legs of a dart open by no more than this, degrees.
 const NOTCH: f64 = 35.0;
+/// What speaks for an edge of a band that goes on where a seam of the band ends.
+const GOES_ON: f64 = 0.02;
+/// Edges and chains of a garment that are compared; with more nothing is proposed.
+const MOST: usize = 2_000;
 /// Nothing of less confidence is proposed.
 const LEAST: f64 = 0.5;
 
@@ -59,6 +64,9 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
         }
     }
     all.retain(|c| c.length >= SHORTEST);
+    if all.len() > MOST {
+        return Vec::new();
+    }
     let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
     for i in 0..all.len() {
         for j in i + 1..all.len() {
@@ -67,21 +75,37 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
             }
         }
     }
-    // Surest first; in the order of the file where nothing tells them apart.
-    pairs.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
-    let mut taken: Vec<(usize, usize)> = Vec::new();
+    let edges = |i: usize, j: usize| {
+        let of = |c: &Candidate| c.edges.iter().map(|&e| (c.piece, e)).collect::<Vec<_>>();
+        [of(&all[i]), of(&all[j])].concat()
+    };
+    let mut taken: BTreeSet<(usize, usize)> = BTreeSet::new();
     let mut out = Vec::new();
-    for (score, i, j) in pairs {
-        let edges = || [&all[i], &all[j]].into_iter().flat_map(|c| c.edges.iter().map(|&e| (c.piece, e)));
-        if edges().any(|e| taken.contains(&e)) {
-            continue;
-        }
-        taken.extend(edges());
-        if score >= LEAST {
-            out.push(seam(&all[i], &all[j], score, pieces));
-        }
+    loop {
+        pairs.retain(|&(score, i, j)| score >= LEAST && edges(i, j).iter().all(|e| !taken.contains(e)));
+        // Surest first, that which goes on where another seam ends before others; then in the order of the file.
+        let goes_on = |&(_, i, j): &(f64, usize, usize)| {
+            [i, j].into_iter().any(|k| all[k].band && straight_on(&all[k], &taken, &pieces[all[k].piece]))
+        };
+        let rank = |pair: &(f64, usize, usize)| pair.0 + if goes_on(pair) { GOES_ON } else { 0.0 };
+        let better = |a: &&(f64, usize, usize), b: &&(f64, usize, usize)| {
+            rank(a).total_cmp(&rank(b)).then((b.1, b.2).cmp(&(a.1, a.2)))
+        };
+        let Some(&(score, i, j)) = pairs.iter().max_by(better) else { return out };
+        taken.extend(edges(i, j));
+        out.push(seam(&all[i], &all[j], score, pieces));
     }
-    out
+}
+
+/// Whether the edge before or behind it in its loop is sewn already and runs the same way.
+fn straight_on(c: &Candidate, taken: &BTreeSet<(usize, usize)>, piece: &Piece) -> bool {
+    let n = piece.outer.edges.len();
+    let beside = [(c.edges[0] + n - 1) % n, (c.edges[c.edges.len() - 1] + 1) % n];
+    beside.into_iter().any(|k| {
+        let path = piece.outer.path(k);
+        let way = (path.at(path.length()) - path.at(0.0)) / path.length();
+        taken.contains(&(c.piece, k)) && way.dot(&c.way) > 0.95
+    })
 }
 
 fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {

@@ -218,7 +218,12 @@ fn a_leg_is_sewn_to_itself_to_its_image_and_to_its_band() {
     {
         assert!(found.iter().any(|s| s == seam), "{seam}: {found:?}");
     }
-    assert!(found.iter().any(|s| s.starts_with("LEG.edge_1 + BAND.")), "{found:?}");
+    // Both legs to the same long side of the band: edges 0 and 1, or 3 and 4.
+    let waist = |leg: &str| {
+        let number = |k: &u32| found.iter().any(|s| *s == format!("{leg}.edge_1 + BAND.edge_{k}"));
+        (0..6).find(number).unwrap_or_else(|| panic!("{leg}: {found:?}"))
+    };
+    assert_eq!(waist("LEG") / 3, waist("LEG_mirrored") / 3, "{found:?}");
     assert!(found.iter().all(|s| !s.contains("edge_4 ") && !s.ends_with("LEG_mirrored.edge_4")), "{found:?}");
 }
 
