@@ -38,7 +38,7 @@ impl Side {
 pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Vec<String>) -> Result<Piece, Damage> {
     let at = Place { block, name, unit };
     let mut sides = at.boundary(told)?;
-    let grain = at.line(7).map(|(a, b)| (a, b));
+    let grain = at.line(7);
     // The grain turned up.
     let turn = grain.and_then(|(a, b)| (b - a).try_normalize(1e-9)).map_or([1.0, 0.0], |d| [d.y, d.x]);
     let up = move |p: Point2| Point2::new(turn[0] * p.x - turn[1] * p.y, turn[1] * p.x + turn[0] * p.y);
