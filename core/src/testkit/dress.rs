@@ -103,6 +103,39 @@ pub fn garment_panel() -> Panel {
     shapes::panel(9, 8, PANEL[0], PANEL[1])
 }
 
+/// The pattern of the suite's garment: a front and a back, sewn at shoulders and sides, standing before and behind the body.
+pub fn pattern() -> Pattern {
+    let [w, h] = PANEL;
+    let third = w / 6.0;
+    let corners = [[-w / 2.0, 0.0], [w / 2.0, 0.0], [w / 2.0, h], [third, h], [-third, h], [-w / 2.0, h]];
+    let names = ["hem", "side_left", "shoulder_left", "neck", "shoulder_right", "side_right"];
+    let piece = |name: &str, side: f64| Piece {
+        name: name.into(),
+        outer: PatternLoop {
+            corners: corners.map(|[x, y]| Point2::new(x, y)).into(),
+            edges: names.map(|n| PieceEdge { name: n.into(), curve: EdgeCurve::Line }).into(),
+        },
+        body_part: Some(BodyPart::Body),
+        pose: Some(Pose {
+            origin: Point3::new(0.0, 0.98, side * 0.15),
+            across: Vector3::new(side, 0.0, 0.0),
+            along: Vector3::y(),
+        }),
+        ..Piece::default()
+    };
+    let side = |s: &EdgeRef, reversed| vec![EdgeUse { edge: s.clone(), reversed }];
+    let seam = |s: &Seam| PatternSeam {
+        name: s.name(),
+        kind: s.kind,
+        sides: vec![side(&s.a, false), side(&s.b, !s.reversed)],
+    };
+    Pattern {
+        name: "suite".into(),
+        pieces: vec![piece("front", 1.0), piece("back", -1.0)],
+        seams: plan().seams.iter().map(seam).collect(),
+    }
+}
+
 /// Seams at shoulders and sides, panels before and behind the body.
 pub fn plan() -> SewingPlan {
     let seam = |edge: &str| Seam {

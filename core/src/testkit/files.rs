@@ -6,8 +6,41 @@ use crate::{Cancel, Card, Context, Inputs, PortValue, Registry};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Lays the files that an example names into a folder: pictures, a body as OBJ, and, of other kinds, whatever a
-/// writer of the registry makes of the suite's garment under that extension, with all that goes with it.
+/// Two rectangles of 50 x 60 cm, sewn at their sides, as GarmentCode writes them.
+const PATTERN: &str = r#"{"pattern": {"panels": {
+"front": {"translation": [-25, 80, 20], "rotation": [0, 0, 0], "vertices": [[0, 0], [50, 0], [50, 60], [0, 60]],
+ "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}], "label": "body"},
+"back": {"translation": [-25, 80, -20], "rotation": [0, 0, 0], "vertices": [[0, 0], [0, 60], [50, 60], [50, 0]],
+ "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}], "label": "body"}},
+"stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 2}], [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 0}]]},
+"properties": {"units_in_meter": 100, "curvature_coords": "relative"}}"#;
+
+/// Two half pieces of size M, as CAD programs exchange them: mirror line above, grain along x, millimetres.
+fn pieces() -> String {
+    use std::fmt::Write;
+    let mut out = String::from("  0\nSECTION\n  2\nBLOCKS\n");
+    let corners = [[0.0, 250.0], [0.0, 0.0], [400.0, 0.0], [600.0, 60.0], [570.0, 170.0], [550.0, 250.0]];
+    for name in ["FRONT", "BACK"] {
+        let _ = write!(out, "  0\nBLOCK\n  8\n0\n  2\n{name}_M\n");
+        for k in 0..corners.len() {
+            let _ = write!(out, "  0\nPOLYLINE\n  8\n1\n 66\n1\n");
+            for [x, y] in [corners[k], corners[(k + 1) % corners.len()]] {
+                let _ = write!(out, "  0\nVERTEX\n  8\n1\n 10\n{x}\n 20\n{y}\n");
+            }
+            out += "  0\nSEQEND\n  8\n1\n";
+        }
+        for (layer, [x, y], [u, v]) in
+            [(6, [550.0, 250.0], [0.0, 250.0]), (7, [100.0, 100.0], [300.0, 100.0])]
+        {
+            let _ = write!(out, "  0\nLINE\n  8\n{layer}\n 10\n{x}\n 20\n{y}\n 11\n{u}\n 21\n{v}\n");
+        }
+        out += "  0\nENDBLK\n";
+    }
+    out + "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n  0\nTEXT\n  8\n1\n  1\nUnits: METRIC\n  0\nENDSEC\n  0\nEOF\n"
+}
+
+/// Lays the files that an example names into a folder: pictures, a body as OBJ, a GarmentCode pattern under its usual ending, a DXF of pieces,
+/// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
@@ -16,8 +49,10 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
     };
     for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
         match name.rsplit_once('.').map(|(_, extension)| extension) {
+            _ if name.ends_with("_specification.json") => lay(name, PATTERN.as_bytes())?,
             Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
             Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
+            Some("dxf") => lay(name, pieces().as_bytes())?,
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
             Some(extension) if extension.chars().all(char::is_alphabetic) => {
                 let ending = format!(".{extension}");

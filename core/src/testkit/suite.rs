@@ -156,10 +156,11 @@ type Own = (Kind, LazyLock<Arc<dyn Artifact>, Maker>);
 /// them some thousand times.
 fn own() -> &'static [Own] {
     static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
-        let all: [(Kind, Maker); 13] = [
+        let all: [(Kind, Maker); 14] = [
             (Body::KIND, || Arc::new(dress::body())),
             (Fabric::KIND, || Arc::new(dress::fabric())),
             (SewingPlan::KIND, || Arc::new(dress::plan())),
+            (Pattern::KIND, || Arc::new(dress::pattern())),
             (Garment::KIND, || Arc::new(dress::garment())),
             (Collider::KIND, || Arc::new(capsules::collider())),
             (Phases::KIND, || Arc::new(dress::phases())),

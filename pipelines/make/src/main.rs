@@ -118,6 +118,14 @@ mod tests {
     }
 
     #[test]
+    fn the_committed_patterns_are_those_of_this_program() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples/pattern");
+        for (name, text) in pattern::files().unwrap() {
+            assert!(std::fs::read_to_string(folder.join(name)).unwrap() == text, "{name}: run the program");
+        }
+    }
+
+    #[test]
     fn the_committed_outlines_are_those_of_this_program() {
         for side in [Side::Front, Side::Back] {
             let name = if side == Side::Front { "front" } else { "back" };

@@ -1,12 +1,24 @@
 //! Sewing patterns from files: what takes the place of photos, outlines and a style.
 
+mod dxf;
 mod garment_code;
+mod propose;
+mod sidecar;
 
+pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
 
+use std::path::Path;
 use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
+    registry.add::<DxfPattern>();
+}
+
+/// The file's name without folder, extension and the word that GarmentCode adds.
+fn stem(file: &str) -> String {
+    let stem = Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    stem.strip_suffix("_specification").unwrap_or(&stem).to_owned()
 }

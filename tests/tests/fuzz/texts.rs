@@ -98,6 +98,35 @@ fn scenes() {
     fuzz("scene", 300, |dice| spoil::text(&seeds, dice), |bytes| scene(bytes).map(drop));
 }
 
+#[test]
+fn garment_code() {
+    let dir = tempfile::tempdir().unwrap();
+    let sample = |name: &str| read(root().join("pipelines/samples/pattern").join(name));
+    testkit::files::files_for(&REGISTRY, "GarmentCode(file: \"small_specification.json\")", dir.path())
+        .unwrap();
+    let small = read(dir.path().join("small_specification.json"));
+    let seeds = [small, sample("shirt_specification.json"), sample("trousers_specification.json")];
+    let pattern = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.json"), bytes).unwrap();
+        reads("GarmentCode", "fuzz.json", dir.path())
+    };
+    assert_eq!([0, 1, 2].map(|k| pattern(&seeds[k])), [Ok(true), Ok(true), Ok(true)]);
+    fuzz("garment_code", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
+}
+
+#[test]
+fn dxf() {
+    let dir = tempfile::tempdir().unwrap();
+    testkit::files::files_for(&REGISTRY, "DxfPattern(file: \"small.dxf\")", dir.path()).unwrap();
+    let seeds = [read(dir.path().join("small.dxf"))];
+    let pattern = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.dxf"), bytes).unwrap();
+        reads("DxfPattern", "fuzz.dxf", dir.path())
+    };
+    assert_eq!(pattern(&seeds[0]), Ok(true));
+    fuzz("dxf", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
+}
+
 /// A body with shoulders and legs, as the reader looks for them.
 fn figure() -> Vec<u8> {
     let mannequin = REGISTRY.make(REGISTRY.named("Mannequin").next().unwrap(), "()").unwrap();

@@ -17,6 +17,9 @@ use thiserror::Error;
 /// Sides of a matched seam whose lengths differ by more than this share of the longer are gathered.
 const EASE: f64 = 0.03;
 
+/// An edge that turns by more than this at one point has a corner there, degrees.
+const BEND: f64 = 30.0;
+
 /// What a pattern becomes.
 #[derive(Debug, Clone)]
 pub struct Lowered {
@@ -179,12 +182,14 @@ fn seam(a: &Link<'_>, b: &Link<'_>, kind: SeamKind, names: &BTreeMap<&str, &Name
 
 /// The outline of a piece, each edge with the gauge that suits it alone.
 fn outline(piece: &Piece, names: &Names, cuts: &Cuts<'_>, sewn: &BTreeSet<&EdgeRef>) -> Outline {
-    let (mut points, mut starts, mut drawn) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut starts, mut drawn, mut corners) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (k, e) in piece.outer.edges.iter().enumerate() {
         let ends = [piece.outer.corners[k], piece.outer.corners[(k + 1) % piece.outer.corners.len()]];
         for (i, part) in parts(&piece.outer.path(k), piece, &e.name, cuts, Some(ends)).into_iter().enumerate()
         {
             starts.push((names.part(&e.name, i), points.len()));
+            corners.push(points.len());
+            corners.extend(bends(&part).iter().map(|k| points.len() + k));
             points.extend(&part[..part.len() - 1]);
             drawn.push(part);
         }
@@ -216,7 +221,6 @@ fn outline(piece: &Piece, names: &Names, cuts: &Cuts<'_>, sewn: &BTreeSet<&EdgeR
         let (points, corners) = h.points();
         Loop { points, corners }
     });
-    let corners = starts.iter().map(|(_, start)| *start).collect();
     Outline {
         outer: Loop { points, corners },
         holes: holes.collect(),
@@ -251,8 +255,17 @@ fn parts(
 fn gauge(points: &[Point2]) -> Gauge {
     match points {
         [a, b] => Gauge::straight((b - a).norm()),
-        _ => Gauge::of(points, &[]),
+        _ => Gauge::of(points, &bends(points)),
     }
+}
+
+/// The inner points at which an edge turns sharply: corners of a polyline, not samples of a curve.
+fn bends(points: &[Point2]) -> Vec<usize> {
+    let sharp = |k: &usize| {
+        let (u, v) = (points[*k] - points[k - 1], points[k + 1] - points[*k]);
+        u.perp(&v).atan2(u.dot(&v)).abs() > BEND.to_radians()
+    };
+    (1..points.len().saturating_sub(1)).filter(sharp).collect()
 }
 
 /// Edges that are sewn to each other, directly or through others, take what any of them needs.

@@ -39,13 +39,23 @@ pub(super) fn svg(pattern: &Pattern) -> String {
 fn colours(pattern: &Pattern) -> BTreeMap<(&str, &str), String> {
     let mut all = BTreeMap::new();
     for (i, s) in pattern.seams.iter().enumerate() {
-        let hue = (i as f64 * 137.508) % 360.0;
-        let colour = format!("hsl({hue:.0},70%,{}%)", 32 + 10 * (i / 3 % 3));
+        let colour = colour(i as f64 * 137.508, 0.32 + 0.1 * (i / 3 % 3) as f64);
         for u in s.sides.iter().flatten() {
             all.entry((u.edge.panel.as_str(), u.edge.edge.as_str())).or_insert_with(|| colour.clone());
         }
     }
     all
+}
+
+/// A colour of that hue in degrees, and lightness, as `#rrggbb`: not every viewer knows hues.
+fn colour(hue: f64, lightness: f64) -> String {
+    let strength = 0.7 * lightness.min(1.0 - lightness);
+    let channel = |n: f64| {
+        let k = (n + hue / 30.0) % 12.0;
+        let x = lightness - strength * (k - 3.0).min(9.0 - k).clamp(-1.0, 1.0);
+        (x * 255.0).round() as u8
+    };
+    format!("#{:02x}{:02x}{:02x}", channel(0.0), channel(8.0), channel(4.0))
 }
 
 /// A piece with its least corner, in metres, and its size in mm.

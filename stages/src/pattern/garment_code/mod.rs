@@ -18,7 +18,6 @@ use json::Json;
 use panel::{Scale, made};
 use read::RawFile;
 use std::collections::BTreeSet;
-use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::Artifact;
 use toile_core::prelude::*;
@@ -47,7 +46,7 @@ impl GarmentCode {
     pub fn run(&self, cx: &Context) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
-        let (pattern, told) = pattern(&bytes, &stem(&self.file)).map_err(|d| d.error(&self.file))?;
+        let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(|d| d.error(&self.file))?;
         told.into_iter().for_each(|what| cx.warn(what));
         cx.check()?;
         let lowered = pattern
@@ -71,12 +70,6 @@ impl GarmentCode {
         let there = self.named().and_then(|()| placed.cx.look(&self.file));
         there.map_err(|e| e.at("file")).err().into_iter().collect()
     }
-}
-
-/// The file's name without folder, extension and the word that GarmentCode adds.
-fn stem(file: &str) -> String {
-    let stem = Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    stem.strip_suffix("_specification").unwrap_or(&stem).to_owned()
 }
 
 /// The pattern of a file's bytes, and what was repaired.

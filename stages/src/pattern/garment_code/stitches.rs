@@ -150,8 +150,8 @@ fn meets_at_corner(s: &RawStitch, panels: &[RawPanel]) -> Option<bool> {
     }
 }
 
-/// The cosine between the directions in which the two sides run in space, as they are sewn: -1 where that cannot be better for
-/// ends that meet start to end ... given as +1 for the worst.
+/// How far the two sides run against the way in which they are sewn, by their chords in space: -1 where every thread has the
+/// same length, 1 where they cross most.
 fn leaning(s: &Stitch<'_>, made: &[Made]) -> f64 {
     let [a, b] = s.raw.sides.map(|(p, e)| made[p].ends[e][1] - made[p].ends[e][0]);
     let cosine = a.dot(&b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE);

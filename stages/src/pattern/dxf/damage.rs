@@ -1,0 +1,84 @@
+//! What may be wrong with a DXF file beyond repair.
+
+use thiserror::Error;
+use toile_core::{ErrorCode, StageError};
+
+/// Why a file is refused.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub(super) enum Damage {
+    #[error("it is a binary DXF")]
+    Binary,
+    #[error("it has {bytes} bytes, {most} are the most")]
+    Large { bytes: usize, most: usize },
+    #[error("\"{value}\" at line {line} is no group code")]
+    Code { value: String, line: usize },
+    #[error("it ends at line {line}, within a pair of code and value")]
+    Early { line: usize },
+    #[error("\"{value}\" at line {line} is no number of a pattern")]
+    Number { value: String, line: usize },
+    #[error("it has {count} {what}, {most} are the most")]
+    Many { what: &'static str, count: usize, most: usize },
+    #[error("there are no pieces: no block has a boundary on layer 1")]
+    NoPieces,
+    #[error("there is no size \"{size}\"")]
+    NoSize { size: String, known: Vec<String> },
+    #[error("the units are \"{word}\", they are ENGLISH or METRIC")]
+    Units { word: String },
+    #[error(
+        "piece \"{piece}\" (line {line}): its boundary is open by {gap_mm:.1} mm near ({x:.1}, {y:.1}) in the file's units"
+    )]
+    Open { piece: String, line: usize, gap_mm: f64, x: f64, y: f64 },
+    #[error(
+        "piece \"{piece}\" (line {line}): its boundary crosses itself near ({x:.1}, {y:.1}) in the file's units"
+    )]
+    Crosses { piece: String, line: usize, x: f64, y: f64 },
+    #[error("piece \"{piece}\" (line {line}): its mirror line does not lie on its boundary")]
+    Mirror { piece: String, line: usize },
+    #[error("piece \"{piece}\" (line {line}): {what}")]
+    Piece { piece: String, line: usize, what: String },
+    #[error("{what}")]
+    Unsewable { what: String, remedy: String },
+}
+
+impl Damage {
+    /// What the user may do about it.
+    pub(super) fn remedy(&self) -> String {
+        match self {
+            Damage::Binary => "export it as ASCII DXF, release 12".into(),
+            Damage::Large { .. } | Damage::Many { .. } => "export fewer pieces or sizes at a time".into(),
+            Damage::Code { .. } | Damage::Early { .. } | Damage::Number { .. } => {
+                "export the file again; a DXF is pairs of lines, a code and its value".into()
+            }
+            Damage::NoPieces => "export it as AAMA or ASTM DXF, a block for each piece and size".into(),
+            Damage::NoSize { known, .. } => format!("the sizes are {}", known.join(", ")),
+            Damage::Units { .. } => "export it with its units".into(),
+            Damage::Open { .. } | Damage::Crosses { .. } | Damage::Piece { .. } => {
+                "draw the boundary as one closed line that meets itself nowhere".into()
+            }
+            Damage::Mirror { .. } => "let the mirror line run along a straight edge of the boundary".into(),
+            Damage::Unsewable { remedy, .. } => remedy.clone(),
+        }
+    }
+
+    /// As an error of the stage that reads `file`.
+    pub(super) fn error(&self, file: &str) -> StageError {
+        let param = if matches!(self, Damage::NoSize { .. }) { "size" } else { "file" };
+        let code = match self {
+            Damage::Crosses { .. } => ErrorCode::DegenerateTriangles,
+            Damage::NoSize { .. } => ErrorCode::InvalidParameter,
+            Damage::Binary
+            | Damage::Large { .. }
+            | Damage::Code { .. }
+            | Damage::Early { .. }
+            | Damage::Number { .. }
+            | Damage::Many { .. }
+            | Damage::NoPieces
+            | Damage::Units { .. }
+            | Damage::Open { .. }
+            | Damage::Mirror { .. }
+            | Damage::Piece { .. }
+            | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
+        };
+        StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at(param)
+    }
+}

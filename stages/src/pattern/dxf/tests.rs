@@ -1,0 +1,351 @@
+//! Files of our own making: a tank of two half pieces, a pair of legs with a waistband; every refusal word for word.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use super::*;
+use std::fmt::Write;
+use std::path::Path as FilePath;
+use toile_core::Cancel;
+
+/// A file under construction.
+#[derive(Default)]
+struct Dxf(String);
+
+impl Dxf {
+    fn tag(&mut self, code: i32, value: impl std::fmt::Display) -> &mut Self {
+        let _ = writeln!(self.0, "{code:3}\n{value}");
+        self
+    }
+
+    fn block(&mut self, name: &str, size: &str, quantity: Option<&str>) -> &mut Self {
+        self.tag(0, "BLOCK").tag(8, 0).tag(2, format!("{name}_{size}"));
+        self.text(&format!("Piece Name: {name}")).text(&format!("Size: {size}"));
+        if let Some(q) = quantity {
+            self.text(&format!("Quantity: {q}"));
+        }
+        self
+    }
+
+    fn text(&mut self, text: &str) -> &mut Self {
+        self.tag(0, "TEXT").tag(8, 1).tag(10, 0.0).tag(20, 0.0).tag(1, text)
+    }
+
+    fn poly(&mut self, layer: i32, points: &[[f64; 2]]) -> &mut Self {
+        self.tag(0, "POLYLINE").tag(8, layer).tag(66, 1).tag(70, 0);
+        for [x, y] in points {
+            self.tag(0, "VERTEX").tag(8, layer).tag(10, x).tag(20, y);
+        }
+        self.tag(0, "SEQEND").tag(8, layer)
+    }
+
+    fn line(&mut self, layer: i32, a: [f64; 2], b: [f64; 2]) -> &mut Self {
+        self.tag(0, "LINE").tag(8, layer).tag(10, a[0]).tag(20, a[1]).tag(11, b[0]).tag(21, b[1])
+    }
+
+    fn point(&mut self, layer: i32, [x, y]: [f64; 2], depth: f64) -> &mut Self {
+        self.tag(0, "POINT").tag(8, layer).tag(10, x).tag(20, y).tag(39, depth)
+    }
+
+    fn end(&mut self) -> &mut Self {
+        self.tag(0, "ENDBLK")
+    }
+
+    fn bytes(&self, units: Option<&str>) -> Vec<u8> {
+        let mut all = Dxf::default();
+        all.tag(0, "SECTION").tag(2, "BLOCKS");
+        all.0 += &self.0;
+        all.tag(0, "ENDSEC").tag(0, "SECTION").tag(2, "ENTITIES");
+        all.text("Sample Size: M");
+        if let Some(units) = units {
+            all.text(&format!("Units: {units}"));
+        }
+        all.tag(0, "ENDSEC").tag(0, "EOF");
+        all.0.into_bytes()
+    }
+}
+
+/// The right half of a piece lying on its side, grain along x: neck at the right, hem at the left, its middle above.
+fn half(d: &mut Dxf, name: &str, size: &str, scale: f64, neck: f64) {
+    let s = |x: f64, y: f64| [x * scale, y * scale];
+    d.block(name, size, (size == "M").then_some("1"));
+    d.poly(1, &[s(600.0 - neck, 0.0), s(600.0, -80.0)]);
+    d.poly(1, &[s(600.0, -80.0), s(560.0, -190.0)]);
+    d.poly(1, &[s(560.0, -190.0), s(470.0, -180.0), s(380.0, -240.0)]);
+    d.poly(1, &[s(380.0, -240.0), s(200.0, -230.0), s(0.0, -250.0)]);
+    d.poly(1, &[s(0.0, -250.0), s(0.0, 0.0)]);
+    d.poly(1, &[s(0.0, 0.0), s(600.0 - neck, 0.0)]);
+    d.line(7, s(100.0, -100.0), s(300.0, -100.0));
+    d.line(6, s(0.0, 0.0), s(600.0 - neck, 0.0));
+    d.point(4, s(200.0, -230.0), 4.0 * scale);
+    d.point(13, s(300.0, -50.0), 0.0);
+    d.line(8, s(100.0, -20.0), s(200.0, -20.0));
+    d.end();
+}
+
+fn tank() -> Dxf {
+    let mut d = Dxf::default();
+    for (size, scale) in [("S", 0.9), ("M", 1.0)] {
+        half(&mut d, "FRONT", size, scale, 150.0);
+        half(&mut d, "BACK", size, scale, 30.0);
+    }
+    d
+}
+
+fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
+    let mut told = Vec::new();
+    pieces_of(bytes, size, &mut told).map(|p| (p, told))
+}
+
+fn names(p: &Piece) -> Vec<&str> {
+    p.outer.edges.iter().map(|e| e.name.as_str()).collect()
+}
+
+#[test]
+fn half_pieces_are_turned_unfolded_and_scaled() {
+    let (pieces, told) = read(&tank().bytes(Some("METRIC")), "m").unwrap();
+    assert_eq!(
+        told,
+        [
+            "the file's units are millimetres",
+            "piece \"FRONT\" is unfolded at its mirror line",
+            "piece \"BACK\" is unfolded at its mirror line"
+        ]
+    );
+    let front = &pieces[0];
+    assert_eq!(names(front).len(), 9);
+    let length = |name: &str| front.path(name).unwrap().length();
+    // Neck and hem run through the middle; the V of the neck stays two edges.
+    assert!((length("edge_4") - 0.5).abs() < 1e-9, "{:?}", names(front));
+    for (name, image) in [("edge_1", "edge_1_m"), ("edge_2", "edge_2_m"), ("edge_3", "edge_3_m")] {
+        assert!((length(name) - length(image)).abs() < 1e-9);
+    }
+    let exact = (180.0_f64.hypot(10.0) + 200.0_f64.hypot(20.0)) * 1e-3;
+    assert!((length("edge_3") - exact).abs() < 1e-9);
+    // The grain runs up, the hem lies below.
+    let [a, b] = front.grain.unwrap();
+    assert!((b.y - a.y - 0.2).abs() < 1e-12 && (b.x - a.x).abs() < 1e-12);
+    let hem = front.path("edge_4").unwrap();
+    assert!(hem.points().iter().all(|p| p.y.abs() < 1e-9));
+    assert!(polygon_area(&front.outer.points().0) > 0.0);
+    assert_eq!((front.notches.len(), front.drill_holes.len(), front.lines.len()), (2, 2, 2));
+    let notch = front.notches.iter().find(|n| n.edge == "edge_3").unwrap();
+    assert!((notch.depth - 0.004).abs() < 1e-12);
+    let at = front.path("edge_3").unwrap().at(notch.along);
+    assert!((at.y - 0.2).abs() < 1e-9, "{at}");
+    let (small, _) = read(&tank().bytes(Some("METRIC")), "S").unwrap();
+    assert!((small[0].path("edge_4").unwrap().length() - 0.45).abs() < 1e-9);
+}
+
+#[test]
+fn units_and_sizes_that_are_not_given_are_found_and_told() {
+    let (pieces, told) = read(&tank().bytes(None), "").unwrap();
+    assert_eq!(told[0], "no size is asked for: \"M\" is read of S, M");
+    assert_eq!(
+        told[1],
+        "the file does not say its units: read as millimetres, with which its longest edge is 570 mm"
+    );
+    let mut d = Dxf::default();
+    half(&mut d, "FRONT", "M", 1.0 / 25.4, 150.0);
+    let (inches, told) = read(&d.bytes(Some("English")), "").unwrap();
+    assert_eq!(told[0], "the file's units are inches");
+    let length = |p: &[Piece]| p[0].path("edge_3").unwrap().length();
+    assert!((length(&inches) - length(&pieces)).abs() < 1e-6);
+}
+
+/// A leg, cut twice, and a waistband in two halves; lengths to a tenth of a millimetre as CAD programs write them.
+fn leggings() -> Dxf {
+    let mut d = Dxf::default();
+    d.block("LEG", "M", Some("1,1"));
+    d.poly(1, &[[700.0, 0.0], [950.0, 40.0]]);
+    d.poly(1, &[[950.0, 40.0], [950.0, 385.0]]);
+    d.poly(1, &[[950.0, 385.0], [700.0, 480.0]]);
+    d.poly(1, &[[700.0, 480.0], [0.0, 360.0]]);
+    d.poly(1, &[[0.0, 360.0], [0.0, 120.0]]);
+    d.poly(1, &[[0.0, 120.0], [700.0, 0.0]]);
+    d.line(7, [200.0, 200.0], [600.0, 200.0]);
+    d.end();
+    d.block("BAND", "M", Some("1"));
+    d.poly(1, &[[0.0, 0.0], [345.0, 0.0]]).poly(1, &[[345.0, 0.0], [690.0, 0.0]]);
+    d.poly(1, &[[690.0, 0.0], [690.0, 50.0]]);
+    d.poly(1, &[[690.0, 50.0], [345.0, 50.0]]).poly(1, &[[345.0, 50.0], [0.0, 50.0]]);
+    d.poly(1, &[[0.0, 50.0], [0.0, 0.0]]);
+    d.line(7, [100.0, 20.0], [100.0, 40.0]);
+    d.end();
+    d
+}
+
+#[test]
+fn pairs_are_cut_as_often_as_the_quantity_says() {
+    let (pieces, told) = read(&leggings().bytes(Some("METRIC")), "").unwrap();
+    let all: Vec<&str> = pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(all, ["LEG", "LEG_mirrored", "BAND"]);
+    assert_eq!(told[1], "piece \"LEG\" is cut 1 times as drawn and 1 times mirrored");
+    assert!(pieces.iter().all(|p| polygon_area(&p.outer.points().0) > 0.0));
+    let text = String::from_utf8(leggings().bytes(Some("METRIC"))).unwrap();
+    let (pieces, told) = read(text.replace("Quantity: 1,1", "Quantity: 0").as_bytes(), "").unwrap();
+    assert_eq!((pieces.len(), told[1].as_str()), (1, "piece \"LEG\" is cut 0 times: left out"));
+    let (pieces, _) = read(text.replace("Quantity: 1,1", "Quantity: 2").as_bytes(), "").unwrap();
+    assert_eq!(pieces.len(), 3);
+}
+
+/// The proposals as pairs of words, each in order.
+fn proposals(pieces: &[Piece]) -> Vec<String> {
+    let mut all: Vec<String> = propose::propose(pieces).into_iter().map(|(s, _)| s.name).collect();
+    all.sort();
+    all
+}
+
+#[test]
+fn a_tank_is_sewn_at_shoulders_and_sides_and_never_at_its_hem() {
+    let (pieces, _) = read(&tank().bytes(Some("METRIC")), "").unwrap();
+    let found = proposals(&pieces);
+    for seam in [
+        "edge_1 + BACK.edge_1_m",
+        "edge_1_m + BACK.edge_1",
+        "edge_3 + BACK.edge_3_m",
+        "edge_3_m + BACK.edge_3",
+    ] {
+        assert!(found.contains(&format!("FRONT.{seam}")), "{seam}: {found:?}");
+    }
+    assert!(found.iter().all(|s| !s.contains("edge_4")), "{found:?}");
+}
+
+#[test]
+fn a_leg_is_sewn_to_itself_to_its_image_and_to_its_band() {
+    let (pieces, _) = read(&leggings().bytes(Some("METRIC")), "").unwrap();
+    let found = proposals(&pieces);
+    for seam in
+        ["LEG.edge_3 + LEG.edge_5", "LEG.edge_0 + LEG_mirrored.edge_0", "LEG.edge_2 + LEG_mirrored.edge_2"]
+    {
+        assert!(found.iter().any(|s| s == seam), "{seam}: {found:?}");
+    }
+    // Both legs to the same long side of the band: edges 0 and 1, or 3 and 4.
+    let waist = |leg: &str| {
+        let number = |k: &u32| found.iter().any(|s| *s == format!("{leg}.edge_1 + BAND.edge_{k}"));
+        (0..6).find(number).unwrap_or_else(|| panic!("{leg}: {found:?}"))
+    };
+    assert_eq!(waist("LEG") / 3, waist("LEG_mirrored") / 3, "{found:?}");
+    assert!(found.iter().all(|s| !s.contains("edge_4 ") && !s.ends_with("LEG_mirrored.edge_4")), "{found:?}");
+}
+
+fn run(
+    folder: &FilePath,
+    stage: &DxfPattern,
+) -> Result<(Pattern, SewingPlan, OutputFiles, Vec<String>), StageError> {
+    let cx = Context::new("DxfPattern", folder, Cancel::new(), Arc::new(()));
+    let (pattern, _, plan, files) = stage.run(&cx)?;
+    Ok((pattern, plan, files, cx.take_notes().1))
+}
+
+#[test]
+fn nothing_is_sewn_until_the_proposals_are_given_back() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("leg.dxf"), leggings().bytes(Some("METRIC"))).unwrap();
+    let stage = DxfPattern { file: "leg.dxf".into(), size: "M".into(), seams: String::new() };
+    let (pattern, plan, files, told) = run(dir.path(), &stage).unwrap();
+    assert!(pattern.seams.is_empty() && plan.seams.is_empty() && pattern.check().is_ok());
+    let count = propose::propose(&pattern.pieces).len();
+    assert_eq!(
+        told.last().unwrap(),
+        &format!(
+            "no seams are given: {count} are proposed in seams.ron; look through it and give it as `seams`"
+        )
+    );
+    assert_eq!(files.0[0].path, "seams.ron");
+    std::fs::write(dir.path().join("seams.ron"), &files.0[0].bytes).unwrap();
+    let (pattern, plan, files, _) =
+        run(dir.path(), &DxfPattern { seams: "seams.ron".into(), ..stage }).unwrap();
+    assert_eq!(pattern.seams.len(), count);
+    assert!(plan.seams.len() >= count && files.0.is_empty());
+}
+
+#[test]
+fn damage_is_refused_with_piece_and_line() {
+    #[track_caller]
+    fn is(bytes: &[u8], size: &str, sentence: &str, remedy: &str) {
+        let d = read(bytes, size).unwrap_err();
+        assert_eq!((d.to_string().as_str(), d.remedy().as_str()), (sentence, remedy));
+    }
+    let pairs = "export the file again; a DXF is pairs of lines, a code and its value";
+    is(b"AutoCAD Binary DXF\r\n\x1a\0", "", "it is a binary DXF", "export it as ASCII DXF, release 12");
+    is(b"  0\nSECTION\nhello\nx\n", "", "\"hello\" at line 3 is no group code", pairs);
+    is(b"  0\n", "", "it ends at line 1, within a pair of code and value", pairs);
+    let blocks = "export it as AAMA or ASTM DXF, a block for each piece and size";
+    is(b"  0\nEOF\n", "", "there are no pieces: no block has a boundary on layer 1", blocks);
+    is(&tank().bytes(Some("METRIC")), "XL", "there is no size \"XL\"", "the sizes are S, M");
+    is(
+        &tank().bytes(Some("CUBITS")),
+        "",
+        "the units are \"CUBITS\", they are ENGLISH or METRIC",
+        "export it with its units",
+    );
+    let piece = |change: &dyn Fn(&mut Dxf)| {
+        let mut d = Dxf::default();
+        d.block("P", "M", None);
+        change(&mut d);
+        d.end();
+        d.bytes(Some("METRIC"))
+    };
+    let closed = "draw the boundary as one closed line that meets itself nowhere";
+    let open = piece(&|d| {
+        d.poly(1, &[[0.0, 0.0], [100.0, 0.0]])
+            .poly(1, &[[100.0, 20.0], [0.0, 90.0]])
+            .poly(1, &[[0.0, 90.0], [0.0, 0.0]]);
+    });
+    is(
+        &open,
+        "",
+        "piece \"P\" (line 5): its boundary is open by 20.0 mm near (100.0, 0.0) in the file's units",
+        closed,
+    );
+    let crossing = piece(&|d| {
+        d.poly(1, &[[0.0, 0.0], [100.0, 100.0], [100.0, 0.0], [0.0, 90.0], [0.0, 0.0]]);
+    });
+    let d = read(&crossing, "").unwrap_err();
+    assert!(d.to_string().starts_with("piece \"P\" (line 5): its boundary crosses itself near ("), "{d}");
+    let square = [[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [0.0, 0.0]];
+    let far = piece(&|d| {
+        d.poly(1, &square).line(6, [500.0, 0.0], [500.0, 100.0]);
+    });
+    is(
+        &far,
+        "",
+        "piece \"P\" (line 5): its mirror line does not lie on its boundary",
+        "let the mirror line run along a straight edge of the boundary",
+    );
+    let word = piece(&|d| {
+        d.poly(1, &square).tag(0, "POINT").tag(8, 13).tag(10, "NaN");
+    });
+    let d = read(&word, "").unwrap_err();
+    assert!(d.to_string().starts_with("\"NaN\" at line "), "{d}");
+    assert_eq!(d.remedy(), pairs);
+    let hole = piece(&|d| {
+        d.poly(1, &square).poly(11, &[[20.0, 20.0], [40.0, 20.0], [40.0, 40.0]]);
+    });
+    let d = read(&hole, "").unwrap_err();
+    assert!(
+        d.to_string().ends_with("is open by 28.3 mm") && d.to_string().contains("a cut-out (line "),
+        "{d}"
+    );
+}
+
+#[test]
+fn a_boundary_in_one_line_is_split_at_its_corners_and_a_hair_is_closed() {
+    let piece = |points: &[[f64; 2]]| {
+        let mut d = Dxf::default();
+        d.block("P", "M", None).poly(1, points).end();
+        read(&d.bytes(Some("METRIC")), "")
+    };
+    let (pieces, _) =
+        piece(&[[0.0, 0.0], [50.0, -2.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0], [0.0, 0.0]]).unwrap();
+    assert_eq!(pieces[0].outer.edges.len(), 4);
+    let mut d = Dxf::default();
+    d.block("P", "M", None);
+    d.poly(1, &[[0.0, 0.0], [100.0, 0.0], [100.0, 99.0]])
+        .poly(1, &[[100.0, 100.0], [0.0, 100.0], [0.0, 0.0]])
+        .end();
+    let (_, told) = read(&d.bytes(Some("METRIC")), "").unwrap();
+    assert_eq!(
+        told[1],
+        "the boundary of piece \"P\" was open by 1.00 mm between \"edge_0\" and \"edge_1\": closed"
+    );
+}

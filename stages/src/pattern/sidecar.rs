@@ -1,0 +1,226 @@
+//! Seams from a file beside the pattern, for patterns that have none: RON that a person writes or confirms.
+//!
+//!     (
+//!         seams: [
+//!             (name: "side", sides: [["front.edge_3"], ["-back.edge_3"]]),
+//!             (name: "waist", kind: Gathered, sides: [["band.edge_0"], ["-left.edge_2", "-right.edge_2"]]),
+//!         ],
+//!     )
+//!
+//! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to its start. All sides of a
+//! seam run the same way: their starts meet, and their ends.
+
+use serde::Deserialize;
+use std::fmt::Write;
+use toile_core::pipeline::nearest;
+use toile_core::prelude::*;
+
+/// Bytes of one file.
+const MOST_BYTES: usize = 4 << 20;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Sidecar {
+    seams: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    kind: Kind,
+    sides: Vec<Vec<String>>,
+}
+
+/// A kind of seam as the file writes it.
+#[derive(Deserialize, Default)]
+enum Kind {
+    #[default]
+    Matched,
+    Gathered,
+    Dart,
+    KnifePleat,
+    BoxPleat,
+    Elastic {
+        ratio: f64,
+        stiffness: f64,
+    },
+    Patch,
+    Folded {
+        angle: f64,
+    },
+}
+
+impl Kind {
+    fn seam(&self) -> SeamKind {
+        match self {
+            Kind::Matched => SeamKind::Matched,
+            Kind::Gathered => SeamKind::Gathered,
+            Kind::Dart => SeamKind::Dart,
+            Kind::KnifePleat => SeamKind::Pleat(PleatFold::Knife),
+            Kind::BoxPleat => SeamKind::Pleat(PleatFold::Box),
+            Kind::Elastic { ratio, stiffness } => SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness },
+            Kind::Patch => SeamKind::Patch,
+            Kind::Folded { angle } => SeamKind::Folded { angle: angle.to_radians() },
+        }
+    }
+}
+
+/// The seams of a file's bytes, along edges that the pieces have.
+///
+/// Errors: text that is no such RON, with line and column; a seam along an edge that there is none of, with its number.
+pub(super) fn read(bytes: &[u8], file: &str, pieces: &[Piece]) -> Result<Vec<PatternSeam>, StageError> {
+    let refused =
+        |what: String| StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}")).at("seams");
+    if bytes.len() > MOST_BYTES {
+        return Err(refused(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len())));
+    }
+    let text = std::str::from_utf8(bytes).map_err(|_| refused("it is not UTF-8 text".into()))?;
+    let sidecar: Sidecar = ron::from_str(text).map_err(|e| {
+        refused(format!("line {} column {}: {}", e.span.start.line, e.span.start.col, e.code))
+            .hint("write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`")
+    })?;
+    let seam = |(i, entry): (usize, &Entry)| {
+        let sides = entry.sides.iter().map(|side| side.iter().map(|u| edge_use(u, pieces)).collect());
+        let sides: Vec<Vec<EdgeUse>> =
+            sides.collect::<Result<_, (String, Option<String>)>>().map_err(|(what, near)| {
+                let e = refused(format!("seam {i}: {what}"));
+                match near {
+                    Some(near) => e.hint(near),
+                    None => e,
+                }
+            })?;
+        let name = if entry.name.is_empty() { name(&sides) } else { entry.name.clone() };
+        Ok(PatternSeam { name, kind: entry.kind.seam(), sides })
+    };
+    sidecar.seams.iter().enumerate().map(seam).collect()
+}
+
+/// What a seam without a name is called.
+fn name(sides: &[Vec<EdgeUse>]) -> String {
+    let side = |s: &Vec<EdgeUse>| s.iter().map(|u| u.edge.to_string()).collect::<Vec<_>>().join(" ");
+    sides.iter().map(side).collect::<Vec<_>>().join(" + ")
+}
+
+/// An edge as it is written; else what is wrong, and what may be meant.
+fn edge_use(text: &str, pieces: &[Piece]) -> Result<EdgeUse, (String, Option<String>)> {
+    let (reversed, bare) = text.strip_prefix('-').map_or((false, text), |rest| (true, rest));
+    let edge = EdgeRef::try_from(bare.trim().to_owned()).map_err(|e| (e, None))?;
+    let Some(piece) = pieces.iter().find(|p| p.name == edge.panel) else {
+        let near = nearest(&edge.panel, pieces.iter().map(|p| p.name.as_str()));
+        let hint = near.map(|n| format!("did you mean \"{n}\"?"));
+        return Err((format!("there is no piece \"{}\"", edge.panel), hint));
+    };
+    if piece.path(&edge.edge).is_none() {
+        let names = || piece.outer.edges.iter().map(|e| &e.name).chain(piece.lines.iter().map(|l| &l.name));
+        let near = nearest(&edge.edge, names().map(String::as_str));
+        let hint = near.map(|n| format!("did you mean \"{}.{n}\"?", edge.panel));
+        return Err((format!("piece \"{}\" has no edge \"{}\"", edge.panel, edge.edge), hint));
+    }
+    Ok(EdgeUse { edge, reversed })
+}
+
+/// Seams as such a file, each with what speaks for it as a comment.
+pub(super) fn write(seams: &[(PatternSeam, String)]) -> String {
+    let mut out = String::from(
+        "// Proposed seams. Look at each, take out what is wrong, and give this file as `seams`; nothing is sewn until then.\n\
+         (\n    seams: [\n",
+    );
+    for (seam, reason) in seams {
+        let one = |u: &EdgeUse| format!("{:?}", format!("{}{}", if u.reversed { "-" } else { "" }, u.edge));
+        let side = |s: &Vec<EdgeUse>| format!("[{}]", s.iter().map(one).collect::<Vec<_>>().join(", "));
+        let sides = seam.sides.iter().map(side).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(
+            out,
+            "        // {reason}\n        (name: {:?}, kind: {}, sides: [{sides}]),",
+            seam.name,
+            word(seam.kind)
+        );
+    }
+    out + "    ],\n)\n"
+}
+
+fn word(kind: SeamKind) -> String {
+    match kind {
+        SeamKind::Matched => "Matched".into(),
+        SeamKind::Gathered => "Gathered".into(),
+        SeamKind::Dart => "Dart".into(),
+        SeamKind::Pleat(PleatFold::Knife) => "KnifePleat".into(),
+        SeamKind::Pleat(PleatFold::Box) => "BoxPleat".into(),
+        SeamKind::Elastic { ratio, stiffness } => {
+            format!("Elastic(ratio: {ratio:?}, stiffness: {stiffness:?})")
+        }
+        SeamKind::Patch => "Patch".into(),
+        SeamKind::Folded { angle } => format!("Folded(angle: {:?})", angle.to_degrees()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+
+    fn pieces() -> Vec<Piece> {
+        let corners = [[0.0, 0.0], [0.3, 0.0], [0.3, 0.4], [0.0, 0.4]].map(|[x, y]| Point2::new(x, y));
+        let edges =
+            ["hem", "right", "top", "left"].map(|n| PieceEdge { name: n.into(), curve: EdgeCurve::Line });
+        let piece = |name: &str| Piece {
+            name: name.into(),
+            outer: PatternLoop { corners: corners.into(), edges: edges.clone().into() },
+            ..Piece::default()
+        };
+        vec![piece("front"), piece("back")]
+    }
+
+    #[test]
+    fn what_is_written_is_read_back() {
+        let edge = |text: &str| edge_use(text, &pieces()).unwrap();
+        let kinds = [
+            SeamKind::Matched,
+            SeamKind::Gathered,
+            SeamKind::Dart,
+            SeamKind::Pleat(PleatFold::Knife),
+            SeamKind::Pleat(PleatFold::Box),
+            SeamKind::Elastic { ratio: 0.75, stiffness: 30.0 },
+            SeamKind::Patch,
+        ];
+        let seam = |kind: SeamKind| PatternSeam {
+            name: format!("a \"{}\" seam", kind.word()),
+            kind,
+            sides: vec![vec![edge("front.right"), edge("-front.top")], vec![edge("-back.left")]],
+        };
+        let seams: Vec<(PatternSeam, String)> = kinds.map(|k| (seam(k), "why".to_owned())).into();
+        let again = read(write(&seams).as_bytes(), "seams.ron", &pieces()).unwrap();
+        assert_eq!(again, seams.into_iter().map(|(s, _)| s).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        let refused = |text: &str| {
+            let e = read(text.as_bytes(), "s.ron", &pieces()).unwrap_err();
+            assert_eq!((e.code, e.param), (ErrorCode::PatternLoading, Some("seams")));
+            (e.message, e.hint.unwrap_or_default())
+        };
+        let seam = |a: &str, b: &str| format!("(seams: [(sides: [[\"{a}\"], [\"{b}\"]])])");
+        assert_eq!(
+            refused(&seam("front.right", "bakc.left")),
+            ("\"s.ron\": seam 0: there is no piece \"bakc\"".into(), "did you mean \"back\"?".into())
+        );
+        assert_eq!(
+            refused(&seam("front.rigth", "back.left")),
+            (
+                "\"s.ron\": seam 0: piece \"front\" has no edge \"rigth\"".into(),
+                "did you mean \"front.right\"?".into()
+            )
+        );
+        assert_eq!(
+            refused(&seam("front", "back.left")).0,
+            "\"s.ron\": seam 0: \"front\" is not an edge; write \"panel.edge\", like \"front.hem\""
+        );
+        let (message, hint) = refused("(\n  seams: [(side: [])])");
+        assert!(message.starts_with("\"s.ron\": line 2 column "), "{message}");
+        assert_eq!(hint, "write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`");
+    }
+}
