@@ -52,5 +52,5 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 6] =
-    ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron", "skirt.ron"];
+pub const PIPELINES: [&str; 7] =
+    ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron", "skirt.ron", "pattern.ron"];

@@ -232,6 +232,7 @@ fn expr_int(e: &Expr) -> syn::Result<LitInt> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use syn::parse_quote;
 
     fn refused(param: TokenStream) -> String {
         let item = syn::parse_quote! {
@@ -258,14 +259,8 @@ mod tests {
             "expected default, min, max, unit, trades, finer or way"
         );
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use syn::parse_quote;
-
-    fn refused(item: ItemStruct) -> String {
+    fn refused_item(item: ItemStruct) -> String {
         expand(quote!(role = Binariser), item).map_or_else(|e| e.to_string(), |_| "accepted".into())
     }
 
@@ -285,9 +280,9 @@ mod tests {
             let words = format!(
                 "every stage has a field `{name}` of its own in a pipeline file: give the parameter another name"
             );
-            assert_eq!(refused(with(quote::format_ident!("{name}"))), words);
-            assert_eq!(refused(with(quote::format_ident!("r#{name}"))), words);
+            assert_eq!(refused_item(with(quote::format_ident!("{name}"))), words);
+            assert_eq!(refused_item(with(quote::format_ident!("r#{name}"))), words);
         }
-        assert_eq!(refused(with(quote::format_ident!("from_here"))), "accepted");
+        assert_eq!(refused_item(with(quote::format_ident!("from_here"))), "accepted");
     }
 }

@@ -2,10 +2,14 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::Arrange;
-use crate::body::tests::mannequin;
 use crate::mesh::GridMesher;
 use crate::pattern::GarmentCode;
 use toile_core::prelude::*;
+
+fn mannequin() -> Body {
+    let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
+    crate::body::tests::mannequin(lengths).unwrap()
+}
 
 /// What `Arrange` reads.
 struct Made {
