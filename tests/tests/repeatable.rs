@@ -53,7 +53,6 @@ fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
 
 #[test]
 fn a_square_over_a_ball_from_moved_starts_ends_near() {
-    // On a ball of facets the square ends through some of their edges, which is told; asked is where it lies.
-    let default = spread(&generate::drape(22), 3, 4, &[]);
+    let default = spread(&generate::drape(22), 3, 0, &[]);
     assert!(default < 30.0, "{default}");
 }

@@ -61,7 +61,7 @@ const SLIPS: [Slip; 32] = [
     ("ease: \"2 cm\"", "ease: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
     ("ease: \"2 cm\"", "ease: ^2 cm", "`2 cm` is a text and stands in quotes", "write `\"2 cm\"`"),
     ("Glb()", "^Glb", "`Glb` needs brackets", "write `Glb()`"),
-    ("(lambda: 0.5)", "^(lambda: 0.5", "this `(` is never closed", "write `)` before `Place`"),
+    ("(lambda: 0.5)", "^(lambda: 0.5", "this `(` is never closed", "write `)` before `"),
     // what stands twice, and settings of qualities
     ("\"back\":", "^\"front\":", "the key \"front\" is given twice", ""),
     ("low: 20,", "low: 20, ^low: 20,", "the field `low` is given twice", ""),

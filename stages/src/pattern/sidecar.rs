@@ -1,11 +1,13 @@
 //! Seams from a file beside the pattern, for patterns that have none: RON that a person writes or confirms.
 //!
+//! ```text
 //!     (
 //!         seams: [
 //!             (name: "side", sides: [["front.edge_3"], ["-back.edge_3"]]),
 //!             (name: "waist", kind: Gathered, sides: [["band.edge_0"], ["-left.edge_2", "-right.edge_2"]]),
 //!         ],
 //!     )
+//! ```
 //!
 //! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to its start. All sides of a
 //! seam run the same way: their starts meet, and their ends.

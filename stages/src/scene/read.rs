@@ -82,6 +82,7 @@ impl Scene {
     /// first.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let form = || {
+            placed.cx.look(&self.file).map_err(Unread::File)?;
             let text = placed.cx.read(&self.file).map_err(Unread::File)?;
             scene::check_form(&text, &|obj| self.beside(obj, placed.cx)).map_err(Unread::Scene)
         };

@@ -6,6 +6,7 @@ use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::{Artifact, Kind, Phase, Phases, Vector3};
 use toile_core::pipeline::{Override, Pipeline, load};
+use toile_core::testkit::dress;
 use toile_core::{Cancel, Listener, RunOptions, add_implicit, run};
 
 /// Height of the photos, px: small, so that many runs are cheap.
@@ -30,6 +31,8 @@ impl Pool {
                 pool.entry(value.kind()).or_default().insert(name.to_owned(), artifact.clone());
             }
         }
+        let pattern: Arc<dyn Artifact> = Arc::new(dress::pattern());
+        pool.entry(pattern.kind()).or_default().insert(String::new(), pattern);
         let phases: Arc<dyn Artifact> = Arc::new(phases());
         pool.entry(phases.kind()).or_default().insert(String::new(), phases);
         let log: Arc<dyn Artifact> = Arc::new(result.log);

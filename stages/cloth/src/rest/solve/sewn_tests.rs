@@ -184,7 +184,7 @@ fn panels_that_start_through_each_other_are_sewn_through_and_come_free() {
     let scene = crossed();
     let plain = Rest { graded: true, ..Rest::default() };
     let refused = plain.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
-    assert!(matches!(refused, RestError::Start(StartError::Crossing { .. })), "{refused}");
+    assert!(matches!(refused, RestError::Start(_)), "{refused}");
     let through = Rest { sew_through: true, ..plain };
     let state = through.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let x = &state.positions;
