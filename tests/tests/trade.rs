@@ -83,7 +83,7 @@ fn refused(dir: &Path) {
 fn faults_of_knobs_end_before_anything_runs() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
-    fs::write(dir.join("napkin.ron"), PIPELINE).unwrap();
+    napkin::write(dir).unwrap();
     let answer = trade(dir, &["--knob", "Rest.sped=1..2"]);
     assert_eq!(
         (answer.code, answer.err.as_str()),
