@@ -8,6 +8,9 @@ use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 
+/// Vertices, m, and triangles of a collider's mesh.
+type Corners<'a> = (Vec<Vector3<f64>>, &'a [[u32; 3]]);
+
 /// The body of a collision scheme: one call a question, whatever the number of points.
 #[derive(Debug, Clone)]
 pub struct SchemeSkin<'a> {
@@ -27,7 +30,7 @@ impl<'a> SchemeSkin<'a> {
 
 impl SchemeSkin<'_> {
     /// Vertices and triangles of the body, where the scheme shows them.
-    fn mesh(&self) -> Option<(Vec<Vector3<f64>>, &[[u32; 3]])> {
+    fn mesh(&self) -> Option<Corners<'_>> {
         let surface = self.scheme.surface()?;
         Some((surface.positions.iter().map(|p| p.coords).collect(), surface.triangles))
     }
