@@ -163,7 +163,9 @@ impl Garment {
     /// Every mesh edge once, ascending, with its flat length, metres: the mean of what its triangles say, whose corners are drawn together
     /// along gathered seams.
     fn flat_lengths(&self) -> Vec<([u32; 2], f64)> {
-        let corners = gathers::corners(self);
+        let Some(corners) = gathers::corners(self) else {
+            return self.edges().into_iter().map(|e| (e, self.cut_length(e))).collect();
+        };
         let mut sides: Vec<([u32; 2], f64)> = Vec::with_capacity(3 * corners.len());
         for (t, c) in self.triangles.iter().zip(&corners) {
             for k in 0..3 {
@@ -174,6 +176,11 @@ impl Garment {
         sides.sort_unstable_by_key(|s| s.0);
         let mean = |s: &[([u32; 2], f64)]| (s[0].0, s.iter().map(|s| s.1).sum::<f64>() / s.len() as f64);
         sides.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
+    }
+
+    /// The length of an edge as it is cut, metres.
+    fn cut_length(&self, [a, b]: [u32; 2]) -> f64 {
+        (self.rest[a as usize] - self.rest[b as usize]).norm()
     }
 
     /// Absolute strain of every mesh edge, ascending.
@@ -190,9 +197,11 @@ impl Garment {
 
     /// Flat and present area of a panel, square metres; flat as its gathers leave it.
     pub fn panel_areas(&self, panel: &GarmentPanel) -> (f64, f64) {
-        let corners = gathers::corners(self);
-        let both = self.triangles[panel.triangles.clone()].iter().zip(&corners[panel.triangles.clone()]);
-        both.fold((0.0, 0.0), |(flat, now), (t, &[a, b, c])| {
+        let gathered = gathers::corners(self);
+        panel.triangles.clone().fold((0.0, 0.0), |(flat, now), k| {
+            let t = self.triangles[k];
+            let cut = || t.map(|i| self.rest[i as usize]);
+            let [a, b, c] = gathered.as_ref().map_or_else(cut, |corners| corners[k]);
             let [p, q, r] = t.map(|i| self.positions[i as usize]);
             (flat + (b - a).perp(&(c - a)).abs() / 2.0, now + (q - p).cross(&(r - p)).norm() / 2.0)
         })
@@ -200,12 +209,13 @@ impl Garment {
 
     /// Flat and present length of a panel's boundary, metres.
     pub fn panel_boundaries(&self, panel: &GarmentPanel) -> (f64, f64) {
-        let flat = self.flat_lengths();
+        let gathers = self.seams.iter().any(|s| s.kind == SeamKind::Gathered);
+        let flat = if gathers { self.flat_lengths() } else { Vec::new() };
         let n = panel.boundary.len();
         let length = |a: usize, b: usize| {
             let key = [a.min(b) as u32, a.max(b) as u32];
-            let cut = || (self.rest[b] - self.rest[a]).norm();
-            flat.binary_search_by_key(&key, |f| f.0).map_or_else(|_| cut(), |k| flat[k].1)
+            let cut = |_| self.cut_length([a as u32, b as u32]);
+            flat.binary_search_by_key(&key, |f| f.0).map_or_else(cut, |k| flat[k].1)
         };
         (0..n).fold((0.0, 0.0), |(flat, now), k| {
             let (a, b) = (panel.boundary[k] as usize, panel.boundary[(k + 1) % n] as usize);
@@ -246,7 +256,12 @@ impl Artifact for Garment {
         d.indices(self.weld.iter().copied());
         d.count(self.pinned.len()).indices(self.pinned.iter().copied());
         for seam in &self.seams {
-            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied()).floats(seam.kind.figures());
+            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied());
+            // A solver draws a gathered seam together and another not, so that the same pairs come to rest elsewhere. Matched seams are
+            // left out, so that what is kept of garments without others still holds.
+            if seam.kind != SeamKind::Matched {
+                seam.kind.digest(d);
+            }
         }
         let SolveStatus { steps, converged, energy, max_speed, on_body } = &self.status;
         d.count(*steps).count(usize::from(*converged)).floats([*energy, *max_speed]);
