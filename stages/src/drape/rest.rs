@@ -72,7 +72,8 @@ pub struct Rest {
     #[param(default = false, way)]
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
-    /// The sewn garment is then taken out of itself.
+    /// The sewn garment is then taken out of itself. What starts in the body is moved out of it, and seams join at gaps of up to a third of an
+    /// edge of the coarsest mesh.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or

@@ -164,7 +164,7 @@ impl Rest {
         let pile = pile_of(scene);
         let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
         let start = match self.sew_through {
-            true => moved_out(scene, wearer.map(|w| w.skin)),
+            true => moved_out::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
             false => check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
         };
         if !self.from_here && !self.sew_through {

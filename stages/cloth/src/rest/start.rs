@@ -157,14 +157,22 @@ pub(crate) fn check<E: From<StartError> + From<ClothError>>(
 }
 
 /// Where the vertices start, those inside the body moved out to its nearest point, however deep they are.
-pub(crate) fn moved_out(scene: &Scene, skin: Option<&dyn Skin>) -> Vec<Vec3> {
-    let Some(skin) = skin else { return scene.positions.clone() };
+///
+/// # Errors
+/// [`StartError::PinnedApart`]: what seams cannot bring together whatever lies between.
+pub(crate) fn moved_out<E: From<StartError>>(
+    scene: &Scene,
+    skin: Option<&dyn Skin>,
+    join_gap: f64,
+) -> Result<Vec<Vec3>, E> {
+    seams::check_pins(scene, join_gap)?;
+    let Some(skin) = skin else { return Ok(scene.positions.clone()) };
     let near = skin.nearest(&scene.positions, &vec![f64::INFINITY; scene.positions.len()]);
     let out = |(p, n): (&Vec3, Option<Nearest>)| match n {
         Some(n) if n.distance < scene.material.thickness => n.point + n.normal * scene.material.thickness,
         _ => *p,
     };
-    scene.positions.iter().zip(near).map(out).collect()
+    Ok(scene.positions.iter().zip(near).map(out).collect())
 }
 
 /// Refuses cloth that lies in cloth where it starts.
