@@ -3,12 +3,14 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves, cuffs) are bent to cylinders around it, as the
 //! arrangement points of garment CAD do: halves before and behind the arm that are sewn to each other share one cylinder, whose girth
 //! is theirs, or the arm's where that is more. Poses that were made for a body whose origin is its middle are raised onto the
-//! floor.
+//! floor. A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
 //!
-//! Cost: some milliseconds. Limits: pieces without a pose are refused; trunk and legs keep the flat places of the file, from which
-//! `Rest(sew_through: true)` sews them.
+//! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk and legs keep the flat places of
+//! the file, from which `Rest(sew_through: true)` sews them.
 
 mod limb;
+mod region;
+mod stand;
 mod tubes;
 
 use super::sew::{Offsets, seams};
@@ -25,7 +27,8 @@ const MIDDLE: f64 = 0.65;
 
 /// Arranges the pieces of a sewing pattern around the body, ready to be sewn.
 ///
-/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. What was moved is in the log.
+/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the pattern says nothing, fronts, backs, legs in
+/// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
@@ -54,9 +57,14 @@ impl Arrange {
     ) -> Result<Garment, StageError> {
         let offsets = offsets(&panels)?;
         let seams = seams(plan, &offsets)?;
-        let mut places = posed(pattern, &offsets)?;
+        // A pattern without any pose is placed by what its pieces are.
+        let unplaced = pattern.pieces.iter().all(|p| p.pose.is_none());
+        let mut places = match unplaced && !pattern.pieces.is_empty() {
+            true => self.stood(pattern, &offsets, body, cx)?,
+            false => posed(pattern, &offsets)?,
+        };
         self.raise(&mut places, body, cx);
-        if self.bend {
+        if self.bend && !unplaced {
             for limb in Limb::arms(body) {
                 let bent =
                     tubes::bend(&limb, pattern, &mut places, &seams, &offsets, self.clearance.metres());
@@ -66,6 +74,23 @@ impl Arrange {
         cx.check()?;
         let points: Vec<Point3> = places.into_values().flatten().collect();
         Ok(whole(&offsets, seams, fabric, points))
+    }
+
+    /// Places the pieces of a pattern that has no poses; every decision is told.
+    fn stood(
+        &self,
+        pattern: &Pattern,
+        offsets: &Offsets,
+        body: &Body,
+        cx: &Context,
+    ) -> Result<BTreeMap<String, Vec<Point3>>, StageError> {
+        if let Some(name) = offsets.keys().find(|name| pattern.piece(name).is_none()) {
+            return Err(unknown(name));
+        }
+        let decided = region::decide(pattern)?;
+        let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
+        told.into_iter().for_each(|what| cx.warn(what));
+        Ok(places)
     }
 
     /// Raises poses that were made around a body's middle.
@@ -88,10 +113,7 @@ impl Arrange {
 /// The vertices of every panel where its piece's pose puts them, in the order of the offsets.
 fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Vec<Point3>>, StageError> {
     let place = |(name, (_, panel)): (&&str, &(usize, &Panel))| {
-        let piece = pattern.piece(name).ok_or_else(|| {
-            StageError::invalid(format!("the pattern has no piece \"{name}\""))
-                .hint("let the panels be those of the pattern: no stage between may rename them")
-        })?;
+        let piece = pattern.piece(name).ok_or_else(|| unknown(name))?;
         let pose = piece.pose.ok_or_else(|| {
             StageError::invalid(format!("nothing says where the piece \"{name}\" stands"))
                 .hint("give its pattern places around the body, as GarmentCode files have")
@@ -101,5 +123,12 @@ fn posed(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Vec<Po
     offsets.iter().map(place).collect()
 }
 
+fn unknown(name: &str) -> StageError {
+    StageError::invalid(format!("the pattern has no piece \"{name}\""))
+        .hint("let the panels be those of the pattern: no stage between may rename them")
+}
+
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod unplaced;

@@ -1,0 +1,266 @@
+//! Where on the body each piece is worn, for patterns that do not say.
+//!
+//! Method: words of the piece's name first (a table of English words and of the short forms of CAD programs; words that all pieces
+//! have in common are the garment's), then its seams: a piece that is sewn to itself and to its mirror image is a leg, fronts and
+//! backs that meet at their upper ends have shoulders, a long narrow piece at the upper end of others is a waistband. Which half is
+//! left comes from where the seam in the middle lies. Cost: edges of seams. Limits: sleeves, collars, cuffs, hoods and yokes are
+//! not placed; a piece without a word needs one of the seams above.
+
+use std::collections::{BTreeMap, BTreeSet};
+use toile_core::prelude::*;
+
+/// Words of a front.
+const FRONT: [&str; 6] = ["front", "fronts", "frt", "fr", "fnt", "ft"];
+/// Words of a back.
+const BACK: [&str; 5] = ["back", "backs", "bk", "bck", "bac"];
+/// Words of a waistband.
+const BAND: [&str; 3] = ["waistband", "wb", "waistbd"];
+/// Words of pieces that are not placed.
+const OTHER: [&str; 14] = [
+    "sleeve", "slv", "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding",
+    "strap", "placket",
+];
+/// A piece this many times longer than wide may be a band.
+const NARROW: f64 = 3.0;
+/// Above this share of a piece's height lies a shoulder.
+const HIGH: f64 = 0.7;
+
+/// The part of the body that a piece covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Region {
+    /// Chest and back, hanging from the shoulders.
+    Trunk,
+    /// From the waist down, around both legs.
+    Skirt,
+    /// One leg.
+    Leg,
+    /// A band around the waist.
+    Waist,
+}
+
+/// The side of the body that a piece covers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    /// Before the body.
+    Front,
+    /// Behind it.
+    Back,
+    /// All around.
+    Around,
+}
+
+/// What was decided of a piece.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Decided {
+    pub(super) region: Region,
+    pub(super) side: Side,
+    /// 1 on the wearer's left, -1 on the right, 0 where it covers both.
+    pub(super) hand: f64,
+    /// What speaks for it.
+    pub(super) why: String,
+}
+
+/// Edges of two pieces, or twice of one, that a seam joins.
+pub(super) struct Joint {
+    /// The numbers of the pieces.
+    pub(super) pieces: [usize; 2],
+    /// The numbers of the edges of each.
+    pub(super) edges: [Vec<usize>; 2],
+}
+
+/// The seams of a pattern, piece by piece.
+pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
+    let of = |side: &[EdgeUse]| {
+        let mut found: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for u in side {
+            let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel);
+            if let Some((i, k)) = piece.and_then(|i| Some((i, pattern.pieces[i].edge_number(&u.edge.edge)?)))
+            {
+                found.entry(i).or_default().push(k);
+            }
+        }
+        found
+    };
+    let mut out = Vec::new();
+    for seam in &pattern.seams {
+        let sides: Vec<_> = seam.sides.iter().map(|s| of(s)).collect();
+        for (n, one) in sides.iter().enumerate() {
+            for other in &sides[n + 1..] {
+                let pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
+                out.extend(pairs.map(|((i, a), (j, b))| Joint {
+                    pieces: [*i, *j],
+                    edges: [a.clone(), b.clone()],
+                }));
+            }
+        }
+    }
+    out
+}
+
+/// Region and side of every piece, in their order.
+///
+/// Errors: the first piece that nothing decides, or that is sewn to nothing, with the remedy.
+pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
+    let joints = joints(pattern);
+    let words = own_words(pattern);
+    let pieces = &pattern.pieces;
+    if joints.is_empty() {
+        return Err(StageError::invalid("the pattern has no seams: its pieces would fall to the floor")
+            .hint("give its reader the file of seams that you have looked through as `seams`"));
+    }
+    let all = (0..pieces.len()).map(|i| {
+        let name = &pieces[i].name;
+        let is = |table: &[&str]| words[i].iter().find(|w| table.contains(&w.as_str())).cloned();
+        let unclear = |what: String| {
+            StageError::invalid(what).hint(
+                "call it front, back or waistband, or give its pattern places around the body, as GarmentCode files have",
+            )
+        };
+        if !joints.iter().any(|j| j.pieces.contains(&i)) {
+            let e = StageError::invalid(format!("the piece \"{name}\" is sewn to nothing and would fall"));
+            return Err(e.hint("write its seams into the file that the reader takes as `seams`, or take the piece out"));
+        }
+        if let Some(word) = is(&OTHER) {
+            return Err(unclear(format!("nothing places the piece \"{name}\", a \"{word}\" by its name, without a pose")));
+        }
+        let twin = |j: &Joint| j.pieces[0] != j.pieces[1] && j.pieces.contains(&i) && twins(pieces, j.pieces);
+        let itself = joints.iter().any(|j| j.pieces == [i, i]);
+        if let Some(word) = is(&BAND) {
+            let why = format!("the word \"{word}\" in its name");
+            return Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why });
+        }
+        let face = match (is(&FRONT), is(&BACK)) {
+            (Some(w), None) => Some((Side::Front, w)),
+            (None, Some(w)) => Some((Side::Back, w)),
+            _ => None,
+        };
+        match face {
+            None if itself && joints.iter().any(&twin) => {
+                let hand = leg_hand(i, pieces, &joints).ok_or_else(|| {
+                    unclear(format!("nothing tells the front of the leg \"{name}\" from its back"))
+                })?;
+                let why = "it is sewn to itself and to its mirror image; its rise is longer behind".to_owned();
+                Ok(Decided { region: Region::Leg, side: Side::Around, hand, why })
+            }
+            None if is_band(&pieces[i]) && sews_tops(i, pieces, &joints) => {
+                let why = "a narrow piece along the upper ends of others".to_owned();
+                Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why })
+            }
+            None => Err(unclear(format!("nothing says where the piece \"{name}\" stands"))),
+            Some((side, word)) => {
+                let shoulder = joints.iter().any(|j| j.pieces.contains(&i) && is_shoulder(j, pieces));
+                let own_side = |j: &&Joint| twin(j);
+                let hand = joints.iter().find(own_side).map_or(0.0, |j| half_hand(i, j, pieces, side));
+                let (region, because) = match shoulder {
+                    true => (Region::Trunk, "it is sewn at its upper end beside the middle, as shoulders are"),
+                    false => (Region::Skirt, "none of its seams is a shoulder"),
+                };
+                Ok(Decided { region, side, hand, why: format!("the word \"{word}\" in its name; {because}") })
+            }
+        }
+    });
+    all.collect()
+}
+
+/// The words of each name, small, without those that all pieces have.
+fn own_words(pattern: &Pattern) -> Vec<BTreeSet<String>> {
+    let words = |p: &Piece| -> BTreeSet<String> {
+        let parts = p.name.split(|c: char| !c.is_alphabetic());
+        parts.filter(|w| !w.is_empty()).map(str::to_lowercase).collect()
+    };
+    // A word that a name has twice is its own where others have it once.
+    let twice = |p: &Piece, w: &str| {
+        p.name.split(|c: char| !c.is_alphabetic()).filter(|x| x.to_lowercase() == w).count() > 1
+    };
+    let all: Vec<BTreeSet<String>> = pattern.pieces.iter().map(words).collect();
+    let common = |w: &String| all.len() > 1 && all.iter().all(|s| s.contains(w));
+    let own = |(p, s): (&Piece, &BTreeSet<String>)| {
+        s.iter().filter(|w| !common(w) || twice(p, w)).cloned().collect()
+    };
+    pattern.pieces.iter().zip(&all).map(own).collect()
+}
+
+/// Whether two pieces are each other's mirror image, by their names.
+fn twins(pieces: &[Piece], [a, b]: [usize; 2]) -> bool {
+    let is = |x: &str, y: &str| x.strip_suffix("_mirrored") == Some(y);
+    is(&pieces[a].name, &pieces[b].name) || is(&pieces[b].name, &pieces[a].name)
+}
+
+/// Least and greatest corner of a piece.
+pub(super) fn bounds(p: &Piece) -> (Point2, Point2) {
+    let points = p.outer.points().0;
+    let first = points.first().copied().unwrap_or_else(Point2::origin);
+    points.iter().fold((first, first), |(lo, hi), q| (lo.inf(q), hi.sup(q)))
+}
+
+/// The middle of some edges by length, and their length.
+pub(super) fn middle(p: &Piece, edges: &[usize]) -> (Point2, f64) {
+    let (mut sum, mut length) = (Vector2::zeros(), 0.0);
+    for &k in edges {
+        let path = p.outer.path(k);
+        for w in path.points().windows(2) {
+            let d = (w[1] - w[0]).norm();
+            sum += nalgebra::center(&w[0], &w[1]).coords * d;
+            length += d;
+        }
+    }
+    (Point2::from(sum / length.max(1e-12)), length)
+}
+
+fn is_band(p: &Piece) -> bool {
+    let (lo, hi) = bounds(p);
+    let size = hi - lo;
+    size.amax() >= NARROW * size.amin()
+}
+
+/// Whether the piece is sewn to the upper end of another.
+fn sews_tops(i: usize, pieces: &[Piece], joints: &[Joint]) -> bool {
+    joints.iter().any(|j| {
+        (0..2).any(|k| j.pieces[k] == i && j.pieces[1 - k] != i && is_high(&pieces[j.pieces[1 - k]], &j.edges[1 - k]))
+    })
+}
+
+fn is_high(p: &Piece, edges: &[usize]) -> bool {
+    let (lo, hi) = bounds(p);
+    middle(p, edges).0.y > lo.y + HIGH * (hi.y - lo.y)
+}
+
+/// A shoulder: high in both pieces, more across than along.
+fn is_shoulder(j: &Joint, pieces: &[Piece]) -> bool {
+    j.pieces[0] != j.pieces[1]
+        && (0..2).all(|k| {
+            let p = &pieces[j.pieces[k]];
+            let level = j.edges[k].iter().all(|&e| {
+                let path = p.outer.path(e);
+                let way = path.at(path.length()) - path.at(0.0);
+                way.x.abs() > way.y.abs()
+            });
+            level && is_high(p, &j.edges[k])
+        })
+}
+
+/// The hand of a half front or back, whose edge in the middle is sewn to its mirror image.
+fn half_hand(i: usize, j: &Joint, pieces: &[Piece], side: Side) -> f64 {
+    let k = usize::from(j.pieces[0] != i);
+    let (lo, hi) = bounds(&pieces[i]);
+    let at_left = middle(&pieces[i], &j.edges[k]).0.x < (lo.x + hi.x) / 2.0;
+    // Seen from outside, the wearer's left is at the right before and at the left behind.
+    if at_left == (side == Side::Front) { 1.0 } else { -1.0 }
+}
+
+/// The hand of a leg in one piece: the rise is longer behind, and behind is at the right of a left leg seen from outside.
+fn leg_hand(i: usize, pieces: &[Piece], joints: &[Joint]) -> Option<f64> {
+    let mut rises: Vec<(f64, f64)> = Vec::new();
+    for j in joints.iter().filter(|j| j.pieces[0] != j.pieces[1] && twins(pieces, j.pieces)) {
+        for k in 0..2 {
+            if j.pieces[k] == i {
+                let (at, length) = middle(&pieces[i], &j.edges[k]);
+                rises.push((length, at.x));
+            }
+        }
+    }
+    let [a, b] = rises[..] else { return None };
+    let (behind, before) = if a.0 > b.0 { (a, b) } else { (b, a) };
+    let clear = behind.0 > 1.02 * before.0 && behind.1 != before.1;
+    clear.then(|| if behind.1 > before.1 { 1.0 } else { -1.0 })
+}
