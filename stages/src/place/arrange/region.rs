@@ -87,10 +87,9 @@ pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
         for (n, one) in sides.iter().enumerate() {
             for other in &sides[n + 1..] {
                 let pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
-                out.extend(pairs.map(|((i, a), (j, b))| Joint {
-                    pieces: [*i, *j],
-                    edges: [a.clone(), b.clone()],
-                }));
+                out.extend(
+                    pairs.map(|((i, a), (j, b))| Joint { pieces: [*i, *j], edges: [a.clone(), b.clone()] }),
+                );
             }
         }
     }
@@ -216,7 +215,9 @@ fn is_band(p: &Piece) -> bool {
 /// Whether the piece is sewn to the upper end of another.
 fn sews_tops(i: usize, pieces: &[Piece], joints: &[Joint]) -> bool {
     joints.iter().any(|j| {
-        (0..2).any(|k| j.pieces[k] == i && j.pieces[1 - k] != i && is_high(&pieces[j.pieces[1 - k]], &j.edges[1 - k]))
+        (0..2).any(|k| {
+            j.pieces[k] == i && j.pieces[1 - k] != i && is_high(&pieces[j.pieces[1 - k]], &j.edges[1 - k])
+        })
     })
 }
 

@@ -18,6 +18,13 @@ const ABOVE: f64 = 0.01;
 /// Heights of the body's trunk as shares of its height: feet and head stick out and do not count.
 const TRUNK: (f64, f64) = (0.3, 0.8);
 
+/// Radii around a leg are taken this far apart, metres.
+const STEP: f64 = 0.02;
+/// And change by no more than this share of the way along the leg.
+const SLOPE: f64 = 0.35;
+/// Feet reach up to this share of the body's height.
+const FEET: f64 = 0.06;
+
 type Places = BTreeMap<String, Vec<Point3>>;
 
 /// What is asked of the body.
@@ -39,17 +46,19 @@ impl Figure {
     fn of(body: &Body) -> Result<Self, StageError> {
         let at = |name: &str| {
             body.landmarks.get(name).copied().ok_or_else(|| {
-                StageError::invalid(format!("the body has no landmark \"{name}\", by which pieces without a pose are placed"))
-                    .hint("take a Mannequin, or give the pattern places around the body")
+                StageError::invalid(format!(
+                    "the body has no landmark \"{name}\", by which pieces without a pose are placed"
+                ))
+                .hint("take a Mannequin, or give the pattern places around the body")
             })
         };
         let (neck, shoulder) = (at("neck_left")?, at("shoulder_left")?);
         let crotch = at("crotch")?.y;
         let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         let trunk = || {
-            body.positions.iter().filter(|p| {
-                p.x.abs() < shoulder.x.abs() && p.y > TRUNK.0 * top && p.y < TRUNK.1 * top
-            })
+            body.positions
+                .iter()
+                .filter(|p| p.x.abs() < shoulder.x.abs() && p.y > TRUNK.0 * top && p.y < TRUNK.1 * top)
         };
         let depth = (
             trunk().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max),
@@ -79,12 +88,11 @@ impl Figure {
         self.neck[1] + share.clamp(0.0, 1.0) * (self.shoulder[1] - self.neck[1])
     }
 
-    /// The greatest distance of the skin from a vertical axis between two heights, on one side of the body or both.
-    fn reach(&self, body: &Body, [x, z]: [f64; 2], hand: f64, (low, high): (f64, f64)) -> f64 {
-        let mine = |p: &&Point3| {
-            p.y > low && p.y < high && p.x * hand >= 0.0 && p.x.abs() < self.shoulder[0] && p.y < TRUNK.1 * self.top
-        };
-        body.positions.iter().filter(mine).map(|p| (p.x - x).hypot(p.z - z)).fold(0.0, f64::max)
+    /// The greatest distance of the skin from a vertical axis between two heights; arms and head do not count.
+    fn reach(&self, body: &Body, [x, z]: [f64; 2], (low, high): (f64, f64)) -> f64 {
+        let counts =
+            |p: &&Point3| p.y > low && p.y < high && p.x.abs() < self.shoulder[0] && p.y < TRUNK.1 * self.top;
+        body.positions.iter().filter(counts).map(|p| (p.x - x).hypot(p.z - z)).fold(0.0, f64::max)
     }
 }
 
@@ -110,9 +118,7 @@ pub(super) fn stand(
         let Some((_, panel)) = offsets.get(piece.name.as_str()) else { continue };
         let (placed, words) = match d.region {
             Region::Trunk => flat(piece, d, trunk_level(i, pattern, &joints, &figure, d), &figure),
-            Region::Skirt => {
-                flat(piece, d, figure.waist - top_of(i, pattern, &joints), &figure)
-            }
+            Region::Skirt => flat(piece, d, figure.waist - top_of(i, pattern, &joints), &figure),
             Region::Leg => leg(i, pattern, d, &joints, &figure, body, clearance),
             Region::Waist => band(i, pattern, &joints, &hung, &figure, body, clearance),
         };
@@ -126,19 +132,45 @@ pub(super) fn stand(
 /// A piece in space: flat, or around a vertical axis.
 enum Hung {
     Flat(Pose),
-    /// `across` is the piece's own direction that goes around, to the right as seen from outside; `axis` is x and z of the
-    /// cylinder, `turn` the angle of the piece's origin from straight ahead to the wearer's left, `rise` its height.
-    Round { across: Vector2, axis: [f64; 2], radius: f64, turn: f64, rise: f64 },
+    /// Around a vertical axis: see [`Round`].
+    Round(Round),
+}
+
+/// A bent piece. Its direction `across` goes around, to the right as seen from outside; what lies at `middle` along it looks in the
+/// direction `facing`, an angle from straight ahead to the wearer's left. `axis` is x and z, `rise` the height of its origin.
+struct Round {
+    across: Vector2,
+    middle: f64,
+    facing: f64,
+    axis: [f64; 2],
+    rise: f64,
+    /// Radii at even steps of height.
+    radii: Vec<f64>,
+    /// The height of the first one, and the step.
+    from: f64,
+    step: f64,
+}
+
+impl Round {
+    /// The radius at a height; that of the nearest end beyond them.
+    fn radius(&self, y: f64) -> f64 {
+        let last = self.radii.len().saturating_sub(1);
+        let at = ((y - self.from) / self.step).clamp(0.0, last as f64);
+        let k = (at as usize).min(last.saturating_sub(1));
+        let (a, b) = (self.radii[k], self.radii[(k + 1).min(last)]);
+        a + (b - a) * (at - k as f64).clamp(0.0, 1.0)
+    }
 }
 
 impl Hung {
     fn at(&self, p: Point2) -> Point3 {
         match self {
             Hung::Flat(pose) => pose.at(p),
-            Hung::Round { across, axis, radius, turn, rise } => {
-                let (u, v) = (across.dot(&p.coords), across.perp(&p.coords));
-                let angle = u / radius + turn;
-                Point3::new(axis[0] + radius * angle.sin(), v + rise, axis[1] + radius * angle.cos())
+            Hung::Round(r) => {
+                let (u, y) = (r.across.dot(&p.coords), r.across.perp(&p.coords) + r.rise);
+                let radius = r.radius(y);
+                let angle = (u - r.middle) / radius + r.facing;
+                Point3::new(r.axis[0] + radius * angle.sin(), y, r.axis[1] + radius * angle.cos())
             }
         }
     }
@@ -214,17 +246,52 @@ fn leg(
     let fork = fork.map(|c| c.y).fold(f64::NEG_INFINITY, f64::max);
     let rise = (f.waist - top_of(i, pattern, joints)).min(f.crotch - fork);
     let axis = [d.hand * f.leg[0], f.leg[1]];
-    let reach = f.reach(body, axis, d.hand, (lo.y + rise, hi.y + rise));
-    let radius = ((hi.x - lo.x) / TAU).max(reach + clearance);
-    // The middle of its width lies outside of the leg.
-    let turn = d.hand * TAU / 4.0 - (lo.x + hi.x) / 2.0 / radius;
+    let (low, high) = (lo.y + rise, hi.y + rise);
+    let radii = leg_radii(body, f, axis, d.hand, (low, high), clearance);
     let words = format!(
-        "goes around the {} leg, radius {:.0} mm, its upper edge {:+.0} mm from the waist",
+        "goes around the {} leg, radius {:.0} mm at the fork, its upper edge {:+.0} mm from the waist",
         if d.hand > 0.0 { "left" } else { "right" },
-        radius * 1e3,
+        radii[((fork + rise - low) / STEP).clamp(0.0, (radii.len() - 1) as f64) as usize] * 1e3,
         (top_of(i, pattern, joints) + rise - f.waist) * 1e3
     );
-    (Hung::Round { across: Vector2::x(), axis, radius, turn, rise }, words)
+    // The middle of its width lies outside of the leg.
+    let (middle, facing) = ((lo.x + hi.x) / 2.0, d.hand * TAU / 4.0);
+    let round = Round { across: Vector2::x(), middle, facing, axis, rise, radii, from: low, step: STEP };
+    (Hung::Round(round), words)
+}
+
+/// Radii around a leg, a step of height each. Above the fork only the outside of the hip counts: the inside stays open.
+/// Changes with height are held to [`SLOPE`], so that the bent piece is stretched little.
+fn leg_radii(
+    body: &Body,
+    f: &Figure,
+    axis: [f64; 2],
+    hand: f64,
+    (low, high): (f64, f64),
+    clearance: f64,
+) -> Vec<f64> {
+    let n = ((high - low) / STEP).ceil().max(1.0) as usize + 1;
+    let mut radii = vec![0.0_f64; n];
+    for p in &body.positions {
+        let out = p.x * hand;
+        let inside = if p.y > f.crotch { axis[0].abs() } else { 0.0 };
+        // Feet stick out forward, hands are no part of a leg.
+        if out < inside || out > f.shoulder[0] || p.y < FEET * f.top || p.y > f.waist + STEP {
+            continue;
+        }
+        let k = ((p.y - low) / STEP).round();
+        if k >= 0.0 && (k as usize) < n {
+            radii[k as usize] = radii[k as usize].max((p.x - axis[0]).hypot(p.z - axis[1]));
+        }
+    }
+    radii.iter_mut().for_each(|r| *r += clearance);
+    for k in 1..n {
+        radii[k] = radii[k].max(radii[k - 1] - SLOPE * STEP);
+    }
+    for k in (0..n - 1).rev() {
+        radii[k] = radii[k].max(radii[k + 1] - SLOPE * STEP);
+    }
+    radii
 }
 
 /// A band around the waist, its seams as near as a turn brings them to what they are sewn to.
@@ -244,7 +311,8 @@ fn band(
     for j in joints {
         for k in 0..2 {
             let other = j.pieces[1 - k];
-            if j.pieces[k] == i && other != i
+            if j.pieces[k] == i
+                && other != i
                 && let Some(placed) = hung.get(&other)
             {
                 for &e in &j.edges[k] {
@@ -261,7 +329,8 @@ fn band(
     let v = |p: &Point2| across.perp(&p.coords);
     let points = piece.outer.points().0;
     let span = |of: &dyn Fn(&Point2) -> f64| {
-        let (lo, hi) = points.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        let (lo, hi) =
+            points.iter().map(of).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         (lo, hi)
     };
     let (along, up) = (span(&u), span(&v));
@@ -271,7 +340,7 @@ fn band(
     };
     let rise = level - up.0;
     let axis = [0.0, (f.depth.0 + f.depth.1) / 2.0];
-    let reach = f.reach(body, axis, 0.0, (level - 0.01, level + up.1 - up.0 + 0.01));
+    let reach = f.reach(body, axis, (level - 0.01, level + up.1 - up.0 + 0.01));
     let radius = ((along.1 - along.0) / TAU).max(reach + clearance);
     // The mean turn that brings the middle of each seam to the direction of the other side.
     let (mut sin, mut cos) = (0.0, 0.0);
@@ -280,9 +349,10 @@ fn band(
         sin += length * turn.sin();
         cos += length * turn.cos();
     }
-    let turn = if met.is_empty() { -(along.0 + along.1) / 2.0 / radius } else { sin.atan2(cos) };
-    (
-        Hung::Round { across, axis, radius, turn, rise },
-        format!("goes around the waist, radius {:.0} mm", radius * 1e3),
-    )
+    let (middle, facing) = match met.is_empty() {
+        true => ((along.0 + along.1) / 2.0, 0.0),
+        false => (0.0, sin.atan2(cos)),
+    };
+    let round = Round { across, middle, facing, axis, rise, radii: vec![radius], from: level, step: STEP };
+    (Hung::Round(round), format!("goes around the waist, radius {:.0} mm", radius * 1e3))
 }

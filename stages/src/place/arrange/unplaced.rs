@@ -30,11 +30,19 @@ fn seam(a: (&str, &str), b: (&str, &str)) -> PatternSeam {
 
 /// A tank of front and back, named as a CAD program does.
 fn tank() -> Pattern {
-    let corners =
-        [[-0.24, 0.0], [0.24, 0.0], [0.24, 0.4], [0.16, 0.6], [0.1, 0.61], [-0.1, 0.61], [-0.16, 0.6], [-0.24, 0.4]];
-    let edges =
-        ["hem", "side_l", "arm_l", "shoulder_l", "neck", "shoulder_r", "arm_r", "side_r"];
-    let pair = |a: &str, b: &str| [seam(("TANK FRT", a), ("TANK BK", b)), seam(("TANK FRT", b), ("TANK BK", a))];
+    let corners = [
+        [-0.24, 0.0],
+        [0.24, 0.0],
+        [0.24, 0.4],
+        [0.16, 0.6],
+        [0.1, 0.61],
+        [-0.1, 0.61],
+        [-0.16, 0.6],
+        [-0.24, 0.4],
+    ];
+    let edges = ["hem", "side_l", "arm_l", "shoulder_l", "neck", "shoulder_r", "arm_r", "side_r"];
+    let pair =
+        |a: &str, b: &str| [seam(("TANK FRT", a), ("TANK BK", b)), seam(("TANK FRT", b), ("TANK BK", a))];
     Pattern {
         name: "tank".into(),
         pieces: vec![piece("TANK FRT", &corners, &edges), piece("TANK BK", &corners, &edges)],
@@ -44,8 +52,7 @@ fn tank() -> Pattern {
 
 /// Legs in one piece each with a waistband; only its name says what the band is.
 fn leggings() -> Pattern {
-    let left =
-        [[0.12, 0.0], [0.36, 0.0], [0.52, 0.65], [0.46, 0.95], [0.1, 0.93], [0.02, 0.65]];
+    let left = [[0.12, 0.0], [0.36, 0.0], [0.52, 0.65], [0.46, 0.95], [0.1, 0.93], [0.02, 0.65]];
     let right: Vec<[f64; 2]> = (0..6).map(|k| left[(6 - k) % 6]).map(|[x, y]| [-x, y]).collect();
     let names = ["hem", "in_back", "rise_back", "waist", "rise_front", "in_front"];
     let turned: Vec<&str> = names.iter().rev().copied().collect();
@@ -74,7 +81,8 @@ fn leggings() -> Pattern {
 fn arranged(pattern: &Pattern) -> Result<Garment, StageError> {
     let lowered = pattern.lower().unwrap();
     let mesher: GridMesher = toile_core::param::ron_options().from_str("(edge: \"20 mm\")").unwrap();
-    let panel = |(name, o): (&String, &Outline)| (name.clone(), mesher.run(o, &Context::quiet()).unwrap().into());
+    let panel =
+        |(name, o): (&String, &Outline)| (name.clone(), mesher.run(o, &Context::quiet()).unwrap().into());
     let panels = Set(lowered.outlines.iter().map(panel).collect());
     let lengths = "(height: \"168 cm\", bust: \"80 cm\", waist: \"66 cm\", hip: \"85 cm\")";
     let body = crate::body::tests::mannequin(lengths).unwrap();
@@ -91,7 +99,9 @@ fn middle(garment: &Garment, panel: &str) -> Vector3 {
 
 fn widest_gap(garment: &Garment) -> f64 {
     let pairs = garment.seams.iter().flat_map(|s| &s.pairs);
-    pairs.map(|[a, b]| (garment.positions[*a as usize] - garment.positions[*b as usize]).norm()).fold(0.0, f64::max)
+    pairs
+        .map(|[a, b]| (garment.positions[*a as usize] - garment.positions[*b as usize]).norm())
+        .fold(0.0, f64::max)
 }
 
 /// The mean normal of a panel points away from the middle of the body, as its outside does.
@@ -112,7 +122,9 @@ fn looks_out(garment: &Garment, panel: &str) -> bool {
 fn fronts_and_backs_are_known_by_the_short_words_of_cad_programs() {
     let decided = decide(&tank()).unwrap();
     let why = |word: &str| {
-        format!("the word \"{word}\" in its name; it is sewn at its upper end beside the middle, as shoulders are")
+        format!(
+            "the word \"{word}\" in its name; it is sewn at its upper end beside the middle, as shoulders are"
+        )
     };
     let one = |side, word| Decided { region: Region::Trunk, side, hand: 0.0, why: why(word) };
     assert_eq!(decided, [one(Side::Front, "frt"), one(Side::Back, "bk")]);
