@@ -30,7 +30,10 @@ pub(super) fn choose(
         let others: Vec<&[bool]> =
             found.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, f)| &f.mask[..]).collect();
         // Contours are looked at where pixels are smaller.
-        Evidence { agreement: Evidence::of(small, &found[i].mask, &others).agreement, ..at_large(small, large, &found[i].mask) }
+        Evidence {
+            agreement: Evidence::of(small, &found[i].mask, &others).agreement,
+            ..at_large(small, large, &found[i].mask)
+        }
     };
     let all: Vec<Evidence> = (0..found.len()).map(evidence).collect();
     let better = |a: &Evidence, b: &Evidence| {

@@ -42,12 +42,15 @@ fn words(choice: &Choice, file: &str) -> (String, &'static str) {
     let [agree, edges, alike] = e.parts();
     if agree <= edges && agree <= alike {
         let share = 100.0 * (1.0 - e.agreement);
-        let seen = format!("it is not sure where the garment in \"{file}\" ends: the methods differ in {share:.0} % of it");
+        let seen = format!(
+            "it is not sure where the garment in \"{file}\" ends: the methods differ in {share:.0} % of it"
+        );
         return (seen, "lay it on a plain ground of another colour");
     }
     if edges <= alike {
         let share = 100.0 * (1.0 - e.support);
-        let seen = format!("{share:.0} % of the outline found in \"{file}\" lies where the photo shows no edge");
+        let seen =
+            format!("{share:.0} % of the outline found in \"{file}\" lies where the photo shows no edge");
         return (seen, "use a ground of another colour, or light from both sides");
     }
     let share = 100.0 * e.symmetry;
@@ -56,10 +59,11 @@ fn words(choice: &Choice, file: &str) -> (String, &'static str) {
 }
 
 /// The refusal of a garment that the frame cuts.
-pub(super) fn cut_by_frame(photo: &Photo, mask: &GrayImage, frame: u64, share: f64, cx: &Context) -> StageError {
+pub(super) fn cut_by_frame(photo: &Photo, mask: &GrayImage, share: f64, cx: &Context) -> StageError {
     let error = StageError::invalid(format!(
-        "the garment in \"{}\" is cut by the frame: it lies along it over {frame} px",
-        photo.file
+        "the garment in \"{}\" is cut by the frame: it lies along it over {:.0} % of the photo's shorter side",
+        photo.file,
+        100.0 * share
     ));
     let touch = (share * 10.0).ceil() / 10.0;
     let error = error.hint(format!(
@@ -72,15 +76,19 @@ pub(super) fn cut_by_frame(photo: &Photo, mask: &GrayImage, frame: u64, share: f
 
 /// Adds the picture: the photo with what methods disagree about in red, and the outline in yellow. `votes` is the share of
 /// the methods that take a pixel for garment; none for no red.
-fn with_picture(error: StageError, photo: &Photo, votes: &[f64], mask: &[bool], w: usize, h: usize) -> StageError {
+fn with_picture(
+    error: StageError,
+    photo: &Photo,
+    votes: &[f64],
+    mask: &[bool],
+    w: usize,
+    h: usize,
+) -> StageError {
     let (pw, ph) = photo.pixels.dimensions();
     let scale = (f64::from(PICTURE) / f64::from(pw.max(ph))).min(1.0);
     let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
-    let mut shown: RgbImage = if scale < 1.0 {
-        thumbnail(&*photo.pixels, size(pw), size(ph))
-    } else {
-        (*photo.pixels).clone()
-    };
+    let mut shown: RgbImage =
+        if scale < 1.0 { thumbnail(&*photo.pixels, size(pw), size(ph)) } else { (*photo.pixels).clone() };
     let at_size = |value: &dyn Fn(usize) -> u8| {
         let mut grey = GrayImage::new(w as u32, h as u32);
         grey.iter_mut().enumerate().for_each(|(i, v)| *v = value(i));
@@ -95,7 +103,9 @@ fn with_picture(error: StageError, photo: &Photo, votes: &[f64], mask: &[bool], 
         let toward = |v: u8, to: f64| (f64::from(v) * (1.0 - red) + to * red) as u8;
         p.0 = [toward(p.0[0], 255.0), toward(p.0[1], 0.0), toward(p.0[2], 0.0)];
         let ends = |u: u32, v: u32| u < sw && v < sh && !on(u, v);
-        if on(x, y) && (ends(x + 1, y) || ends(x, y + 1) || ends(x.wrapping_sub(1), y) || ends(x, y.wrapping_sub(1))) {
+        if on(x, y)
+            && (ends(x + 1, y) || ends(x, y + 1) || ends(x.wrapping_sub(1), y) || ends(x, y.wrapping_sub(1)))
+        {
             p.0 = [255, 255, 0];
         }
     }

@@ -6,7 +6,7 @@
 //! sleeve aside, and less than 0.65 is half a garment; a contour follows edges but for a stretch in shade.
 
 use super::super::small::Small;
-use super::contour::contour;
+use super::contour::support;
 use super::symmetry::symmetry;
 
 /// Agreement that speaks against a mask, and that leaves no doubt.
@@ -36,7 +36,7 @@ impl Evidence {
         Evidence {
             agreement: agree.iter().sum::<f64>() / 2.0,
             symmetry: symmetry(mask, small.w).map_or(0.0, |s| s.share),
-            support: contour(small, mask).support,
+            support: support(small, mask),
         }
     }
 

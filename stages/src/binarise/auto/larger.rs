@@ -8,7 +8,7 @@
 
 use super::super::morphology::dilate;
 use super::super::small::Small;
-use super::contour::contour;
+use super::contour::support;
 use super::grid::{bits, picture};
 use super::walker::walk;
 use toile_core::prelude::*;
@@ -32,5 +32,5 @@ pub(super) fn larger(
     let around: Vec<bool> = walk(small, &from, rim, cx)?.iter().map(|chance| *chance > 0.5).collect();
     let count = |m: &[bool]| m.iter().filter(|on| **on).count() as f64;
     let times = count(&around) / count(mask).max(1.0);
-    Ok((times >= LARGER && contour(small, &around).support >= OUTLINE).then_some(times))
+    Ok((times >= LARGER && support(small, &around) >= OUTLINE).then_some(times))
 }

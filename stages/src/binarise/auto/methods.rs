@@ -4,6 +4,7 @@ use super::super::background::{SHADOW, background, clean, in_middle};
 use super::super::graph_cut::{GraphCut, start};
 use super::super::small::Small;
 use super::colour_split::colour_split;
+use super::ground_distance::ground_distance;
 use super::walker::walk;
 use toile_core::prelude::*;
 
@@ -26,6 +27,7 @@ pub(super) fn methods(small: &Small, cx: &Context) -> Result<Vec<Found>, StageEr
     add("graph cut", first.map(|c| c.mask));
     add("background", background(small, modes, cut.rim, SHADOW));
     add("colour split", colour_split(small, cut.rim).and_then(|raw| clean(small, &raw)));
+    add("ground distance", ground_distance(small, modes, cut.rim).and_then(|raw| clean(small, &raw)));
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let chance = walk(small, &middle, cut.rim, cx)?;
     let walked: Vec<bool> = chance.iter().map(|c| *c > 0.5).collect();

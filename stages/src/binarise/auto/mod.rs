@@ -1,7 +1,7 @@
 //! The binariser that knows when it is wrong.
 //!
-//! Five methods, most of which share neither model nor start, look at the photo at a reduced size (`methods`): a graph cut,
-//! the ground's colours, a split of colours in two, a random walk that sees edges alone, and a graph cut from that walk's end.
+//! Six methods, most of which share neither model nor start, look at the photo at a reduced size (`methods`): a graph cut,
+//! the ground's colours, a split of colours in two, the distance to the rim's colours, a random walk that sees edges alone, and a graph cut from that walk's end.
 //! For each mask `evidence` asks how far others agree with it, how much of its contour lies on an edge of the photo, and how
 //! alike its halves are. The best is taken: thin parts without a mirror image are taken off it (`thin`), its boundary is cut
 //! at twice the size and set at the photo's own, and a strip of ground between hem and frame is found (`frame`). The product of
@@ -20,6 +20,7 @@ mod doubt;
 mod evidence;
 mod frame;
 mod grid;
+mod ground_distance;
 mod larger;
 mod methods;
 mod symmetry;
@@ -33,6 +34,7 @@ use super::graph_cut::GraphCut;
 use super::refine::refine;
 use super::small::Small;
 use choose::{Choice, choose};
+use contour::bare_along_frame;
 use doubt::{cut_by_frame, refuse};
 use grid::picture;
 use image::GrayImage;
@@ -92,21 +94,22 @@ impl Auto {
         let fine = GraphCut::default().fine(&large, coarse, cx)?;
         let mut mask = refine(photo, &large, &fine, cx)?;
         frame::without_strips(&mut mask, photo);
-        self.whole(&mask, photo, cx)?;
-        match confidence < self.confidence {
-            true => Err(refuse(photo, &small, &found, &choice, confidence, cx)),
-            false => Ok(mask),
+        if confidence < self.confidence {
+            return Err(refuse(photo, &small, &found, &choice, confidence, cx));
         }
+        self.whole(&mask, photo, bare_along_frame(&large, &fine), cx)?;
+        Ok(mask)
     }
 
-    /// Refuses a garment that the frame cuts.
-    fn whole(&self, mask: &GrayImage, photo: &Photo, cx: &Context) -> Result<(), StageError> {
+    /// Refuses a garment that the frame cuts. `bare` is the length of what ends beside the frame without an edge, as a share
+    /// of the shorter side.
+    fn whole(&self, mask: &GrayImage, photo: &Photo, bare: f64, cx: &Context) -> Result<(), StageError> {
         let regions = super::regions::Regions::of(mask);
         let frame = regions.by_size().first().map_or(0, |&i| regions.pieces[i].frame);
         let (w, h) = mask.dimensions();
-        let share = frame as f64 / f64::from(w.min(h));
+        let share = bare + frame as f64 / f64::from(w.min(h));
         match share > self.touch {
-            true => Err(cut_by_frame(photo, mask, frame, share, cx)),
+            true => Err(cut_by_frame(photo, mask, share, cx)),
             false => Ok(()),
         }
     }

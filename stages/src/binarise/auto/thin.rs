@@ -3,9 +3,9 @@
 //! An opening takes off all that is thin. Straps are thin too, but come in pairs: what was taken off and lies, mirrored, on the
 //! mask again stays. What has no counterpart is taken off, if it is small.
 
+use super::super::finish::fill_holes;
 use super::super::morphology::{dilate, open};
 use super::super::regions::Regions;
-use super::super::finish::fill_holes;
 use super::grid::{bits, picture};
 use super::symmetry::{at, symmetry};
 
@@ -23,7 +23,9 @@ pub(super) fn without_lone_parts(mask: &[bool], raw: &[bool], w: usize) -> Vec<b
     let h = mask.len() / w.max(1);
     let radius = ((THIN * w.max(h) as f64).round() as u32).max(1);
     let regions = Regions::of(&open(&picture(raw, w, h), radius));
-    let (Some(&main), Some(axis)) = (regions.by_size().first(), symmetry(mask, w)) else { return mask.to_vec() };
+    let (Some(&main), Some(axis)) = (regions.by_size().first(), symmetry(mask, w)) else {
+        return mask.to_vec();
+    };
     let solid = fill_holes(regions.paint(|i, _| i == main), 1.0);
     let near = bits(&dilate(&solid, 1));
     let area = mask.iter().filter(|on| **on).count() as f64;
@@ -40,7 +42,8 @@ pub(super) fn without_lone_parts(mask: &[bool], raw: &[bool], w: usize) -> Vec<b
             .enumerate()
             .filter_map(|(k, on)| on.then_some(k))
             .collect();
-        let paired = pixels.iter().filter(|&&k| at(mask, w, h, axis.mirror([(k % w) as f64, (k / w) as f64])));
+        let paired =
+            pixels.iter().filter(|&&k| at(mask, w, h, axis.mirror([(k % w) as f64, (k / w) as f64])));
         if (paired.count() as f64) < PAIRED * pixels.len() as f64 {
             pixels.iter().for_each(|&k| kept[k] = false);
         }
