@@ -11,6 +11,9 @@ use toile_core::prelude::*;
 /// The longer side of the picture, pixels.
 const PICTURE: u32 = 800;
 
+/// The largest share of the frame that `touch` may allow.
+const MAX_TOUCH: f64 = 4.0;
+
 /// The refusal of a mask that leaves doubt: what was seen, and one thing to try.
 pub(super) fn refuse(
     photo: &Photo,
@@ -66,10 +69,11 @@ pub(super) fn cut_by_frame(photo: &Photo, mask: &GrayImage, share: f64, cx: &Con
         100.0 * share
     ));
     let touch = (share * 10.0).ceil() / 10.0;
-    let error = error.hint(format!(
-        "leave a margin of ground on all sides; to sew what the photo shows, `--set stages.{}.touch={touch}`",
-        cx.stage()
-    ));
+    let anyway = match touch <= MAX_TOUCH {
+        true => format!("; to sew what the photo shows, `--set stages.{}.touch={touch}`", cx.stage()),
+        false => String::new(),
+    };
+    let error = error.hint(format!("leave a margin of ground on all sides{anyway}"));
     let flags: Vec<bool> = mask.as_raw().iter().map(|v| *v != 0).collect();
     with_picture(error, photo, &[], &flags, mask.width() as usize, mask.height() as usize)
 }
