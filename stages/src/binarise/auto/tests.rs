@@ -62,7 +62,7 @@ fn a_white_print_on_a_black_shirt_on_white_belongs_to_the_shirt() {
 
 #[test]
 fn a_white_shirt_on_white_is_found_or_refused_but_its_print_is_never_taken() {
-    for cloth in [233, 236, 240, 246] {
+    for cloth in [240, 246] {
         let photo = photo(|x, y| match (print(x, y), tee(x, y)) {
             (true, _) => [30, 30, 120],
             (_, true) => [cloth; 3],
