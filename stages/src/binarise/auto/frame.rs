@@ -52,25 +52,22 @@ fn strip(mask: &GrayImage, photo: &Photo, side: usize) -> Option<(Vec<u32>, u32)
         mask.get_pixel(x, y).0[0] != 0
     };
     let (meets, beside): (Vec<u32>, Vec<u32>) = (0..length).partition(|&a| on(a, 0));
-    // The mean colour of each layer of pixels below some places of the side.
-    let layers = |places: &[u32]| -> Vec<Lab> {
-        let colour = |a: u32, d: u32| {
+    let mean = |places: &[u32], layers: std::ops::Range<u32>| {
+        let pixels = || layers.clone().flat_map(|d| places.iter().map(move |&a| (a, d)));
+        let colour = |(a, d)| {
             let (x, y) = place((w, h), side, a, d);
             lab(photo.pixels.get_pixel(x, y).0.map(f64::from))
         };
-        let mean = |d: u32| places.iter().map(|&a| colour(a, d)).sum::<Lab>() / places.len() as f64;
-        (0..2 * widest + 2).map(mean).collect()
+        pixels().map(colour).sum::<Lab>() / (pixels().count() as f64).max(1.0)
     };
     if meets.is_empty() || beside.is_empty() {
         return None;
     }
-    let mean = |layers: &[Lab]| layers.iter().sum::<Lab>() / layers.len() as f64;
-    let (met, aside) = (layers(&meets), layers(&beside));
-    let wide = widest as usize;
-    let steps = (1..=wide).map(|t| (t, (mean(&met[..t]), mean(&met[t + 1..t + 1 + wide]))));
+    let step = |t: u32| (mean(&meets, 0..t), mean(&meets, t + 1..t + 1 + widest));
+    let steps = (1..=widest).map(|t| (t, step(t)));
     let size = |(outer, inner): (Lab, Lab)| (outer - inner).norm();
     let (t, (outer, inner)) = steps.max_by(|a, b| size(a.1).total_cmp(&size(b.1)))?;
-    let ground = mean(&aside[..t]);
+    let ground = mean(&beside, 0..t);
     (size((outer, inner)) >= STEP && (outer - ground).norm() < (inner - ground).norm() / 2.0)
-        .then_some((meets, t as u32))
+        .then_some((meets, t))
 }
