@@ -11,9 +11,12 @@ mod mannequin;
 mod slice;
 mod spline;
 mod topology;
+mod trunk;
 
 pub use body_obj::{BodyObj, Units, Up};
+pub(crate) use estimate::estimate;
 pub use mannequin::Mannequin;
+pub(crate) use trunk::forms;
 
 use toile_core::Registry;
 

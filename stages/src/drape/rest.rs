@@ -9,11 +9,14 @@ use super::ImplicitEuler;
 use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
+use crate::body::{estimate, forms};
 use crate::cloth::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
+use toile_cloth::contact::body::Body as Solid;
+use toile_cloth::contact::skin::Skin;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
 use toile_cloth::rest::unrest::unrest;
 use toile_core::decide::{Decision, Known};
@@ -73,7 +76,8 @@ pub struct Rest {
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
     /// The sewn garment is then taken out of itself. What starts in the body is moved out of it, and seams join at gaps of up to a third of an
-    /// edge of the coarsest mesh.
+    /// edge of the coarsest mesh. Seams that the body keeps open all the same are closed on its trunk and legs, which begin 5 % of its height
+    /// lower and rise into the sewn garment; head and arms come last.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
@@ -114,7 +118,17 @@ impl Rest {
         let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
-        let result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
+        let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
+        if let (true, Err(RestError::SeamNotClosed { .. }), Some(collider)) =
+            (self.sew_through, &result, collider)
+        {
+            let forms = forms_of(collider);
+            let around: Vec<&dyn Skin> = forms.iter().map(|f| f as &dyn Skin).collect();
+            if !around.is_empty() {
+                result =
+                    self.solver().solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
+            }
+        }
         cx.check()?;
         if let (Err(RestError::Falls), Some(phases)) = (&result, phases) {
             cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
@@ -197,6 +211,18 @@ impl Rest {
         };
         garment
     }
+}
+
+/// What a garment is sewn on where the whole body keeps its seams open; nothing where the collider shows no standing figure.
+fn forms_of(collider: &Collider) -> Vec<Solid> {
+    let Some(surface) = collider.scheme.surface() else { return Vec::new() };
+    let (positions, triangles) = (surface.positions.to_vec(), surface.triangles.to_vec());
+    let height = positions.iter().map(|p| p.y).fold(0.0, f64::max);
+    let Ok((landmarks, measurements)) = estimate(&positions, &triangles, height) else { return Vec::new() };
+    let solid = |(points, triangles): (Vec<Point3>, Vec<[u32; 3]>)| {
+        Solid::new(points.iter().map(|p| p.coords).collect(), &triangles)
+    };
+    forms(&Body { positions, triangles, landmarks, measurements }).into_iter().map(solid).collect()
 }
 
 /// Tells the user how far the solver has come, and stops it when asked to.

@@ -22,6 +22,9 @@ use toile_core::prelude::*;
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
 
+/// Every garment reaches higher than this on a body that stands on the floor, as a share of its height: to its waist.
+const WORN: f64 = 0.5;
+
 /// The height of that origin as a share of the body's: that of a standing figure whose origin lies at its waist.
 const MIDDLE: f64 = 0.65;
 
@@ -31,6 +34,7 @@ const MIDDLE: f64 = 0.65;
 /// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
+    version = 2,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -95,11 +99,13 @@ impl Arrange {
 
     /// Raises poses that were made around a body's middle.
     fn raise(&self, places: &mut BTreeMap<String, Vec<Point3>>, body: &Body, cx: &Context) {
-        let lowest = places.values().flatten().map(|p| p.y).fold(f64::INFINITY, f64::min);
-        if lowest >= -BELOW {
+        let heights = || places.values().flatten().map(|p| p.y);
+        let (lowest, highest) = (heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max));
+        let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+        // A long round skirt lies below the floor where it is flat; but its waist is at the body's.
+        if lowest >= -BELOW || highest > WORN * top {
             return;
         }
-        let top = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         let by = MIDDLE * top;
         places.values_mut().flatten().for_each(|p| p.y += by);
         cx.warn(format!(

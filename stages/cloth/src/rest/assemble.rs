@@ -74,6 +74,7 @@ pub(super) fn assemble<'a>(
         edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
         clear: pieces.rest.len() == scene.rest.len(),
         grows: false,
+        passes: false,
         #[cfg(toile_without = "body")]
         never: b.never,
         stiffness: stiffness.clone(),
@@ -111,6 +112,7 @@ pub(super) fn assemble<'a>(
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
         push: vec![],
+        home: None,
         pinned,
         threads: vec![],
         ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),

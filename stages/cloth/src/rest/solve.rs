@@ -32,6 +32,7 @@ use super::tangled::tangled;
 use super::unrest::Unbalanced;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
+use crate::contact::skin::Skin;
 use crate::scene::{Panel, Scene};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -158,13 +159,32 @@ impl Rest {
         wearer: Option<Wearer<'_>>,
         progress: &mut Progress<'_>,
     ) -> Result<Rested, RestError> {
+        self.solve_around(scene, wearer, &[], progress)
+    }
+
+    /// The same, sewn on other solids before the body comes: seams close on the first of `around`, then each of the others pushes the
+    /// sewn cloth out of itself, and the body as the last. For [`Rest::sew_through`], where the body keeps seams open.
+    ///
+    /// # Errors
+    /// Every [`RestError`].
+    pub fn solve_around(
+        &self,
+        scene: &Scene,
+        wearer: Option<Wearer<'_>>,
+        around: &[&dyn Skin],
+        progress: &mut Progress<'_>,
+    ) -> Result<Rested, RestError> {
         let clock = Instant::now();
         scene.check()?;
         scene.check_still()?;
         let pile = pile_of(scene);
         let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
         let start = match self.sew_through {
-            true => moved_out::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
+            true => moved_out::<RestError>(
+                scene,
+                around.first().copied().or(wearer.map(|w| w.skin)),
+                self.join_gap,
+            )?,
             false => check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
         };
         if !self.from_here && !self.sew_through {
@@ -172,7 +192,7 @@ impl Rest {
         }
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
         loop {
-            let plan = Plan::new(&rest, coarsest, scene, wearer, &start)?;
+            let plan = Plan::new(&rest, coarsest, scene, wearer, around, &start)?;
             let (made, finer) = (Work::new(&plan, clock).make(progress), plan.second());
             coarsest = match (made, finer) {
                 (Ok(Draped::Rested(state)), _) => return rest.judge(scene, Rested { restarts, ..*state }),

@@ -43,6 +43,8 @@ pub struct Support<'a> {
     pub clear: bool,
     /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
     pub grows: bool,
+    /// Whether cloth may pass through the body, which pushes it out all the same.
+    pub passes: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
     /// Nodes that pressed harder than their contact can carry in the last step.

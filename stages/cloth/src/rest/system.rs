@@ -6,6 +6,7 @@
 //! cloth moves fast. Cloth rubs on cloth in the same way (see `grip`). Normals and limits of friction are those of the step's start.
 
 use super::elastic::Elastic;
+use super::home::Home;
 use super::layers::Layers;
 use super::pattern::Pattern;
 use super::ridges::Ridges;
@@ -41,6 +42,8 @@ pub struct System<'a> {
     pub gravity: Vec3,
     /// Forces on the nodes besides their weight, N; empty where there are none.
     pub push: Vec<Vec3>,
+    /// What holds the nodes at the height where they start, if anything does.
+    pub home: Option<Home>,
     /// Nodes that stay.
     pub pinned: Vec<bool>,
     /// Seams that still pull.
@@ -128,7 +131,7 @@ impl System<'_> {
     /// Ends moves that lead into the body just outside it.
     pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3], asks: impl Fn(usize) -> bool) {
         let sews = !self.threads.is_empty();
-        let Some(s) = &mut self.support else { return };
+        let Some(s) = self.support.as_mut().filter(|s| !s.passes) else { return };
         let seen = &self.seen;
         let is_free = |i: usize| {
             seen.get(i).is_some_and(|n| n.distance - (x[i] - n.at).norm() - moves[i].norm() > s.guard(i))
@@ -246,7 +249,8 @@ impl System<'_> {
 
     /// Energy of the forces besides weight, J.
     fn pushed(&self, x: &[Vec3]) -> f64 {
-        -self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
+        let home = self.home.as_ref().map_or(0.0, |h| h.value(x, &self.masses));
+        home - self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
     }
 
     /// Whether crossings of the start are still being undone.
@@ -287,7 +291,9 @@ impl System<'_> {
         s.stiffen();
         let ridges = &mut self.ridges;
         ridges.iter_mut().for_each(|r| r.touch(s, x));
-        s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
+        if !s.passes {
+            s.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
+        }
         let mut anchors = vec![None; x.len()];
         let mut loads = vec![0.0; x.len()];
         self.touches.clear();
@@ -340,6 +346,7 @@ impl System<'_> {
     pub fn gradient(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut g: Vec<Vec3> = self.masses.iter().map(|m| -self.gravity * *m).collect();
         g.iter_mut().zip(&self.push).for_each(|(g, p)| *g -= p);
+        self.home.iter().for_each(|h| h.add_gradient(x, &self.masses, &mut g));
         self.elastic.add_gradient(x, &mut g);
         self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
@@ -365,6 +372,7 @@ impl System<'_> {
         for (v, m) in values.iter_mut().zip(&self.masses) {
             (0..3).for_each(|c| v[(c, c)] += m * inertia);
         }
+        self.home.iter().for_each(|h| h.add_matrix(&self.masses, values));
         self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
         if let Some(s) = &self.support {
             for t in self.touches.iter().filter(|t| t.force > 0.0) {

@@ -168,7 +168,7 @@ impl<'a> Work<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let meets = self.plan.scene.self_collision && !(sewing && self.plan.rest.sew_through);
+        let meets = system.layers.is_some() && !(sewing && self.plan.rest.sew_through);
         let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };

@@ -61,7 +61,7 @@ fn a_white_print_on_a_black_shirt_on_white_belongs_to_the_shirt() {
 }
 
 #[test]
-fn a_white_shirt_on_white_is_found_or_refused_but_its_print_is_never_taken() {
+fn a_white_shirt_that_stands_out_from_white_by_twelve_levels_is_found_or_refused() {
     for cloth in [240, 246] {
         let photo = photo(|x, y| match (print(x, y), tee(x, y)) {
             (true, _) => [30, 30, 120],

@@ -190,6 +190,32 @@ fn a_skirt_whose_panels_start_behind_each_other_is_sewn_through_and_ends_as_ever
 }
 
 #[test]
+fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
+    let scene = crossed();
+    let solid = |lower: f64| {
+        let body = scene.body.as_ref().unwrap();
+        let down = |p: &Vec3| p - Vec3::y() * lower;
+        Body::new(body.vertices.iter().map(down).collect(), &body.triangles)
+    };
+    let (low, middle, body) = (solid(0.06), solid(0.03), solid(0.0));
+    let wearer = Wearer { skin: &body, friction: scene.body.as_ref().unwrap().friction };
+    let through = Rest { graded: true, sew_through: true, ..Rest::default() };
+    let solve = |around: &[&dyn Skin]| {
+        through
+            .solve_around(&scene, Some(wearer), around, &mut |_| ControlFlow::Continue(()))
+            .unwrap()
+            .positions
+    };
+    let (lifted, direct) = (solve(&[&low, &middle]), solve(&[]));
+    assert_eq!((gap(&scene, &lifted), crossings(&scene, &lifted)), (0.0, 0));
+    let inside = Skin::nearest(&body, &lifted, &vec![1.0; lifted.len()]);
+    let inside = inside.iter().flatten().any(|n| n.distance < 0.0);
+    assert!(!inside);
+    let height = |x: &[Vec3]| x.iter().map(|p| p.y).sum::<f64>() / x.len() as f64;
+    assert!((height(&lifted) - height(&direct)).abs() < 0.05, "{} {}", height(&lifted), height(&direct));
+}
+
+#[test]
 fn a_seam_may_sew_a_right_side_to_a_wrong_side() {
     // The dart's panel with one half mirrored: its triangles run the other way round where the two halves meet.
     let mut scene = generate::gathered(8, 4, 1.0 + 1e-9);
