@@ -6,7 +6,7 @@ use crate::progress::Bar;
 use crate::validate::{Refused, inspect, open, warn_unused};
 use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
 use toile_core::cache::Cache;
@@ -68,11 +68,7 @@ pub(crate) fn once(
     };
     let outcome = under_a_bar(&pipeline, &options, args.threads, streams);
     match outcome {
-        Err(e) => {
-            let code = fail_run(&pipeline, &e, args.json, streams);
-            leave_picture(&folder(args), &e, streams);
-            code
-        }
+        Err(e) => fail_run(&pipeline, &e, args.json, streams),
         Ok(result) => {
             known.keep(&pipeline, &result.costs);
             let locked =
@@ -158,19 +154,6 @@ fn finish(
     if result.metrics.shortfalls.is_empty() { exit::DONE } else { exit::QUALITY }
 }
 
-/// Leaves the picture that a stage's failure comes with in the output folder, and says where it is: the one file of a run that
-/// failed.
-fn leave_picture(dir: &Path, e: &RunError, streams: &mut Streams<'_>) {
-    let Some(picture) = &e.error.picture else { return };
-    let name = if e.entry.is_empty() { &e.stage } else { &e.entry };
-    let path = format!("{name}-doubt.png");
-    let file = OutputFile { path: path.clone(), bytes: picture.to_vec() };
-    match write_files(dir, &[file]) {
-        Ok(_) => streams.tell(format!("picture of the doubt: {}", dir.join(path).display())),
-        Err(error) => streams.tell(format!("warning: the picture of the doubt is not written: {error}")),
-    }
-}
-
 /// Where the files go.
 fn folder(args: &RunArgs) -> PathBuf {
     args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(stdin::stem(&args.pipeline)))
@@ -181,7 +164,7 @@ fn unwritable(pipeline: &Pipeline, error: StageError, json: bool, streams: &mut 
     fail_run(pipeline, &e, json, streams)
 }
 
-fn summary(metrics: &Metrics, dir: &Path, files: &[OutputFile], streams: &mut Streams<'_>) {
+fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], streams: &mut Streams<'_>) {
     for stage in metrics.stages.iter().filter(|s| s.skipped.is_none()) {
         let cached = if stage.cached { "  cached" } else { "" };
         streams.say(format!("  {:<20} {:>8.3} s{cached}", stage.id, stage.wall_s));

@@ -1,6 +1,5 @@
 //! Errors of stages: typed, lower case, with a hint.
 
-use std::sync::Arc;
 use thiserror::Error;
 
 /// What went wrong, as a stable word that scripts can match.
@@ -113,14 +112,12 @@ pub struct StageError {
     pub param: Option<&'static str>,
     /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside in.
     pub path: Vec<String>,
-    /// A picture of what is in doubt, a PNG, which is left in the output folder as `NAME-doubt.png`.
-    pub picture: Option<Arc<[u8]>>,
 }
 
 impl StageError {
     /// An error with a code and a sentence.
     pub fn new(code: ErrorCode, message: impl Into<String>) -> Self {
-        StageError { code, message: message.into(), hint: None, param: None, path: Vec::new(), picture: None }
+        StageError { code, message: message.into(), hint: None, param: None, path: Vec::new() }
     }
 
     /// Invalid input (exit code 3).
@@ -142,12 +139,6 @@ impl StageError {
     /// Names the parameter at fault.
     pub fn at(mut self, param: &'static str) -> Self {
         self.param = Some(param);
-        self
-    }
-
-    /// Adds a picture of what is in doubt: the bytes of a PNG.
-    pub fn picture(mut self, png: Vec<u8>) -> Self {
-        self.picture = Some(png.into());
         self
     }
 

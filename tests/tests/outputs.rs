@@ -56,21 +56,3 @@ fn a_golden_that_cannot_be_read_is_no_golden_that_agrees() {
     let words = format!("error: cannot read the golden \"{}\": ", golden.display());
     assert!(answer.err.starts_with(&words), "{}", answer.err);
 }
-
-#[test]
-fn a_photo_that_is_refused_leaves_a_picture_of_the_doubt_and_nothing_else() {
-    let dir = tempfile::tempdir().unwrap();
-    let whole = image::open(pipeline("samples/tshirt/front.jpg")).unwrap();
-    let cut = dir.path().join("cut.png");
-    whole.crop_imm(0, 0, whole.width(), whole.height() / 2).save(&cut).unwrap();
-    let photo = format!("photos.front.file={:?}", cut.display().to_string());
-    let out = dir.path().join("out");
-    let answer =
-        toile(&["run", &pipeline("photo_tee.ron"), "--set", &photo, "--out", &out.display().to_string()]);
-    assert_eq!(answer.code, 3, "{}", answer.err);
-    let told = format!("picture of the doubt: {}\n", out.join("back-doubt.png").display());
-    assert!(answer.err.ends_with(&told), "{}", answer.err);
-    let files: Vec<_> = fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name()).collect();
-    assert_eq!(files, ["back-doubt.png"]);
-    assert!(image::open(out.join("back-doubt.png")).unwrap().width() <= 800);
-}

@@ -12,7 +12,6 @@
 //! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
 //! picture whose ground was cut away has its mask already (`cut_out`).
 
-mod auto;
 mod background;
 mod cut;
 mod cut_out;
@@ -30,7 +29,6 @@ mod small;
 mod tests;
 mod tone;
 
-pub use auto::{Auto, candidates};
 pub use background::Background;
 pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
@@ -46,5 +44,5 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>().add::<Auto>();
+    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>();
 }
