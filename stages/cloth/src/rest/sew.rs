@@ -67,8 +67,12 @@ impl Work<'_> {
         }
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
         if let (Some(body), [_, next @ ..]) = (self.plan.body, self.plan.around) {
+            let mut solid = body;
+            // Hands that put a garment on let it slip.
+            solid.friction = 0.0;
             for skin in next.iter().copied().chain([body.skin]) {
-                self.come_out(Wearer { skin, friction: 0.0, ..body }, progress)?;
+                solid.skin = skin;
+                self.come_out(solid, progress)?;
             }
         }
         Ok(())
