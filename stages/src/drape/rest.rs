@@ -14,7 +14,7 @@ use crate::cloth::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use toile_cloth::contact::body::Body as Solid;
 use toile_cloth::contact::skin::Skin;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
@@ -118,6 +118,7 @@ impl Rest {
         let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
+        let clock = Instant::now();
         let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
         if let (true, Err(RestError::SeamNotClosed { .. }), Some(collider)) =
             (self.sew_through, &result, collider)
@@ -125,8 +126,10 @@ impl Rest {
             let forms = forms_of(collider);
             let around: Vec<&dyn Skin> = forms.iter().map(|f| f as &dyn Skin).collect();
             if !around.is_empty() {
-                result =
-                    self.solver().solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
+                // Both ways share the time that the user gives.
+                let solver =
+                    Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
+                result = solver.solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
             }
         }
         cx.check()?;
