@@ -1,8 +1,7 @@
 //! What a garment is sewn on: the trunk and the legs of a body, without arms and head.
 //!
-//! Flat panels stand before and behind a body with the arms between them, and a seam on the shoulder is to be led over it. So a person
-//! who dresses somebody would have them lift their arms and dive into the garment; here arms and head are away while
-//! seams close, and the trunk begins lower and rises into the sewn garment.
+//! Flat panels stand before and behind a body: the arms are between them, and a seam on the shoulder must be led over it. So arms and head
+//! are left out while seams close, and the trunk begins lower and rises into the sewn garment.
 //!
 //! Method: a limb is what of the mesh hangs together with its end beyond a plane through its root, at right angles to it; it
 //! is cut off along edges of the mesh, and each hole is closed with a fan. Cost: O(triangles). Limit: arms that grow together with the

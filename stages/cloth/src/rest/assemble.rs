@@ -112,7 +112,7 @@ pub(super) fn assemble<'a>(
         masses: sheet.masses().to_vec(),
         gravity: if open { Vec3::zeros() } else { gravity(scene) },
         push: vec![],
-        home: None,
+        height_springs: None,
         pinned,
         threads: vec![],
         ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),

@@ -1,8 +1,7 @@
 //! What keeps cloth at its height while it is sewn.
 //!
 //! Cloth without weight and friction that seams draw around a body slides along it to where the body is thinner: off the
-//! shoulders, down to the waist. A spring for each node, along the vertical alone, holds it near the height at which it was placed,
-//! as the hands do that sew it there.
+//! shoulders, down to the waist. A spring for each node, along the vertical alone, holds it near the height at which it was placed.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -10,7 +9,7 @@ type Vec3 = Vector3<f64>;
 
 /// Springs along one direction to where the nodes started.
 #[derive(Debug, Clone)]
-pub struct Home {
+pub struct HeightSprings {
     /// The direction, of length 1.
     pub up: Vec3,
     /// How far up each node started, m.
@@ -19,7 +18,7 @@ pub struct Home {
     pub stiffness: f64,
 }
 
-impl Home {
+impl HeightSprings {
     fn way(&self, x: &[Vec3], i: usize) -> f64 {
         self.up.dot(&x[i]) - self.heights[i]
     }
@@ -50,14 +49,14 @@ mod tests {
 
     #[test]
     fn a_node_is_drawn_back_to_its_height_and_may_move_aside() {
-        let home = Home { up: Vec3::y(), heights: vec![1.0, 2.0], stiffness: 30.0 };
+        let springs = HeightSprings { up: Vec3::y(), heights: vec![1.0, 2.0], stiffness: 30.0 };
         let (x, masses) = ([Vec3::new(5.0, 1.1, -3.0), Vec3::new(0.0, 2.0, 0.0)], [0.2, 0.1]);
-        assert!((home.value(&x, &masses) - 0.5 * 30.0 * 0.2 * 0.01).abs() < 1e-12);
+        assert!((springs.value(&x, &masses) - 0.5 * 30.0 * 0.2 * 0.01).abs() < 1e-12);
         let mut g = [Vec3::zeros(); 2];
-        home.add_gradient(&x, &masses, &mut g);
+        springs.add_gradient(&x, &masses, &mut g);
         assert!((g[0] - Vec3::new(0.0, 0.6, 0.0)).norm() < 1e-12 && g[1].norm() == 0.0);
         let mut values = [Matrix3::zeros(); 2];
-        home.add_matrix(&masses, &mut values);
+        springs.add_matrix(&masses, &mut values);
         assert!((values[0][(1, 1)] - 6.0).abs() < 1e-12 && values[0][(0, 0)] == 0.0);
     }
 }

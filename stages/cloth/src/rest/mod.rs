@@ -15,7 +15,7 @@ mod first;
 mod front;
 mod graded;
 pub mod grip;
-pub mod home;
+pub mod height_springs;
 pub mod layers;
 mod level;
 mod linear;

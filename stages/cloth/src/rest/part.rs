@@ -5,7 +5,7 @@
 //! The whole system looks again afterwards, so the state of rest is that of the whole.
 
 use super::grip::Grip;
-use super::home::Home;
+use super::height_springs::HeightSprings;
 use super::layers::Layers;
 use super::support::Support;
 use super::system::System;
@@ -162,7 +162,10 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
         masses: pick(nodes, &system.masses),
         gravity: system.gravity,
         push: pick(nodes, &system.push),
-        home: system.home.as_ref().map(|h| Home { heights: pick(nodes, &h.heights), ..*h }),
+        height_springs: system
+            .height_springs
+            .as_ref()
+            .map(|h| HeightSprings { heights: pick(nodes, &h.heights), ..*h }),
         pinned: nodes.iter().map(asleep).collect(),
         threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
         support: system.support.as_ref().map(|s| support(s, cut, nodes)),

@@ -3,7 +3,7 @@
 use super::assemble::{Wearer, assemble, gravity, spacing, strongest};
 use super::error::MOST_EDGES;
 use super::graded::stages;
-use super::home::Home;
+use super::height_springs::HeightSprings;
 use super::newton::Pace;
 use super::solve::{Progress, RestError};
 use super::start::probably_reversed;
@@ -68,11 +68,11 @@ impl Work<'_> {
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
         if let (Some(body), [_, next @ ..]) = (self.plan.body, self.plan.around) {
             let mut solid = body;
-            // Hands that put a garment on let it slip.
+            // Friction would hold the cloth below a shoulder that rises into it.
             solid.friction = 0.0;
             for skin in next.iter().copied().chain([body.skin]) {
                 solid.skin = skin;
-                self.come_out(solid, progress)?;
+                self.push_out(solid, progress)?;
             }
         }
         Ok(())
@@ -137,10 +137,10 @@ impl Work<'_> {
                 break;
             }
             before = gap;
-            let mut system = self.open(sheet, stiff, self.plan.sewn_on())?;
+            let mut system = self.open(sheet, stiff)?;
             system.threads = self.threads(pairs, pull * spacing);
             if !self.plan.around.is_empty() {
-                system.home = self.home(sheet, &self.plan.starts[coarsest], pull);
+                system.height_springs = self.height_springs(sheet, &self.plan.starts[coarsest], pull);
             }
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
@@ -160,7 +160,7 @@ impl Work<'_> {
     }
 
     /// Lets a solid push the sewn cloth out of itself, through cloth where that is in the way.
-    fn come_out(&mut self, solid: Wearer<'_>, progress: &mut Progress<'_>) -> Result<(), RestError> {
+    fn push_out(&mut self, solid: Wearer<'_>, progress: &mut Progress<'_>) -> Result<(), RestError> {
         let coarsest = self.plan.pieces.len() - 1;
         let pieces = &self.plan.pieces[coarsest];
         let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
@@ -170,7 +170,8 @@ impl Work<'_> {
         system.gravity = Vec3::zeros();
         (system.layers, system.ridges) = (None, None);
         system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
-        system.home = self.home(&sheet, &start, LOOSE * SEAM_PULL * strongest(&self.plan.cloths));
+        system.height_springs =
+            self.height_springs(&sheet, &start, LOOSE * SEAM_PULL * strongest(&self.plan.cloths));
         let (steps, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
         let is_out = |x: &[Vec3]| depth(solid.skin, x) <= SHALLOW;
@@ -181,12 +182,12 @@ impl Work<'_> {
     }
 
     /// What holds the cloth at its height under seams that pull so hard, N/m.
-    fn home(&self, sheet: &Sheet, start: &[Vec3], pull: f64) -> Option<Home> {
+    fn height_springs(&self, sheet: &Sheet, start: &[Vec3], pull: f64) -> Option<HeightSprings> {
         let up = -gravity(self.plan.scene).try_normalize(1e-9)?;
         let area: f64 = sheet.areas().iter().sum();
         let mass: f64 = sheet.masses().iter().sum();
         let heights = start.iter().map(|p| up.dot(p)).collect();
-        Some(Home { up, heights, stiffness: HELD * pull * area / mass })
+        Some(HeightSprings { up, heights, stiffness: HELD * pull * area / mass })
     }
 
     /// The widest gap at which seams are joined all the same, m.
@@ -206,28 +207,16 @@ impl Work<'_> {
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
-        let report = self.run(
-            &mut self.open(sheet, grade.first(), self.plan.sewn_on())?,
-            sheet,
-            &layout,
-            x,
-            &pace,
-            &|_| false,
-            progress,
-        )?;
+        let report =
+            self.run(&mut self.open(sheet, grade.first())?, sheet, &layout, x, &pace, &|_| false, progress)?;
         self.reports.push(report);
         Ok(())
     }
 
     /// Weightless cloth before it is sewn, so many times stiffer.
-    fn open<'b>(
-        &'b self,
-        sheet: &Sheet,
-        stiff: f64,
-        body: Option<Wearer<'b>>,
-    ) -> Result<System<'b>, RestError> {
-        let mut system =
-            assemble(self.plan.scene, body, &self.plan.pieces[self.plan.pieces.len() - 1], sheet, true)?;
+    fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
+        let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
+        let mut system = assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true)?;
         if self.plan.rest.graded {
             system.elastic.stiffen(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);

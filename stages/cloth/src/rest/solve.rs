@@ -8,6 +8,8 @@
 //! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes through a triangle: see
 //! `pierce`), the garment is sewn again on the next finer one.
 //!
+//! Where the body would keep seams open, the coarsest level may be sewn on other solids (see [`Rest::solve_around`]).
+//!
 //! With [`Rest::from_here`] there are no coarser levels: cloth that hangs already settles where it is.
 //!
 //! With [`Rest::graded`] bending starts stiff and is let go on the way (see `graded`), so that chance has less of a say.

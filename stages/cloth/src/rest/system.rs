@@ -6,7 +6,7 @@
 //! cloth moves fast. Cloth rubs on cloth in the same way (see `grip`). Normals and limits of friction are those of the step's start.
 
 use super::elastic::Elastic;
-use super::home::Home;
+use super::height_springs::HeightSprings;
 use super::layers::Layers;
 use super::pattern::Pattern;
 use super::ridges::Ridges;
@@ -43,7 +43,7 @@ pub struct System<'a> {
     /// Forces on the nodes besides their weight, N; empty where there are none.
     pub push: Vec<Vec3>,
     /// What holds the nodes at the height where they start, if anything does.
-    pub home: Option<Home>,
+    pub height_springs: Option<HeightSprings>,
     /// Nodes that stay.
     pub pinned: Vec<bool>,
     /// Seams that still pull.
@@ -249,8 +249,8 @@ impl System<'_> {
 
     /// Energy of the forces besides weight, J.
     fn pushed(&self, x: &[Vec3]) -> f64 {
-        let home = self.home.as_ref().map_or(0.0, |h| h.value(x, &self.masses));
-        home - self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
+        let held = self.height_springs.as_ref().map_or(0.0, |h| h.value(x, &self.masses));
+        held - self.push.iter().zip(x).map(|(p, x)| p.dot(x)).sum::<f64>()
     }
 
     /// Whether crossings of the start are still being undone.
@@ -346,7 +346,7 @@ impl System<'_> {
     pub fn gradient(&self, x: &[Vec3]) -> Vec<Vec3> {
         let mut g: Vec<Vec3> = self.masses.iter().map(|m| -self.gravity * *m).collect();
         g.iter_mut().zip(&self.push).for_each(|(g, p)| *g -= p);
-        self.home.iter().for_each(|h| h.add_gradient(x, &self.masses, &mut g));
+        self.height_springs.iter().for_each(|h| h.add_gradient(x, &self.masses, &mut g));
         self.elastic.add_gradient(x, &mut g);
         self.threads.iter().for_each(|t| t.add_gradient(x, &mut g));
         self.touches.iter().for_each(|t| g[t.node as usize] -= t.normal * t.force);
@@ -372,7 +372,7 @@ impl System<'_> {
         for (v, m) in values.iter_mut().zip(&self.masses) {
             (0..3).for_each(|c| v[(c, c)] += m * inertia);
         }
-        self.home.iter().for_each(|h| h.add_matrix(&self.masses, values));
+        self.height_springs.iter().for_each(|h| h.add_matrix(&self.masses, values));
         self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
         if let Some(s) = &self.support {
             for t in self.touches.iter().filter(|t| t.force > 0.0) {

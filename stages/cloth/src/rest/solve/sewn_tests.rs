@@ -207,6 +207,7 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
             .positions
     };
     let (lifted, direct) = (solve(&[&low, &middle]), solve(&[]));
+    assert_ne!(lifted, direct, "what it is sewn on has its share");
     assert_eq!((gap(&scene, &lifted), crossings(&scene, &lifted)), (0.0, 0));
     let inside = Skin::nearest(&body, &lifted, &vec![1.0; lifted.len()]);
     let inside = inside.iter().flatten().any(|n| n.distance < 0.0);
