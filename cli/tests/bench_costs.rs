@@ -1,11 +1,7 @@
 //! What stages take, measured by the program: each run in a process of its own.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod sheet;
-
+use crate::sheet::sheet;
 use serde_json::{Value, json};
-use sheet::sheet;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};

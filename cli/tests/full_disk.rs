@@ -1,7 +1,5 @@
 //! A cache that runs out of room is a warning, through the process: its files may not grow beyond a limit of the
 //! shell, as on a disk that is full.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,4 @@
 //! Ctrl-C stops a run within half a second and leaves no half-written file.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};

@@ -1,10 +1,6 @@
 //! What every command does as users of a shell expect, through the process.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used)]
 
-mod sheet;
-
-use sheet::sheet;
+use crate::sheet::sheet;
 use std::fs::{self, File};
 use std::io::Write;
 use std::path::{Path, PathBuf};

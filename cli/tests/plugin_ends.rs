@@ -1,6 +1,4 @@
 //! Plugins that end the program, or do not let it end: each is named, through the process.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -2,8 +2,6 @@
 //!
 //! A command is a line of an indented block, or a piece of code within a line, that begins with `toile `, `cargo ` or `.ci/`.
 //! Those of the program run in a copy of `pipelines`, which some of them change.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -28,9 +26,11 @@ fn commands() -> Vec<String> {
     pieces.filter(is_command).map(str::to_owned).collect()
 }
 
-/// Those that measure for minutes.
-fn is_measurement(command: &str) -> bool {
-    ["toile trade", "toile tune", "toile bench"].iter().any(|start| command.starts_with(start))
+/// Those that measure for minutes, and one that records from two whole runs.
+fn is_long(command: &str) -> bool {
+    ["toile trade", "toile tune", "toile bench", "toile golden accept"]
+        .iter()
+        .any(|start| command.starts_with(start))
 }
 
 /// A folder with a copy of the shipped pipelines.
@@ -87,7 +87,7 @@ fn goes_on(command: &str, folder: &Path, cache: &Path, writes: &Path) {
 fn the_commands_run() {
     let dir = scratch();
     let cache = dir.path().join("cache");
-    let ours = |c: &String| c.starts_with("toile ") && !is_measurement(c);
+    let ours = |c: &String| c.starts_with("toile ") && !is_long(c);
     let commands: Vec<String> = commands().into_iter().filter(ours).collect();
     assert!(commands.len() > 20, "{commands:#?}");
     for command in commands {
@@ -108,9 +108,9 @@ fn the_commands_run() {
 
 #[test]
 #[ignore = "slow: .ci/wide"]
-fn the_measurements_run() {
+fn the_commands_that_take_long_run() {
     let dir = scratch();
-    let commands: Vec<String> = commands().into_iter().filter(|c| is_measurement(c)).collect();
+    let commands: Vec<String> = commands().into_iter().filter(|c| is_long(c)).collect();
     assert!(commands.len() > 5, "{commands:#?}");
     commands.iter().for_each(|c| passes(c, dir.path(), &dir.path().join("cache")));
 }
@@ -193,4 +193,29 @@ fn a_test_that_is_left_out_is_one_of_the_wide_ones() {
             assert!(said, "{}: {line}", source.display());
         }
     }
+}
+
+/// Files of tests are parts of few programs; one that no program names would never run.
+#[test]
+fn every_file_of_tests_belongs_to_a_program() {
+    let mut looked_at = 0;
+    for manifest in files(&root(), "Cargo.toml") {
+        let text = std::fs::read_to_string(&manifest).unwrap();
+        if !text.contains("\nautotests = false\n") {
+            continue;
+        }
+        let folder = manifest.with_file_name("tests");
+        let parts = std::fs::read_to_string(folder.join("main.rs")).unwrap();
+        for path in std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()) {
+            let name = path.file_stem().unwrap().to_str().unwrap();
+            let programs = [format!("\"tests/{name}.rs\""), format!("\"tests/{name}/main.rs\"")];
+            let is_program = programs.iter().any(|p| text.contains(&format!("\npath = {p}\n")));
+            let is_source = path.extension().is_some_and(|e| e == "rs")
+                || ["main.rs", "mod.rs"].iter().any(|f| path.join(f).is_file());
+            let is_part = parts.lines().any(|line| line == format!("mod {name};"));
+            assert!(!is_source || is_program || is_part, "no program runs {}", path.display());
+            looked_at += 1;
+        }
+    }
+    assert!(looked_at > 40, "{looked_at}");
 }

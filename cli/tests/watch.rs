@@ -1,6 +1,4 @@
 //! `toile run --watch`, through the process: an edit runs the pipeline again, Ctrl-C ends it.
-#![cfg(unix)]
-#![allow(clippy::unwrap_used, clippy::panic)]
 
 use std::fs;
 use std::io::{BufRead, BufReader};

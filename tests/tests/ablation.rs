@@ -1,5 +1,4 @@
 //! `toile trade --ablate` on a small sheet: kept run by run, gone on with, started anew, cut short by its budget.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

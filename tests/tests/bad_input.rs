@@ -1,5 +1,4 @@
 //! What bad input gets: a clear error with its place and a hint, exit code 3, and nothing written.
-#![allow(clippy::unwrap_used)]
 
 use image::{Rgb, RgbImage};
 use std::path::{Path, PathBuf};

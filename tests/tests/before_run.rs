@@ -1,5 +1,4 @@
 //! What `validate` finds beside the form of a file, and what a run refuses before its first stage.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;
@@ -252,4 +251,44 @@ fn a_stage_after_the_report_is_no_panic_and_what_is_written_is_judged() {
     let written = fs::read_to_string(format!("{out}/result.obj")).unwrap();
     assert_eq!(judged, written.lines().filter(|l| l.starts_with("f ")).count());
     assert!(judged > 3 * was);
+}
+
+#[test]
+fn values_out_of_range_come_out_with_all_other_faults_in_the_order_of_the_file() {
+    let dir = tempfile::tempdir().unwrap();
+    let file = vest(
+        dir.path(),
+        &[
+            ("vest/front.jpg", "vest/none.jpg"),
+            ("height: \"172 cm\", bust: \"88 cm\"", "height: \"105 m\", bust: \"8 m\""),
+            ("cotton poplin", "coton poplin"),
+            ("edge: \"16 mm\"", "edge: \"16 m\""),
+            ("Glb()", "Glb(name: \"a/b\")"),
+        ],
+    );
+    let answer = toile(&["validate", "--json", &file]);
+    assert_eq!(answer.code, 3);
+    let said: Value = serde_json::from_str(&answer.out).unwrap();
+    let faults = said["faults"].as_array().unwrap();
+    let text = fs::read_to_string(&file).unwrap();
+    let places: Vec<String> = faults
+        .iter()
+        .map(|f| {
+            let number = |key: &str| f[key].as_u64().unwrap() as usize;
+            let line = text.lines().nth(number("line") - 1).unwrap();
+            line.chars().skip(number("column") - 1).take_while(|c| !",)".contains(*c)).collect()
+        })
+        .collect();
+    let photo = format!("\"{}samples/vest/none.jpg\"", pipeline(""));
+    let expected = [photo.as_str(), "\"105 m\"", "\"8 m\"", "\"coton poplin\"", "\"16 m\"", "\"a/b\""];
+    assert_eq!(places, expected, "{faults:#?}");
+    let message = |k: usize| faults[k]["message"].as_str().unwrap();
+    assert!(message(1).starts_with("`height` is 105 m, above its greatest value "), "{}", message(1));
+    assert!(message(4).starts_with("`edge` is 16 m, above its greatest value "), "{}", message(4));
+
+    // Of a stage with such a value nothing else is said: what it takes by default in its place is not the user's.
+    let file = vest(dir.path(), &[("low: 20", "low: 90"), ("high: 60", "high: 6000")]);
+    let answer = toile(&["validate", &file]);
+    assert_eq!((answer.code, answer.err.matches('×').count()), (3, 1), "{}", answer.err);
+    assert!(words(&answer).contains("`high` is 6000, above its greatest value"), "{}", answer.err);
 }

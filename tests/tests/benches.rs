@@ -1,5 +1,4 @@
 //! Stability maps and the two drivers, from the command line.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;

@@ -1,7 +1,6 @@
 //! docs/stages.md, docs/stages.json and docs/pipeline.schema.json are what the stages say of themselves.
 //!
-//! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test catalogue`.
-#![allow(clippy::unwrap_used)]
+//! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test whole catalogue::`.
 
 use std::collections::BTreeMap;
 use toile_core::{Card, Role};

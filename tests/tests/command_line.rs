@@ -1,5 +1,4 @@
 //! The command line, as a newcomer uses it.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::path::Path;

@@ -1,5 +1,4 @@
 //! What runs are expected to take, on the shipped pipelines: sizes, words, the record of earlier runs.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::path::Path;

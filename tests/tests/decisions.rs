@@ -1,5 +1,4 @@
 //! What pipelines leave out by facts of their scene: `toile explain` tells it, `toile trade --ablate` turns it round.
-#![allow(clippy::unwrap_used)]
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use serde_json::Value;

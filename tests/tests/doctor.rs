@@ -1,5 +1,4 @@
 //! `toile doctor`.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use toile_core::prelude::*;

@@ -1,5 +1,4 @@
 //! The error codes that scripts match, each with its exact words where a pipeline meets it.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::sync::Arc;

@@ -1,5 +1,4 @@
 //! A garment that misses its body or slides off it is a failure, told early; one that keeps its place is not.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::{Value, json};
 use toile_tests::{Answer, root, toile};

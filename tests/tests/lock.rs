@@ -1,5 +1,4 @@
 //! `toile lock`, and runs against a lock.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::path::Path;

@@ -1,5 +1,4 @@
 //! `toile migrate`: files of earlier versions of the built-in stages.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use toile_tests::{PIPELINES, pipeline, toile};

@@ -1,5 +1,4 @@
 //! What is written, and what keeps a command from writing.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -2,7 +2,6 @@
 //!
 //! The photos are no part of the repository: `TOILE_SHARED` names a folder with `data/photos/*.jpg`; without it
 //! the tests say "skipped". docs/photos.md tells of all photos.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use std::path::PathBuf;
 use toile_tests::{pipeline, toile};

@@ -1,5 +1,4 @@
 //! Named qualities, from the measurement to a run: measured once, proved, written, checked, run.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;
@@ -171,7 +170,7 @@ fn stamped(name: &str) -> (String, String) {
 }
 
 /// Where a pipeline or its stages changed and the measurement still holds (the golden's bits are the same, or it was made anew):
-/// `UPDATE_QUALITIES=1 cargo test --release -p toile-tests --test qualities the_shipped`.
+/// `UPDATE_QUALITIES=1 cargo test --release -p toile-tests --test whole qualities::the_shipped`.
 #[test]
 fn the_shipped_qualities_were_measured_for_their_pipelines() {
     for name in PIPELINES {

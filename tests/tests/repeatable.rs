@@ -1,5 +1,4 @@
 //! What the pipeline of prepared scenes gives by default hardly depends on where the cloth began.
-#![allow(clippy::unwrap_used)]
 
 use std::fs;
 use std::path::Path;
@@ -52,6 +51,7 @@ fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
 }
 
 #[test]
+#[ignore = "slow: .ci/wide"]
 fn a_square_over_a_ball_from_moved_starts_ends_near() {
     let default = spread(&generate::drape(22), 3, 0, &[]);
     assert!(default < 30.0, "{default}");

@@ -1,5 +1,4 @@
 //! `toile trade` and `toile tune` on a small sheet: measured, gone on with, picked, proved, written.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;

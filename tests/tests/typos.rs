@@ -1,5 +1,4 @@
 //! Typical slips in every shipped pipeline: each is one fault, at its place, with the name that was meant.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;

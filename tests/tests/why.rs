@@ -1,5 +1,4 @@
 //! `toile why`: causes before a run, origins after it.
-#![allow(clippy::unwrap_used)]
 
 use serde_json::Value;
 use std::fs;

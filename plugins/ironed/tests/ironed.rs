@@ -1,5 +1,4 @@
 //! The filter by itself, and what the stage promises.
-#![allow(clippy::unwrap_used)]
 
 use image::{Rgb, RgbImage};
 use toile_core::Context;

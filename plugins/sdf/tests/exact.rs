@@ -1,5 +1,4 @@
 //! The field against exact closest points, and cloth against the built-in collider.
-#![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use parry3d_f64::math::Vector;
 use parry3d_f64::query::PointQuery;

@@ -1,6 +1,5 @@
 //! The collider in a pipeline: the shipped vest, sewn and draped with it in place of `BvhCollider`.
 //! With `KEEP_PICTURES=DIR` its pictures are kept there.
-#![allow(clippy::unwrap_used)]
 
 use std::path::Path;
 
@@ -17,7 +16,16 @@ fn drape(collider: &str, out: &Path) -> String {
     let file = out.join("vest.ron");
     std::fs::write(&file, text).unwrap();
     let (mut said, mut told) = (Vec::new(), Vec::new());
-    let arguments = ["toile", "run", file.to_str().unwrap(), "--json", "--out", out.to_str().unwrap()];
+    let arguments = [
+        "toile",
+        "run",
+        file.to_str().unwrap(),
+        "--json",
+        "--quality",
+        "Draft",
+        "--out",
+        out.to_str().unwrap(),
+    ];
     let code = toile::command_with(&registry, arguments, &mut said, &mut told);
     assert_eq!(code, 0, "{}", String::from_utf8_lossy(&told));
     String::from_utf8(said).unwrap()

@@ -1,6 +1,6 @@
 //! Libraries that are no plugins, or broken ones: each is refused or reported by name.
 
-use crate::kit::{bad, make, photo, run};
+use crate::plugins::kit::{bad, make, photo, run};
 use std::sync::Arc;
 
 /// Why a plugin is refused.
@@ -125,5 +125,5 @@ fn without_a_fault_the_same_plugin_passes_photos_on() {
     let registry = bad("NONE", dir.path()).unwrap();
     let stage = make(&registry, "Passes", "()");
     let made = run(stage.as_ref(), vec![Arc::new(photo())]).unwrap();
-    assert_eq!(crate::kit::only(&made), format!("{:?}", photo()));
+    assert_eq!(crate::plugins::kit::only(&made), format!("{:?}", photo()));
 }

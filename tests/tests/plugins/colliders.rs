@@ -1,6 +1,6 @@
 //! Colliders across the border, both ways, and a solver of a plugin.
 
-use crate::kit::{make, registry_with, run};
+use crate::plugins::kit::{make, registry_with, run};
 use std::sync::Arc;
 use toile_core::artifact::{
     Artifact, Body, Curve, Fabric, Garment, GarmentPanel, Point2, Point3, SolveStatus, Vector3,
@@ -80,7 +80,7 @@ fn a_collider_and_a_solver_work_on_either_side() {
             let collider = collider(made_by, "Sphere");
             let solver = make(solved_by, "PushesOut", "()");
             let made = run(solver.as_ref(), vec![Arc::new(garment()), collider]).unwrap();
-            results.push(crate::kit::only(&made));
+            results.push(crate::plugins::kit::only(&made));
         }
     }
     assert!(results[0].contains("steps: 2"), "{}", results[0]);

@@ -1,6 +1,6 @@
 //! Stages of plugins at work: the same results as linked in, and a clear word where they fail.
 
-use crate::kit::{make, only, outline, photo, registry_with, run, run_in};
+use crate::plugins::kit::{make, only, outline, photo, registry_with, run, run_in};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
@@ -106,7 +106,7 @@ fn what_cannot_be_is_not_taken() {
 /// A garment as a stage that drapes gives it on: the stage is named, not the one that solves it next.
 #[test]
 fn a_garment_with_a_triangle_turned_over_is_not_taken() {
-    let mut two = crate::colliders::garment();
+    let mut two = crate::plugins::colliders::garment();
     let (p, r) = (two.positions[2], two.rest[2]);
     two.positions.push(p + (two.positions[1] - two.positions[0]));
     two.rest.push(r + (two.rest[1] - two.rest[0]));

@@ -1,0 +1,14 @@
+//! The program as users of a shell meet it: every test starts it as a process.
+//!
+//! `apart` and `panics` stand beside it: they call the library in their own process, and `panics` starts itself.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
+
+mod bench_costs;
+mod full_disk;
+mod interrupt;
+mod manners;
+mod plugin_ends;
+mod readme;
+mod sheet;
+mod watch;

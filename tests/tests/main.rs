@@ -1,0 +1,31 @@
+//! Tests of whole pipelines, in one program: linking one for each file took longer than most of them run.
+//!
+//! Beside it stand `any_input` and `fuzz`, which `.ci/wide` runs with more cases (`fuzz` counts what its process holds), and
+//! `contracts`, which holds stages to milliseconds: another test's work on the same threads would be counted as theirs.
+#![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
+
+mod ablation;
+mod bad_input;
+mod before_run;
+mod benches;
+mod cache;
+mod catalogue;
+mod command_line;
+mod costs;
+mod decisions;
+mod doctor;
+mod error_codes;
+mod falls;
+mod goldens;
+mod lock;
+mod migrate;
+mod new_stage;
+mod outputs;
+mod photos;
+mod plugins;
+mod qualities;
+mod repeatable;
+mod trade;
+mod typos;
+mod vest;
+mod why;
