@@ -13,7 +13,8 @@ pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> R
     let text = stdin::text(path).map_err(|why| unreadable(&file, &why))?;
     let base = stdin::folder(path);
     let set = crate::at_hand::found(&overrides.set);
-    let changes = Changes { quality: overrides.quality.as_deref(), set: &set, ..Changes::default() };
+    let changes =
+        Changes { quality: overrides.quality.as_deref(), set: &set, asks: true, ..Changes::default() };
     let mut pipeline = load_with(&text, &file, base, registry, &changes).map_err(Box::new)?;
     add_implicit(&mut pipeline, registry);
     Ok(pipeline)

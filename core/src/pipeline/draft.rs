@@ -27,7 +27,9 @@ pub(super) struct Draft {
     pub(super) span: Range<usize>,
     pub(super) place: Range<usize>,
     pub(super) params: BTreeMap<String, Range<usize>>,
-    /// None where it has a fault.
+    /// The parameters whose values are wrong.
+    pub(super) wrong: Vec<&'static str>,
+    /// None where it has a fault; where only values are wrong, the stage without them, if it can be made.
     pub(super) stage: Option<Box<dyn Stage>>,
 }
 
@@ -50,6 +52,7 @@ impl Draft {
             span: span.clone(),
             place: place.clone(),
             params: BTreeMap::new(),
+            wrong: Vec::new(),
             stage: None,
         }
     }
@@ -59,6 +62,28 @@ impl Draft {
         let Draft { id, card, span, place, params, stage, .. } = self;
         Some(Node { id, stage: stage?, card: card?, span, place, params, inputs })
     }
+}
+
+/// The nodes of the stages that could be made and are fed by such, near and far, and of each whether all its values are its own.
+pub(super) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> (Vec<Node>, Vec<bool>) {
+    let (mut nodes, mut own): (Vec<Node>, Vec<bool>) = Default::default();
+    // Where each draft stands among the nodes.
+    let mut places: Vec<Option<usize>> = Vec::new();
+    for (draft, inputs) in drafts.into_iter().zip(feeds) {
+        let moved = |feed: Feed| match feed {
+            Feed::Node { node, port } => {
+                places.get(node).copied().flatten().map(|node| Feed::Node { node, port })
+            }
+            other => Some(other),
+        };
+        let inputs: Option<Vec<Feed>> = inputs.into_iter().map(moved).collect();
+        let is_own = draft.wrong.is_empty();
+        let node = inputs.and_then(|inputs| draft.finish(inputs));
+        places.push(node.as_ref().map(|_| nodes.len()));
+        own.extend(node.as_ref().map(|_| is_own));
+        nodes.extend(node);
+    }
+    (nodes, own)
 }
 
 /// Gives every stage its id: the one it asks for, else its name with a number where that is taken.

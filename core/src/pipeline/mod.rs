@@ -136,6 +136,9 @@ pub struct Changes<'a> {
     /// True of the text of a [`Pipeline`] that was loaded before: settings of qualities were checked then, against the file
     /// as it was.
     pub again: bool,
+    /// True where what stages find wrong comes out with values that are wrong: what [`crate::faults`] finds where a file has
+    /// no fault. Files are then looked at.
+    pub asks: bool,
 }
 
 /// Loads a pipeline file: `text` is its content, `file` the name to show, `base` the folder that
@@ -175,23 +178,40 @@ pub fn load_with(
     }
     let mut faults: Vec<Fault> = std::mem::take(&mut applied.refused).into_iter().map(|(_, f)| f).collect();
     faults.append(&mut refused);
-    let checked = check(&applied.text, &registry, &mut faults);
-    match checked {
-        Some((read, drafts, feeds)) if faults.is_empty() && known.is_empty() => {
-            let nodes = drafts.into_iter().zip(feeds).filter_map(|(d, inputs)| d.finish(inputs)).collect();
-            let stem =
-                || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-            let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
-            let (qualities, quality) = (read.qualities, changes.words());
-            let written = (text.to_owned(), applied.origin);
-            let (text, base, file) = (applied.text, base.to_owned(), file.to_owned());
-            Ok(Pipeline { name, file, text, base, nodes, plugins, qualities, quality, written })
-        }
-        _ => {
-            let told = faults.into_iter().map(|fault| applied.origin.told(fault));
-            Err(Faults::new(file, text, told.chain(known).collect()))
-        }
+    let told = |faults: Vec<Fault>, origin: &origin::Origin| -> Vec<Fault> {
+        faults.into_iter().map(|fault| origin.told(fault)).chain(known.clone()).collect()
+    };
+    let Some((read, drafts, feeds)) = check(&applied.text, &registry, &mut faults) else {
+        return Err(Faults::new(file, text, told(faults, &applied.origin)));
+    };
+    let is_clean = faults.is_empty() && known.is_empty();
+    if !is_clean && !(changes.asks && faults.iter().all(|f| f.code == "bad_value")) {
+        return Err(Faults::new(file, text, told(faults, &applied.origin)));
     }
+    let mut found = told(faults, &applied.origin);
+    let stem = || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
+    let (qualities, quality) = (read.qualities, changes.words());
+    let (nodes, own) = draft::finished(drafts, feeds);
+    let written = (text.to_owned(), applied.origin);
+    let (base, file_name) = (base.to_owned(), file.to_owned());
+    let pipeline = Pipeline {
+        name,
+        file: file_name,
+        text: applied.text,
+        base,
+        nodes,
+        plugins,
+        qualities,
+        quality,
+        written,
+    };
+    if is_clean {
+        return Ok(pipeline);
+    }
+    let more = crate::faults(&pipeline, |i| own.get(i) == Some(&true), None);
+    found.extend(more.err().into_iter().flat_map(|f| f.faults));
+    Err(Faults::new(file, text, found))
 }
 
 impl Changes<'_> {

@@ -213,7 +213,8 @@ impl Reader<'_> {
                 self.push(fault.hint(format!("write `{name}()`")));
             }
         }
-        if self.faults.len() == before && !value.is_broken {
+        let of_values = self.faults.iter().skip(before).all(|f| f.code == "bad_value");
+        if of_values && !value.is_broken {
             self.make(&mut draft);
         }
         draft
@@ -297,7 +298,9 @@ impl Reader<'_> {
 
     fn param(&mut self, draft: &mut Draft, doc: &ParamDoc, value: &Tree) {
         draft.params.insert(doc.name.to_owned(), value.span.clone());
-        self.check(doc, value);
+        if !self.check(doc, value) {
+            draft.wrong.push(doc.name);
+        }
     }
 
     fn no_params(&mut self, draft: &Draft, span: &Range<usize>) {
@@ -370,12 +373,15 @@ impl Reader<'_> {
         texts.filter(|(id, _)| seen.insert(id.clone())).collect()
     }
 
-    /// Makes the typed stage of a draft whose parameters are clean.
+    /// Makes the typed stage of a draft, without the values that are wrong.
     fn make(&mut self, draft: &mut Draft) {
         let Some(card) = &draft.card else { return };
-        let args: Vec<String> = draft.params.iter().map(|(k, v)| format!("{k}: {}", self.at(v))).collect();
+        let clean = draft.params.iter().filter(|(k, _)| !draft.wrong.contains(&k.as_str()));
+        let args: Vec<String> = clean.map(|(k, v)| format!("{k}: {}", self.at(v))).collect();
         match self.registry.make(card, &format!("({})", args.join(", "))) {
             Ok(stage) => draft.stage = Some(stage),
+            // What is missing is the value whose fault is told.
+            Err(_) if !draft.wrong.is_empty() => {}
             Err(reason) => {
                 self.fault("bad_value", format!("`{}` cannot be made: {reason}", draft.name), &draft.place);
             }
