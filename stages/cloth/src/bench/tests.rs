@@ -74,11 +74,21 @@ fn e4_catenary() {
 }
 
 #[test]
+#[ignore = "slow: .ci/wide"]
 fn e5_friction() {
     worst(Test::Friction, 64);
 }
 
 #[test]
+fn e5_and_e6_hold_on_one_mesh() {
+    for (test, along) in [(Test::Friction, 64), (Test::Dynamics, 20)] {
+        let score = run(test, Models::DEFAULT, Layout::Irregular(1), along).unwrap();
+        assert!(score.error() <= test.limit(), "{}: {:?}", test.label(), score.parts);
+    }
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
 fn e6_dynamics() {
     worst(Test::Dynamics, 20);
 }

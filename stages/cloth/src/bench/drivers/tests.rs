@@ -20,6 +20,7 @@ fn error_power(report: &Report, scene: Scene, driver: Driver, way: Way) -> Power
 }
 
 #[test]
+#[ignore = "slow: .ci/wide"]
 fn errors_fall_as_theory_has_it() {
     let (explicit, implicit) = (way(Some(Scheme::Explicit), WOVEN), way(Some(Scheme::Implicit), WOVEN));
     let (newton, xpbd) = (way(None, WOVEN), way(Some(Scheme::Xpbd), WOVEN));

@@ -28,8 +28,16 @@ pub use swing::{
 pub(crate) fn root(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let rising = f(high) > 0.0;
     for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if (f(middle) > 0.0) == rising { high = middle } else { low = middle }
+        let (middle, before) = (0.5 * (low + high), (low, high));
+        if (f(middle) > 0.0) == rising {
+            high = middle
+        } else {
+            low = middle
+        }
+        // Between neighbours nothing lies: no further step would change anything.
+        if (low, high) == before {
+            break;
+        }
     }
     0.5 * (low + high)
 }

@@ -89,6 +89,7 @@ fn a_fall_onto_a_sphere_and_itself_crosses_nothing() {
 }
 
 #[test]
+#[ignore = "slow: .ci/wide"]
 fn cloth_falls_onto_cloth_and_stays_above_it() {
     // A sheet held at one edge folds down over a box edge onto itself: three layers in the end.
     let mut scene = generate::drape(16);
