@@ -185,7 +185,8 @@ pub fn load_with(
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     };
     let is_clean = faults.is_empty() && known.is_empty();
-    if !is_clean && !(changes.asks && faults.iter().all(|f| f.code == "bad_value")) {
+    let of_values = changes.asks && faults.iter().all(|f| f.code == "bad_value");
+    if !is_clean && !of_values {
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     }
     let mut found = told(faults, &applied.origin);

@@ -23,8 +23,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// Cases a stage; `PROPTEST_CASES=100` looks longer, as `.ci/wide` does.
 const CASES: u32 = 8;
 
-/// The most times that these cases are drawn for a stage that none has reached.
-const ROUNDS: u32 = 4;
+/// So many times the cases are drawn for a stage that none of them reached.
+const MORE: u32 = 4;
 
 static POOL: LazyLock<Pool> = LazyLock::new(Pool::new);
 
@@ -110,24 +110,21 @@ fn every_stage_answers_or_refuses_whatever_it_is_given() {
     for (card, stage) in stages() {
         // With --nocapture it tells which stage ends the process, should one run out of memory.
         eprintln!("{} ({})", card.name, card.role.as_str());
-        let config =
-            ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() };
-        let mut runner = proptest::test_runner::TestRunner::new_with_rng(config, pool::rng(card.name));
         let edits = prop::collection::vec(any::<Edit>(), 0..4);
         let edited = Cell::new(0);
-        let mut tried = || {
+        let tried = |cases: u32| {
+            let config = ProptestConfig { cases, failure_persistence: None, ..ProptestConfig::default() };
+            let mut runner = proptest::test_runner::TestRunner::new_with_rng(config, pool::rng(card.name));
             runner.run(&edits, |edits| {
                 let ran = trial(card, stage.as_ref(), &edits).map_err(TestCaseError::fail)?;
                 edited.set(edited.get() + u32::from(ran && !edits.is_empty()));
                 Ok(())
             })
         };
-        let mut outcome = tried();
-        // Some stages take little of what is edited: they get further cases.
-        for _ in 1..ROUNDS {
-            if outcome.is_ok() && edited.get() == 0 {
-                outcome = tried();
-            }
+        let mut outcome = tried(cases());
+        // Some stages take little of what is edited.
+        if outcome.is_ok() && edited.get() == 0 {
+            outcome = tried(cases() * MORE);
         }
         eprintln!("  ran on edited inputs in {} of {} cases or more", edited.get(), cases());
         let reached = edited.get() > 0;
