@@ -1,6 +1,7 @@
 //! Bodies: made from measurements or read from a file.
 
 mod body_obj;
+mod bridge;
 mod estimate;
 mod field;
 mod figure;
@@ -14,6 +15,7 @@ mod topology;
 mod trunk;
 
 pub use body_obj::{BodyObj, Units, Up};
+pub(crate) use bridge::bridged;
 pub(crate) use estimate::estimate;
 pub use mannequin::Mannequin;
 pub(crate) use trunk::forms;

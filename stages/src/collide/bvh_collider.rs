@@ -4,6 +4,7 @@ use super::asked_distances::{self, Distances};
 use super::body_check::check_body;
 use super::scheme::BvhScheme;
 use super::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
+use crate::body::bridged;
 use std::sync::Arc;
 use toile_core::decide::{Decision, Known};
 use toile_core::param::ron_text;
@@ -57,6 +58,9 @@ pub struct BvhCollider {
     /// Stiffness of the penalty response; without it contacts are resolved by impulses.
     #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
     penalty: Option<f64>,
+    /// Gaps between arm and trunk narrower than this are bridged for the cloth, which cannot rest in them; none at 0.
+    #[param(default = Length::mm(0.0), min = 0.0, max = 0.3)]
+    bridge: Length,
     /// When distances to the body are worked out; the results are the same.
     #[param(default = Distances::Asked)]
     distances: Distances,
@@ -72,6 +76,9 @@ impl BvhCollider {
         if body.is_none() && !self.self_collision {
             cx.warn("there is no body and self-collision is off: nothing is kept apart");
         }
+        let bridged = self.bridged(body, cx);
+        let signature = self.signature(body);
+        let body = bridged.as_ref().or(body);
         let scheme = match self.volume {
             Volume::Aabb => self.scheme::<Aabb>(body, cx),
             Volume::Sphere => self.scheme::<Sphere>(body, cx),
@@ -82,7 +89,7 @@ impl BvhCollider {
             Volume::KDop(26) => self.scheme::<KDop<13>>(body, cx),
             Volume::KDop(k) => Err(no_such_kdop(k)),
         }?;
-        Ok(Collider { scheme, signature: self.signature(body) })
+        Ok(Collider { scheme, signature })
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
@@ -98,6 +105,19 @@ impl BvhCollider {
             .flatten()
             .into_iter()
             .collect()
+    }
+
+    /// The body as the cloth meets it, where that is another one.
+    fn bridged(&self, body: Option<&Body>, cx: &Context) -> Option<Body> {
+        let width = self.bridge.metres();
+        if width == 0.0 {
+            return None;
+        }
+        let found = body.and_then(|b| bridged(b, width));
+        if found.is_none() {
+            cx.warn("`bridge` has nothing to bridge: there is no body with landmarks of its armpits");
+        }
+        found
     }
 
     fn scheme<V: BoundingVolume>(

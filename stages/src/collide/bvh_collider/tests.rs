@@ -83,6 +83,22 @@ fn warns_where_nothing_is_left_to_collide() {
 }
 
 #[test]
+fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
+    let wide = BvhCollider { bridge: Length::mm(80.0), ..Default::default() };
+    let cx = Context::quiet();
+    wide.run(Some(&cube(0.5)), &cx).unwrap();
+    assert_eq!(
+        cx.take_notes().1,
+        ["`bridge` has nothing to bridge: there is no body with landmarks of its armpits"]
+    );
+    let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
+    let body = crate::body::tests::mannequin(lengths).unwrap();
+    let surface = made(&wide, Some(&body));
+    let plain = made(&BvhCollider::default(), Some(&body));
+    assert_ne!(surface.surface().unwrap().positions, plain.surface().unwrap().positions);
+}
+
+#[test]
 fn its_signature_tells_bodies_and_settings_apart() {
     let sign = |c: &BvhCollider, b: Option<&Body>| c.run(b, &Context::quiet()).unwrap().signature;
     let plain = BvhCollider::default();
