@@ -1,7 +1,7 @@
 //! What a garment is sewn on: the trunk and the legs of a body, without arms and head.
 //!
 //! Flat panels stand before and behind a body: the arms are between them, and a seam on the shoulder must be led over it. So arms and head
-//! are left out while seams close, and the trunk begins lower and rises into the sewn garment.
+//! are left out while seams close, and the trunk begins lower and rises into the sewn garment. Sleeves are closed around the arms meanwhile.
 //!
 //! Method: a limb is what of the mesh hangs together with its end beyond a plane through its root, at right angles to it; it
 //! is cut off along edges of the mesh, and each hole is closed with a fan. Cost: O(triangles). Limit: arms that grow together with the
@@ -25,32 +25,45 @@ const LOWER: (f64, usize) = (0.05, 4);
 /// A solid: points and triangles.
 type Mesh = (Vec<Point3>, Vec<[u32; 3]>);
 
-/// What the garment is sewn on, one after the other, before the whole body comes: the trunk from below up to its own height. Nothing for a
-/// body that has no landmarks of arms and neck.
-pub(crate) fn forms(body: &Body) -> Vec<Mesh> {
-    let Some((points, triangles)) = trunk(body) else { return Vec::new() };
-    let height = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
-    let (share, steps) = LOWER;
-    let lowered = |k: usize| {
-        let by = Vector3::y() * (share * height * k as f64 / steps as f64);
-        (points.iter().map(|p| p - by).collect(), triangles.clone())
-    };
-    (0..=steps).rev().map(lowered).collect()
+/// What a garment is sewn on before the whole body comes.
+pub(crate) struct Forms {
+    /// Trunk and legs.
+    pub(crate) trunk: Mesh,
+    /// The arms; sleeves are kept out of them while all else is kept out of the trunk. None where they grow together with it.
+    pub(crate) arms: Option<Mesh>,
+    /// Where trunk and arms stand, one after the other: from below up to their own height.
+    pub(crate) shifts: Vec<Vector3>,
 }
 
-/// The body without its arms and its head.
-fn trunk(body: &Body) -> Option<Mesh> {
+/// What a garment is sewn on. Nothing for a body that has no landmarks of arms and neck.
+pub(crate) fn forms(body: &Body) -> Option<Forms> {
+    let (trunk, arms) = parts(body)?;
+    let height = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+    let (share, steps) = LOWER;
+    let lowered = |k: usize| Vector3::y() * (-share * height * k as f64 / steps as f64);
+    Some(Forms { trunk, arms, shifts: (0..=steps).rev().map(lowered).collect() })
+}
+
+/// The body without its arms and its head, and the arms.
+fn parts(body: &Body) -> Option<(Mesh, Option<Mesh>)> {
     let at = |name: &str| body.landmarks.get(name).copied();
-    let mut cut = BTreeSet::new();
+    let (mut cut, mut arms) = (BTreeSet::new(), BTreeSet::new());
     for side in ["left", "right"] {
         let of = |part: &str| at(&format!("{part}_{side}"));
         let (root, wrist) = (nalgebra::center(&of("shoulder")?, &of("armpit")?), of("wrist")?);
-        cut.extend(beyond(body, &root, &(wrist - root), BEYOND, &wrist)?);
+        arms.extend(beyond(body, &root, &(wrist - root), BEYOND, &wrist)?);
     }
+    cut.extend(&arms);
     let neck = nalgebra::center(&at("neck_left")?, &at("neck_right")?);
     let top = body.positions.iter().max_by(|a, b| a.y.total_cmp(&b.y))?;
     cut.extend(beyond(body, &neck, &Vector3::y(), ABOVE, top)?);
-    let is_kept = |t: &&[u32; 3]| t.iter().all(|v| !cut.contains(v));
+    let trunk = closed(body, |v| !cut.contains(v))?;
+    Some((trunk, if arms.is_empty() { None } else { closed(body, |v| arms.contains(v)) }))
+}
+
+/// The triangles of a body whose vertices are all of a part of it, holes closed.
+fn closed(body: &Body, is_of: impl Fn(&u32) -> bool) -> Option<Mesh> {
+    let is_kept = |t: &&[u32; 3]| t.iter().all(&is_of);
     let mut triangles: Vec<[u32; 3]> = body.triangles.iter().filter(is_kept).copied().collect();
     let mut points = body.positions.clone();
     for hole in holes(&triangles)? {
@@ -59,7 +72,17 @@ fn trunk(body: &Body) -> Option<Mesh> {
         points.push(Point3::from(sum / hole.len() as f64));
         triangles.extend(hole.iter().enumerate().map(|(k, v)| [*v, hole[(k + 1) % hole.len()], tip]));
     }
-    Some((points, triangles))
+    Some(used(&points, &triangles))
+}
+
+/// A mesh without the points that no triangle has.
+fn used(points: &[Point3], triangles: &[[u32; 3]]) -> Mesh {
+    let used: BTreeSet<u32> = triangles.iter().flatten().copied().collect();
+    let number: BTreeMap<u32, u32> = used.iter().enumerate().map(|(k, v)| (*v, k as u32)).collect();
+    (
+        used.iter().map(|v| points[*v as usize]).collect(),
+        triangles.iter().map(|t| t.map(|v| number[&v])).collect(),
+    )
 }
 
 /// The vertices that hang together with the one at `tip` farther along `axis` from `root` than so many metres; none where they are too
@@ -118,17 +141,20 @@ mod tests {
     fn a_mannequin_is_sewn_on_its_closed_trunk_which_rises_to_its_place() {
         let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
         let body = crate::body::tests::mannequin(lengths).unwrap();
-        let forms = forms(&body);
-        assert_eq!(forms.len(), 5);
-        let top = |(points, triangles): &Mesh| {
-            triangles.iter().flatten().map(|v| points[*v as usize].y).fold(0.0, f64::max)
-        };
-        let rises: Vec<f64> = forms.windows(2).map(|f| top(&f[1]) - top(&f[0])).collect();
+        let Forms { trunk, arms, shifts } = forms(&body).unwrap();
+        let (points, triangles) = arms.unwrap();
+        assert_eq!(holes(&triangles), Some(vec![]));
+        assert!(points.iter().all(|p| p.x.abs() > body.landmarks["shoulder_left"].x.abs()));
+        let wrist = body.landmarks["wrist_left"];
+        assert!(points.iter().any(|p| (p - wrist).norm() < 0.06), "the hand is of the arm");
+        let rises: Vec<f64> = shifts.windows(2).map(|s| s[1].y - s[0].y).collect();
         assert!(rises.iter().all(|r| (r - 0.05 * 1.72 / 4.0).abs() < 2e-3), "{rises:?}");
-        let (points, triangles) = &forms[4];
+        assert_eq!((shifts.len(), shifts[4]), (5, Vector3::zeros()));
+        let (points, triangles) = &trunk;
         assert_eq!(holes(triangles), Some(vec![]));
-        assert!(top(&forms[4]) < body.landmarks["neck_left"].y + 0.05);
-        let wide = triangles.iter().flatten().map(|v| points[*v as usize].x).fold(0.0, f64::max);
+        let top = points.iter().map(|p| p.y).fold(0.0, f64::max);
+        assert!(top < body.landmarks["neck_left"].y + 0.05);
+        let wide = points.iter().map(|p| p.x).fold(0.0, f64::max);
         assert!(wide < body.landmarks["shoulder_left"].x.abs() + 0.1, "{wide}");
         let trunk = Body { positions: points.clone(), triangles: triangles.clone(), ..body.clone() };
         let share = trunk.volume() / body.volume();
@@ -140,6 +166,6 @@ mod tests {
         let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
         let mut body = crate::body::tests::mannequin(lengths).unwrap();
         body.landmarks.remove("wrist_left");
-        assert!(forms(&body).is_empty());
+        assert!(forms(&body).is_none());
     }
 }

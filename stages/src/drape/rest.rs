@@ -14,10 +14,10 @@ use crate::cloth::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use toile_cloth::contact::body::Body as Solid;
 use toile_cloth::contact::skin::Skin;
-use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
+use toile_cloth::rest::solve::{Form, LevelReport, Rest as Solver, RestError, Rested, Wearer};
 use toile_cloth::rest::unrest::unrest;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
@@ -118,20 +118,9 @@ impl Rest {
         let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
-        let clock = Instant::now();
-        let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
-        if let (true, Err(RestError::SeamNotClosed { .. }), Some(collider)) =
-            (self.sew_through, &result, collider)
-        {
-            let forms = forms_of(collider);
-            let around: Vec<&dyn Skin> = forms.iter().map(|f| f as &dyn Skin).collect();
-            if !around.is_empty() {
-                // Both ways share the time that the user gives.
-                let solver =
-                    Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
-                result = solver.solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
-            }
-        }
+        let forms = collider.filter(|_| self.sew_through).and_then(forms_of);
+        let around = forms.as_ref().map_or_else(Vec::new, SolidForms::one_by_one);
+        let result = self.solver().solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
         cx.check()?;
         if let (Err(RestError::Falls), Some(phases)) = (&result, phases) {
             cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
@@ -216,16 +205,40 @@ impl Rest {
     }
 }
 
-/// What a garment is sewn on where the whole body keeps its seams open; nothing where the collider shows no standing figure.
-fn forms_of(collider: &Collider) -> Vec<Solid> {
-    let Some(surface) = collider.scheme.surface() else { return Vec::new() };
+/// What a garment is sewn on before the whole body comes.
+struct SolidForms {
+    trunks: Vec<Solid>,
+    /// As many, or none.
+    arms: Vec<Solid>,
+    shifts: Vec<Vector3<f64>>,
+}
+
+impl SolidForms {
+    fn one_by_one(&self) -> Vec<Form<'_>> {
+        let form = |(k, trunk)| Form {
+            trunk,
+            arms: self.arms.get(k).map(|arms| arms as &dyn Skin),
+            shift: self.shifts[k],
+        };
+        self.trunks.iter().map(|trunk| trunk as &dyn Skin).enumerate().map(form).collect()
+    }
+}
+
+/// What a garment is sewn on; nothing where the collider shows no standing figure.
+fn forms_of(collider: &Collider) -> Option<SolidForms> {
+    let surface = collider.scheme.surface()?;
     let (positions, triangles) = (surface.positions.to_vec(), surface.triangles.to_vec());
     let height = positions.iter().map(|p| p.y).fold(0.0, f64::max);
-    let Ok((landmarks, measurements)) = estimate(&positions, &triangles, height) else { return Vec::new() };
-    let solid = |(points, triangles): (Vec<Point3>, Vec<[u32; 3]>)| {
-        Solid::new(points.iter().map(|p| p.coords).collect(), &triangles)
+    let (landmarks, measurements) = estimate(&positions, &triangles, height).ok()?;
+    let forms = forms(&Body { positions, triangles, landmarks, measurements })?;
+    let at = |mesh: &(Vec<Point3>, Vec<[u32; 3]>), shift: &Vector3<f64>| {
+        Solid::new(mesh.0.iter().map(|p| p.coords + shift).collect(), &mesh.1)
     };
-    forms(&Body { positions, triangles, landmarks, measurements }).into_iter().map(solid).collect()
+    Some(SolidForms {
+        trunks: forms.shifts.iter().map(|shift| at(&forms.trunk, shift)).collect(),
+        arms: forms.arms.iter().flat_map(|arms| forms.shifts.iter().map(|shift| at(arms, shift))).collect(),
+        shifts: forms.shifts,
+    })
 }
 
 /// Tells the user how far the solver has come, and stops it when asked to.

@@ -67,6 +67,7 @@ pub(super) fn assemble<'a>(
     };
     let support = body.map(|b| Support {
         body: b.skin,
+        arms: None,
         friction: panel.iter().map(|&p| rub(b, p)).collect(),
         offsets: panel.iter().map(thickness).collect(),
         offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),

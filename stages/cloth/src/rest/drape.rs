@@ -44,7 +44,8 @@ impl<'a> Work<'a> {
                 if k > 0 {
                     scope.spawn(|_| ready = plan.level(k - 1));
                 }
-                if !self.free(k, &mut level, progress)? {
+                // What was sewn through itself has no start that is free of crossings: a finer mesh may come over the edge.
+                if !self.free(k, &mut level, progress)? && !plan.rest.sew_through {
                     return Ok(false);
                 }
                 self.bring(k, &mut level, &mut bending, progress).map(|()| true)

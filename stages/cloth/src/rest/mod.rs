@@ -12,6 +12,7 @@ pub mod elastic;
 mod error;
 pub(crate) mod fallen;
 mod first;
+pub mod form;
 mod front;
 mod graded;
 pub mod grip;

@@ -184,6 +184,7 @@ fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
     let edges = whole.edges.iter().filter(|(e, _)| cut.wakes(e) && cut.knows(e));
     Support {
         body: whole.body,
+        arms: whole.arms.as_ref().map(|(skin, on_arms)| (*skin, pick(nodes, on_arms))),
         friction: pick(nodes, &whole.friction),
         offsets: pick(nodes, &whole.offsets),
         offset: whole.offset,

@@ -3,6 +3,7 @@
 use super::assemble::{Wearer, assemble, cloths, gravity, kept_threads};
 use super::coarsen::{Coarser, coarsen};
 use super::error::RestError;
+use super::form::Form;
 use super::graded::Grade;
 use super::level::Level;
 use super::pieces::Pieces;
@@ -10,7 +11,6 @@ use super::pile::pile_of;
 use super::solve::Rest;
 use super::start::{crossing, crossings_at_start};
 use crate::contact::past::BodyBox;
-use crate::contact::skin::Skin;
 use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
@@ -25,7 +25,9 @@ pub(super) struct Plan<'a> {
     pub(super) scene: &'a Scene,
     pub(super) body: Option<Wearer<'a>>,
     /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing else.
-    pub(super) around: &'a [&'a dyn Skin],
+    pub(super) around: &'a [Form<'a>],
+    /// Which vertices of the finest level are kept out of the arms of what they are sewn on.
+    pub(super) on_arms: &'a [bool],
     /// The box around the body, where there is one and the cloth has weight.
     pub(super) body_box: Option<BodyBox>,
     /// What no panel and what each panel is made of.
@@ -47,7 +49,7 @@ impl<'a> Plan<'a> {
         coarsest: usize,
         scene: &'a Scene,
         body: Option<Wearer<'a>>,
-        around: &'a [&'a dyn Skin],
+        (around, on_arms): (&'a [Form<'a>], &'a [bool]),
         start: &[Vec3],
     ) -> Result<Self, RestError> {
         let body_box = body.and_then(|w| BodyBox::of(w.skin, &gravity(scene)));
@@ -75,12 +77,12 @@ impl<'a> Plan<'a> {
             return Err(RestError::Falls);
         }
         let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
-        Ok(Self { rest, scene, body, around, body_box, cloths, is_pile, pieces, coarser, starts })
+        Ok(Self { rest, scene, body, around, on_arms, body_box, cloths, is_pile, pieces, coarser, starts })
     }
 
     /// What keeps cloth out while its seams close.
     pub(super) fn sewn_on(&self) -> Option<Wearer<'a>> {
-        self.body.map(|w| Wearer { skin: self.around.first().copied().unwrap_or(w.skin), ..w })
+        self.body.map(|w| Wearer { skin: self.around.first().map_or(w.skin, |form| form.trunk), ..w })
     }
 
     /// Mean length of the edges of the coarsest level, m.

@@ -67,13 +67,12 @@ impl Work<'_> {
         }
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
         if let (Some(body), [_, next @ ..]) = (self.plan.body, self.plan.around) {
-            let mut solid = body;
             // Friction would hold the cloth below a shoulder that rises into it.
-            solid.friction = 0.0;
-            for skin in next.iter().copied().chain([body.skin]) {
-                solid.skin = skin;
-                self.push_out(solid, progress)?;
+            let body = Wearer { friction: 0.0, ..body };
+            for form in next {
+                self.push_out(Wearer { skin: form.trunk, ..body }, form.arms, progress)?;
             }
+            self.push_out(body, None, progress)?;
         }
         Ok(())
     }
@@ -160,25 +159,51 @@ impl Work<'_> {
     }
 
     /// Lets a solid push the sewn cloth out of itself, through cloth where that is in the way.
-    fn push_out(&mut self, solid: Wearer<'_>, progress: &mut Progress<'_>) -> Result<(), RestError> {
+    fn push_out(
+        &mut self,
+        solid: Wearer<'_>,
+        arms: Option<&dyn Skin>,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
         let coarsest = self.plan.pieces.len() - 1;
         let pieces = &self.plan.pieces[coarsest];
         let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
         let start = pieces.sew(&self.plan.starts[coarsest], &vec![1.0; pieces.rest.len()]);
+        let heights = self.unshifted(start.clone());
         let mut x = std::mem::take(&mut self.x);
         let mut system = assemble(self.plan.scene, Some(solid), pieces, &sheet, false)?;
         system.gravity = Vec3::zeros();
         (system.layers, system.ridges) = (None, None);
-        system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
+        if let Some(s) = &mut system.support {
+            (s.passes, s.depth) = (true, DEEPEST);
+            s.arms = arms.map(|skin| (skin, self.plan.nodes_on_arms(coarsest, false)));
+        }
         system.height_springs =
-            self.height_springs(&sheet, &start, LOOSE * SEAM_PULL * strongest(&self.plan.cloths));
+            self.height_springs(&sheet, &heights, LOOSE * SEAM_PULL * strongest(&self.plan.cloths));
         let (steps, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
-        let is_out = |x: &[Vec3]| depth(solid.skin, x) <= SHALLOW;
+        let on_arms = system.support.as_ref().and_then(|s| s.arms.clone());
+        let is_out = |x: &[Vec3]| match &on_arms {
+            None => depth(solid.skin, x) <= SHALLOW,
+            Some((skin, on)) => [(solid.skin, false), (*skin, true)].into_iter().all(|(skin, arm)| {
+                let these: Vec<Vec3> =
+                    x.iter().zip(on).filter(|(_, on)| **on == arm).map(|(p, _)| *p).collect();
+                depth(skin, &these) <= SHALLOW
+            }),
+        };
         let report = self.run(&mut system, &sheet, &start, &mut x, &pace, &is_out, progress)?;
         self.reports.push(report);
         self.x = x;
         Ok(())
+    }
+
+    /// Sewn nodes of the coarsest level, those on the arms where they are before these are lowered.
+    fn unshifted(&self, mut x: Vec<Vec3>) -> Vec<Vec3> {
+        if let Some(form) = self.plan.around.first() {
+            let on_arms = self.plan.nodes_on_arms(self.plan.pieces.len() - 1, false);
+            x.iter_mut().zip(on_arms).filter(|(_, on)| *on).for_each(|(p, _)| *p -= form.shift);
+        }
+        x
     }
 
     /// What holds the cloth at its height under seams that pull so hard, N/m.
@@ -217,6 +242,10 @@ impl Work<'_> {
     fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
         let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
         let mut system = assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true)?;
+        if let (Some(s), Some(form)) = (&mut system.support, self.plan.around.first()) {
+            s.arms = form.arms.map(|skin| (skin, self.plan.nodes_on_arms(self.plan.pieces.len() - 1, true)));
+            system.ridges = None;
+        }
         if self.plan.rest.graded {
             system.elastic.stiffen(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);

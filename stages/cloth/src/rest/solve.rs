@@ -20,6 +20,8 @@
 pub use super::assemble::Wearer;
 use super::assemble::gravity;
 pub use super::error::RestError;
+pub use super::form::Form;
+use super::form::{self, on_arms};
 use super::graded::COARSEST;
 use super::grip::Grip;
 use super::newton::Outcome;
@@ -34,7 +36,6 @@ use super::tangled::tangled;
 use super::unrest::Unbalanced;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
-use crate::contact::skin::Skin;
 use crate::scene::{Panel, Scene};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -165,7 +166,8 @@ impl Rest {
     }
 
     /// The same, sewn on other solids before the body comes: seams close on the first of `around`, then each of the others pushes the
-    /// sewn cloth out of itself, and the body as the last. For [`Rest::sew_through`], where the body keeps seams open.
+    /// sewn cloth out of itself, and the body as the last. A panel that starts nearer to the arms of the first than to its trunk is kept
+    /// out of the arms alone until the body comes, all other cloth out of the trunk alone. For [`Rest::sew_through`], where the body keeps seams open.
     ///
     /// # Errors
     /// Every [`RestError`].
@@ -173,7 +175,7 @@ impl Rest {
         &self,
         scene: &Scene,
         wearer: Option<Wearer<'_>>,
-        around: &[&dyn Skin],
+        around: &[Form<'_>],
         progress: &mut Progress<'_>,
     ) -> Result<Rested, RestError> {
         let clock = Instant::now();
@@ -181,20 +183,19 @@ impl Rest {
         scene.check_still()?;
         let pile = pile_of(scene);
         let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
-        let start = match self.sew_through {
-            true => moved_out::<RestError>(
-                scene,
-                around.first().copied().or(wearer.map(|w| w.skin)),
-                self.join_gap,
-            )?,
-            false => check::<RestError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
+        let on_arms = around.last().map_or_else(Vec::new, |form| on_arms(scene, form));
+        let skin = wearer.map(|w| w.skin);
+        let start = match (around.first(), self.sew_through) {
+            (Some(form), true) => form::start::<RestError>(scene, form, &on_arms, self.join_gap)?,
+            (None, true) => moved_out::<RestError>(scene, &scene.positions, skin, self.join_gap)?,
+            (_, false) => check::<RestError>(scene, skin, self.join_gap)?,
         };
         if !self.from_here && !self.sew_through {
             check_lying::<RestError>(scene, &Pieces::new(scene), &start)?;
         }
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
         loop {
-            let plan = Plan::new(&rest, coarsest, scene, wearer, around, &start)?;
+            let plan = Plan::new(&rest, coarsest, scene, wearer, (around, &on_arms), &start)?;
             let (made, finer) = (Work::new(&plan, clock).make(progress), plan.second());
             coarsest = match (made, finer) {
                 (Ok(Draped::Rested(state)), _) => return rest.judge(scene, Rested { restarts, ..*state }),

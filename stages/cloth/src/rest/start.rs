@@ -156,23 +156,24 @@ pub(crate) fn check<E: From<StartError> + From<ClothError>>(
     Ok(start)
 }
 
-/// Where the vertices start, those inside the body moved out to its nearest point, however deep they are.
+/// The positions of a scene's vertices, those inside the body moved out to its nearest point, however deep they are.
 ///
 /// # Errors
 /// [`StartError::PinnedApart`]: what seams cannot bring together whatever lies between.
 pub(crate) fn moved_out<E: From<StartError>>(
     scene: &Scene,
+    positions: &[Vec3],
     skin: Option<&dyn Skin>,
     join_gap: f64,
 ) -> Result<Vec<Vec3>, E> {
     seams::check_pins(scene, join_gap)?;
-    let Some(skin) = skin else { return Ok(scene.positions.clone()) };
-    let near = skin.nearest(&scene.positions, &vec![f64::INFINITY; scene.positions.len()]);
+    let Some(skin) = skin else { return Ok(positions.to_vec()) };
+    let near = skin.nearest(positions, &vec![f64::INFINITY; positions.len()]);
     let out = |(p, n): (&Vec3, Option<Nearest>)| match n {
         Some(n) if n.distance < scene.material.thickness => n.point + n.normal * scene.material.thickness,
         _ => *p,
     };
-    Ok(scene.positions.iter().zip(near).map(out).collect())
+    Ok(positions.iter().zip(near).map(out).collect())
 }
 
 /// Refuses cloth that lies in cloth where it starts.

@@ -29,6 +29,8 @@ pub(super) const NEAR: f64 = 1.5;
 pub struct Support<'a> {
     /// The body.
     pub body: &'a dyn Skin,
+    /// What keeps some nodes out in place of the body, and which nodes.
+    pub arms: Option<(&'a dyn Skin, Vec<bool>)>,
     /// Coefficient of friction, per node.
     pub friction: Vec<f64>,
     /// Distance at which contact begins, per node, m.
@@ -68,6 +70,32 @@ pub struct Seen {
 pub type Sight = (Seen, Option<Nearest>);
 
 impl Support<'_> {
+    /// The surface nearest to each of some nodes at `points`, where it is nearer than `within`, m.
+    pub(super) fn nearest(&self, nodes: &[usize], points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>> {
+        let Some((arms, on_arms)) = &self.arms else { return self.body.nearest(points, within) };
+        let mut found = vec![None; nodes.len()];
+        for (skin, of_arms) in [(self.body, false), (*arms, true)] {
+            let these: Vec<usize> = (0..nodes.len()).filter(|&k| on_arms[nodes[k]] == of_arms).collect();
+            let points: Vec<Vec3> = these.iter().map(|&k| points[k]).collect();
+            let within: Vec<f64> = these.iter().map(|&k| within[k]).collect();
+            these.iter().zip(skin.nearest(&points, &within)).for_each(|(&k, n)| found[k] = n);
+        }
+        found
+    }
+
+    /// Ends each move of some nodes at `points` that would lead into what keeps them out its `gap` (m) outside it.
+    pub(super) fn end_moves(&self, nodes: &[usize], points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]) {
+        let Some((arms, on_arms)) = &self.arms else { return self.body.guard(points, moves, gaps) };
+        for (skin, of_arms) in [(self.body, false), (*arms, true)] {
+            let these: Vec<usize> = (0..nodes.len()).filter(|&k| on_arms[nodes[k]] == of_arms).collect();
+            let points: Vec<Vec3> = these.iter().map(|&k| points[k]).collect();
+            let gaps: Vec<f64> = these.iter().map(|&k| gaps[k]).collect();
+            let mut ended: Vec<Vec3> = these.iter().map(|&k| moves[k]).collect();
+            skin.guard(&points, &mut ended, &gaps);
+            these.iter().zip(ended).for_each(|(&k, m)| moves[k] = m);
+        }
+    }
+
     /// How near the body a move may lead node `i`, m.
     pub(super) fn guard(&self, i: usize) -> f64 {
         GUARD * if self.grows { self.offset } else { self.offsets[i] }

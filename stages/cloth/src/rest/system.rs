@@ -114,7 +114,7 @@ impl System<'_> {
         let asked: Vec<usize> = (0..x.len()).filter(|&i| within[i].is_some()).collect();
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
         let reach: Vec<f64> = asked.iter().filter_map(|&i| within[i]).collect();
-        let mut found = s.body.nearest(&points, &reach).into_iter();
+        let mut found = s.nearest(&asked, &points, &reach).into_iter();
         let one = |(i, p): (usize, &Vec3)| match (within[i], self.seen.get(i)) {
             (None, Some(seen)) => (*seen, None),
             (reach, _) => match found.next().flatten() {
@@ -140,7 +140,7 @@ impl System<'_> {
         let points: Vec<Vec3> = asked.iter().map(|&i| x[i]).collect();
         let gaps: Vec<f64> = asked.iter().map(|&i| s.guard(i)).collect();
         let mut guarded: Vec<Vec3> = asked.iter().map(|&i| moves[i]).collect();
-        s.body.guard(&points, &mut guarded, &gaps);
+        s.end_moves(&asked, &points, &mut guarded, &gaps);
         for (&i, m) in asked.iter().zip(guarded) {
             if (moves[i] - m).norm() > NUDGE {
                 let distance = seen.get(i).map_or(0.0, |n| n.distance);

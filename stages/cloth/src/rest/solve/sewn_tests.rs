@@ -200,13 +200,16 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
     let (low, middle, body) = (solid(0.06), solid(0.03), solid(0.0));
     let wearer = Wearer { skin: &body, friction: scene.body.as_ref().unwrap().friction };
     let through = Rest { graded: true, sew_through: true, ..Rest::default() };
-    let solve = |around: &[&dyn Skin]| {
+    let solve = |around: &[Form<'_>]| {
         through
             .solve_around(&scene, Some(wearer), around, &mut |_| ControlFlow::Continue(()))
             .unwrap()
             .positions
     };
-    let (lifted, direct) = (solve(&[&low, &middle]), solve(&[]));
+    let (lifted, direct) = {
+        let form = |trunk, lower: f64| Form { trunk, arms: None, shift: -Vec3::y() * lower };
+        (solve(&[form(&low, 0.06), form(&middle, 0.03)]), solve(&[]))
+    };
     assert_ne!(lifted, direct, "what it is sewn on has its share");
     assert_eq!((gap(&scene, &lifted), crossings(&scene, &lifted)), (0.0, 0));
     let inside = Skin::nearest(&body, &lifted, &vec![1.0; lifted.len()]);
