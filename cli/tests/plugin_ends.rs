@@ -90,6 +90,13 @@ fn settle(child: &Child) {
     std::thread::sleep(Duration::from_millis(700));
 }
 
+/// Whether this process leaves the end of its terminal unheard, as under `nohup`: the program then does so too, and would go on for ever.
+fn is_hup_ignored() -> bool {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let ignored = status.lines().find_map(|l| l.strip_prefix("SigIgn:"));
+    ignored.is_some_and(|mask| u64::from_str_radix(mask.trim(), 16).unwrap() & 1 == 1)
+}
+
 fn signalled(dir: &Path, arguments: &[&str], signals: &[&str]) -> (Option<i32>, String, String) {
     let child = toile(dir, arguments).spawn().unwrap();
     settle(&child);
@@ -105,6 +112,10 @@ fn whichever_signal_stops_a_plugin_that_loops_it_is_named_at_its_place() {
     let dir = tempfile::tempdir().unwrap();
     bad("SPINS", dir.path());
     for signal in ["-INT", "-TERM", "-HUP"] {
+        if signal == "-HUP" && is_hup_ignored() {
+            eprintln!("skipped: -HUP, which is ignored here and in all that is started from here");
+            continue;
+        }
         let (code, _, err) = signalled(dir.path(), &RUN, &[signal]);
         assert_eq!(code, Some(5), "{signal}: {err}");
         let said = format!("Passes (front): {BAD} did not stop within 2 s of being asked");

@@ -2,6 +2,19 @@
 //!
 //! Cost: a sort of the half-edges.
 
+use std::collections::BTreeSet;
+
+/// The vertices beside each of so many.
+pub(super) fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<BTreeSet<u32>> {
+    let mut beside = vec![BTreeSet::new(); vertices];
+    for t in triangles {
+        for k in 0..3 {
+            beside[t[k] as usize].extend([t[(k + 1) % 3], t[(k + 2) % 3]]);
+        }
+    }
+    beside
+}
+
 /// What the edges of a triangle mesh tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Topology {

@@ -7,6 +7,7 @@
 //! is cut off along edges of the mesh, and each hole is closed with a fan. Cost: O(triangles). Limit: arms that grow together with the
 //! trunk (hands on hips) are left on.
 
+use super::topology::neighbours;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
@@ -70,16 +71,11 @@ fn beyond(body: &Body, root: &Point3, axis: &Vector3, far: f64, tip: &Point3) ->
     let distance = |v: &u32| (body.positions[*v as usize] - tip).norm_squared();
     let all = 0..body.positions.len() as u32;
     let first = all.filter(|v| is_beyond(*v)).min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-    let mut beside: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-    for t in &body.triangles {
-        for k in 0..3 {
-            beside.entry(t[k]).or_default().extend([t[(k + 1) % 3], t[(k + 2) % 3]]);
-        }
-    }
+    let beside = neighbours(body.positions.len(), &body.triangles);
     let mut found = BTreeSet::from([first]);
     let mut next = vec![first];
     while let Some(v) = next.pop() {
-        let more = beside.get(&v).into_iter().flatten().filter(|w| is_beyond(**w) && found.insert(**w));
+        let more = beside[v as usize].iter().filter(|w| is_beyond(**w) && found.insert(**w));
         next.extend(more);
     }
     let is_limb = (found.len() as f64) < MOST * body.positions.len() as f64;

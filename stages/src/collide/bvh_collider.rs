@@ -76,7 +76,7 @@ impl BvhCollider {
         if body.is_none() && !self.self_collision {
             cx.warn("there is no body and self-collision is off: nothing is kept apart");
         }
-        let bridged = self.bridged(body, cx);
+        let bridged = self.bridged(body, cx)?;
         let signature = self.signature(body);
         let body = bridged.as_ref().or(body);
         let scheme = match self.volume {
@@ -108,16 +108,16 @@ impl BvhCollider {
     }
 
     /// The body as the cloth meets it, where that is another one.
-    fn bridged(&self, body: Option<&Body>, cx: &Context) -> Option<Body> {
+    fn bridged(&self, body: Option<&Body>, cx: &Context) -> Result<Option<Body>, StageError> {
         let width = self.bridge.metres();
         if width == 0.0 {
-            return None;
+            return Ok(None);
         }
-        let found = body.and_then(|b| bridged(b, width));
+        let found = body.map(|b| bridged(b, width, cx)).transpose()?.flatten();
         if found.is_none() {
             cx.warn("`bridge` has nothing to bridge: there is no body with landmarks of its armpits");
         }
-        found
+        Ok(found)
     }
 
     fn scheme<V: BoundingVolume>(

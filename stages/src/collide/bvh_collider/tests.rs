@@ -93,9 +93,19 @@ fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
     );
     let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
     let body = crate::body::tests::mannequin(lengths).unwrap();
-    let surface = made(&wide, Some(&body));
-    let plain = made(&BvhCollider::default(), Some(&body));
-    assert_ne!(surface.surface().unwrap().positions, plain.surface().unwrap().positions);
+    let (over, plain) = (made(&wide, Some(&body)), made(&BvhCollider::default(), Some(&body)));
+    let [over_skin, skin] = [&over, &plain].map(|c| c.surface().unwrap().positions.to_vec());
+    let way = |(p, q): (&Point3, &Point3)| (*p, q - p);
+    let ways = skin.iter().zip(&over_skin).map(way);
+    let (from, by) = ways.max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();
+    // Half-way up from the crease to the skin that is led over it: outside the body, and nowhere for cloth.
+    let halfway = from + 0.5 * by;
+    let far = |c: &Arc<dyn Collide>| {
+        let mut contacts = Vec::new();
+        c.body_contacts(&[halfway], 0.1, &mut contacts);
+        contacts[0].distance
+    };
+    assert!(far(&plain) > 1e-3 && far(&over) < -1e-3, "{} {}", far(&plain), far(&over));
 }
 
 #[test]
