@@ -123,6 +123,7 @@ pub(super) fn assemble<'a>(
         slides: vec![Vec3::zeros(); n],
         loads: vec![0.0; n],
         seen: vec![],
+        brakes: vec![],
         pulls: vec![],
     })
 }

@@ -44,7 +44,8 @@ impl<'a> Work<'a> {
                 if k > 0 {
                     scope.spawn(|_| ready = plan.level(k - 1));
                 }
-                if !self.free(k, &mut level, progress)? {
+                // What was sewn through itself has no start that is free of crossings: a finer mesh may come over the edge.
+                if !self.free(k, &mut level, progress)? && !plan.rest.sew_through {
                     return Ok(false);
                 }
                 self.bring(k, &mut level, &mut bending, progress).map(|()| true)
@@ -194,7 +195,7 @@ impl<'a> Work<'a> {
             &level.layout,
             &mut level.x,
             &pace,
-            &|_| false,
+            &|_, _| false,
             progress,
         );
         if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
@@ -211,7 +212,7 @@ impl<'a> Work<'a> {
         let one_by_one = self.begins_with_pile(0);
         let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
         let Level { system, sheet, layout, x, .. } = level;
-        let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
+        let report = self.run(system, sheet, layout, x, &pace, &|_, _| false, progress)?;
         self.reports.push(report);
         self.clear(system, sheet, layout, x, &pace, progress)
     }
@@ -232,6 +233,8 @@ impl<'a> Work<'a> {
             speed,
             farthest,
             prove: false,
+            rough: false,
+            yields: self.plan.rest.sew_through,
             one_by_one: false,
             asleep: self.plan.rest.asleep,
             precision: self.plan.rest.precision,

@@ -193,6 +193,8 @@ impl<'a> Live<'a> {
             speed,
             farthest: FARTHEST,
             prove: true,
+            rough: false,
+            yields: false,
             one_by_one: false,
             asleep: self.rest.asleep,
             precision: self.rest.precision,

@@ -6,6 +6,10 @@
 //! where most of it is cut), then shortened until the potential lies below the highest of the last few (Grippo, Lampariello,
 //! Lucidi 1986): cloth hardly stretches but bends freely, so a good step may first raise the potential.
 //!
+//! Ending the moves of some nodes may leave the others a step uphill, of which no share lowers the potential. Then the step is sought again
+//! with the stopped nodes held still (an active set), where the pace says so: gathers and armholes jam without; cloth that is to slide off an
+//! edge is kept from it by them.
+//!
 //! For the same reason the matrix takes the stress that the last step foretold, not that of the new places, whose strain
 //! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
 //! be many times longer. It leaves the answer alone, for the forces are those of the places.
@@ -50,6 +54,10 @@ const SLOW_STEP: f64 = 0.1;
 /// the proof of a pile held it forgets only far from rest, or it would look for it again at every proof.
 const FAST: f64 = 10.0;
 
+/// What holds a node still that is stopped, N/m, and the share of its move that a stopped node loses at least.
+const BRAKE: f64 = 1e7;
+const STOPPED: f64 = 0.5;
+
 /// Shortest step of pseudo-time, s.
 const SHORTEST: f64 = 1e-3;
 
@@ -79,6 +87,10 @@ pub struct Pace {
     pub farthest: f64,
     /// Whether rest must be proved by a step of [`REST_STEP`].
     pub prove: bool,
+    /// Whether steps are taken without a search along them: the cloth gets about in rough ground, where some nodes never come to rest.
+    pub rough: bool,
+    /// Whether a step that leads uphill, because some of its nodes are stopped, is sought again with these held still.
+    pub yields: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
     /// Whether cloths are laid down one by one before all move together.
@@ -270,24 +282,27 @@ impl Descent {
         };
         self.last = longest;
         shorten(&mut moves, pace.farthest / longest);
-        let pulled = system.pull(x, &mut moves, pace.farthest);
-        system.clear_of_body(x, &mut moves, |_| true);
-        system.clear_of_ridges(x, &mut moves);
-        let reach = self.nearby.within_reach(x, &moves);
-        self.left = reach < 1.0;
-        shorten(&mut moves, reach);
-        self.nearby.seek(system, x, &moves);
-        let left = self.nearby.limit(system, x, &mut moves);
-        system.stop_at_ridges(x, &mut moves);
-        // Seams pull over long ways, whatever is between.
-        let kept = if system.threads.is_empty() { left } else { 1.0 };
+        let wanted = moves.clone();
+        let (mut pulled, mut kept) = self.bound(system, x, &mut moves, pace.farthest);
+        if pace.yields && !pulled && !self.proves && self.is_misled(system, &g, &moves) {
+            // What is stopped by others holds still, and the rest finds a step without it.
+            let is_stopped = |(w, m): (&Vec3, &Vec3)| (w - m).norm() > STOPPED * w.norm();
+            system.brakes =
+                wanted.iter().zip(&moves).map(|p| if is_stopped(p) { BRAKE } else { 0.0 }).collect();
+            let step = self.linear.step(system, x, &g, [used, self.last], pace.precision, stop);
+            system.brakes.clear();
+            moves = step?;
+            let longest = greatest(&moves);
+            shorten(&mut moves, pace.farthest / longest);
+            (pulled, kept) = self.bound(system, x, &mut moves, pace.farthest);
+        }
         if kept < LEAST_KEPT && !pulled && !self.proves && self.dt > SHORTEST {
             // The cloth stays: most of the step leads cloth through cloth, and what is left of it would tear the sheet about.
             self.dt = (RETRY * self.dt).max(SHORTEST);
             self.moves.clear();
             return Ok(self.outcome);
         }
-        let start = (!pulled).then(|| match lasting {
+        let start = (!pulled && !pace.rough).then(|| match lasting {
             Some(lasting) => system.value_at_start(x, lasting),
             None => system.value(x),
         });
@@ -300,6 +315,34 @@ impl Descent {
         self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
         self.plan(system, x, pulled, kept, pace);
         Ok(self.outcome)
+    }
+
+    /// Ends moves where they lead beyond what is known, into the body or through cloth: whether pulled nodes still have a way to go, and the share of the
+    /// moves that cloth leaves.
+    fn bound(
+        &mut self,
+        system: &mut System<'_>,
+        x: &[Vec3],
+        moves: &mut [Vec3],
+        farthest: f64,
+    ) -> (bool, f64) {
+        let pulled = system.pull(x, moves, farthest);
+        system.clear_of_body(x, moves, |_| true);
+        system.clear_of_ridges(x, moves);
+        let reach = self.nearby.within_reach(x, moves);
+        self.left = reach < 1.0;
+        shorten(moves, reach);
+        self.nearby.seek(system, x, moves);
+        let left = self.nearby.limit(system, x, moves);
+        system.stop_at_ridges(x, moves);
+        // Seams pull over long ways, whatever is between.
+        (pulled, if system.threads.is_empty() { left } else { 1.0 })
+    }
+
+    /// Whether a step that was ended for some nodes leads the others uphill: no share of it lowers the potential.
+    fn is_misled(&self, system: &System<'_>, g: &[Vec3], moves: &[Vec3]) -> bool {
+        let slope: f64 = g.iter().zip(moves).map(|(g, m)| g.dot(m)).sum();
+        slope > 0.0 && system.threads.is_empty() && !system.is_tangled()
     }
 
     /// What comes after a step.
@@ -400,4 +443,52 @@ fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
 #[must_use]
 pub fn greatest(v: &[Vec3]) -> f64 {
     v.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::rest::assemble::{assemble, cloths};
+    use crate::rest::pieces::Pieces;
+    use crate::rest::thread::Thread;
+    use crate::scene::generate;
+
+    #[test]
+    fn a_step_uphill_is_told_but_not_while_seams_pull() {
+        let scene = generate::hang(3);
+        let pieces = Pieces::new(&scene);
+        let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
+        let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+        let x = scene.positions.clone();
+        let descent = Descent::new(&mut system, &x, None, &x, 0.05);
+        let g = system.gradient(&x);
+        let down: Vec<Vec3> = g.iter().map(|g| -g * 1e-3).collect();
+        let up: Vec<Vec3> = g.iter().map(|g| g * 1e-3).collect();
+        assert!(!descent.is_misled(&system, &g, &down));
+        assert!(descent.is_misled(&system, &g, &up));
+        system.threads = vec![Thread { nodes: [0, 1], force: 1.0, soft: 1e-3 }];
+        assert!(!descent.is_misled(&system, &g, &up));
+    }
+
+    #[test]
+    fn nodes_with_brakes_stay_while_the_others_go_on() {
+        let scene = generate::hang(3);
+        let pieces = Pieces::new(&scene);
+        let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
+        let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+        let x = scene.positions.clone();
+        let mut descent = Descent::new(&mut system, &x, None, &x, 0.05);
+        let g = system.gradient(&x);
+        let step = |descent: &mut Descent, system: &System<'_>| {
+            descent.linear.step(system, &x, &g, [0.05, 1.0], Precision::Double, &|| false).unwrap()
+        };
+        let free = step(&mut descent, &system);
+        let lowest = (0..x.len()).max_by(|a, b| free[*a].norm().total_cmp(&free[*b].norm())).unwrap();
+        system.brakes = vec![0.0; x.len()];
+        system.brakes[lowest] = BRAKE;
+        let braked = step(&mut descent, &system);
+        assert!(free[lowest].norm() > 1e-3 && braked[lowest].norm() < 1e-6);
+        assert!(greatest(&braked) > 1e-3);
+    }
 }

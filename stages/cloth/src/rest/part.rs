@@ -162,10 +162,11 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
         masses: pick(nodes, &system.masses),
         gravity: system.gravity,
         push: pick(nodes, &system.push),
-        height_springs: system
-            .height_springs
-            .as_ref()
-            .map(|h| HeightSprings { heights: pick(nodes, &h.heights), ..*h }),
+        height_springs: system.height_springs.as_ref().map(|h| HeightSprings {
+            heights: pick(nodes, &h.heights),
+            groups: pick(nodes, &h.groups),
+            ..*h
+        }),
         pinned: nodes.iter().map(asleep).collect(),
         threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
         support: system.support.as_ref().map(|s| support(s, cut, nodes)),
@@ -175,6 +176,7 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
         anchors: pick(nodes, &system.anchors),
         slides: pick(nodes, &system.slides),
         loads: pick(nodes, &system.loads),
+        brakes: vec![],
         pulls: Vec::new(),
         seen: pick(nodes, &system.seen),
     }

@@ -40,9 +40,13 @@ const SNAPPED: f64 = 0.3;
 const SHALLOW: f64 = 5e-3;
 const DEEPEST: f64 = 0.3;
 
+/// Steps in which sewn cloth slides to where it fits, and the longest step of pseudo-time, s.
+const SETTLING: usize = 60;
+const LONGEST: f64 = 0.5;
+
 /// How stiff cloth is held at its height while it is sewn, a square metre of it, as a share of the pull of a metre of seam: a hoop of
 /// 0.15 m radius under that pull slides down a slope of 20 degrees by 5 cm, 1/m^2.
-const HELD: f64 = 50.0;
+const HELD: f64 = 40.0;
 
 /// The share of that with which sewn cloth is held that a body pushes out of itself: it goes up with the shoulders.
 const LOOSE: f64 = 0.05;
@@ -66,19 +70,19 @@ impl Work<'_> {
             self.close(&sheet, &pairs, &mut x, progress)?;
         }
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
-        if let (Some(body), [_, next @ ..]) = (self.plan.body, self.plan.around) {
-            let mut solid = body;
-            // Friction would hold the cloth below a shoulder that rises into it.
-            solid.friction = 0.0;
+        if let (Some(body), [first, next @ ..]) = (self.plan.body, self.plan.around) {
+            // Friction would hold the cloth where its seams happened to close.
+            let solid = |skin| Wearer { skin, friction: 0.0 };
+            self.settle_on(solid(*first), progress)?;
             for skin in next.iter().copied().chain([body.skin]) {
-                solid.skin = skin;
-                self.push_out(solid, progress)?;
+                self.push_out(solid(skin), progress)?;
             }
+            self.settle_on(solid(body.skin), progress)?;
         }
         Ok(())
     }
 
-    /// Closes the seams of cloth as stiff as its first state is to be, or else, each time from the start, as stiff as they close.
+    /// Closes the seams. Where cloth may pass through cloth and crosses itself then, they are closed again without, if they can be.
     fn close(
         &mut self,
         sheet: &Sheet,
@@ -86,6 +90,38 @@ impl Work<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
+        let start = x.to_vec();
+        self.through = self.plan.rest.sew_through;
+        let mut force = self.draw(sheet, pairs, x, progress)?;
+        let is_closed = widest(x, pairs) <= self.most_gap();
+        if self.through && is_closed && !self.plan.tree(sheet, &start, true).crossings(x).is_empty() {
+            let mut around = start;
+            self.through = false;
+            let other = self.draw(sheet, pairs, &mut around, progress)?;
+            if widest(&around, pairs) <= self.most_gap() {
+                x.copy_from_slice(&around);
+                force = other;
+            }
+        }
+        let gap = widest(x, pairs);
+        self.joined_at = Some(gap);
+        if gap > self.most_gap() {
+            let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
+            let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
+            return Err(RestError::SeamNotClosed { seam, gap, force, reversed });
+        }
+        Ok(())
+    }
+
+    /// Draws the seams of cloth together that is as stiff as its first state is to be, or else, each time from the start, as stiff as they
+    /// close; the force a metre that it took.
+    fn draw(
+        &mut self,
+        sheet: &Sheet,
+        pairs: &[[u32; 2]],
+        x: &mut [Vec3],
+        progress: &mut Progress<'_>,
+    ) -> Result<f64, RestError> {
         let grade = self.plan.grade(size(sheet)).filter(|_| self.plan.around.is_empty());
         let first = grade.map_or(1.0, |g| g.first());
         let mut force = 0.0;
@@ -103,14 +139,7 @@ impl Work<'_> {
                 break;
             }
         }
-        let gap = widest(x, pairs);
-        self.joined_at = Some(gap);
-        if gap > self.most_gap() {
-            let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
-            let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
-            return Err(RestError::SeamNotClosed { seam, gap, force, reversed });
-        }
-        Ok(())
+        Ok(force)
     }
 
     fn threads(&self, pairs: &[[u32; 2]], force: f64) -> Vec<Thread> {
@@ -140,14 +169,26 @@ impl Work<'_> {
             let mut system = self.open(sheet, stiff)?;
             system.threads = self.threads(pairs, pull * spacing);
             if !self.plan.around.is_empty() {
-                system.height_springs = self.height_springs(sheet, &self.plan.starts[coarsest], pull);
+                system.height_springs = self.height_springs(
+                    sheet,
+                    &self.plan.starts[coarsest],
+                    1.0,
+                    self.plan.pieces[coarsest].panel.clone(),
+                );
             }
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
-            let pace =
-                Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
+            let pace = Pace {
+                first,
+                longest: 1.0,
+                steps,
+                speed: self.plan.rest.speed,
+                farthest,
+                asleep: self.plan.rest.asleep && self.plan.around.is_empty(),
+                ..self.pace()
+            };
             let shrinking = Shrinking::default();
-            let closed = |x: &[Vec3]| {
+            let closed = |_: &System<'_>, x: &[Vec3]| {
                 let gap = widest(x, pairs);
                 gap < self.plan.rest.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
@@ -159,35 +200,69 @@ impl Work<'_> {
         Ok(pull / HARDER.0)
     }
 
-    /// Lets a solid push the sewn cloth out of itself, through cloth where that is in the way.
+    /// Lets a solid push the sewn cloth out of itself.
     fn push_out(&mut self, solid: Wearer<'_>, progress: &mut Progress<'_>) -> Result<(), RestError> {
+        self.slide(solid, LOOSE, SEWING.0, &|x| depth(solid.skin, x) <= SHALLOW, progress)
+    }
+
+    /// Lets the sewn cloth slide on a solid to where it fits.
+    fn settle_on(&mut self, solid: Wearer<'_>, progress: &mut Progress<'_>) -> Result<(), RestError> {
+        self.slide(solid, 0.0, SETTLING, &|_| false, progress)
+    }
+
+    /// Lets the sewn cloth move on a solid, without weight, held at its height so hard, in so many steps or until it is done.
+    fn slide(
+        &mut self,
+        solid: Wearer<'_>,
+        held: f64,
+        steps: usize,
+        done: &dyn Fn(&[Vec3]) -> bool,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), RestError> {
         let coarsest = self.plan.pieces.len() - 1;
         let pieces = &self.plan.pieces[coarsest];
         let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
         let start = pieces.sew(&self.plan.starts[coarsest], &vec![1.0; pieces.rest.len()]);
+        let mut panel = vec![0; pieces.nodes];
+        pieces.node.iter().zip(&pieces.panel).for_each(|(n, p)| panel[*n as usize] = *p);
         let mut x = std::mem::take(&mut self.x);
         let mut system = assemble(self.plan.scene, Some(solid), pieces, &sheet, false)?;
         system.gravity = Vec3::zeros();
-        (system.layers, system.ridges) = (None, None);
+        system.ridges = None;
         system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
-        system.height_springs =
-            self.height_springs(&sheet, &start, LOOSE * SEAM_PULL * strongest(&self.plan.cloths));
-        let (steps, first, farthest) = SEWING;
-        let pace = Pace { first, longest: 1.0, steps, speed: self.plan.rest.speed, farthest, ..self.pace() };
-        let is_out = |x: &[Vec3]| depth(solid.skin, x) <= SHALLOW;
-        let report = self.run(&mut system, &sheet, &start, &mut x, &pace, &is_out, progress)?;
+        system.height_springs = self.height_springs(&sheet, &start, held, panel);
+        let (_, first, farthest) = SEWING;
+        let speed = self.plan.rest.speed;
+        let pace = Pace {
+            first,
+            longest: LONGEST,
+            steps,
+            speed,
+            farthest,
+            rough: true,
+            asleep: false,
+            ..self.pace()
+        };
+        let report = self.run(&mut system, &sheet, &start, &mut x, &pace, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
         Ok(())
     }
 
-    /// What holds the cloth at its height under seams that pull so hard, N/m.
-    fn height_springs(&self, sheet: &Sheet, start: &[Vec3], pull: f64) -> Option<HeightSprings> {
+    /// What holds each panel at its height under seams: a share of the pull of the first round.
+    fn height_springs(
+        &self,
+        sheet: &Sheet,
+        start: &[Vec3],
+        share: f64,
+        groups: Vec<u32>,
+    ) -> Option<HeightSprings> {
         let up = -gravity(self.plan.scene).try_normalize(1e-9)?;
         let area: f64 = sheet.areas().iter().sum();
         let mass: f64 = sheet.masses().iter().sum();
         let heights = start.iter().map(|p| up.dot(p)).collect();
-        Some(HeightSprings { up, heights, stiffness: HELD * pull * area / mass })
+        let pull = share * SEAM_PULL * strongest(&self.plan.cloths);
+        Some(HeightSprings { up, heights, groups, stiffness: HELD * pull * area / mass })
     }
 
     /// The widest gap at which seams are joined all the same, m.
@@ -207,8 +282,15 @@ impl Work<'_> {
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
-        let report =
-            self.run(&mut self.open(sheet, grade.first())?, sheet, &layout, x, &pace, &|_| false, progress)?;
+        let report = self.run(
+            &mut self.open(sheet, grade.first())?,
+            sheet,
+            &layout,
+            x,
+            &pace,
+            &|_, _| false,
+            progress,
+        )?;
         self.reports.push(report);
         Ok(())
     }

@@ -62,6 +62,8 @@ pub struct System<'a> {
     pub slides: Vec<Vec3>,
     /// What presses each node on the body, a mean over the last steps, N.
     pub loads: Vec<f64>,
+    /// What holds each node still in this step, N/m; empty where nothing does.
+    pub brakes: Vec<f64>,
     /// Nodes that are being led somewhere, and where to: they must be pinned.
     pub pulls: Vec<(u32, Vec3)>,
     /// Where each node was last seen from the body; empty before the first step.
@@ -372,6 +374,7 @@ impl System<'_> {
         for (v, m) in values.iter_mut().zip(&self.masses) {
             (0..3).for_each(|c| v[(c, c)] += m * inertia);
         }
+        values.iter_mut().zip(&self.brakes).for_each(|(v, b)| *v += Matrix3::identity() * *b);
         self.height_springs.iter().for_each(|h| h.add_matrix(&self.masses, values));
         self.threads.iter().for_each(|t| t.add_matrix(x, pattern, values));
         if let Some(s) = &self.support {

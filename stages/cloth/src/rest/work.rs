@@ -49,13 +49,24 @@ pub(super) struct Work<'a> {
     /// How deep the cloth at rest dips into the body between its vertices, where that is known, m.
     dip: Option<f64>,
     pub(super) reports: Vec<LevelReport>,
+    /// Whether cloth passes through cloth while its seams close.
+    pub(super) through: bool,
     /// What fell past the body in the last state that was tried, where it did.
     pub(super) last_fall: Option<RestError>,
 }
 
 impl<'a> Work<'a> {
     pub(super) fn new(plan: &'a Plan<'a>, clock: Instant) -> Self {
-        Self { plan, clock, x: vec![], joined_at: None, dip: None, reports: vec![], last_fall: None }
+        Self {
+            plan,
+            clock,
+            x: vec![],
+            joined_at: None,
+            dip: None,
+            reports: vec![],
+            through: false,
+            last_fall: None,
+        }
     }
 
     /// Sews and drapes.
@@ -100,7 +111,7 @@ impl<'a> Work<'a> {
             if let Some(s) = &mut system.support {
                 s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
-            let report = self.run(system, sheet, layout, x, &pace, &|_| false, progress)?;
+            let report = self.run(system, sheet, layout, x, &pace, &|_, _| false, progress)?;
             self.reports.push(report);
         }
         Ok(())
@@ -164,11 +175,11 @@ impl<'a> Work<'a> {
         layout: &[Vec3],
         x: &mut [Vec3],
         pace: &Pace,
-        done: &dyn Fn(&[Vec3]) -> bool,
+        done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, RestError> {
         let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let meets = system.layers.is_some() && !(sewing && self.plan.rest.sew_through);
+        let meets = system.layers.is_some() && !(sewing && self.through);
         let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
@@ -183,7 +194,7 @@ impl<'a> Work<'a> {
                 stop = Some(RestError::Stopped);
             }
             is_late = late();
-            if stop.is_some() || is_late || done(x) {
+            if stop.is_some() || is_late || done(system, x) {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())

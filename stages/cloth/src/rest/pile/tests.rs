@@ -33,6 +33,8 @@ fn pace() -> Pace {
         speed: 1e-3,
         farthest: 0.1,
         prove: false,
+        rough: false,
+        yields: false,
         one_by_one: true,
         asleep: true,
         precision: Precision::Mixed,

@@ -39,6 +39,8 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
         farthest: 0.05,
         prove: true,
         precision: Precision::Double,
+        rough: false,
+        yields: false,
         one_by_one: false,
         asleep: true,
     };
