@@ -46,6 +46,8 @@ pub struct GarmentFigures {
     pub seam_gap_max_m: f64,
     /// Strain of edges.
     pub edge_strain: StrainFigures,
+    /// 99th percentile of the strain of the edges that the body stretches: both ends lie on it; `None` without a body.
+    pub tight_p99: Option<f64>,
     /// Vertices inside the body; `None` without a body.
     pub body_penetration: Option<PenetrationFigures>,
     /// Pairs of a triangle of the garment and one of the body that cross; `None` without a body.

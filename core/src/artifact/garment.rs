@@ -4,6 +4,7 @@ use super::body::{obj_text, vertex_normals};
 use super::gathers;
 use super::sound::{alike, ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
+use nalgebra::{Matrix2, Matrix3x2};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -162,7 +163,7 @@ impl Garment {
 
     /// Every mesh edge once, ascending, with its flat length, metres: the mean of what its triangles say, whose corners are drawn together
     /// along gathered seams.
-    fn flat_lengths(&self) -> Vec<([u32; 2], f64)> {
+    pub fn flat_lengths(&self) -> Vec<([u32; 2], f64)> {
         let Some(corners) = gathers::corners(self) else {
             return self.edges().into_iter().map(|e| (e, self.cut_length(e))).collect();
         };
@@ -195,20 +196,53 @@ impl Garment {
         strains
     }
 
+    /// The greatest stretch of each triangle in any direction, present over flat length; 1 of a triangle without flat area.
+    pub fn stretches(&self) -> Vec<f64> {
+        let gathered = gathers::corners(self);
+        let one = |(k, t): (usize, &[u32; 3])| {
+            let cut = || t.map(|i| self.rest[i as usize]);
+            let [a, b, c] = gathered.as_ref().map_or_else(cut, |corners| corners[k]);
+            let [p, q, r] = t.map(|i| self.positions[i as usize]);
+            let Some(back) = Matrix2::from_columns(&[b - a, c - a]).try_inverse() else { return 1.0 };
+            let gradient = Matrix3x2::from_columns(&[q - p, r - p]) * back;
+            (gradient.transpose() * gradient).symmetric_eigenvalues().max().max(0.0).sqrt()
+        };
+        self.triangles.iter().enumerate().map(one).collect()
+    }
+
     /// Flat and present area of a panel, square metres; flat as its gathers leave it.
     pub fn panel_areas(&self, panel: &GarmentPanel) -> (f64, f64) {
+        self.panel_areas_but(panel, |_, _, _| false)
+    }
+
+    /// The same with the flat area of those triangles that are `spared` for their present one, by their vertices, flat and present area.
+    pub fn panel_areas_but(
+        &self,
+        panel: &GarmentPanel,
+        spared: impl Fn(&[u32; 3], f64, f64) -> bool,
+    ) -> (f64, f64) {
         let gathered = gathers::corners(self);
         panel.triangles.clone().fold((0.0, 0.0), |(flat, now), k| {
             let t = self.triangles[k];
             let cut = || t.map(|i| self.rest[i as usize]);
             let [a, b, c] = gathered.as_ref().map_or_else(cut, |corners| corners[k]);
             let [p, q, r] = t.map(|i| self.positions[i as usize]);
-            (flat + (b - a).perp(&(c - a)).abs() / 2.0, now + (q - p).cross(&(r - p)).norm() / 2.0)
+            let (one, other) = ((b - a).perp(&(c - a)).abs() / 2.0, (q - p).cross(&(r - p)).norm() / 2.0);
+            (flat + one, now + if spared(&t, one, other) { one } else { other })
         })
     }
 
     /// Flat and present length of a panel's boundary, metres.
     pub fn panel_boundaries(&self, panel: &GarmentPanel) -> (f64, f64) {
+        self.panel_boundaries_but(panel, |_| false)
+    }
+
+    /// The same with the flat length of those edges that are `spared` for their present one, by their vertices.
+    pub fn panel_boundaries_but(
+        &self,
+        panel: &GarmentPanel,
+        spared: impl Fn([u32; 2]) -> bool,
+    ) -> (f64, f64) {
         let gathers = self.seams.iter().any(|s| s.kind == SeamKind::Gathered);
         let flat = if gathers { self.flat_lengths() } else { Vec::new() };
         let n = panel.boundary.len();
@@ -219,7 +253,8 @@ impl Garment {
         };
         (0..n).fold((0.0, 0.0), |(flat, now), k| {
             let (a, b) = (panel.boundary[k] as usize, panel.boundary[(k + 1) % n] as usize);
-            (flat + length(a, b), now + (self.positions[b] - self.positions[a]).norm())
+            let (one, other) = (length(a, b), (self.positions[b] - self.positions[a]).norm());
+            (flat + one, now + if spared([a as u32, b as u32]) { one } else { other })
         })
     }
 

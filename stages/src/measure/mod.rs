@@ -2,6 +2,7 @@
 
 mod on_body;
 mod quality;
+mod tight;
 
 pub use quality::Measure;
 

@@ -1,11 +1,12 @@
 //! Figures of the garment against its quality limits.
 //!
 //! Area and outline errors are those of Fan et al. 1999, `(S2 - S3) / S2` and `(L2 - L3) / L2`;
-//! strain is that of the mesh edges. Vertices in the body and self-contact are asked of the pipeline's
+//! strain is that of the mesh edges. What the body stretches is judged by itself (see `tight`). Vertices in the body and self-contact are asked of the pipeline's
 //! collider, what crosses the body between its vertices is found on the body's own triangles; without
 //! collider or body they are not measured, and `metrics.json` says so with a null.
 
 use super::on_body;
+use super::tight::Tight;
 use crate::cloth::check_garment;
 use crate::collide::crossing::body_crossings;
 use std::collections::BTreeMap;
@@ -23,7 +24,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// misses a limit is written all the same, with exit code 4.
 #[stage(
     role = Writer,
-    version = 2,
+    version = 3,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -32,15 +33,20 @@ pub struct Measure {
     /// Greatest seam gap.
     #[param(default = Length::mm(1.0), min = 0.0, max = 1.0)]
     max_gap: Length,
-    /// Greatest area error of a panel, as a share.
+    /// Greatest area error of a panel, as a share; triangles that the body stretches count as they were cut.
     #[param(default = 0.01, min = 0.0, max = 1.0)]
     max_area_error: f64,
-    /// Greatest outline error of a panel, as a share.
+    /// Greatest outline error of a panel, as a share; edges that the body stretches count as they were cut.
     #[param(default = 0.01, min = 0.0, max = 1.0)]
     max_outline_error: f64,
-    /// Greatest 99th percentile of the edge strain, as a share.
+    /// Greatest 99th percentile of the edge strain, as a share; edges that the body stretches count as not strained.
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
+    /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a share: they lie on the body, and the cloth
+    /// there is longer in some direction than it was cut, by at least as much. Beyond it the garment is too small for the body (woven cotton
+    /// tears at some 25 %); from `max_strain` on a warning names the panel.
+    #[param(default = 0.25, min = 0.0, max = 10.0)]
+    max_tight: f64,
     /// Least share of every panel that must still be in its place on the body: 1 less the way that the upper edge of its piece has
     /// sunk, from where it started or from the top of the body under it, as a share of the root of the piece's area.
     #[param(default = 0.5, min = 0.0, max = 1.0)]
@@ -57,21 +63,30 @@ impl Measure {
         garment: &Garment,
         collider: Option<&Collider>,
         body: Option<&Body>,
-        _cx: &Context,
+        cx: &Context,
     ) -> Result<Figures, StageError> {
         check_garment(garment)?;
+        let tight = Tight::of(garment, collider);
         let mut figures = Figures {
-            panels: panel_figures(garment)?,
+            panels: panel_figures(garment, None)?,
             garment: garment_figures(garment, collider, body),
             shortfalls: Vec::new(),
         };
-        figures.shortfalls = self.shortfalls(&figures);
+        figures.garment.tight_p99 = collider.map(|_| tight.taut());
+        let loose = panel_figures(garment, Some(&tight))?;
+        figures.shortfalls = self.shortfalls(&figures.garment, &loose, tight.rest());
+        figures.shortfalls.extend(tight.judge(garment, self.max_strain, self.max_tight, cx));
         figures.shortfalls.extend(on_body::shortfall(garment, self.least_on_body));
         Ok(figures)
     }
 
-    fn shortfalls(&self, figures: &Figures) -> Vec<Shortfall> {
-        let g = &figures.garment;
+    /// Limits that a garment misses, with the errors of its panels and its strain (99th percentile) but for what the body stretches.
+    fn shortfalls(
+        &self,
+        g: &GarmentFigures,
+        panels: &BTreeMap<String, PanelFigures>,
+        strain: f64,
+    ) -> Vec<Shortfall> {
         let mut list = Vec::new();
         let mut miss = |is_missed: bool, code, message: String| {
             if is_missed {
@@ -84,7 +99,7 @@ impl Measure {
             ErrorCode::StitchingError,
             format!("a seam gapes by {gap}, the limit is {}", self.max_gap),
         );
-        for (name, panel) in &figures.panels {
+        for (name, panel) in panels {
             let area = percent(panel.area_error);
             miss(
                 panel.area_error.abs() > self.max_area_error,
@@ -105,11 +120,11 @@ impl Measure {
             );
         }
         miss(
-            g.edge_strain.p99 > self.max_strain,
+            strain > self.max_strain,
             ErrorCode::StaticEquilibrium,
             format!(
                 "1 % of the edges strain more than {}, the limit is {}",
-                percent(g.edge_strain.p99),
+                percent(strain),
                 percent(self.max_strain)
             ),
         );
@@ -156,14 +171,25 @@ fn percent(share: f64) -> String {
     format!("{:.2} %", share * 1e2)
 }
 
-fn panel_figures(garment: &Garment) -> Result<BTreeMap<String, PanelFigures>, StageError> {
+/// Figures of each panel; what is `tight` counts as long and as large as it was cut.
+fn panel_figures(
+    garment: &Garment,
+    tight: Option<&Tight>,
+) -> Result<BTreeMap<String, PanelFigures>, StageError> {
+    let error = |(flat, now): (f64, f64)| (flat - now) / flat;
     let figures = |p: &GarmentPanel| {
-        let ((s2, s3), (l2, l3)) = (garment.panel_areas(p), garment.panel_boundaries(p));
-        if s2 <= 0.0 || l2 <= 0.0 {
+        if garment.panel_areas(p).0 <= 0.0 || garment.panel_boundaries(p).0 <= 0.0 {
             let text = format!("panel \"{}\" has no area or no outline to be judged by", p.name);
             return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
         }
-        let figures = PanelFigures { area_error: (s2 - s3) / s2, outline_error: (l2 - l3) / l2 };
+        let figures = PanelFigures {
+            area_error: error(garment.panel_areas_but(p, |t, flat, now| {
+                tight.is_some_and(|tight| tight.stretches_triangle(t, flat, now))
+            })),
+            outline_error: error(
+                garment.panel_boundaries_but(p, |e| tight.is_some_and(|tight| tight.stretches_edge(e))),
+            ),
+        };
         Ok((p.name.clone(), figures))
     };
     garment.panels.iter().map(figures).collect()
@@ -180,6 +206,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<
             p99: quantile(&strains, 0.99),
             max: strains.last().copied().unwrap_or(0.0),
         },
+        tight_p99: None,
         body_penetration: collider.map(|c| penetration(garment, c)),
         body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b).len()),
         self_crossings: collider.map(|c| crossings(garment, c)),

@@ -209,6 +209,7 @@ fn garment_fields(g: &GarmentFigures) -> Record<'_> {
         .number("max_speed_m_s", g.max_speed_m_s)
         .count("steps", g.steps)
         .flag("converged", g.converged)
+        .maybe_number("tight_p99", g.tight_p99)
         .maybe_number("on_body", g.on_body);
     let counts = [("body_crossings", g.body_crossings), ("self_crossings", g.self_crossings)];
     counts.into_iter().filter_map(|(name, n)| Some((name, n?))).fold(record, |r, (name, n)| r.count(name, n))
@@ -226,6 +227,7 @@ fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
         triangles: r.count("triangles")?,
         seam_gap_max_m: r.one("seam_gap_max_m")?,
         edge_strain: StrainFigures { p50, p99, max },
+        tight_p99: r.maybe_one("tight_p99")?,
         body_penetration: r.maybe("body_penetration")?.map(inside).transpose()?,
         body_crossings: maybe_count("body_crossings")?,
         self_crossings: maybe_count("self_crossings")?,

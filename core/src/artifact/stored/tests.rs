@@ -162,6 +162,7 @@ fn figures() -> Figures {
             body_penetration: Some(PenetrationFigures { vertices: 1, max_m: 2e-4 }),
             body_crossings: Some(3),
             self_crossings: Some(4),
+            tight_p99: Some(0.06),
             on_body: Some(0.75),
             ..GarmentFigures::default()
         },
