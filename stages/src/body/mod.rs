@@ -11,14 +11,13 @@ mod limb;
 mod mannequin;
 mod slice;
 mod spline;
+mod thin;
 mod topology;
-mod trunk;
 
 pub use body_obj::{BodyObj, Units, Up};
 pub(crate) use bridge::bridged;
-pub(crate) use estimate::estimate;
 pub use mannequin::Mannequin;
-pub(crate) use trunk::forms;
+pub(crate) use thin::grown;
 
 use toile_core::Registry;
 

@@ -9,7 +9,7 @@ use super::ImplicitEuler;
 use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
-use crate::body::{estimate, forms};
+use crate::body::grown;
 use crate::cloth::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
@@ -39,7 +39,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 16,
+    version = 17,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -75,9 +75,10 @@ pub struct Rest {
     #[param(default = false, way)]
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
-    /// The sewn garment is then taken out of itself. What starts in the body is moved out of it, and seams join at gaps of up to a third of an
-    /// edge of the coarsest mesh. Seams that the body keeps open all the same are closed on its trunk and legs, which begin 5 % of its height
-    /// lower and rise into the sewn garment; head and arms come last.
+    /// What crosses itself then is sewn again without passing, where its seams close so; else the sewn garment is taken out of itself. What
+    /// starts in the body is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh. Where the body keeps
+    /// seams open, or the cloth does not come out of itself, the garment is sewn again around a thin figure of the body's pose, which grows to
+    /// its full size in it; that is told.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
@@ -120,12 +121,13 @@ impl Rest {
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
         let clock = Instant::now();
         let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
-        if let (true, Err(RestError::SeamNotClosed { .. }), Some(collider)) =
+        if let (true, Err(RestError::SeamNotClosed { .. } | RestError::Tangled { .. }), Some(collider)) =
             (self.sew_through, &result, collider)
         {
-            let forms = forms_of(collider);
-            let around: Vec<&dyn Skin> = forms.iter().map(|f| f as &dyn Skin).collect();
+            let thin = thin_of(collider);
+            let around: Vec<&dyn Skin> = thin.iter().map(|f| f as &dyn Skin).collect();
             if !around.is_empty() {
+                cx.warn("the body keeps seams open: the garment is sewn again around a thin figure, which grows to the body");
                 // Both ways share the time that the user gives.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
@@ -216,16 +218,12 @@ impl Rest {
     }
 }
 
-/// What a garment is sewn on where the whole body keeps its seams open; nothing where the collider shows no standing figure.
-fn forms_of(collider: &Collider) -> Vec<Solid> {
+/// What a garment is sewn on where the body keeps its seams open: the body drawn in, which grows; nothing where the collider shows no mesh.
+fn thin_of(collider: &Collider) -> Vec<Solid> {
     let Some(surface) = collider.scheme.surface() else { return Vec::new() };
-    let (positions, triangles) = (surface.positions.to_vec(), surface.triangles.to_vec());
-    let height = positions.iter().map(|p| p.y).fold(0.0, f64::max);
-    let Ok((landmarks, measurements)) = estimate(&positions, &triangles, height) else { return Vec::new() };
-    let solid = |(points, triangles): (Vec<Point3>, Vec<[u32; 3]>)| {
-        Solid::new(points.iter().map(|p| p.coords).collect(), &triangles)
-    };
-    forms(&Body { positions, triangles, landmarks, measurements }).into_iter().map(solid).collect()
+    let solid =
+        |points: Vec<Point3>| Solid::new(points.iter().map(|p| p.coords).collect(), surface.triangles);
+    grown(surface.positions, surface.triangles).into_iter().map(solid).collect()
 }
 
 /// Tells the user how far the solver has come, and stops it when asked to.
