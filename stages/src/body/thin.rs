@@ -6,7 +6,7 @@
 //!
 //! Method: each vertex moves along its normal by a share of the radius of the largest ball inside the body that touches it there (the medial
 //! axis, Blum 1967), and down by as much, so that shoulders and arms stand lower, inside their own shape; the ways are smoothed over the
-//! mesh. Cost: eight distances a vertex. Limit: the thin figure may cross itself between fingers.
+//! mesh. Cost: seven distances a vertex. Limit: the thin figure may cross itself between fingers.
 
 use super::topology::neighbours;
 use rayon::prelude::*;

@@ -2,7 +2,8 @@
 //!
 //! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body is there. Such cloth is told of, and not
 //! held against the solver. A triangle is taut where all of it lies on the body and it is stretched in some direction; what of it is shorter
-//! in another direction, by no more, is drawn so by that stretch (shear, Poisson's ratio), and counts with it.
+//! in another direction, by no more, is drawn so by that stretch (shear, Poisson's ratio), and counts with it. Limit: cloth that friction
+//! holds stretched on the body, though the pattern is wide enough, counts too.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{BodyContact, Garment, GarmentPanel, Shortfall, quantile};

@@ -1,7 +1,8 @@
 //! What keeps cloth at its height while it is sewn.
 //!
 //! Cloth without weight and friction that seams draw around a body slides along it to where the body is thinner: off the
-//! shoulders, down to the waist. A spring for each node, along the vertical alone, holds it near the height at which it was placed.
+//! shoulders, down to the waist. A spring for each panel, along the vertical alone, holds the mean height of
+//! its nodes near that at which it was placed: its edges stay free to come together.
 
 use nalgebra::{Matrix3, Vector3};
 

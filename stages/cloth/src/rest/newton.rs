@@ -89,7 +89,7 @@ pub struct Pace {
     pub prove: bool,
     /// Whether steps are taken without a search along them: the cloth gets about in rough ground, where some nodes never come to rest.
     pub rough: bool,
-    /// Whether a step that leads uphill, because some of its nodes are stopped, is sought again with these held still.
+    /// Whether a step that raises the potential, because some of its nodes are stopped, is sought again with these held still.
     pub yields: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,

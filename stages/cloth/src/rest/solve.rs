@@ -165,7 +165,8 @@ impl Rest {
     }
 
     /// The same, sewn on other solids before the body comes: seams close on the first of `around`, then each of the others pushes the
-    /// sewn cloth out of itself, and the body as the last. For [`Rest::sew_through`], where the body keeps seams open.
+    /// sewn cloth out of itself, and the body as the last; on the first and on the body the cloth slides to where it fits. For
+    /// [`Rest::sew_through`], where the body keeps seams open.
     ///
     /// # Errors
     /// Every [`RestError`].
