@@ -1,5 +1,6 @@
 //! Drapers: the sewn garment under gravity.
 
+mod again;
 mod asleep;
 mod central_differences;
 mod implicit_euler;

@@ -6,24 +6,20 @@
 //! which one is found.
 
 use super::ImplicitEuler;
+use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
-use crate::body::grown;
 use crate::cloth::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use toile_cloth::contact::body::Body as Solid;
 use toile_cloth::contact::skin::Skin;
 use toile_cloth::rest::solve::{LevelReport, Rest as Solver, RestError, Rested, Wearer};
 use toile_cloth::rest::unrest::unrest;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
-
-/// Triangles may dip this deep into the body before it is said, m: the limit that vertices are judged by.
-const MOST_DIP: f64 = 1e-4;
 
 /// Sews the garment and brings it to rest, without the way there.
 ///
@@ -39,7 +35,7 @@ const MOST_DIP: f64 = 1e-4;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 17,
+    version = 18,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -51,6 +47,10 @@ pub struct Rest {
     /// At rest, no vertex gains more than this in a sixtieth of a second.
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
+    /// The share of the vertices that may gain more, for garments that lie where the skin of a body folds, as in an armpit: some
+    /// vertices there never come to rest. The figure `non_static` tells the share that does.
+    #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
+    pub non_static: f64,
     /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
     #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
@@ -77,8 +77,8 @@ pub struct Rest {
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
     /// What crosses itself then is sewn again without passing, where its seams close so; else the sewn garment is taken out of itself. What
     /// starts in the body is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh. Where the body keeps
-    /// seams open, or the cloth does not come out of itself, the garment is sewn again around a thin figure of the body's pose, which grows to
-    /// its full size in it; that is told.
+    /// seams open, or the cloth does not come out of itself or of the body, the garment is sewn again around a thin figure of the body's pose,
+    /// which grows to its full size in it; that is told, and the better result is taken.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
@@ -121,17 +121,20 @@ impl Rest {
         let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
         let clock = Instant::now();
         let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
-        if let (true, Err(RestError::SeamNotClosed { .. } | RestError::Tangled { .. }), Some(collider)) =
-            (self.sew_through, &result, collider)
-        {
+        if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
             let thin = thin_of(collider);
             let around: Vec<&dyn Skin> = thin.iter().map(|f| f as &dyn Skin).collect();
             if !around.is_empty() {
-                cx.warn("the body keeps seams open: the garment is sewn again around a thin figure, which grows to the body");
+                cx.warn(format!("{why}: it is sewn again around a thin figure, which grows to the body"));
                 // Both ways share the time that the user gives.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
-                result = solver.solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
+                let second = solver.solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
+                if is_better(&second, &result) {
+                    result = second;
+                } else {
+                    cx.warn("that came out no better: the first result is kept");
+                }
             }
         }
         cx.check()?;
@@ -147,6 +150,7 @@ impl Rest {
         let steps = progress.steps;
         let (state, converged) = self.judge(result, cx)?;
         cx.figure("residual", state.residual, "N");
+        cx.figure("non_static", state.outcome.non_static, "");
         cx.figure("restarts", state.restarts as f64, "");
         if state.dip > MOST_DIP {
             let mm = state.dip * 1e3;
@@ -173,6 +177,7 @@ impl Rest {
     fn solver(&self) -> Solver {
         Solver {
             speed: self.speed,
+            non_static: self.non_static,
             coarsest: self.coarsest,
             coarse_steps: self.coarse_steps,
             finest_steps: self.steps,
@@ -211,19 +216,11 @@ impl Rest {
             steps: garment.status.steps + steps,
             converged,
             energy: state.energy,
-            max_speed: state.outcome.speed,
+            max_speed: state.outcome.fastest,
             on_body: garment.status.on_body.clone(),
         };
         garment
     }
-}
-
-/// What a garment is sewn on where the body keeps its seams open: the body drawn in, which grows; nothing where the collider shows no mesh.
-fn thin_of(collider: &Collider) -> Vec<Solid> {
-    let Some(surface) = collider.scheme.surface() else { return Vec::new() };
-    let solid =
-        |points: Vec<Point3>| Solid::new(points.iter().map(|p| p.coords).collect(), surface.triangles);
-    grown(surface.positions, surface.triangles).into_iter().map(solid).collect()
 }
 
 /// Tells the user how far the solver has come, and stops it when asked to.

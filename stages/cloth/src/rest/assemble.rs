@@ -74,6 +74,7 @@ pub(super) fn assemble<'a>(
         edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
         clear: pieces.rest.len() == scene.rest.len(),
         grows: false,
+        hard: false,
         passes: false,
         #[cfg(toile_without = "body")]
         never: b.never,

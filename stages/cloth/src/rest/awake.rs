@@ -38,6 +38,7 @@ impl Descent {
     ) -> Result<(), Halt> {
         let Some(awake) = self.awake(system) else { return Ok(()) };
         self.nearby.seek_about(system, x, &awake);
+        let pace = Pace { non_static: 0.0, ..*pace };
         let mut part = Part::of(system, awake);
         let (mut own, layout) = (part.pick(x), part.pick(self.linear.layout()));
         let reach = system.layers.as_ref().map_or(f64::INFINITY, Layers::slack);
@@ -45,7 +46,7 @@ impl Descent {
         rayon::scope(|_| {
             let mut inner = Self::among(nearby, &mut part.system, &layout, &own, self.dt);
             for _ in 0..PART_STEPS {
-                let outcome = inner.step_here(&mut part.system, &mut own, pace, stop)?;
+                let outcome = inner.step_here(&mut part.system, &mut own, &pace, stop)?;
                 if outcome.at_rest || inner.left {
                     break;
                 }

@@ -189,15 +189,8 @@ impl<'a> Work<'a> {
             s.grows = true;
             s.offsets.clone()
         });
-        let run = self.run(
-            &mut level.system,
-            &level.sheet,
-            &level.layout,
-            &mut level.x,
-            &pace,
-            &|_, _| false,
-            progress,
-        );
+        let Level { system, sheet, layout, x, .. } = &mut *level;
+        let run = self.run_free(system, sheet, layout, x, &pace, progress);
         if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
             (s.grows, s.offsets) = (false, offsets);
         }
@@ -212,7 +205,7 @@ impl<'a> Work<'a> {
         let one_by_one = self.begins_with_pile(0);
         let pace = Pace { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
         let Level { system, sheet, layout, x, .. } = level;
-        let report = self.run(system, sheet, layout, x, &pace, &|_, _| false, progress)?;
+        let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
         self.reports.push(report);
         self.clear(system, sheet, layout, x, &pace, progress)
     }
@@ -231,6 +224,7 @@ impl<'a> Work<'a> {
             longest,
             steps,
             speed,
+            non_static: self.plan.rest.non_static,
             farthest,
             prove: false,
             rough: false,

@@ -191,6 +191,7 @@ impl<'a> Live<'a> {
             longest: 1.0,
             steps,
             speed,
+            non_static: self.rest.non_static,
             farthest: FARTHEST,
             prove: true,
             rough: false,

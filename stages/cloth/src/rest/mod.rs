@@ -44,6 +44,7 @@ mod tangled;
 pub mod thread;
 #[cfg(test)]
 mod trial;
+mod unknot;
 pub mod unrest;
 pub(crate) mod words;
 mod work;

@@ -50,6 +50,10 @@ const CALM: usize = 3;
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
+/// Speed in a long step of pseudo-time above which rest is not tried, m/s, however fast cloth at rest may be: what slides down a body slowly
+/// is not at rest.
+const CREEP: f64 = 0.01;
+
 /// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see [`crate::rest::layers::Layers::hold`]): what
 /// the proof of a pile held it forgets only far from rest, or it would look for it again at every proof.
 const FAST: f64 = 10.0;
@@ -83,6 +87,8 @@ pub struct Pace {
     pub steps: usize,
     /// Speed below which the cloth is at rest, m/s.
     pub speed: f64,
+    /// The share of its nodes that may be faster.
+    pub non_static: f64,
     /// Farthest that a node may move in a step, m.
     pub farthest: f64,
     /// Whether rest must be proved by a step of [`REST_STEP`].
@@ -106,8 +112,12 @@ pub struct Outcome {
     pub steps: usize,
     /// Whether the cloth is at rest.
     pub at_rest: bool,
-    /// Greatest speed gained in the last step of time, m/s.
+    /// Greatest speed gained in the last step of time, m/s, but for the share of nodes that may be faster.
     pub speed: f64,
+    /// Greatest speed gained in it, m/s.
+    pub fastest: f64,
+    /// The share of nodes that were faster than the cloth at rest is.
+    pub non_static: f64,
     /// Greatest force left over on a node before that step, N.
     pub residual: f64,
     /// Share of the step that was taken.
@@ -272,12 +282,16 @@ impl Descent {
         self.serves = self.proves;
         let longest = greatest(&moves);
         let residual = greatest(&g);
+        let speed = greatest_but(&moves, pace.non_static) / used;
+        let fast = moves.iter().filter(|m| m.norm() > pace.speed * used).count();
         self.outcome = Outcome {
             steps: self.outcome.steps + 1,
-            speed: longest / used,
+            speed,
+            fastest: longest / used,
+            non_static: fast as f64 / moves.len().max(1) as f64,
             residual,
             dt: used,
-            gained: if self.proves { Some(longest / used) } else { self.outcome.gained },
+            gained: if self.proves { Some(speed) } else { self.outcome.gained },
             ..self.outcome
         };
         self.last = longest;
@@ -347,7 +361,8 @@ impl Descent {
 
     /// What comes after a step.
     fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, kept: f64, pace: &Pace) {
-        let slow = self.outcome.speed < pace.speed && !pulled;
+        let limit = if self.proves { pace.speed } else { pace.speed.min(CREEP) };
+        let slow = self.outcome.speed < limit && !pulled;
         self.outcome.at_rest = slow && (self.proves || !pace.prove);
         if self.proves {
             // A long step leaves strain of second order behind, which the first short ones take away.
@@ -443,6 +458,17 @@ fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
 #[must_use]
 pub fn greatest(v: &[Vec3]) -> f64 {
     v.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
+}
+
+/// The greatest length of all but a share of the vectors, the longest.
+fn greatest_but(v: &[Vec3], share: f64) -> f64 {
+    let left_out = (share * v.len() as f64) as usize;
+    if left_out == 0 {
+        return greatest(v);
+    }
+    let mut squares: Vec<f64> = v.iter().map(Vec3::norm_squared).collect();
+    let at = squares.len().saturating_sub(1 + left_out);
+    squares.select_nth_unstable_by(at, f64::total_cmp).1.sqrt()
 }
 
 #[cfg(test)]

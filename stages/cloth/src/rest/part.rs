@@ -193,6 +193,7 @@ fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
         edges: edges.map(|(e, l)| (cut.renamed(*e), *l)).collect(),
         clear: whole.clear,
         grows: whole.grows,
+        hard: whole.hard,
         passes: whole.passes,
         stiffness: pick(nodes, &whole.stiffness),
         pressed: Vec::new(),

@@ -120,6 +120,7 @@ impl<'a> Plan<'a> {
             // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
             s.edges.clear();
         }
+        system.support.iter_mut().for_each(|s| s.hard = self.rest.sew_through);
         Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
     }
 

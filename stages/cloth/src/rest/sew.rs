@@ -94,7 +94,11 @@ impl Work<'_> {
         self.through = self.plan.rest.sew_through;
         let mut force = self.draw(sheet, pairs, x, progress)?;
         let is_closed = widest(x, pairs) <= self.most_gap();
-        if self.through && is_closed && !self.plan.tree(sheet, &start, true).crossings(x).is_empty() {
+        if self.through
+            && is_closed
+            && self.plan.scene.self_collision
+            && !self.plan.tree(sheet, &start, true).crossings(x).is_empty()
+        {
             let mut around = start;
             self.through = false;
             let other = self.draw(sheet, pairs, &mut around, progress)?;

@@ -47,6 +47,8 @@ type Vec3 = Vector3<f64>;
 pub struct Rest {
     /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
     pub speed: f64,
+    /// The share of the vertices that may gain more: some never come to rest where the skin of a body folds.
+    pub non_static: f64,
     /// The coarsest level has at most about this many nodes.
     pub coarsest: usize,
     /// Steps on each level but the finest.
@@ -75,6 +77,7 @@ impl Default for Rest {
     fn default() -> Self {
         Self {
             speed: 1e-3,
+            non_static: 0.0,
             coarsest: 200,
             coarse_steps: 30,
             finest_steps: 500,

@@ -43,6 +43,9 @@ pub struct Support<'a> {
     pub clear: bool,
     /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
     pub grows: bool,
+    /// Whether contact becomes stiffer under nodes that lie in the body, until it brings them out: cloth that is sewn through a body, or around
+    /// another, may be too tight for it to come out by itself.
+    pub hard: bool,
     /// Whether cloth may pass through the body, which pushes it out all the same.
     pub passes: bool,
     /// Stiffness of contact, N/m per node.

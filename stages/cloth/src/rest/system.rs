@@ -301,6 +301,9 @@ impl System<'_> {
         self.touches.clear();
         for (i, n) in near.iter().enumerate() {
             let Some(n) = n else { continue };
+            if s.hard && n.distance < 0.0 {
+                s.pressed.push(i as u32);
+            }
             let force = s.stiffness[i] * (s.offsets[i] - n.distance).max(0.0);
             // While Newton's steps swing between touching and not, friction follows the mean.
             // A node that has just come down will carry its weight at least.

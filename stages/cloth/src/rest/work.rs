@@ -111,7 +111,7 @@ impl<'a> Work<'a> {
             if let Some(s) = &mut system.support {
                 s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
-            let report = self.run(system, sheet, layout, x, &pace, &|_, _| false, progress)?;
+            let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
             self.reports.push(report);
         }
         Ok(())

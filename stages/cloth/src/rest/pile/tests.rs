@@ -31,6 +31,7 @@ fn pace() -> Pace {
         longest: 1.0,
         steps: 200,
         speed: 1e-3,
+        non_static: 0.0,
         farthest: 0.1,
         prove: false,
         rough: false,

@@ -217,6 +217,23 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
 }
 
 #[test]
+fn a_share_of_the_vertices_may_still_move() {
+    let scene = crossed();
+    let through = Rest { sew_through: true, ..Rest::default() };
+    let steps = |rest: Rest| {
+        let state =
+            rest.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
+        assert!(state.outcome.non_static <= rest.non_static && state.outcome.speed < rest.speed);
+        if rest.non_static == 0.0 {
+            assert_eq!(state.outcome.speed, state.outcome.fastest);
+        }
+        state.levels.iter().map(|l| l.outcome.steps).sum::<usize>()
+    };
+    let (all, most) = (steps(through), steps(Rest { non_static: 0.2, ..through }));
+    assert!(most < all, "{most} {all}");
+}
+
+#[test]
 fn a_seam_may_sew_a_right_side_to_a_wrong_side() {
     // The dart's panel with one half mirrored: its triangles run the other way round where the two halves meet.
     let mut scene = generate::gathered(8, 4, 1.0 + 1e-9);

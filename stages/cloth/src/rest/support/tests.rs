@@ -36,6 +36,7 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
         longest: 1.0,
         steps: 300,
         speed: 1e-3,
+        non_static: 0.0,
         farthest: 0.05,
         prove: true,
         precision: Precision::Double,
@@ -53,4 +54,25 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     assert!(touch.force > 0.9 * load, "{} of {load} N", touch.force);
     let height = body.nearest(&x[middle], 1.0).unwrap().distance;
     assert!(height > 0.5 * offset && height < offset, "{height}");
+}
+
+/// A node in the ball, pulled in harder than its contact carries, and one beside it that rests outside.
+#[test]
+fn contact_that_is_hard_brings_a_node_out_of_the_body() {
+    let scene = generate::drape(10);
+    on_its_body(&scene, |mut system, body, _| {
+        let mut x = scene.positions.clone();
+        let top = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
+        x[top] -= Vec3::y() * (body.nearest(&x[top], 1.0).unwrap().distance + 5e-3);
+        let of = |system: &System<'_>, i: usize| system.support.as_ref().unwrap().stiffness[i];
+        let before = (of(&system, top), of(&system, top + 1));
+        system.touch(&x);
+        system.touch(&x);
+        assert_eq!((of(&system, top), of(&system, top + 1)), before, "it is not hard yet");
+        system.support.as_mut().unwrap().hard = true;
+        (0..3).for_each(|_| system.touch(&x));
+        assert_eq!((of(&system, top), of(&system, top + 1)), (16.0 * before.0, before.1));
+        let force = system.touches.iter().find(|t| t.node as usize == top).unwrap().force;
+        assert!(force > 15.0 * before.0 * 5e-3, "{force}");
+    });
 }

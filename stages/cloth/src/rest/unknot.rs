@@ -1,0 +1,155 @@
+//! Knots: cloth that crosses itself in a few places, and that its contacts do not take out of itself.
+//!
+//! Method: the nodes of what crosses, and the rings of nodes around them, move to the mean of their neighbours again and again (Laplacian
+//! smoothing, Field 1988), which lays a fold that is knotted flat; then cloth comes to rest from there. Each try takes more rings. Cost: one
+//! more run from near rest a try. Limits: two layers that lie far in each other are both smoothed, and still cross.
+
+use super::newton::Pace;
+use super::solve::{LevelReport, Progress, RestError};
+use super::system::System;
+use super::work::Work;
+use crate::mesh::Sheet;
+use nalgebra::Vector3;
+use std::cell::Cell;
+
+type Vec3 = Vector3<f64>;
+
+/// Rings of nodes that are smoothed around what crosses, for each try.
+const RINGS: [usize; 3] = [2, 4, 8];
+
+/// How often they move to the mean of their neighbours.
+const SWEEPS: usize = 30;
+
+/// Steps in which some of the tangled nodes must come free; else they do not.
+const PATIENCE: usize = 25;
+
+impl Work<'_> {
+    /// Runs one level, and where cloth that was sewn through itself stays knotted, smooths the knots and runs it again.
+    pub(super) fn run_free(
+        &self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut [Vec3],
+        pace: &Pace,
+        progress: &mut Progress<'_>,
+    ) -> Result<LevelReport, RestError> {
+        if !self.plan.rest.sew_through {
+            return self.run(system, sheet, layout, x, pace, &|_, _| false, progress);
+        }
+        let stuck = Stuck::default();
+        let mut report = self.run(system, sheet, layout, x, pace, &|s, _| stuck.looks_at(s), progress)?;
+        for rings in RINGS {
+            if !system.is_tangled() {
+                break;
+            }
+            smooth(sheet, x, &around(system, sheet, rings));
+            let stuck = Stuck::default();
+            report = self.run(system, sheet, layout, x, pace, &|s, _| stuck.looks_at(s), progress)?;
+        }
+        Ok(report)
+    }
+}
+
+/// Whether tangled nodes come free no more.
+struct Stuck {
+    least: Cell<usize>,
+    steps: Cell<usize>,
+}
+
+impl Default for Stuck {
+    fn default() -> Self {
+        Self { least: Cell::new(usize::MAX), steps: Cell::new(0) }
+    }
+}
+
+impl Stuck {
+    /// Looks at the cloth after a step; whether it is stuck.
+    fn looks_at(&self, system: &System<'_>) -> bool {
+        let count = |tangled: &Vec<bool>| tangled.iter().filter(|t| **t).count();
+        self.counts(system.layers.as_ref().map_or(0, |l| count(&l.tangled)))
+    }
+
+    fn counts(&self, tangled: usize) -> bool {
+        if tangled < self.least.get() {
+            self.least.set(tangled);
+            self.steps.set(0);
+        } else {
+            self.steps.set(self.steps.get() + 1);
+        }
+        tangled > 0 && self.steps.get() >= PATIENCE
+    }
+}
+
+/// The tangled nodes and so many rings of nodes around them, but for those that are pinned.
+fn around(system: &System<'_>, sheet: &Sheet, rings: usize) -> Vec<bool> {
+    let mut knotted = system.layers.as_ref().map_or_else(Vec::new, |l| l.tangled.clone());
+    for _ in 0..rings {
+        let inner = knotted.clone();
+        for [a, b] in sheet.edges().iter().map(|e| e.vertices.map(|v| v as usize)) {
+            knotted[a] |= inner[b];
+            knotted[b] |= inner[a];
+        }
+    }
+    knotted.iter_mut().zip(&system.pinned).for_each(|(k, p)| *k &= !p);
+    knotted
+}
+
+/// Moves the chosen nodes to the mean of their neighbours, again and again.
+fn smooth(sheet: &Sheet, x: &mut [Vec3], chosen: &[bool]) {
+    for _ in 0..SWEEPS {
+        let mut sums = vec![(Vec3::zeros(), 0.0); x.len()];
+        for [a, b] in sheet.edges().iter().map(|e| e.vertices.map(|v| v as usize)) {
+            for (to, from) in [(a, b), (b, a)] {
+                sums[to].0 += x[from];
+                sums[to].1 += 1.0;
+            }
+        }
+        for ((p, (sum, count)), _) in x.iter_mut().zip(&sums).zip(chosen).filter(|(_, c)| **c) {
+            if *count > 0.0 {
+                *p = sum / *count;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+    use super::*;
+    use crate::contact::tree::ClothTree;
+    use crate::rest::assemble::cloths;
+    use crate::rest::pieces::Pieces;
+    use crate::scene::generate;
+
+    #[test]
+    fn a_knot_is_smoothed_away_and_the_cloth_around_it_stays() {
+        let scene = generate::drape(12);
+        let sheet = Pieces::new(&scene).sewn_sheet(&cloths(&scene)).unwrap();
+        let flat = scene.positions.clone();
+        let tree = ClothTree::new(&sheet, &flat);
+        let mut x = flat.clone();
+        // A vertex pulled over the next cells and down through them.
+        let knot = 6 * 13 + 6;
+        x[knot] = (flat[knot + 2] + flat[knot + 3] + flat[knot + 15]) / 3.0 - Vec3::y() * 0.01;
+        x[knot + 1] += Vec3::y() * 0.02;
+        assert!(!tree.crossings(&x).is_empty());
+        let mut chosen = vec![false; x.len()];
+        for row in 4..=8 {
+            (4..=10).for_each(|c| chosen[row * 13 + c] = true);
+        }
+        smooth(&sheet, &mut x, &chosen);
+        assert!(tree.crossings(&x).is_empty());
+        let kept = x.iter().zip(&flat).zip(&chosen).filter(|(_, c)| !**c);
+        assert!(kept.clone().count() > 100 && kept.into_iter().all(|((x, p), _)| x == p));
+    }
+
+    #[test]
+    fn cloth_is_stuck_when_no_tangled_node_came_free_for_long() {
+        let stuck = Stuck::default();
+        assert!((0..100).all(|k| !stuck.counts(200 - k)), "one comes free at each step");
+        let steps = (0..PATIENCE + 5).take_while(|_| !stuck.counts(101)).count();
+        assert_eq!(steps, PATIENCE - 1);
+        assert!((0..2 * PATIENCE).all(|_| !Stuck::default().counts(0)), "what is free is not stuck");
+    }
+}
