@@ -1,9 +1,15 @@
 //! Sewing patterns from files: what takes the place of photos, outlines and a style.
 
+mod chain;
+mod copies;
 mod dxf;
 mod garment_code;
+mod marks;
 mod propose;
+mod seams;
+mod side;
 mod sidecar;
+mod unfold;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
