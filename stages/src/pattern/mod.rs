@@ -9,10 +9,12 @@ mod propose;
 mod seams;
 mod side;
 mod sidecar;
+mod svg;
 mod unfold;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
+pub use svg::SvgPattern;
 
 use std::path::Path;
 use toile_core::Registry;
@@ -21,6 +23,7 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
     registry.add::<DxfPattern>();
+    registry.add::<SvgPattern>();
 }
 
 /// The file's name without folder, extension and the word that GarmentCode adds.

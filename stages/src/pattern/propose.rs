@@ -4,8 +4,11 @@
 //! Method: a candidate is a pair of edges, or an edge and a chain of two, of nearly equal lengths, which may meet start to end as
 //! pieces do that are seen from outside; the edges must run alike along the grain. Hems, necks and waists are left out: an end of a
 //! piece across the grain that covers its middle is sewn to no end on the same side of another piece, unless one of them is a
-//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves. Cost: edges
-//! squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is not seen.
+//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves; then [`rings`] finds what is
+//! sewn around. Cost: edges squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is
+//! not seen.
+
+mod rings;
 
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
@@ -91,7 +94,10 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
         let better = |a: &&(f64, usize, usize), b: &&(f64, usize, usize)| {
             rank(a).total_cmp(&rank(b)).then((b.1, b.2).cmp(&(a.1, a.2)))
         };
-        let Some(&(score, i, j)) = pairs.iter().max_by(better) else { return out };
+        let Some(&(score, i, j)) = pairs.iter().max_by(better) else {
+            out.extend(rings::attach(pieces, &out));
+            return out;
+        };
         taken.extend(edges(i, j));
         out.push(seam(&all[i], &all[j], score, pieces));
     }

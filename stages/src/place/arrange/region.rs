@@ -3,8 +3,8 @@
 //! Method: words of the piece's name first (a table of English words and of the short forms of CAD programs; words that all pieces
 //! have in common are the garment's), then its seams: a piece that is sewn to itself and to its mirror image is a leg, fronts and
 //! backs that meet at their upper ends have shoulders, a long narrow piece at the upper end of others is a waistband. Which half is
-//! left comes from where the seam in the middle lies. Cost: edges of seams. Limits: sleeves, collars, cuffs, hoods and yokes are
-//! not placed; a piece without a word needs one of the seams above.
+//! left comes from where the seam in the middle lies; which arm a sleeve is for, from the armhole that it is sewn into. Cost: edges of seams.
+//! Limits: sleeves of several pieces, collars, cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
 
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
@@ -15,9 +15,11 @@ const FRONT: [&str; 6] = ["front", "fronts", "frt", "fr", "fnt", "ft"];
 const BACK: [&str; 5] = ["back", "backs", "bk", "bck", "bac"];
 /// Words of a waistband.
 const BAND: [&str; 3] = ["waistband", "wb", "waistbd"];
+/// Words of a sleeve.
+const SLEEVE: [&str; 3] = ["sleeve", "sleeves", "slv"];
 /// Words of pieces that are not placed.
-const OTHER: [&str; 14] = [
-    "sleeve", "slv", "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding",
+const OTHER: [&str; 12] = [
+    "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding",
     "strap", "placket",
 ];
 /// A piece this many times longer than wide may be a band.
@@ -36,6 +38,8 @@ pub(super) enum Region {
     Leg,
     /// A band around the waist.
     Waist,
+    /// An arm, in one piece.
+    Arm,
 }
 
 /// The side of the body that a piece covers.
@@ -128,12 +132,14 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
             let why = format!("the word \"{word}\" in its name");
             return Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why });
         }
-        let face = match (is(&FRONT), is(&BACK)) {
-            (Some(w), None) => Some((Side::Front, w)),
-            (None, Some(w)) => Some((Side::Back, w)),
-            _ => None,
-        };
-        match face {
+        if let Some(word) = is(&SLEEVE) {
+            let hand = sleeve_hand(i, pieces, &joints, &words).ok_or_else(|| {
+                unclear(format!("nothing tells whether the sleeve \"{name}\" is the left or the right one"))
+            })?;
+            let why = format!("the word \"{word}\" in its name, and the armhole that it is sewn into");
+            return Ok(Decided { region: Region::Arm, side: Side::Around, hand, why });
+        }
+        match face(&words[i]) {
             None if itself && joints.iter().any(&twin) => {
                 let hand = leg_hand(i, pieces, &joints).ok_or_else(|| {
                     unclear(format!("nothing tells the front of the leg \"{name}\" from its back"))
@@ -159,6 +165,35 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
         }
     });
     all.collect()
+}
+
+/// Whether words tell a front or a back, and which does.
+fn face(words: &BTreeSet<String>) -> Option<(Side, String)> {
+    let is = |table: &[&str]| words.iter().find(|w| table.contains(&w.as_str())).cloned();
+    match (is(&FRONT), is(&BACK)) {
+        (Some(w), None) => Some((Side::Front, w)),
+        (None, Some(w)) => Some((Side::Back, w)),
+        _ => None,
+    }
+}
+
+/// The arm of a sleeve: the side of the body of the armholes that it is sewn to, by length.
+fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<String>]) -> Option<f64> {
+    let mut sum = 0.0;
+    for j in joints {
+        for k in (0..2).filter(|k| j.pieces[*k] == i && j.pieces[1 - *k] != i) {
+            let other = j.pieces[1 - k];
+            let Some((side, _)) = face(&words[other]) else { continue };
+            let (at, length) = middle(&pieces[other], &j.edges[1 - k]);
+            let twin = joints.iter().find(|t| t.pieces.contains(&other) && twins(pieces, t.pieces));
+            let (lo, hi) = bounds(&pieces[other]);
+            // Seen from outside, the wearer's left is at the right before and at the left behind.
+            let right = if at.x > (lo.x + hi.x) / 2.0 { 1.0 } else { -1.0 };
+            let whole = if side == Side::Front { right } else { -right };
+            sum += length * twin.map_or(whole, |t| half_hand(other, t, pieces, side));
+        }
+    }
+    (sum != 0.0).then(|| sum.signum())
 }
 
 /// The words of each name, small, without those that all pieces have.
