@@ -75,7 +75,9 @@ impl Arrange {
         if self.bend {
             for limb in Limb::arms(body) {
                 let mine = match &sleeves {
-                    Some(all) => all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect(),
+                    Some(all) => {
+                        all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect()
+                    }
                     None => tubes::around(&limb, pattern, &places),
                 };
                 let bent = tubes::bend(&limb, &mine, &mut places, &seams, &offsets, self.clearance.metres());

@@ -132,7 +132,10 @@ fn svg() {
     let dir = tempfile::tempdir().unwrap();
     testkit::files::files_for(&REGISTRY, "SvgPattern(file: \"small.svg\")", dir.path()).unwrap();
     let small = String::from_utf8(read(dir.path().join("small.svg"))).unwrap();
-    let clones = small.replace("</svg>", "<defs><g id=\"two\"><use href=\"#front\" x=\"600\"/></g></defs><use href=\"#two\"/></svg>");
+    let clones = small.replace(
+        "</svg>",
+        "<defs><g id=\"two\"><use href=\"#front\" x=\"600\"/></g></defs><use href=\"#two\"/></svg>",
+    );
     let seeds = [small.into_bytes(), clones.into_bytes()];
     let pattern = |bytes: &[u8]| {
         std::fs::write(dir.path().join("fuzz.svg"), bytes).unwrap();

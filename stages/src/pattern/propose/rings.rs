@@ -31,7 +31,8 @@ struct Ring {
 pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(PatternSeam, String)> {
     let rings = rings(pieces, sewn);
     let one = |&(i, k): &At| candidate(i, &pieces[i], vec![k]);
-    let around: Vec<&Ring> = rings.iter().filter(|r| r.edges.len() > 1 && r.hops.iter().any(|h| *h)).collect();
+    let around: Vec<&Ring> =
+        rings.iter().filter(|r| r.edges.len() > 1 && r.hops.iter().any(|h| *h)).collect();
     // What ends a garment below, and what is no tube's, takes no sleeve.
     let is_hem = |r: &Ring| r.edges.iter().all(|e| one(e).end == End::Low);
     let mut found: Vec<(f64, At, usize, Vec<At>)> = Vec::new();
@@ -50,7 +51,16 @@ pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(P
     let free: BTreeSet<At> = rings.iter().flat_map(|r| r.edges.iter().copied()).collect();
     let bands = free.iter().filter(|e| {
         let c = one(e);
-        c.band && c.length > 0.4 * pieces[e.0].outer.edges.iter().enumerate().map(|(k, _)| pieces[e.0].outer.path(k).length()).sum::<f64>()
+        c.band
+            && c.length
+                > 0.4
+                    * pieces[e.0]
+                        .outer
+                        .edges
+                        .iter()
+                        .enumerate()
+                        .map(|(k, _)| pieces[e.0].outer.path(k).length())
+                        .sum::<f64>()
     });
     for band in bands {
         for (n, ring) in around.iter().enumerate().filter(|(_, r)| !is_hem(r)) {
@@ -190,7 +200,8 @@ fn notches(pieces: &[Piece], edge: At, ring: &[At]) -> Option<f64> {
         let apart = |m: &f64| (n - m).abs().min(((length - n) - (before - m)).abs());
         other.iter().map(apart).fold(f64::INFINITY, f64::min)
     };
-    (!own.is_empty() && own.len() <= other.len()).then(|| own.iter().map(near).sum::<f64>() / own.len() as f64)
+    (!own.is_empty() && own.len() <= other.len())
+        .then(|| own.iter().map(near).sum::<f64>() / own.len() as f64)
 }
 
 fn seam(pieces: &[Piece], edge: At, ring: &[At], score: f64, c: &Candidate) -> (PatternSeam, String) {
@@ -198,11 +209,13 @@ fn seam(pieces: &[Piece], edge: At, ring: &[At], score: f64, c: &Candidate) -> (
         edge: EdgeRef { panel: pieces[i].name.clone(), edge: pieces[i].outer.edges[k].name.clone() },
         reversed,
     };
-    let sides = vec![vec![used(edge, false)], ring.iter().rev().map(|at| used(*at, true)).collect::<Vec<_>>()];
+    let sides =
+        vec![vec![used(edge, false)], ring.iter().rev().map(|at| used(*at, true)).collect::<Vec<_>>()];
     let words = |s: &[EdgeUse]| s.iter().map(|u| u.edge.to_string()).collect::<Vec<_>>().join(" ");
     let name = format!("{} + {}", words(&sides[0]), words(&sides[1]));
     let whole: f64 = ring.iter().map(|at| pieces[at.0].outer.path(at.1).length()).sum();
     let (x, y) = (c.length * 1e3, whole * 1e3);
-    let reason = format!("confidence {score:.2}: {x:.1} mm to {y:.1} mm around, {:+.1} % ease", (x / y - 1.0) * 1e2);
+    let reason =
+        format!("confidence {score:.2}: {x:.1} mm to {y:.1} mm around, {:+.1} % ease", (x / y - 1.0) * 1e2);
     (PatternSeam { name, kind: SeamKind::Matched, sides }, reason)
 }

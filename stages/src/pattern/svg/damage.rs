@@ -44,7 +44,9 @@ pub(super) enum Damage {
     TextAlone,
     #[error("there are no pieces: it holds a picture of pixels alone")]
     PictureAlone,
-    #[error("piece \"{piece}\", {place}: its outline is open by {gap_mm:.1} mm near ({x:.1}, {y:.1}) mm on the page")]
+    #[error(
+        "piece \"{piece}\", {place}: its outline is open by {gap_mm:.1} mm near ({x:.1}, {y:.1}) mm on the page"
+    )]
     Open { piece: String, place: Place, gap_mm: f64, x: f64, y: f64 },
     #[error("piece \"{piece}\", {place}: its outline crosses itself near ({x:.1}, {y:.1}) mm on the page")]
     Crosses { piece: String, place: Place, x: f64, y: f64 },
@@ -68,7 +70,8 @@ impl Damage {
             Damage::Attribute { .. } => "draw the element again, or take it out".into(),
             Damage::Loop { .. } => "unlink the clone, or take it out".into(),
             Damage::NoPieces => {
-                "draw every piece as a closed line, or as lines that meet end to end, in a group of its own".into()
+                "draw every piece as a closed line, or as lines that meet end to end, in a group of its own"
+                    .into()
             }
             Damage::TextAlone => "turn no outlines into text: export the pieces as paths".into(),
             Damage::PictureAlone => "trace the picture: pieces are read from paths".into(),

@@ -115,7 +115,8 @@ fn hidden_by(style: &str) -> Vec<String> {
     let hides = |body: &str| hides(&body.to_lowercase());
     let names = |selectors: &str| {
         let one = |s: &str| s.trim().to_owned();
-        let simple = |s: &String| s.starts_with(['.', '#']) && !s[1..].contains([' ', '.', '#', '>', ':', '[']);
+        let simple =
+            |s: &String| s.starts_with(['.', '#']) && !s[1..].contains([' ', '.', '#', '>', ':', '[']);
         selectors.split(',').map(one).filter(simple).collect::<Vec<_>>()
     };
     rules.filter(|(_, body)| hides(body)).flat_map(|(selectors, _)| names(selectors)).collect()
@@ -124,10 +125,7 @@ fn hidden_by(style: &str) -> Vec<String> {
 /// Whether declarations hide what they hold for.
 fn hides(declarations: &str) -> bool {
     declarations.split(';').filter_map(|d| d.split_once(':')).any(|(property, value)| {
-        matches!(
-            (property.trim(), value.trim()),
-            ("display", "none") | ("visibility", "hidden" | "collapse")
-        )
+        matches!((property.trim(), value.trim()), ("display", "none") | ("visibility", "hidden" | "collapse"))
     })
 }
 
@@ -159,7 +157,8 @@ fn unescaped(id: &str) -> String {
     let mut rest = id;
     while let Some(k) = rest.find("_x") {
         let code = rest[k + 2..].split_once('_').filter(|(hex, _)| (2..=4).contains(&hex.len()));
-        let char = code.and_then(|(hex, after)| Some((char::from_u32(u32::from_str_radix(hex, 16).ok()?)?, after)));
+        let char =
+            code.and_then(|(hex, after)| Some((char::from_u32(u32::from_str_radix(hex, 16).ok()?)?, after)));
         out.push_str(&rest[..k]);
         match char {
             Some((c, after)) => {
@@ -223,23 +222,27 @@ impl<'t> Walk<'t> {
                 Ok(())
             }
             "text" => {
-                let number = |name: &str| node.attribute(name).and_then(|v| v.split([' ', ',']).next()?.parse().ok());
+                let number =
+                    |name: &str| node.attribute(name).and_then(|v| v.split([' ', ',']).next()?.parse().ok());
                 let at = inner.to * kurbo::Point::new(number("x").unwrap_or(0.0), number("y").unwrap_or(0.0));
                 let at = Point2::new(at.x, at.y);
                 self.drawing.texts.push(Words { text: inner_text(node), group: inner.group, at });
                 Ok(())
             }
-            "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" => self.shape(node, &inner),
+            "path" | "rect" | "circle" | "ellipse" | "line" | "polyline" | "polygon" => {
+                self.shape(node, &inner)
+            }
             _ => Ok(()),
         }
     }
 
     fn group(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
         let id = node.attribute("id").unwrap_or("");
-        let part = id.strip_prefix("fs-stack-").and_then(|rest| rest.split_once("-part-")).map(|(_, part)| {
-            let bare = part.rsplit_once('.').map_or(part, |(_, bare)| bare);
-            bare.to_owned()
-        });
+        let part =
+            id.strip_prefix("fs-stack-").and_then(|rest| rest.split_once("-part-")).map(|(_, part)| {
+                let bare = part.rsplit_once('.').map_or(part, |(_, bare)| bare);
+                bare.to_owned()
+            });
         let freesewing = id.starts_with("fs-");
         let own = if freesewing { None } else { of_group(names(node)) };
         if own == Some(Role::Nothing) {
@@ -258,7 +261,8 @@ impl<'t> Walk<'t> {
 
     /// What a `use` shows: the element that it names, moved.
     fn cloned(&mut self, node: Node<'t, 't>, state: &State) -> Result<(), Damage> {
-        let target = local(node, "href").and_then(|h| h.trim().strip_prefix('#')).and_then(|id| self.ids.get(id));
+        let target =
+            local(node, "href").and_then(|h| h.trim().strip_prefix('#')).and_then(|id| self.ids.get(id));
         let Some(&target) = target else { return Ok(()) };
         if node.ancestors().any(|a| a == target) || state.depth >= MOST_DEPTH {
             return Err(Damage::Loop { place: place(node) });

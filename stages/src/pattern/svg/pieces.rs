@@ -75,7 +75,8 @@ pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Vec<String>) -> 
     let mut out = Vec::new();
     for (k, outline) in outlines.iter().enumerate() {
         let mine: Vec<&Shape<'_>> = d.shapes.iter().filter(|s| owners.of_shape(s) == Some(k)).collect();
-        let piece = Drawn { name: &names[k], place: place(outline.shape.node) }.piece(outline, &mine, told)?;
+        let piece =
+            Drawn { name: &names[k], place: place(outline.shape.node) }.piece(outline, &mine, told)?;
         let texts = d.texts.iter().filter(|t| owners.at(t.group, t.at) == Some(k));
         let (plain, turned) =
             texts.filter_map(|t| cut(&t.text, by_word, MOST_COPIES)).next().unwrap_or((1, 0));
@@ -145,7 +146,10 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Ou
     }
     let frames = frames(d, &found);
     if !frames.is_empty() {
-        told.push(format!("{} closed lines around pieces of other groups are taken for frames: left out", frames.len()));
+        told.push(format!(
+            "{} closed lines around pieces of other groups are taken for frames: left out",
+            frames.len()
+        ));
     }
     let mut k = 0;
     found.retain(|_| {
@@ -229,8 +233,14 @@ fn open<'d, 't>(shapes: &[&'d Shape<'t>]) -> Option<Outlined<'d, 't>> {
     let polygon = points(&sides);
     let area = polygon_area(&polygon).abs();
     // Lines that enclose nothing are a drawing of something else.
-    (sides.len() + usize::from(says) >= 2 && area >= LEAST)
-        .then_some(Outlined { shape: first, sides, closed: false, holes: Vec::new(), polygon, area })
+    (sides.len() + usize::from(says) >= 2 && area >= LEAST).then_some(Outlined {
+        shape: first,
+        sides,
+        closed: false,
+        holes: Vec::new(),
+        polygon,
+        area,
+    })
 }
 
 /// Those that lie in no other of them.
@@ -290,7 +300,8 @@ impl<'d, 't> Owners<'d, 't> {
             let group = part(d, o.shape.group).unwrap_or_else(|| owner(d, o.shape.group));
             all.entry(group).or_default().push(k);
         }
-        let alone = all.into_iter().filter(|(group, k)| k.len() == 1 && *group != 0 && !d.groups[*group].layer);
+        let alone =
+            all.into_iter().filter(|(group, k)| k.len() == 1 && *group != 0 && !d.groups[*group].layer);
         Owners { d, outlines, of_group: alone.map(|(group, k)| (group, k[0])).collect() }
     }
 
@@ -311,7 +322,9 @@ impl<'d, 't> Owners<'d, 't> {
         let on = (0..self.outlines.len()).filter(|&k| self.outlines[k].has(p));
         let least = on.min_by(|&i, &j| self.outlines[i].area.total_cmp(&self.outlines[j].area));
         least.or_else(|| {
-            let far = |k: usize| self.outlines[k].polygon.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min);
+            let far = |k: usize| {
+                self.outlines[k].polygon.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min)
+            };
             let near = (0..self.outlines.len()).map(|k| (far(k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
             near.filter(|(far, _)| *far <= NEAR).map(|(_, k)| k)
         })
@@ -320,7 +333,8 @@ impl<'d, 't> Owners<'d, 't> {
 
 /// The middle of the box around a shape.
 fn middle(s: &Shape<'_>) -> Point2 {
-    let points = || s.lines.iter().flat_map(|l| std::iter::once(l.start).chain(l.parts.iter().map(|(_, end)| *end)));
+    let points =
+        || s.lines.iter().flat_map(|l| std::iter::once(l.start).chain(l.parts.iter().map(|(_, end)| *end)));
     let first = points().next().unwrap_or_else(Point2::origin);
     let (lo, hi) = points().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
     nalgebra::center(&lo, &hi)
@@ -343,7 +357,8 @@ fn ends(line: &Line) -> (Point2, Point2) {
     if !line.closed && (line.end() - line.start).norm() > JOINT {
         return (line.start, line.end());
     }
-    let points: Vec<Point2> = std::iter::once(line.start).chain(line.parts.iter().map(|(_, end)| *end)).take(200).collect();
+    let points: Vec<Point2> =
+        std::iter::once(line.start).chain(line.parts.iter().map(|(_, end)| *end)).take(200).collect();
     let pairs = points.iter().flat_map(|a| points.iter().map(move |b| (*a, *b)));
     let far = |(a, b): &(Point2, Point2)| (b - a).norm();
     pairs.max_by(|x, y| far(x).total_cmp(&far(y))).unwrap_or((line.start, line.start))
@@ -401,7 +416,8 @@ impl Drawn<'_> {
 
     /// The line at which the piece is cut on the fold, and where it stands in the file.
     fn fold(&self, mine: &[&Shape<'_>]) -> Result<Option<(Fold, Place)>, Damage> {
-        let Some((line, shape)) = longest(mine, |r| matches!(r, Role::Fold | Role::Grain { fold: true })) else {
+        let Some((line, shape)) = longest(mine, |r| matches!(r, Role::Fold | Role::Grain { fold: true }))
+        else {
             return Ok(None);
         };
         let (at, (a, b)) = (place(shape.node), ends(line));

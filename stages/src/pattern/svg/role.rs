@@ -83,8 +83,10 @@ pub(super) fn cut(text: &str, by_word: bool, most: usize) -> Option<(usize, usiz
 pub(super) fn is_generated(id: &str) -> bool {
     let rest = id.trim_start_matches(|c: char| c.is_ascii_alphabetic());
     let number = rest.trim_start_matches(['-', '_']);
-    let tags =
-        ["path", "rect", "circle", "ellipse", "polygon", "polyline", "line", "g", "use", "svg", "layer", "fs", "group"];
+    let tags = [
+        "path", "rect", "circle", "ellipse", "polygon", "polyline", "line", "g", "use", "svg", "layer", "fs",
+        "group",
+    ];
     let word = &id[..id.len() - rest.len()];
     !number.is_empty()
         && number.chars().all(|c| c.is_ascii_digit() || "-_".contains(c))
@@ -101,7 +103,10 @@ mod tests {
         assert_eq!(is(&["fabric", "fs-1"]), Some(Role::Outline));
         assert_eq!(is(&["fabric sa", "fs-2"]), Some(Role::Allowance));
         assert_eq!(is(&["note", "plugin-annotations:grainline"]), Some(Role::Grain { fold: false }));
-        assert_eq!(is(&["note", "plugin-annotations:cutOnFoldAndGrainline"]), Some(Role::Grain { fold: true }));
+        assert_eq!(
+            is(&["note", "plugin-annotations:cutOnFoldAndGrainline"]),
+            Some(Role::Grain { fold: true })
+        );
         assert_eq!(is(&["note", "plugin-annotations:cutOnFold"]), Some(Role::Fold));
         assert_eq!(is(&["#bnotch"]), Some(Role::Notch));
         assert_eq!(is(&["contrast help"]), Some(Role::Mark));
@@ -123,7 +128,9 @@ mod tests {
 
     #[test]
     fn ids_of_programs_are_no_names() {
-        assert!(["path123", "g-12", "rect7", "fs-1", "layer1", "path12-3-7"].iter().all(|id| is_generated(id)));
+        assert!(
+            ["path123", "g-12", "rect7", "fs-1", "layer1", "path12-3-7"].iter().all(|id| is_generated(id))
+        );
         assert!(["front", "back2", "gusset", "g", "sleeve_1"].iter().all(|id| !is_generated(id)));
     }
 }

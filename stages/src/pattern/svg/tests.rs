@@ -11,7 +11,9 @@ use toile_core::Cancel;
 
 /// A page of 1 m by 1 m on which a unit is a millimetre.
 fn page(inside: &str) -> String {
-    format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1000mm\" height=\"1000mm\" viewBox=\"0 0 1000 1000\">\n{inside}\n</svg>")
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1000mm\" height=\"1000mm\" viewBox=\"0 0 1000 1000\">\n{inside}\n</svg>"
+    )
 }
 
 fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
@@ -42,7 +44,9 @@ fn names(pieces: &[Piece]) -> Vec<&str> {
 /// A T-shirt in FreeSewing's form: halves on the fold, a sleeve that is cut twice, notches as clones, seam allowance.
 fn tee() -> String {
     let part = |name: &str, inside: &str| {
-        format!("<g id=\"fs-stack-tee.{name}\" transform=\"translate(10, 20)\"><g id=\"fs-stack-tee.{name}-part-tee.{name}\">{inside}</g></g>")
+        format!(
+            "<g id=\"fs-stack-tee.{name}\" transform=\"translate(10, 20)\"><g id=\"fs-stack-tee.{name}-part-tee.{name}\">{inside}</g></g>"
+        )
     };
     let fold = "<path class=\"note\" marker-start=\"url(#cutonfoldFrom)\" data-text=\"plugin-annotations:cutOnFoldAndGrainline\" \
                 d=\"M 0,140 L 15,140 L 15,560 L 0,560\"/>";
@@ -85,7 +89,11 @@ fn parts_of_freesewing_are_unfolded_named_and_cut_as_often_as_they_say() {
     assert_eq!(front.outer.edges.len(), 8);
     assert!((front.grain.unwrap()[1].y - front.grain.unwrap()[0].y - 0.42).abs() < 1e-12);
     assert_eq!((front.notches.len(), front.lines.len()), (2, 2));
-    let shoulder = front.outer.edges.iter().find(|e| (length(front, &e.name) - 97.0_f64.hypot(22.0) * 1e-3).abs() < 1e-9);
+    let shoulder = front
+        .outer
+        .edges
+        .iter()
+        .find(|e| (length(front, &e.name) - 97.0_f64.hypot(22.0) * 1e-3).abs() < 1e-9);
     assert!(shoulder.is_some());
     assert!((polygon_area(&front.outer.points().0) - polygon_area(&pieces[1].outer.points().0)).abs() > 1e-3);
 }
@@ -97,7 +105,9 @@ fn sides_shoulders_and_sleeves_are_proposed_and_no_hem() {
     let names: Vec<&str> = found.iter().map(|(s, _)| s.name.as_str()).collect();
     assert_eq!(found.len(), 8, "{names:?}");
     for cap in ["sleeve.", "sleeve_mirrored."] {
-        let into = |s: &&PatternSeam| s.sides[0].len() == 1 && s.sides[0][0].edge.to_string().starts_with(cap) && s.sides[1].len() == 2;
+        let into = |s: &&PatternSeam| {
+            s.sides[0].len() == 1 && s.sides[0][0].edge.to_string().starts_with(cap) && s.sides[1].len() == 2
+        };
         let seam = found.iter().map(|(s, _)| s).find(into).unwrap();
         // Seen from outside, the front of a right sleeve is at its right: its cap begins at the front.
         let first = &seam.sides[1][0].edge.panel;
@@ -121,10 +131,14 @@ fn every_command_of_path_data_is_read_and_arcs_keep_their_length() {
         assert!((perimeter(&p) - (0.3 + 0.05 * PI)).abs() < 1e-7, "{d}: {}", perimeter(&p));
     }
     let smooth = one("<path id=\"p\" d=\"M100 100 v100 h100 V100 Q 175 50 150 100 T 100 100 z\"/>");
-    let spelled = one("<path id=\"p\" d=\"M100 100 L100 200 L200 200 L200 100 Q175 50 150 100 Q125 150 100 100 z\"/>");
+    let spelled =
+        one("<path id=\"p\" d=\"M100 100 L100 200 L200 200 L200 100 Q175 50 150 100 Q125 150 100 100 z\"/>");
     assert!((perimeter(&smooth) - perimeter(&spelled)).abs() < 1e-12);
-    let smooth = one("<path id=\"p\" d=\"M100 100 v100 h100 v-100 c 0 -50 -40 -50 -50 0 s -40 50 -50 0 z\"/>");
-    let spelled = one("<path id=\"p\" d=\"M100 100 V200 H200 V100 C200 50 160 50 150 100 C 140 150 110 150 100 100 z\"/>");
+    let smooth =
+        one("<path id=\"p\" d=\"M100 100 v100 h100 v-100 c 0 -50 -40 -50 -50 0 s -40 50 -50 0 z\"/>");
+    let spelled = one(
+        "<path id=\"p\" d=\"M100 100 V200 H200 V100 C200 50 160 50 150 100 C 140 150 110 150 100 100 z\"/>",
+    );
     assert!((perimeter(&smooth) - perimeter(&spelled)).abs() < 1e-12);
 }
 
@@ -139,10 +153,18 @@ fn basic_shapes_are_pieces() {
     assert!((around("<polygon id=\"t\" points=\"0,0 30,0 30,40\"/>") - 0.12).abs() < 1e-9);
     let lines = "<g id=\"t\"><line id=\"a\" x2=\"30\"/><line id=\"b\" x1=\"30\" x2=\"30\" y2=\"40\"/><polyline id=\"c\" points=\"30,40 0,0\"/></g>";
     let p = one(lines);
-    assert_eq!((p.name.as_str(), p.outer.edges.iter().map(|e| e.name.as_str()).collect::<Vec<_>>()), ("t", vec!["c", "b", "a"]));
+    assert_eq!(
+        (p.name.as_str(), p.outer.edges.iter().map(|e| e.name.as_str()).collect::<Vec<_>>()),
+        ("t", vec!["c", "b", "a"])
+    );
     // An ellipse turned by 30 degrees is as long as before.
     let plain = around("<ellipse id=\"e\" rx=\"60\" ry=\"30\"/>");
-    assert!((around("<g transform=\"translate(3 4) rotate(30)\"><ellipse id=\"e\" rx=\"60\" ry=\"30\"/></g>") - plain).abs() < 1e-9);
+    assert!(
+        (around("<g transform=\"translate(3 4) rotate(30)\"><ellipse id=\"e\" rx=\"60\" ry=\"30\"/></g>")
+            - plain)
+            .abs()
+            < 1e-9
+    );
 }
 
 #[test]
@@ -151,7 +173,11 @@ fn transforms_nest_and_clones_are_followed() {
                   <g transform=\"matrix(0 2 -2 0 300 0)\"><g transform=\"scale(1.5)\"><use id=\"cuff\" href=\"#half\" x=\"20\"/></g></g>";
     let p = one(inside);
     assert_eq!(p.name, "half");
-    let (lo, hi) = p.outer.corners.iter().fold((p.outer.corners[0], p.outer.corners[0]), |(a, b), q| (a.inf(q), b.sup(q)));
+    let (lo, hi) = p
+        .outer
+        .corners
+        .iter()
+        .fold((p.outer.corners[0], p.outer.corners[0]), |(a, b), q| (a.inf(q), b.sup(q)));
     assert!((hi - lo - Vector2::new(0.12, 0.15)).norm() < 1e-12, "{}", hi - lo);
     assert!((lo - Point2::new(0.18, -0.21)).norm() < 1e-12, "{lo}");
 }
@@ -164,7 +190,9 @@ fn units_are_those_of_the_page_and_told() {
         let (pieces, told) = read(&svg).unwrap();
         (length(&pieces[0], "edge_0") / 96.0, told[0].clone())
     };
-    let near = |(found, _): &(f64, String), metres: f64| assert!((found / metres - 1.0).abs() < 1e-9, "{found} {metres}");
+    let near = |(found, _): &(f64, String), metres: f64| {
+        assert!((found / metres - 1.0).abs() < 1e-9, "{found} {metres}")
+    };
     near(&sized("width=\"21cm\" height=\"29.7cm\" viewBox=\"0 0 210 297\""), 1e-3);
     near(&sized("width=\"10in\" height=\"10in\" viewBox=\"0 0 720 720\""), 0.0254 / 72.0);
     near(&sized("width=\"200mm\" height=\"200mm\""), 0.0254 / 96.0);
@@ -192,7 +220,9 @@ fn names_come_from_label_title_and_id() {
     let (pieces, _) = read(inkscape).unwrap();
     assert_eq!(names(&pieces), ["front", "back", "collar 1_5"]);
     assert_eq!(pieces[0].notches.len(), 1);
-    let illustrator = page("<g id=\"sleeve_x20_left\"><rect width=\"50\" height=\"60\"/></g><g id=\"_2_\" data-name=\"yoke\"><rect x=\"100\" width=\"50\" height=\"60\"/></g>");
+    let illustrator = page(
+        "<g id=\"sleeve_x20_left\"><rect width=\"50\" height=\"60\"/></g><g id=\"_2_\" data-name=\"yoke\"><rect x=\"100\" width=\"50\" height=\"60\"/></g>",
+    );
     assert_eq!(names(&read(&illustrator).unwrap().0), ["sleeve left", "yoke"]);
     let lone = page("<path d=\"M0 0 H100 V100 H0 Z\"/><path d=\"M200 0 H300 V100 H200 Z\"/>");
     assert_eq!(names(&read(&lone).unwrap().0), ["piece_1", "piece_2"]);
@@ -219,21 +249,28 @@ fn what_is_hidden_small_or_a_frame_is_no_piece() {
 
 #[test]
 fn the_seam_is_read_and_not_the_allowance_around_it() {
-    let p = one("<g id=\"front\"><path class=\"seam allowance\" d=\"M0 0 H120 V120 H0 Z\"/><path id=\"seam\" d=\"M10 10 H110 V110 H10 Z\"/></g>");
+    let p = one(
+        "<g id=\"front\"><path class=\"seam allowance\" d=\"M0 0 H120 V120 H0 Z\"/><path id=\"seam\" d=\"M10 10 H110 V110 H10 Z\"/></g>",
+    );
     assert!((perimeter(&p) - 0.4).abs() < 1e-12);
-    let p = one("<g id=\"front\"><rect width=\"120\" height=\"120\"/><rect id=\"dart\" x=\"10\" y=\"10\" width=\"99\" height=\"99\"/></g>");
+    let p = one(
+        "<g id=\"front\"><rect width=\"120\" height=\"120\"/><rect id=\"dart\" x=\"10\" y=\"10\" width=\"99\" height=\"99\"/></g>",
+    );
     assert!((perimeter(&p) - 0.48).abs() < 1e-12);
 }
 
 #[test]
 fn a_half_piece_may_be_drawn_without_its_middle() {
-    let closed = one("<g id=\"front\"><path d=\"M0 0 H100 L90 200 H0 Z\"/><path id=\"fold\" d=\"M0 20 V180\"/></g>");
-    let open = one("<g id=\"front\"><path d=\"M0 0 H100 L90 200 H0\"/><path id=\"fold\" d=\"M0 20 V180\"/></g>");
+    let closed =
+        one("<g id=\"front\"><path d=\"M0 0 H100 L90 200 H0 Z\"/><path id=\"fold\" d=\"M0 20 V180\"/></g>");
+    let open =
+        one("<g id=\"front\"><path d=\"M0 0 H100 L90 200 H0\"/><path id=\"fold\" d=\"M0 20 V180\"/></g>");
     assert_eq!(closed.outer.edges.len(), 4);
     assert!((perimeter(&closed) - perimeter(&open)).abs() < 1e-12);
     assert!((length(&closed, "edge_0") - 0.2).abs() < 1e-12);
     // The grain lies across the page: the end at its head is up.
-    let turned = one("<g id=\"band\"><rect width=\"300\" height=\"40\"/><path id=\"grain\" d=\"M20 20 H200\"/></g>");
+    let turned =
+        one("<g id=\"band\"><rect width=\"300\" height=\"40\"/><path id=\"grain\" d=\"M20 20 H200\"/></g>");
     let [a, b] = turned.grain.unwrap();
     assert!((b.y - a.y - 0.18).abs() < 1e-12);
 }
@@ -252,7 +289,11 @@ fn damage_is_refused_with_element_and_place() {
     assert_eq!(pieces_of(&[0x1f, 0x8b, 8], &mut Vec::new()).unwrap_err(), Damage::Compressed);
     assert_eq!(pieces_of(&[0xff, 0xfe], &mut Vec::new()).unwrap_err(), Damage::Encoding);
     let redraw = "draw the element again, or take it out";
-    is(&page("<g>\n <path id=\"hem\" d=\"M 0 0 L x\"/></g>"), "path \"hem\" (line 3 column 2): \"M 0 0 L x\" is no d", redraw);
+    is(
+        &page("<g>\n <path id=\"hem\" d=\"M 0 0 L x\"/></g>"),
+        "path \"hem\" (line 3 column 2): \"M 0 0 L x\" is no d",
+        redraw,
+    );
     is(&page("<rect width=\"-3\" height=\"4\"/>"), "rect (line 2 column 1): \"-3\" is no width", redraw);
     is(&page("<g transform=\"turn(3)\"/>"), "g (line 2 column 1): \"turn(3)\" is no transform", redraw);
     is(
@@ -262,7 +303,11 @@ fn damage_is_refused_with_element_and_place() {
     );
     let group = "draw every piece as a closed line, or as lines that meet end to end, in a group of its own";
     is(&page(""), "there are no pieces: it holds no closed line of a garment's size", group);
-    is(&page("<path d=\"M0 0 H900\"/>"), "there are no pieces: it holds no closed line of a garment's size", group);
+    is(
+        &page("<path d=\"M0 0 H900\"/>"),
+        "there are no pieces: it holds no closed line of a garment's size",
+        group,
+    );
     is(
         &page("<text>front</text>"),
         "there are no pieces: it holds text alone",
@@ -275,7 +320,9 @@ fn damage_is_refused_with_element_and_place() {
     );
     let closed = "draw the outline as one closed line that meets itself nowhere";
     is(
-        &page("<g id=\"front\"><path id=\"a\" d=\"M0 0 H100 V100\"/><path id=\"b\" d=\"M100 120 H0 V0\"/></g>"),
+        &page(
+            "<g id=\"front\"><path id=\"a\" d=\"M0 0 H100 V100\"/><path id=\"b\" d=\"M100 120 H0 V0\"/></g>",
+        ),
         "piece \"front\", path \"a\" (line 2 column 16): its outline is open by 20.0 mm near (100.0, 100.0) mm on the page",
         closed,
     );
@@ -300,8 +347,12 @@ fn entities_and_clones_are_bounded() {
     let entities: String = (0..9).map(lol).collect();
     let laughs = format!("<!DOCTYPE svg [<!ENTITY a0 \"ha\">{entities}]>") + &page("<text>&a9;</text>");
     assert!(read(&laughs).unwrap_err().to_string().starts_with("it is no XML at line "));
-    let doubled = |k: u32| format!("<g id=\"u{}\">{}</g>", k + 1, format!("<use href=\"#u{k}\"/>").repeat(10));
-    let clones = page(&format!("<defs><g id=\"u0\"/>{}</defs><use href=\"#u9\"/>", (0..9).map(doubled).collect::<String>()));
+    let doubled =
+        |k: u32| format!("<g id=\"u{}\">{}</g>", k + 1, format!("<use href=\"#u{k}\"/>").repeat(10));
+    let clones = page(&format!(
+        "<defs><g id=\"u0\"/>{}</defs><use href=\"#u9\"/>",
+        (0..9).map(doubled).collect::<String>()
+    ));
     assert_eq!(read(&clones).unwrap_err().to_string(), "it has more than 100000 elements");
     let deep = page(&("<g>".repeat(150) + &"</g>".repeat(150)));
     assert_eq!(read(&deep).unwrap_err().to_string(), "it has more than 100 groups within each other");

@@ -51,18 +51,25 @@ pub(super) fn unit(root: Node<'_, '_>, text: &str) -> Result<Unit, Damage> {
         _ => "points",
     };
     // Without a viewBox a unit is a pixel, whatever the page's size.
-    let found = [("width", view.map(|v| v.w)), ("height", view.map(|v| v.h))].into_iter().filter_map(|(side, units)| {
-        let (metres, unit) = absolute(side)?;
-        Some((units.map_or(PIXEL, |n| metres / n), unit))
-    });
+    let found = [("width", view.map(|v| v.w)), ("height", view.map(|v| v.h))].into_iter().filter_map(
+        |(side, units)| {
+            let (metres, unit) = absolute(side)?;
+            Some((units.map_or(PIXEL, |n| metres / n), unit))
+        },
+    );
     let found: Vec<(f64, LengthUnit)> = found.collect();
     // Pictures are scaled alike both ways, to the lesser of the two.
     if let Some((metres, unit)) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) {
-        let words = format!("the page's size is given in {}: a unit of the file is {:.4} mm", name(unit), metres * 1e3);
+        let words = format!(
+            "the page's size is given in {}: a unit of the file is {:.4} mm",
+            name(unit),
+            metres * 1e3
+        );
         return Ok(Unit { metres, said: true, words });
     }
     let illustrator = text.get(..4096).unwrap_or(text).contains("Adobe Illustrator");
-    let (metres, words) = if illustrator { (0.0254 / 72.0, "points of Illustrator") } else { (PIXEL, "pixels, 96 an inch") };
+    let (metres, words) =
+        if illustrator { (0.0254 / 72.0, "points of Illustrator") } else { (PIXEL, "pixels, 96 an inch") };
     Ok(Unit { metres, said: false, words: words.to_owned() })
 }
 

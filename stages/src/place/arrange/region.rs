@@ -19,8 +19,8 @@ const BAND: [&str; 3] = ["waistband", "wb", "waistbd"];
 const SLEEVE: [&str; 3] = ["sleeve", "sleeves", "slv"];
 /// Words of pieces that are not placed.
 const OTHER: [&str; 12] = [
-    "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding",
-    "strap", "placket",
+    "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding", "strap",
+    "placket",
 ];
 /// A piece this many times longer than wide may be a band.
 const NARROW: f64 = 3.0;
