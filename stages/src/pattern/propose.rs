@@ -25,6 +25,10 @@ const END: f64 = 0.12;
 const BAND: f64 = 4.0;
 /// The legs of a dart open by no more than this, degrees.
 const NOTCH: f64 = 35.0;
+/// Two edges that both run into their pieces by more than this share of their length are openings, such as armholes.
+const HOLLOW: f64 = 0.1;
+/// An edge that bulges by more than this share is no seam in the middle: the cap of a sleeve.
+const BULGE: f64 = 0.2;
 /// What speaks for an edge of a band that goes on where a seam of the band ends.
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
@@ -53,6 +57,8 @@ struct Candidate {
     /// Whether it lies over or under the middle of its piece.
     middle: bool,
     band: bool,
+    /// How far it runs into its piece, as a share of the distance of its ends; below 0 where it bulges out.
+    hollow: f64,
     notches: Vec<f64>,
 }
 
@@ -153,8 +159,16 @@ fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {
         end: end_of,
         middle: left < middle && middle < right,
         band: wide.max(tall) >= BAND * wide.min(tall),
+        hollow: hollow(start, end, &own),
         notches,
     }
+}
+
+/// The greatest way of points to the left of a line, where a piece's inside is, or to the right, as a share of its length.
+fn hollow(start: Point2, end: Point2, points: &[Point2]) -> f64 {
+    let chord = end - start;
+    let aside = points.iter().map(|p| chord.perp(&(p - start)) / chord.norm_squared().max(1e-12));
+    aside.fold(0.0, |far: f64, d| if d.abs() > far.abs() { d } else { far })
 }
 
 /// The confidence of a pair; none where it cannot be a seam.
@@ -173,6 +187,10 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         return None;
     }
     let image = mirror_of(&pieces[a.piece].name, &pieces[b.piece].name);
+    let opening = if image { a.hollow < -BULGE } else { a.hollow.min(b.hollow) > HOLLOW };
+    if opening {
+        return None;
+    }
     let ends = match (a.end, b.end) {
         (End::Low, End::Low) | (End::High, End::High) => a.band || b.band || !(a.middle || b.middle),
         (End::None, End::None) => true,

@@ -123,9 +123,11 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Ou
             groups.entry(group).or_default().push(s);
         }
     }
+    let folds = d.shapes.iter().filter(|s| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true })));
+    let folded: Vec<usize> = folds.filter_map(home).collect();
     let mut found = Vec::new();
     let mut small = 0;
-    for shapes in groups.values() {
+    for (group, shapes) in &groups {
         let closed: Vec<Outlined<'_, '_>> = shapes.iter().filter_map(|s| closed(s)).collect();
         small += closed.iter().filter(|o| o.area < LEAST).count();
         let mut closed: Vec<Outlined<'_, '_>> = closed.into_iter().filter(|o| o.area >= LEAST).collect();
@@ -133,7 +135,7 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Ou
             closed.retain(Outlined::says);
         }
         match closed.is_empty() {
-            true => found.extend(open(shapes)),
+            true => found.extend(open(shapes, folded.contains(group))),
             false if freesewing => found.extend(closed.into_iter().max_by(|a, b| a.area.total_cmp(&b.area))),
             false => found.extend(outermost(closed)),
         }
@@ -212,8 +214,9 @@ fn drawn(line: &Line) -> Vec<(EdgeCurve, Point2)> {
     parts
 }
 
-/// The lines of a group that may be chained to one outline: those that are called so, else those that are called nothing.
-fn open<'d, 't>(shapes: &[&'d Shape<'t>]) -> Option<Outlined<'d, 't>> {
+/// The lines of a group that may be chained to one outline: those that are called so, else those that are called nothing. A fold may be the
+/// one that is missing.
+fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
     let says = shapes.iter().any(|s| s.role == Some(Role::Outline));
     let mine = || shapes.iter().filter(move |s| !says || s.role == Some(Role::Outline));
     let mut sides = Vec::new();
@@ -233,7 +236,7 @@ fn open<'d, 't>(shapes: &[&'d Shape<'t>]) -> Option<Outlined<'d, 't>> {
     let polygon = points(&sides);
     let area = polygon_area(&polygon).abs();
     // Lines that enclose nothing are a drawing of something else.
-    (sides.len() + usize::from(says) >= 2 && area >= LEAST).then_some(Outlined {
+    (sides.len() + usize::from(says || folded) >= 2 && area >= LEAST).then_some(Outlined {
         shape: first,
         sides,
         closed: false,
