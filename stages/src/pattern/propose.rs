@@ -29,6 +29,8 @@ const NOTCH: f64 = 35.0;
 const HOLLOW: f64 = 0.1;
 /// An edge that bulges by more than this share is no seam in the middle: the cap of a sleeve.
 const BULGE: f64 = 0.2;
+/// Nor one that runs across the grain, as the sine of its angle to it.
+const LEVEL: f64 = 0.5;
 /// What speaks for an edge of a band that goes on where a seam of the band ends.
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
@@ -187,7 +189,11 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         return None;
     }
     let image = mirror_of(&pieces[a.piece].name, &pieces[b.piece].name);
-    let opening = if image { a.hollow < -BULGE } else { a.hollow.min(b.hollow) > HOLLOW };
+    // A seam in the middle runs along the grain: waists, hems and caps meet their image there and are not sewn to it.
+    let opening = match image {
+        true => a.hollow < -BULGE || a.way.y.abs() < LEVEL,
+        false => a.hollow.min(b.hollow) > HOLLOW,
+    };
     if opening {
         return None;
     }

@@ -6,7 +6,7 @@
 //! left comes from where the seam in the middle lies; which arm a sleeve is for, from the armhole that it is sewn into. Cost: edges of seams.
 //! Limits: sleeves of several pieces, collars, cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 /// Words of a front.
@@ -70,34 +70,77 @@ pub(super) struct Joint {
     pub(super) pieces: [usize; 2],
     /// The numbers of the edges of each.
     pub(super) edges: [Vec<usize>; 2],
+    /// The point of each that lies in the middle of what they have in common.
+    pub(super) middle: [Point2; 2],
+    /// How much that is of the seam.
+    pub(super) share: f64,
+}
+
+/// An edge in a side of a seam: of which piece, and from where to where it runs as shares of the side.
+struct Stretch {
+    piece: usize,
+    edge: usize,
+    reversed: bool,
+    from: f64,
+    to: f64,
+}
+
+/// A side of a seam as stretches.
+fn stretches(pattern: &Pattern, side: &[EdgeUse]) -> Vec<Stretch> {
+    let known = side.iter().filter_map(|u| {
+        let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel)?;
+        Some((piece, pattern.pieces[piece].edge_number(&u.edge.edge)?, u.reversed))
+    });
+    let (mut out, mut at) = (Vec::new(), 0.0);
+    for (piece, edge, reversed) in known {
+        let from = at;
+        at += pattern.pieces[piece].outer.path(edge).length();
+        out.push(Stretch { piece, edge, reversed, from, to: at });
+    }
+    out.iter_mut().for_each(|s| (s.from, s.to) = (s.from / at, s.to / at));
+    out
+}
+
+/// The edges of one piece in a side, where they begin and where they end.
+fn of_piece(side: &[Stretch], piece: usize) -> (Vec<usize>, f64, f64) {
+    let own = || side.iter().filter(|s| s.piece == piece);
+    let (from, to) = (own().map(|s| s.from), own().map(|s| s.to));
+    (own().map(|s| s.edge).collect(), from.fold(1.0, f64::min), to.fold(0.0, f64::max))
+}
+
+/// The point of a piece at a share of a side.
+fn at_share(pattern: &Pattern, side: &[Stretch], piece: usize, share: f64) -> Point2 {
+    let own = || side.iter().filter(|s| s.piece == piece);
+    let Some(s) = own().find(|s| share <= s.to).or_else(|| own().last()) else { return Point2::origin() };
+    let path = pattern.pieces[piece].outer.path(s.edge);
+    let along = ((share - s.from) / (s.to - s.from).max(1e-12)).clamp(0.0, 1.0) * path.length();
+    path.at(if s.reversed { path.length() - along } else { along })
 }
 
 /// The seams of a pattern, piece by piece.
 pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
-    let of = |side: &[EdgeUse]| {
-        let mut found: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for u in side {
-            let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel);
-            if let Some((i, k)) = piece.and_then(|i| Some((i, pattern.pieces[i].edge_number(&u.edge.edge)?)))
-            {
-                found.entry(i).or_default().push(k);
-            }
-        }
-        found
-    };
+    let pieces = |side: &[Stretch]| side.iter().map(|s| s.piece).collect::<BTreeSet<usize>>();
     let mut out = Vec::new();
     for seam in &pattern.seams {
-        let sides: Vec<_> = seam.sides.iter().map(|s| of(s)).collect();
+        let sides: Vec<Vec<Stretch>> = seam.sides.iter().map(|s| stretches(pattern, s)).collect();
         for (n, one) in sides.iter().enumerate() {
             for other in &sides[n + 1..] {
-                let pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
-                out.extend(
-                    pairs.map(|((i, a), (j, b))| Joint { pieces: [*i, *j], edges: [a.clone(), b.clone()] }),
-                );
+                let pairs =
+                    pieces(one).into_iter().flat_map(|i| pieces(other).into_iter().map(move |j| (i, j)));
+                out.extend(pairs.filter_map(|pair| joint(pattern, [one, other], pair)));
             }
         }
     }
     out
+}
+
+/// What two sides of a seam join of two pieces; none where these lie nowhere beside each other.
+fn joint(pattern: &Pattern, [one, other]: [&[Stretch]; 2], (i, j): (usize, usize)) -> Option<Joint> {
+    let ((a, a_from, a_to), (b, b_from, b_to)) = (of_piece(one, i), of_piece(other, j));
+    let (from, to) = (a_from.max(b_from), a_to.min(b_to));
+    let share = f64::midpoint(from, to);
+    let middle = [at_share(pattern, one, i, share), at_share(pattern, other, j, share)];
+    (to - from > 1e-6).then(|| Joint { pieces: [i, j], edges: [a, b], middle, share: to - from })
 }
 
 /// Region and side of every piece, in their order.
@@ -179,7 +222,7 @@ fn face(words: &BTreeSet<String>) -> Option<(Side, String)> {
 
 /// The arm of a sleeve: the side of the body of the armholes that it is sewn to, by length.
 fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<String>]) -> Option<f64> {
-    let mut sum = 0.0;
+    let (mut sum, mut all) = (0.0, 0.0);
     for j in joints {
         for k in (0..2).filter(|k| j.pieces[*k] == i && j.pieces[1 - *k] != i) {
             let other = j.pieces[1 - k];
@@ -190,10 +233,11 @@ fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<S
             // Seen from outside, the wearer's left is at the right before and at the left behind.
             let right = if at.x > (lo.x + hi.x) / 2.0 { 1.0 } else { -1.0 };
             let whole = if side == Side::Front { right } else { -right };
+            all += length;
             sum += length * twin.map_or(whole, |t| half_hand(other, t, pieces, side));
         }
     }
-    (sum != 0.0).then(|| sum.signum())
+    (f64::abs(sum) > 0.5 * all).then(|| sum.signum())
 }
 
 /// The words of each name, small, without those that all pieces have.

@@ -346,8 +346,7 @@ fn band(
                     let path = piece.outer.path(e);
                     way += path.at(path.length()) - path.at(0.0);
                 }
-                let (own, length) = middle(piece, &j.edges[k]);
-                met.push((own, placed.at(middle(&pattern.pieces[other], &j.edges[1 - k]).0), length));
+                met.push((j.middle[k], placed.at(j.middle[1 - k]), j.share * middle(piece, &j.edges[k]).1));
             }
         }
     }
