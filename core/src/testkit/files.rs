@@ -15,6 +15,14 @@ const PATTERN: &str = r#"{"pattern": {"panels": {
 "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 2}], [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 0}]]},
 "properties": {"units_in_meter": 100, "curvature_coords": "relative"}}"#;
 
+/// Two half pieces with a fold, a grain line and a notch, as a drawing program saves them, millimetres.
+const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="600mm" height="700mm" viewBox="0 0 600 700">
+<g id="front"><path d="M 20,80 V 650 H 270 Q 262,400 270,280 C 215,270 190,200 205,60 L 120,30 C 110,70 70,80 20,80 Z"/>
+<path class="fold" d="M 20,100 V 600"/><path class="grain" d="M 60,200 V 500"/><circle class="notch" cx="266" cy="400" r="2"/></g>
+<g id="back" transform="translate(290 0)"><path d="M 20,45 V 650 H 270 Q 262,400 270,280 C 215,270 190,200 205,60 L 120,30 C 110,42 70,45 20,45 Z"/>
+<path class="fold" d="M 20,100 V 600"/><path class="grain" d="M 60,200 V 500"/><circle class="notch" cx="266" cy="400" r="2"/></g>
+</svg>"##;
+
 /// Two half pieces of size M, as CAD programs exchange them: mirror line above, grain along x, millimetres.
 fn pieces() -> String {
     use std::fmt::Write;
@@ -39,7 +47,7 @@ fn pieces() -> String {
     out + "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n  0\nTEXT\n  8\n1\n  1\nUnits: METRIC\n  0\nENDSEC\n  0\nEOF\n"
 }
 
-/// Lays the files that an example names into a folder: pictures, a body as OBJ, a GarmentCode pattern under its usual ending, a DXF of pieces,
+/// Lays the files that an example names into a folder: pictures, a body as OBJ, a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
 /// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
@@ -53,6 +61,7 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
             Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
             Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
             Some("dxf") => lay(name, pieces().as_bytes())?,
+            Some("svg") => lay(name, DRAWING.as_bytes())?,
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
             Some(extension) if extension.chars().all(char::is_alphabetic) => {
                 let ending = format!(".{extension}");

@@ -1,12 +1,20 @@
 //! Sewing patterns from files: what takes the place of photos, outlines and a style.
 
+mod chain;
+mod copies;
 mod dxf;
 mod garment_code;
+mod marks;
 mod propose;
+mod seams;
+mod side;
 mod sidecar;
+mod svg;
+mod unfold;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
+pub use svg::SvgPattern;
 
 use std::path::Path;
 use toile_core::Registry;
@@ -15,6 +23,7 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
     registry.add::<DxfPattern>();
+    registry.add::<SvgPattern>();
 }
 
 /// The file's name without folder, extension and the word that GarmentCode adds.

@@ -4,8 +4,11 @@
 //! Method: a candidate is a pair of edges, or an edge and a chain of two, of nearly equal lengths, which may meet start to end as
 //! pieces do that are seen from outside; the edges must run alike along the grain. Hems, necks and waists are left out: an end of a
 //! piece across the grain that covers its middle is sewn to no end on the same side of another piece, unless one of them is a
-//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves. Cost: edges
-//! squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is not seen.
+//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves; then [`rings`] finds what is
+//! sewn around. Cost: edges squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is
+//! not seen.
+
+mod rings;
 
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
@@ -22,6 +25,12 @@ const END: f64 = 0.12;
 const BAND: f64 = 4.0;
 /// The legs of a dart open by no more than this, degrees.
 const NOTCH: f64 = 35.0;
+/// Two edges that both run into their pieces by more than this share of their length are openings, such as armholes.
+const HOLLOW: f64 = 0.1;
+/// An edge that bulges by more than this share is no seam in the middle: the cap of a sleeve.
+const BULGE: f64 = 0.2;
+/// Nor one that runs across the grain, as the sine of its angle to it.
+const LEVEL: f64 = 0.5;
 /// What speaks for an edge of a band that goes on where a seam of the band ends.
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
@@ -50,6 +59,8 @@ struct Candidate {
     /// Whether it lies over or under the middle of its piece.
     middle: bool,
     band: bool,
+    /// How far it runs into its piece, as a share of the distance of its ends; below 0 where it bulges out.
+    hollow: f64,
     notches: Vec<f64>,
 }
 
@@ -91,7 +102,10 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
         let better = |a: &&(f64, usize, usize), b: &&(f64, usize, usize)| {
             rank(a).total_cmp(&rank(b)).then((b.1, b.2).cmp(&(a.1, a.2)))
         };
-        let Some(&(score, i, j)) = pairs.iter().max_by(better) else { return out };
+        let Some(&(score, i, j)) = pairs.iter().max_by(better) else {
+            out.extend(rings::attach(pieces, &out));
+            return out;
+        };
         taken.extend(edges(i, j));
         out.push(seam(&all[i], &all[j], score, pieces));
     }
@@ -147,8 +161,16 @@ fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {
         end: end_of,
         middle: left < middle && middle < right,
         band: wide.max(tall) >= BAND * wide.min(tall),
+        hollow: hollow(start, end, &own),
         notches,
     }
+}
+
+/// The greatest way of points to the left of a line, where a piece's inside is, or to the right, as a share of its length.
+fn hollow(start: Point2, end: Point2, points: &[Point2]) -> f64 {
+    let chord = end - start;
+    let aside = points.iter().map(|p| chord.perp(&(p - start)) / chord.norm_squared().max(1e-12));
+    aside.fold(0.0, |far: f64, d| if d.abs() > far.abs() { d } else { far })
 }
 
 /// The confidence of a pair; none where it cannot be a seam.
@@ -167,6 +189,14 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         return None;
     }
     let image = mirror_of(&pieces[a.piece].name, &pieces[b.piece].name);
+    // A seam in the middle runs along the grain: waists, hems and caps meet their image there and are not sewn to it.
+    let opening = match image {
+        true => a.hollow < -BULGE || a.way.y.abs() < LEVEL,
+        false => a.hollow.min(b.hollow) > HOLLOW,
+    };
+    if opening {
+        return None;
+    }
     let ends = match (a.end, b.end) {
         (End::Low, End::Low) | (End::High, End::High) => a.band || b.band || !(a.middle || b.middle),
         (End::None, End::None) => true,

@@ -16,8 +16,12 @@ mod tubes;
 use super::sew::{Offsets, seams};
 use super::whole::{offsets, whole};
 use limb::Limb;
+use region::{Decided, Region};
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
+
+/// Places of every piece, and the sleeves among those that had none, each with the hand of its arm.
+type Stood = (BTreeMap<String, Vec<Point3>>, Option<Vec<(String, f64)>>);
 
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
@@ -30,7 +34,7 @@ const MIDDLE: f64 = 0.65;
 
 /// Arranges the pieces of a sewing pattern around the body, ready to be sewn.
 ///
-/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the pattern says nothing, fronts, backs, legs in
+/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the pattern says nothing, fronts, backs, sleeves, legs in
 /// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
@@ -63,15 +67,20 @@ impl Arrange {
         let seams = seams(plan, &offsets)?;
         // A pattern without any pose is placed by what its pieces are.
         let unplaced = pattern.pieces.iter().all(|p| p.pose.is_none());
-        let mut places = match unplaced && !pattern.pieces.is_empty() {
+        let (mut places, sleeves) = match unplaced && !pattern.pieces.is_empty() {
             true => self.stood(pattern, &offsets, body, cx)?,
-            false => posed(pattern, &offsets)?,
+            false => (posed(pattern, &offsets)?, None),
         };
         self.raise(&mut places, body, cx);
-        if self.bend && !unplaced {
+        if self.bend {
             for limb in Limb::arms(body) {
-                let bent =
-                    tubes::bend(&limb, pattern, &mut places, &seams, &offsets, self.clearance.metres());
+                let mine = match &sleeves {
+                    Some(all) => {
+                        all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect()
+                    }
+                    None => tubes::around(&limb, pattern, &places),
+                };
+                let bent = tubes::bend(&limb, &mine, &mut places, &seams, &offsets, self.clearance.metres());
                 bent.into_iter().for_each(|what| cx.warn(what));
             }
         }
@@ -80,21 +89,22 @@ impl Arrange {
         Ok(whole(&offsets, seams, fabric, points))
     }
 
-    /// Places the pieces of a pattern that has no poses; every decision is told.
+    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to be bent around an arm is named with its hand.
     fn stood(
         &self,
         pattern: &Pattern,
         offsets: &Offsets,
         body: &Body,
         cx: &Context,
-    ) -> Result<BTreeMap<String, Vec<Point3>>, StageError> {
+    ) -> Result<Stood, StageError> {
         if let Some(name) = offsets.keys().find(|name| pattern.piece(name).is_none()) {
             return Err(unknown(name));
         }
         let decided = region::decide(pattern)?;
         let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
         told.into_iter().for_each(|what| cx.warn(what));
-        Ok(places)
+        let arm = |(p, d): (&Piece, &Decided)| (d.region == Region::Arm).then(|| (p.name.clone(), d.hand));
+        Ok((places, Some(pattern.pieces.iter().zip(&decided).filter_map(arm).collect())))
     }
 
     /// Raises poses that were made around a body's middle.

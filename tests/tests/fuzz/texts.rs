@@ -127,6 +127,24 @@ fn dxf() {
     fuzz("dxf", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
 }
 
+#[test]
+fn svg() {
+    let dir = tempfile::tempdir().unwrap();
+    testkit::files::files_for(&REGISTRY, "SvgPattern(file: \"small.svg\")", dir.path()).unwrap();
+    let small = String::from_utf8(read(dir.path().join("small.svg"))).unwrap();
+    let clones = small.replace(
+        "</svg>",
+        "<defs><g id=\"two\"><use href=\"#front\" x=\"600\"/></g></defs><use href=\"#two\"/></svg>",
+    );
+    let seeds = [small.into_bytes(), clones.into_bytes()];
+    let pattern = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.svg"), bytes).unwrap();
+        reads("SvgPattern", "fuzz.svg", dir.path())
+    };
+    assert_eq!([&seeds[0], &seeds[1]].map(|seed| pattern(seed)), [Ok(true), Ok(true)]);
+    fuzz("svg", 300, |dice| spoil::text(&seeds, dice), |bytes| pattern(bytes).map(drop));
+}
+
 /// A body with shoulders and legs, as the reader looks for them.
 fn figure() -> Vec<u8> {
     let mannequin = REGISTRY.make(REGISTRY.named("Mannequin").next().unwrap(), "()").unwrap();

@@ -10,16 +10,13 @@ mod tags;
 #[cfg(test)]
 mod tests;
 
-use super::{propose, sidecar};
+use super::copies::{MOST_COPIES, copies};
+use super::seams;
 use damage::Damage;
 use entities::{Block, blocks};
 use std::collections::BTreeMap;
-use std::sync::Arc;
-use toile_core::artifact::Artifact;
 use toile_core::prelude::*;
 
-/// Copies of one piece.
-const MOST_COPIES: usize = 12;
 /// Pieces of a garment.
 const MOST_PIECES: usize = 500;
 
@@ -54,25 +51,10 @@ impl DxfPattern {
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
         let mut told = Vec::new();
         let pieces = pieces_of(&bytes, &self.size, &mut told).map_err(|d| d.error(&self.file))?;
-        let mut pattern = Pattern { name: super::stem(&self.file), pieces, seams: Vec::new() };
-        let proposals = match self.seams.is_empty() {
-            true => proposed(&pattern, &mut told),
-            false => {
-                let bytes = cx.read(&self.seams).map_err(|e| e.at("seams"))?;
-                pattern.seams = sidecar::read(&bytes, &self.seams, &pattern.pieces)?;
-                OutputFiles::default()
-            }
-        };
-        told.into_iter().for_each(|what| cx.warn(what));
         let unsewable = |what: String, remedy: &str| {
             Damage::Unsewable { what, remedy: remedy.to_owned() }.error(&self.file)
         };
-        pattern.check().map_err(|what| unsewable(what, "draw the piece again"))?;
-        cx.check()?;
-        let lowered = pattern.lower().map_err(|e| unsewable(e.to_string(), e.remedy()))?;
-        lowered.notes.into_iter().for_each(|what| cx.warn(what));
-        let outlines = lowered.outlines.into_iter().map(|(name, o)| (name, Arc::new(o))).collect();
-        Ok((pattern, Set(outlines), lowered.plan, proposals))
+        seams::sewn((super::stem(&self.file), pieces), &self.seams, told, unsewable, cx)
     }
 
     fn named(&self) -> Result<(), StageError> {
@@ -85,28 +67,7 @@ impl DxfPattern {
 
     /// Whether the files are there.
     fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        let pattern = self.named().and_then(|()| placed.cx.look(&self.file)).map_err(|e| e.at("file"));
-        let seams = match self.seams.is_empty() {
-            true => Ok(()),
-            false => placed.cx.look(&self.seams).map_err(|e| e.at("seams")),
-        };
-        pattern.err().into_iter().chain(seams.err()).collect()
-    }
-}
-
-/// The file of proposed seams; what it is for is told.
-fn proposed(pattern: &Pattern, told: &mut Vec<String>) -> OutputFiles {
-    let seams = propose::propose(&pattern.pieces);
-    told.push(match seams.len() {
-        0 => "no seams are given, and none can be proposed: write them into a file and give it as `seams`"
-            .to_owned(),
-        n => format!(
-            "no seams are given: {n} are proposed in seams.ron; look through it and give it as `seams`"
-        ),
-    });
-    match seams.is_empty() {
-        true => OutputFiles::default(),
-        false => OutputFiles::one("seams.ron", sidecar::write(&seams).into_bytes()),
+        seams::looked(self.named(), &self.file, &self.seams, placed)
     }
 }
 
@@ -147,7 +108,8 @@ fn pieces_of(bytes: &[u8], size: &str, told: &mut Vec<String>) -> Result<Vec<Pie
             drawn.iter().filter(|(_, other, _)| other == own).find_map(|(b, _, _)| b.value("Quantity"))
         });
         let piece = pieces::piece(block, &name, unit, told)?;
-        out.extend(copies(piece, quantity, told));
+        let (plain, turned) = cut(quantity);
+        out.extend(copies(piece, plain, turned, told));
         if out.len() > MOST_PIECES {
             return Err(Damage::Many { what: "pieces", count: out.len(), most: MOST_PIECES });
         }
@@ -209,54 +171,12 @@ fn unit(outside: &Block, blocks: &[&Block], told: &mut Vec<String>) -> Result<f6
     }
 }
 
-/// The piece as often as it is cut: `2` is a pair, the second mirrored; `1,1` is one as drawn and one mirrored.
-fn copies(piece: Piece, quantity: Option<&str>, told: &mut Vec<String>) -> Vec<Piece> {
+/// How often a piece is cut as drawn and mirrored: `2` is a pair, the second mirrored; `1,1` is one as drawn and one mirrored.
+fn cut(quantity: Option<&str>) -> (usize, usize) {
     let number = |text: &str| text.trim().parse::<usize>().ok().map(|n| n.min(MOST_COPIES));
-    let (drawn, turned) = match quantity
-        .map(|q| q.split_once(',').map_or((number(q), None), |(a, b)| (number(a), number(b))))
-    {
+    match quantity.map(|q| q.split_once(',').map_or((number(q), None), |(a, b)| (number(a), number(b)))) {
         None | Some((None, _)) => (1, 0),
         Some((Some(n), Some(m))) => (n, m),
         Some((Some(n), None)) => (n - n / 2, n / 2),
-    };
-    let name = piece.name.clone();
-    match (drawn, turned) {
-        (0, 0) => told.push(format!("piece \"{name}\" is cut 0 times: left out")),
-        (1, 0) => {}
-        _ => told.push(format!("piece \"{name}\" is cut {drawn} times as drawn and {turned} times mirrored")),
-    }
-    let named = |mut p: Piece, k: usize, word: &str| {
-        p.name = if k == 0 { format!("{name}{word}") } else { format!("{name}{word}_{}", k + 1) };
-        p
-    };
-    let plain = (0..drawn).map(|k| named(piece.clone(), k, ""));
-    plain.chain((0..turned).map(|k| named(mirrored(&piece), k, "_mirrored"))).collect()
-}
-
-/// The piece for the other side of the body.
-fn mirrored(p: &Piece) -> Piece {
-    let to = |q: Point2| Point2::new(-q.x, q.y);
-    let turned = |l: &PatternLoop| {
-        let n = l.corners.len();
-        let edge =
-            |e: &PieceEdge| PieceEdge { name: e.name.clone(), curve: e.curve.moved(to, true).turned() };
-        PatternLoop {
-            corners: (0..n).map(|k| to(l.corners[(n - k) % n])).collect(),
-            edges: l.edges.iter().rev().map(edge).collect(),
-        }
-    };
-    let line = |l: &PieceLine| PieceLine { points: l.points.iter().map(|q| to(*q)).collect(), ..l.clone() };
-    let notch = |n: &Notch| {
-        let length = p.path(&n.edge).map_or(n.along, |e| e.length());
-        Notch { along: (length - n.along).max(0.0), ..n.clone() }
-    };
-    Piece {
-        outer: turned(&p.outer),
-        holes: p.holes.iter().map(turned).collect(),
-        lines: p.lines.iter().map(line).collect(),
-        notches: p.notches.iter().map(notch).collect(),
-        drill_holes: p.drill_holes.iter().map(|q| to(*q)).collect(),
-        grain: p.grain.map(|g| g.map(to)),
-        ..p.clone()
     }
 }

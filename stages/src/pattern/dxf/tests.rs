@@ -1,9 +1,11 @@
 //! Files of our own making: a tank of two half pieces, a pair of legs with a waistband; every refusal word for word.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use super::super::propose;
 use super::*;
 use std::fmt::Write;
 use std::path::Path as FilePath;
+use std::sync::Arc;
 use toile_core::Cancel;
 
 /// A file under construction.

@@ -3,10 +3,10 @@
 //! Method: words of the piece's name first (a table of English words and of the short forms of CAD programs; words that all pieces
 //! have in common are the garment's), then its seams: a piece that is sewn to itself and to its mirror image is a leg, fronts and
 //! backs that meet at their upper ends have shoulders, a long narrow piece at the upper end of others is a waistband. Which half is
-//! left comes from where the seam in the middle lies. Cost: edges of seams. Limits: sleeves, collars, cuffs, hoods and yokes are
-//! not placed; a piece without a word needs one of the seams above.
+//! left comes from where the seam in the middle lies; which arm a sleeve is for, from the armhole that it is sewn into. Cost: edges of seams.
+//! Limits: sleeves of several pieces, collars, cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 /// Words of a front.
@@ -15,10 +15,12 @@ const FRONT: [&str; 6] = ["front", "fronts", "frt", "fr", "fnt", "ft"];
 const BACK: [&str; 5] = ["back", "backs", "bk", "bck", "bac"];
 /// Words of a waistband.
 const BAND: [&str; 3] = ["waistband", "wb", "waistbd"];
+/// Words of a sleeve.
+const SLEEVE: [&str; 3] = ["sleeve", "sleeves", "slv"];
 /// Words of pieces that are not placed.
-const OTHER: [&str; 14] = [
-    "sleeve", "slv", "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding",
-    "strap", "placket",
+const OTHER: [&str; 12] = [
+    "collar", "col", "cuff", "hood", "yoke", "pocket", "pkt", "facing", "lining", "binding", "strap",
+    "placket",
 ];
 /// A piece this many times longer than wide may be a band.
 const NARROW: f64 = 3.0;
@@ -36,6 +38,8 @@ pub(super) enum Region {
     Leg,
     /// A band around the waist.
     Waist,
+    /// An arm, in one piece.
+    Arm,
 }
 
 /// The side of the body that a piece covers.
@@ -66,34 +70,77 @@ pub(super) struct Joint {
     pub(super) pieces: [usize; 2],
     /// The numbers of the edges of each.
     pub(super) edges: [Vec<usize>; 2],
+    /// The point of each that lies in the middle of what they have in common.
+    pub(super) middle: [Point2; 2],
+    /// How much that is of the seam.
+    pub(super) share: f64,
+}
+
+/// An edge in a side of a seam: of which piece, and from where to where it runs as shares of the side.
+struct Stretch {
+    piece: usize,
+    edge: usize,
+    reversed: bool,
+    from: f64,
+    to: f64,
+}
+
+/// A side of a seam as stretches.
+fn stretches(pattern: &Pattern, side: &[EdgeUse]) -> Vec<Stretch> {
+    let known = side.iter().filter_map(|u| {
+        let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel)?;
+        Some((piece, pattern.pieces[piece].edge_number(&u.edge.edge)?, u.reversed))
+    });
+    let (mut out, mut at) = (Vec::new(), 0.0);
+    for (piece, edge, reversed) in known {
+        let from = at;
+        at += pattern.pieces[piece].outer.path(edge).length();
+        out.push(Stretch { piece, edge, reversed, from, to: at });
+    }
+    out.iter_mut().for_each(|s| (s.from, s.to) = (s.from / at, s.to / at));
+    out
+}
+
+/// The edges of one piece in a side, where they begin and where they end.
+fn of_piece(side: &[Stretch], piece: usize) -> (Vec<usize>, f64, f64) {
+    let own = || side.iter().filter(|s| s.piece == piece);
+    let (from, to) = (own().map(|s| s.from), own().map(|s| s.to));
+    (own().map(|s| s.edge).collect(), from.fold(1.0, f64::min), to.fold(0.0, f64::max))
+}
+
+/// The point of a piece at a share of a side.
+fn at_share(pattern: &Pattern, side: &[Stretch], piece: usize, share: f64) -> Point2 {
+    let own = || side.iter().filter(|s| s.piece == piece);
+    let Some(s) = own().find(|s| share <= s.to).or_else(|| own().last()) else { return Point2::origin() };
+    let path = pattern.pieces[piece].outer.path(s.edge);
+    let along = ((share - s.from) / (s.to - s.from).max(1e-12)).clamp(0.0, 1.0) * path.length();
+    path.at(if s.reversed { path.length() - along } else { along })
 }
 
 /// The seams of a pattern, piece by piece.
 pub(super) fn joints(pattern: &Pattern) -> Vec<Joint> {
-    let of = |side: &[EdgeUse]| {
-        let mut found: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for u in side {
-            let piece = pattern.pieces.iter().position(|p| p.name == u.edge.panel);
-            if let Some((i, k)) = piece.and_then(|i| Some((i, pattern.pieces[i].edge_number(&u.edge.edge)?)))
-            {
-                found.entry(i).or_default().push(k);
-            }
-        }
-        found
-    };
+    let pieces = |side: &[Stretch]| side.iter().map(|s| s.piece).collect::<BTreeSet<usize>>();
     let mut out = Vec::new();
     for seam in &pattern.seams {
-        let sides: Vec<_> = seam.sides.iter().map(|s| of(s)).collect();
+        let sides: Vec<Vec<Stretch>> = seam.sides.iter().map(|s| stretches(pattern, s)).collect();
         for (n, one) in sides.iter().enumerate() {
             for other in &sides[n + 1..] {
-                let pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
-                out.extend(
-                    pairs.map(|((i, a), (j, b))| Joint { pieces: [*i, *j], edges: [a.clone(), b.clone()] }),
-                );
+                let pairs =
+                    pieces(one).into_iter().flat_map(|i| pieces(other).into_iter().map(move |j| (i, j)));
+                out.extend(pairs.filter_map(|pair| joint(pattern, [one, other], pair)));
             }
         }
     }
     out
+}
+
+/// What two sides of a seam join of two pieces; none where these lie nowhere beside each other.
+fn joint(pattern: &Pattern, [one, other]: [&[Stretch]; 2], (i, j): (usize, usize)) -> Option<Joint> {
+    let ((a, a_from, a_to), (b, b_from, b_to)) = (of_piece(one, i), of_piece(other, j));
+    let (from, to) = (a_from.max(b_from), a_to.min(b_to));
+    let share = f64::midpoint(from, to);
+    let middle = [at_share(pattern, one, i, share), at_share(pattern, other, j, share)];
+    (to - from > 1e-6).then(|| Joint { pieces: [i, j], edges: [a, b], middle, share: to - from })
 }
 
 /// Region and side of every piece, in their order.
@@ -128,12 +175,14 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
             let why = format!("the word \"{word}\" in its name");
             return Ok(Decided { region: Region::Waist, side: Side::Around, hand: 0.0, why });
         }
-        let face = match (is(&FRONT), is(&BACK)) {
-            (Some(w), None) => Some((Side::Front, w)),
-            (None, Some(w)) => Some((Side::Back, w)),
-            _ => None,
-        };
-        match face {
+        if let Some(word) = is(&SLEEVE) {
+            let hand = sleeve_hand(i, pieces, &joints, &words).ok_or_else(|| {
+                unclear(format!("nothing tells whether the sleeve \"{name}\" is the left or the right one"))
+            })?;
+            let why = format!("the word \"{word}\" in its name, and the armhole that it is sewn into");
+            return Ok(Decided { region: Region::Arm, side: Side::Around, hand, why });
+        }
+        match face(&words[i]) {
             None if itself && joints.iter().any(&twin) => {
                 let hand = leg_hand(i, pieces, &joints).ok_or_else(|| {
                     unclear(format!("nothing tells the front of the leg \"{name}\" from its back"))
@@ -159,6 +208,36 @@ pub(super) fn decide(pattern: &Pattern) -> Result<Vec<Decided>, StageError> {
         }
     });
     all.collect()
+}
+
+/// Whether words tell a front or a back, and which does.
+fn face(words: &BTreeSet<String>) -> Option<(Side, String)> {
+    let is = |table: &[&str]| words.iter().find(|w| table.contains(&w.as_str())).cloned();
+    match (is(&FRONT), is(&BACK)) {
+        (Some(w), None) => Some((Side::Front, w)),
+        (None, Some(w)) => Some((Side::Back, w)),
+        _ => None,
+    }
+}
+
+/// The arm of a sleeve: the side of the body of the armholes that it is sewn to, by length.
+fn sleeve_hand(i: usize, pieces: &[Piece], joints: &[Joint], words: &[BTreeSet<String>]) -> Option<f64> {
+    let (mut sum, mut all) = (0.0, 0.0);
+    for j in joints {
+        for k in (0..2).filter(|k| j.pieces[*k] == i && j.pieces[1 - *k] != i) {
+            let other = j.pieces[1 - k];
+            let Some((side, _)) = face(&words[other]) else { continue };
+            let (at, length) = middle(&pieces[other], &j.edges[1 - k]);
+            let twin = joints.iter().find(|t| t.pieces.contains(&other) && twins(pieces, t.pieces));
+            let (lo, hi) = bounds(&pieces[other]);
+            // Seen from outside, the wearer's left is at the right before and at the left behind.
+            let right = if at.x > (lo.x + hi.x) / 2.0 { 1.0 } else { -1.0 };
+            let whole = if side == Side::Front { right } else { -right };
+            all += length;
+            sum += length * twin.map_or(whole, |t| half_hand(other, t, pieces, side));
+        }
+    }
+    (f64::abs(sum) > 0.5 * all).then(|| sum.signum())
 }
 
 /// The words of each name, small, without those that all pieces have.

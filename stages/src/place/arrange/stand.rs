@@ -2,9 +2,10 @@
 //!
 //! Method: fronts stand flat before the body and backs behind it, hung by the middle of their shoulder seams on the line from neck
 //! to shoulder, or by their upper edges from the waist. Legs in one piece are bent around the leg, open to the inside; a waistband
-//! is bent around the waist, turned so that its seams lie nearest to what they are sewn to. Bent pieces keep every length along
-//! their cylinder. Cost: some milliseconds. Limits: the levels are those of a standing body with landmarks.
+//! is bent around the waist, turned so that its seams lie nearest to what they are sewn to. Sleeves stand flat before their arm, the middle of the
+//! cap where the arm begins, and are bent around it as those with a pose are. Bent pieces keep every length along their cylinder. Cost: some milliseconds. Limits: the levels are those of a standing body with landmarks.
 
+use super::limb::Limb;
 use super::region::{Decided, Joint, Region, Side, bounds, joints, middle};
 use crate::place::sew::Offsets;
 use std::collections::BTreeMap;
@@ -17,6 +18,9 @@ const AWAY: f64 = 0.04;
 const ABOVE: f64 = 0.01;
 /// Heights of the body's trunk as shares of its height: feet and head stick out and do not count.
 const TRUNK: (f64, f64) = (0.3, 0.8);
+
+/// Sleeves stand this far before the axis of their arm until they are bent, metres.
+const BEFORE: f64 = 0.1;
 
 /// Radii around a leg are taken this far apart, metres.
 const STEP: f64 = 0.02;
@@ -120,6 +124,7 @@ pub(super) fn stand(
             Region::Trunk => flat(piece, d, trunk_level(i, pattern, &joints, &figure, d), &figure),
             Region::Skirt => flat(piece, d, figure.waist - top_of(i, pattern, &joints), &figure),
             Region::Leg => leg(i, pattern, d, &joints, &figure, body, clearance),
+            Region::Arm => sleeve(i, pattern, d, &joints, body)?,
             Region::Waist => band(i, pattern, &joints, &hung, &figure, body, clearance),
         };
         places.insert(piece.name.clone(), panel.positions.iter().map(|p| placed.at(*p)).collect());
@@ -260,6 +265,28 @@ fn leg(
     (Hung::Round(round), words)
 }
 
+/// A sleeve before its arm, ready to be bent around it: what is sewn into the armhole at the arm's root, its front to the front.
+fn sleeve(
+    i: usize,
+    pattern: &Pattern,
+    d: &Decided,
+    joints: &[Joint],
+    body: &Body,
+) -> Result<(Hung, String), StageError> {
+    let piece = &pattern.pieces[i];
+    let limb = Limb::arms(body).into_iter().find(|l| l.root.x * d.hand > 0.0).ok_or_else(|| {
+        StageError::invalid(format!("the body has no arm for the sleeve \"{}\"", piece.name))
+            .hint("take a Mannequin, or give the pattern places around the body")
+    })?;
+    let (lo, hi) = bounds(piece);
+    let of_others = joints.iter().filter(|j| j.pieces[0] != j.pieces[1]);
+    let caps = of_others.flat_map(|j| (0..2).filter(|k| j.pieces[*k] == i).map(|k| &j.edges[k]));
+    let cap = caps.map(|edges| middle(piece, edges).0.y).fold(f64::NEG_INFINITY, f64::max);
+    let (across, along) = (limb.up * d.hand, -limb.axis);
+    let origin = limb.root + limb.front * BEFORE - across * ((lo.x + hi.x) / 2.0) - along * cap;
+    Ok((Hung::Flat(Pose { origin, across, along }), format!("goes around the {}", limb.name)))
+}
+
 /// Radii around a leg, a step of height each. Above the fork only the outside of the hip counts: the inside stays open.
 /// Changes with height are held to [`SLOPE`], so that the bent piece is stretched little.
 fn leg_radii(
@@ -319,8 +346,7 @@ fn band(
                     let path = piece.outer.path(e);
                     way += path.at(path.length()) - path.at(0.0);
                 }
-                let (own, length) = middle(piece, &j.edges[k]);
-                met.push((own, placed.at(middle(&pattern.pieces[other], &j.edges[1 - k]).0), length));
+                met.push((j.middle[k], placed.at(j.middle[1 - k]), j.share * middle(piece, &j.edges[k]).1));
             }
         }
     }

@@ -28,23 +28,24 @@ struct Side {
     width: f64,
 }
 
-/// Bends what the pattern puts around the arm; says what was bent.
+/// The pieces that the pattern puts around the arm.
+pub(super) fn around(limb: &Limb, pattern: &Pattern, places: &Places) -> Vec<String> {
+    let mine = places.iter().filter(|(name, points)| is_of_arm(pattern, name) && limb.has(&middle(points)));
+    mine.map(|(name, _)| name.clone()).collect()
+}
+
+/// Bends pieces around the arm; says what was bent.
 pub(super) fn bend(
     limb: &Limb,
-    pattern: &Pattern,
+    mine: &[String],
     places: &mut Places,
     seams: &[GarmentSeam],
     offsets: &Offsets,
     clearance: f64,
 ) -> Vec<String> {
-    let mine: Vec<String> = places
-        .iter()
-        .filter(|(name, points)| is_of_arm(pattern, name) && limb.has(&middle(points)))
-        .map(|(name, _)| name.clone())
-        .collect();
     let sewn = sewn(seams, offsets);
     let mut told = Vec::new();
-    for tube in tubes(limb, &mine, places, &sewn) {
+    for tube in tubes(limb, mine, places, &sewn) {
         let axis = file_axis(limb, &tube, places, seams, offsets);
         let mut sides: Vec<Side> = tube.iter().map(|name| side(limb, &axis, name, &places[name])).collect();
         let girth: f64 = [true, false]

@@ -78,6 +78,24 @@ fn leggings() -> Pattern {
     }
 }
 
+/// The tank with sleeves, sewn in with their fronts to the front.
+fn tee() -> Pattern {
+    let mut tee = tank();
+    let corners = [[-0.2, 0.0], [0.2, 0.0], [0.2, 0.1], [0.0, 0.2], [-0.2, 0.1]];
+    let names = ["hem", "under_a", "cap_a", "cap_b", "under_b"];
+    for (sleeve, arms) in [("right sleeve", ["arm_r", "arm_l"]), ("left sleeve", ["arm_r", "arm_l"])] {
+        tee.pieces.push(piece(sleeve, &corners, &names));
+        tee.seams.push(seam((sleeve, "under_a"), (sleeve, "under_b")));
+        let bodies = if sleeve == "right sleeve" { ["TANK FRT", "TANK BK"] } else { ["TANK BK", "TANK FRT"] };
+        let mut cap = seam((sleeve, "cap_a"), (bodies[0], arms[0]));
+        cap.sides[0]
+            .push(EdgeUse { reversed: false, ..seam((sleeve, "cap_b"), ("", "")).sides[0][0].clone() });
+        cap.sides[1].extend(seam((sleeve, "cap_b"), (bodies[1], arms[1])).sides[1].clone());
+        tee.seams.push(cap);
+    }
+    tee
+}
+
 fn arranged(pattern: &Pattern) -> Result<Garment, StageError> {
     let lowered = pattern.lower().unwrap();
     let mesher: GridMesher = toile_core::param::ron_options().from_str("(edge: \"20 mm\")").unwrap();
@@ -158,6 +176,58 @@ fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
 }
 
 #[test]
+fn sleeves_go_around_the_arm_whose_armhole_they_are_sewn_into() {
+    let pattern = tee();
+    let decided = decide(&pattern).unwrap();
+    let found: Vec<(Region, f64)> = decided.iter().skip(2).map(|d| (d.region, d.hand)).collect();
+    assert_eq!(found, [(Region::Arm, -1.0), (Region::Arm, 1.0)]);
+    let g = arranged(&pattern).unwrap();
+    assert!(middle(&g, "right sleeve").x < -0.2 && middle(&g, "left sleeve").x > 0.2);
+    for (sleeve, hand) in [("right sleeve", -1.0), ("left sleeve", 1.0)] {
+        let panel = g.panels.iter().find(|p| p.name == sleeve).unwrap();
+        let of = |far: &dyn Fn(Point2) -> f64| {
+            let all = panel.vertices.clone();
+            all.max_by(|a, b| far(g.rest[*a]).total_cmp(&far(g.rest[*b]))).unwrap()
+        };
+        // The top of the cap is over the arm, the hem farther out; the left sleeve's left half is before the arm.
+        let (top, hem, at_left) =
+            (of(&|p| p.y), of(&|p| -p.y - p.x.abs()), of(&|p| 0.1 - (p.x + 0.1).abs() - (p.y - 0.1).abs()));
+        let at = |v: usize| g.positions[v];
+        assert!(at(top).y > at(hem).y && at(hem).x * hand > at(top).x * hand, "{sleeve}");
+        assert!((at(at_left).z - at(top).z) * hand > 0.02, "{sleeve}: {} {}", at(at_left), at(top));
+    }
+}
+
+#[test]
+fn a_band_in_one_edge_is_turned_so_that_its_stretches_lie_at_what_they_are_sewn_to() {
+    let flat = |name: &str| {
+        piece(name, &[[-0.25, 0.0], [0.25, 0.0], [0.2, 0.6], [-0.2, 0.6]], &["hem", "left", "waist", "right"])
+    };
+    let band = piece(
+        "WAISTBAND",
+        &[[0.0, 0.0], [0.8, 0.0], [0.8, 0.05], [0.0, 0.05]],
+        &["low", "end_a", "top", "end_b"],
+    );
+    let (sides, mut waist) =
+        ([("left", "right"), ("right", "left")], seam(("WAISTBAND", "low"), ("FRONT", "waist")));
+    waist.sides[1].extend(seam(("WAISTBAND", "low"), ("BACK", "waist")).sides[1].clone());
+    let pattern = Pattern {
+        name: "skirt".into(),
+        pieces: vec![flat("FRONT"), flat("BACK"), band],
+        seams: sides.iter().map(|(a, b)| seam(("FRONT", a), ("BACK", b))).chain([waist]).collect(),
+    };
+    let g = arranged(&pattern).unwrap();
+    let panel = g.panels.iter().find(|p| p.name == "WAISTBAND").unwrap();
+    // The first half of the band goes along the front, the second along the back.
+    let half = |from: f64, to: f64| {
+        let own: Vec<usize> =
+            panel.vertices.clone().filter(|v| g.rest[*v].x > from && g.rest[*v].x < to).collect();
+        own.iter().map(|v| g.positions[*v].z).sum::<f64>() / own.len() as f64
+    };
+    assert!(half(0.01, 0.39) > 0.05 && half(0.41, 0.79) < -0.05, "{} {}", half(0.01, 0.39), half(0.41, 0.79));
+}
+
+#[test]
 fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
     let refused = |pattern: &Pattern| {
         let e = arranged(pattern).unwrap_err();
@@ -192,6 +262,13 @@ fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
     assert_eq!(renamed("P1"), ("nothing says where the piece \"P1\" stands".into(), hint.into()));
     assert_eq!(
         renamed("TANK SLV"),
-        ("nothing places the piece \"TANK SLV\", a \"slv\" by its name, without a pose".into(), hint.into())
+        ("nothing tells whether the sleeve \"TANK SLV\" is the left or the right one".into(), hint.into())
+    );
+    assert_eq!(
+        renamed("TANK COLLAR"),
+        (
+            "nothing places the piece \"TANK COLLAR\", a \"collar\" by its name, without a pose".into(),
+            hint.into()
+        )
     );
 }

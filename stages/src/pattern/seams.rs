@@ -1,0 +1,68 @@
+//! What readers of patterns without seams have in common: seams from a file or as proposals, then outlines and a sewing plan.
+
+use super::{propose, sidecar};
+use std::sync::Arc;
+use toile_core::artifact::Artifact;
+use toile_core::prelude::*;
+
+/// What such a reader gives.
+pub(super) type Read = (Pattern, Set<Outline>, SewingPlan, OutputFiles);
+
+/// The pattern of these pieces with the seams of that file; where none is named, proposals as a file. What was `told` becomes warnings.
+///
+/// Errors: those of the file of seams; else what is wrong with the pattern and its remedy, as `unsewable` words them.
+pub(super) fn sewn(
+    (name, pieces): (String, Vec<Piece>),
+    seams: &str,
+    mut told: Vec<String>,
+    unsewable: impl Fn(String, &str) -> StageError,
+    cx: &Context,
+) -> Result<Read, StageError> {
+    let mut pattern = Pattern { name, pieces, seams: Vec::new() };
+    let proposals = match seams.is_empty() {
+        true => proposed(&pattern, &mut told),
+        false => {
+            let bytes = cx.read(seams).map_err(|e| e.at("seams"))?;
+            pattern.seams = sidecar::read(&bytes, seams, &pattern.pieces)?;
+            OutputFiles::default()
+        }
+    };
+    told.into_iter().for_each(|what| cx.warn(what));
+    pattern.check().map_err(|what| unsewable(what, "draw the piece again"))?;
+    cx.check()?;
+    let lowered = pattern.lower().map_err(|e| unsewable(e.to_string(), e.remedy()))?;
+    lowered.notes.into_iter().for_each(|what| cx.warn(what));
+    let outlines = lowered.outlines.into_iter().map(|(name, o)| (name, Arc::new(o))).collect();
+    Ok((pattern, Set(outlines), lowered.plan, proposals))
+}
+
+/// The file of proposed seams; what it is for is told.
+fn proposed(pattern: &Pattern, told: &mut Vec<String>) -> OutputFiles {
+    let seams = propose::propose(&pattern.pieces);
+    told.push(match seams.len() {
+        0 => "no seams are given, and none can be proposed: write them into a file and give it as `seams`"
+            .to_owned(),
+        n => format!(
+            "no seams are given: {n} are proposed in seams.ron; look through it and give it as `seams`"
+        ),
+    });
+    match seams.is_empty() {
+        true => OutputFiles::default(),
+        false => OutputFiles::one("seams.ron", sidecar::write(&seams).into_bytes()),
+    }
+}
+
+/// Whether the files are there; `named` is whether a file is named at all.
+pub(super) fn looked(
+    named: Result<(), StageError>,
+    file: &str,
+    seams: &str,
+    placed: &Placed<'_>,
+) -> Vec<StageError> {
+    let pattern = named.and_then(|()| placed.cx.look(file)).map_err(|e| e.at("file"));
+    let seams = match seams.is_empty() {
+        true => Ok(()),
+        false => placed.cx.look(seams).map_err(|e| e.at("seams")),
+    };
+    pattern.err().into_iter().chain(seams.err()).collect()
+}

@@ -1,0 +1,560 @@
+//! Pieces of what is drawn: which line is an outline, what belongs to it, how often it is cut.
+//!
+//! Method: a group that FreeSewing calls a part is a piece. Elsewhere a closed line is one: alone in its group under the group's name, else under
+//! its own. A line called a seam or an outline goes before others; of lines within each other the outermost is the outline. Lines that meet end to end are
+//! chained where a group has no closed one. Marks belong to the piece of their group, else to the piece that they lie on. Cost: shapes
+//! times pieces. Limits: a piece is larger than [`LEAST`].
+
+use super::super::chain::{JOINT, chained};
+use super::super::copies::{MOST_COPIES, copies};
+use super::super::marks::{hole, notched};
+use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
+use super::super::unfold::Fold;
+use super::damage::{Damage, Place};
+use super::drawing::{Drawing, Name, Shape};
+use super::path::Line;
+use super::role::{Role, cut};
+use super::source::place;
+use crate::mesh::crossing::first_crossing;
+use std::collections::BTreeMap;
+use toile_core::prelude::*;
+
+/// No smaller closed line is a piece, square metres.
+const LEAST: f64 = 4e-4;
+/// Marks lie on a piece, or this near, metres.
+const NEAR: f64 = 0.015;
+/// Pieces of a garment.
+const MOST_PIECES: usize = 500;
+/// Shapes that are looked at to find them.
+const MOST_OUTLINES: usize = 3_000;
+/// Curves shorter than this are none, metres.
+const POINT: f64 = 1e-7;
+/// A grain line this near to the horizontal says itself which end is up, as the sine of its angle.
+const LEVEL: f64 = 0.02;
+
+/// An outline with what it is drawn by.
+struct Outlined<'d, 't> {
+    shape: &'d Shape<'t>,
+    /// Its sides, or the open lines that are to be its sides.
+    sides: Vec<Side>,
+    closed: bool,
+    holes: Vec<Vec<Point2>>,
+    polygon: Vec<Point2>,
+    area: f64,
+}
+
+impl Outlined<'_, '_> {
+    fn has(&self, p: Point2) -> bool {
+        inside(&self.polygon, p)
+    }
+
+    fn says(&self) -> bool {
+        self.shape.role == Some(Role::Outline)
+    }
+}
+
+/// The pieces of a drawing; what was found and left out is told.
+pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Vec<String>) -> Result<Vec<Piece>, Damage> {
+    let outlines = outlines(d, told)?;
+    if outlines.is_empty() {
+        return Err(match (d.shapes.is_empty(), d.pictures > 0, d.texts.is_empty()) {
+            (true, true, _) => Damage::PictureAlone,
+            (true, false, false) => Damage::TextAlone,
+            _ => Damage::NoPieces,
+        });
+    }
+    if d.pictures > 0 {
+        told.push(format!("{} pictures of pixels are left out", d.pictures));
+    }
+    let names = named(d, &outlines);
+    let owners = Owners::of(d, &outlines);
+    let lost = d.shapes.iter().filter(|s| is_mark(s.role) && owners.of_shape(s).is_none()).count();
+    if lost > 0 {
+        told.push(format!("{lost} marks lie on no piece: left out"));
+    }
+    let mut out = Vec::new();
+    for (k, outline) in outlines.iter().enumerate() {
+        let mine: Vec<&Shape<'_>> = d.shapes.iter().filter(|s| owners.of_shape(s) == Some(k)).collect();
+        let piece =
+            Drawn { name: &names[k], place: place(outline.shape.node) }.piece(outline, &mine, told)?;
+        let texts = d.texts.iter().filter(|t| owners.at(t.group, t.at) == Some(k));
+        let (plain, turned) =
+            texts.filter_map(|t| cut(&t.text, by_word, MOST_COPIES)).next().unwrap_or((1, 0));
+        out.extend(copies(piece, plain, turned, told));
+        if out.len() > MOST_PIECES {
+            return Err(Damage::Many { what: "pieces", most: MOST_PIECES });
+        }
+    }
+    if out.is_empty() { Err(Damage::NoPieces) } else { Ok(out) }
+}
+
+fn is_mark(role: Option<Role>) -> bool {
+    match role {
+        Some(Role::Grain { .. } | Role::Fold | Role::Notch | Role::Drill | Role::Hole | Role::Mark) => true,
+        Some(Role::Outline | Role::Allowance | Role::Nothing) | None => false,
+    }
+}
+
+/// The nearest group around an element that is more than the role of its lines.
+fn owner(d: &Drawing<'_>, mut group: usize) -> usize {
+    while let Some(parent) = d.groups[group].parent.filter(|_| d.groups[group].role) {
+        group = parent;
+    }
+    group
+}
+
+/// The part of FreeSewing around a group.
+fn part(d: &Drawing<'_>, mut group: usize) -> Option<usize> {
+    loop {
+        if d.groups[group].part.is_some() {
+            return Some(group);
+        }
+        group = d.groups[group].parent?;
+    }
+}
+
+/// One outline a piece, in the order of the file.
+fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Outlined<'d, 't>>, Damage> {
+    let freesewing = d.groups.iter().any(|g| g.part.is_some());
+    let home = |s: &Shape<'_>| if freesewing { part(d, s.group) } else { Some(owner(d, s.group)) };
+    let mut groups: BTreeMap<usize, Vec<&'d Shape<'t>>> = BTreeMap::new();
+    for s in d.shapes.iter().filter(|s| matches!(s.role, None | Some(Role::Outline))) {
+        if let Some(group) = home(s) {
+            groups.entry(group).or_default().push(s);
+        }
+    }
+    let folds = d.shapes.iter().filter(|s| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true })));
+    let folded: Vec<usize> = folds.filter_map(home).collect();
+    let mut found = Vec::new();
+    let mut small = 0;
+    for (group, shapes) in &groups {
+        let closed: Vec<Outlined<'_, '_>> = shapes.iter().filter_map(|s| closed(s)).collect();
+        small += closed.iter().filter(|o| o.area < LEAST).count();
+        let mut closed: Vec<Outlined<'_, '_>> = closed.into_iter().filter(|o| o.area >= LEAST).collect();
+        if closed.iter().any(Outlined::says) {
+            closed.retain(Outlined::says);
+        }
+        match closed.is_empty() {
+            true => found.extend(open(shapes, folded.contains(group))),
+            false if freesewing => found.extend(closed.into_iter().max_by(|a, b| a.area.total_cmp(&b.area))),
+            false => found.extend(outermost(closed)),
+        }
+        if found.len() > MOST_OUTLINES {
+            return Err(Damage::Many { what: "closed lines", most: MOST_OUTLINES });
+        }
+    }
+    if small > 0 {
+        told.push(format!("{small} closed lines are too small for pieces: left out"));
+    }
+    let frames = frames(d, &found);
+    if !frames.is_empty() {
+        told.push(format!(
+            "{} closed lines around pieces of other groups are taken for frames: left out",
+            frames.len()
+        ));
+    }
+    let mut k = 0;
+    found.retain(|_| {
+        k += 1;
+        !frames.contains(&(k - 1))
+    });
+    Ok(found)
+}
+
+/// A shape whose largest closed line may be an outline; those within it are holes.
+fn closed<'d, 't>(shape: &'d Shape<'t>) -> Option<Outlined<'d, 't>> {
+    let ends = |l: &&Line| l.closed || (l.end() - l.start).norm() <= JOINT;
+    let mut loops: Vec<(f64, Vec<Side>, Vec<Point2>)> = Vec::new();
+    for line in shape.lines.iter().filter(ends) {
+        let parts = around(line);
+        if parts.len() >= 2 {
+            let sides = split(line.start, &parts);
+            let polygon = points(&sides);
+            loops.push((polygon_area(&polygon).abs(), sides, polygon));
+        }
+    }
+    let largest = (0..loops.len()).max_by(|&i, &j| loops[i].0.total_cmp(&loops[j].0))?;
+    let (area, sides, polygon) = loops.swap_remove(largest);
+    let holes = loops.into_iter().filter(|(a, _, p)| *a > 1e-6 && inside(&polygon, p[0])).map(|(_, _, p)| p);
+    Some(Outlined { shape, sides, closed: true, holes: holes.collect(), polygon, area })
+}
+
+/// The curves of a closed line that have a length; a line from its end to its start where there is a gap.
+fn around(line: &Line) -> Vec<(EdgeCurve, Point2)> {
+    let mut parts = drawn(line);
+    let gap = (line.end() - line.start).norm();
+    match parts.last_mut() {
+        Some((_, end)) if gap <= JOINT => *end = line.start,
+        Some(_) => parts.push((EdgeCurve::Line, line.start)),
+        None => {}
+    }
+    // One curve that comes back to its start has two halves.
+    if let [(EdgeCurve::Cubic { controls: [b, c] }, d)] = parts[..] {
+        let (a, middle) = (line.start, |p: Point2, q: Point2| nalgebra::center(&p, &q));
+        let (ab, bc, cd) = (middle(a, b), middle(b, c), middle(c, d));
+        let (abc, bcd) = (middle(ab, bc), middle(bc, cd));
+        return vec![
+            (EdgeCurve::Cubic { controls: [ab, abc] }, middle(abc, bcd)),
+            (EdgeCurve::Cubic { controls: [bcd, cd] }, d),
+        ];
+    }
+    parts
+}
+
+/// The curves of a line that have a length.
+fn drawn(line: &Line) -> Vec<(EdgeCurve, Point2)> {
+    let mut parts: Vec<(EdgeCurve, Point2)> = Vec::new();
+    let mut from = line.start;
+    for (curve, end) in &line.parts {
+        if EdgePath::new(from, *end, curve).length() > POINT {
+            parts.push((curve.clone(), *end));
+            from = *end;
+        }
+    }
+    parts
+}
+
+/// The lines of a group that may be chained to one outline: those that are called so, else those that are called nothing. A fold may be the
+/// one that is missing.
+fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
+    let says = shapes.iter().any(|s| s.role == Some(Role::Outline));
+    let mine = || shapes.iter().filter(move |s| !says || s.role == Some(Role::Outline));
+    let mut sides = Vec::new();
+    for shape in mine() {
+        for line in &shape.lines {
+            let name = match &shape.name {
+                Some(n) if !n.generated && !n.text.contains('.') && shape.lines.len() == 1 => n.text.clone(),
+                _ => format!("edge_{}", sides.len()),
+            };
+            let parts = drawn(line);
+            if !parts.is_empty() {
+                sides.push(Side { name, start: line.start, parts });
+            }
+        }
+    }
+    let first = *mine().next()?;
+    let polygon = points(&sides);
+    let area = polygon_area(&polygon).abs();
+    // Lines that enclose nothing are a drawing of something else.
+    (sides.len() + usize::from(says || folded) >= 2 && area >= LEAST).then_some(Outlined {
+        shape: first,
+        sides,
+        closed: false,
+        holes: Vec::new(),
+        polygon,
+        area,
+    })
+}
+
+/// Those that lie in no other of them.
+fn outermost<'d, 't>(all: Vec<Outlined<'d, 't>>) -> Vec<Outlined<'d, 't>> {
+    let within = |i: usize| {
+        let other = |j: usize| j != i && all[j].area > all[i].area && all[j].has(all[i].polygon[0]);
+        (0..all.len()).any(other)
+    };
+    let inner: Vec<bool> = (0..all.len()).map(within).collect();
+    all.into_iter().zip(inner).filter(|(_, inner)| !inner).map(|(o, _)| o).collect()
+}
+
+/// The numbers of outlines that only go around those of other groups.
+fn frames(d: &Drawing<'_>, all: &[Outlined<'_, '_>]) -> Vec<usize> {
+    let frame = |i: &usize| {
+        let a = &all[*i];
+        let around = |b: &Outlined<'_, '_>| {
+            owner(d, a.shape.group) != owner(d, b.shape.group) && a.area > b.area && a.has(b.polygon[0])
+        };
+        !a.says() && all.iter().any(around)
+    };
+    (0..all.len()).filter(frame).collect()
+}
+
+/// The name of each piece: of its group where that holds no other, else of its line.
+fn named(d: &Drawing<'_>, outlines: &[Outlined<'_, '_>]) -> Vec<String> {
+    let mut taken: BTreeMap<String, usize> = BTreeMap::new();
+    let one = |(k, o): (usize, &Outlined<'_, '_>)| {
+        let own = part(d, o.shape.group).unwrap_or_else(|| owner(d, o.shape.group));
+        let group = &d.groups[own];
+        let alone = outlines.iter().filter(|p| owner(d, p.shape.group) == own).count() == 1;
+        let (a, b) = (group.name.as_ref().filter(|_| alone), o.shape.name.as_ref());
+        let order: [Option<&Name>; 2] = if group.layer { [b, a] } else { [a, b] };
+        let told = order.iter().flatten().find(|n| !n.generated).or_else(|| order.iter().flatten().next());
+        let name = group.part.clone().or_else(|| told.map(|n| n.text.clone()));
+        // A point in a name would end it where seams name an edge.
+        let name = name.unwrap_or_else(|| format!("piece_{}", k + 1)).replace('.', "_");
+        let again = taken.entry(name.clone()).or_default();
+        *again += 1;
+        if *again == 1 { name } else { format!("{name}_{again}") }
+    };
+    outlines.iter().enumerate().map(one).collect()
+}
+
+/// Which piece what is drawn belongs to.
+struct Owners<'d, 't> {
+    d: &'d Drawing<'t>,
+    outlines: &'d [Outlined<'d, 't>],
+    /// The piece of each group that has one alone.
+    of_group: BTreeMap<usize, usize>,
+}
+
+impl<'d, 't> Owners<'d, 't> {
+    fn of(d: &'d Drawing<'t>, outlines: &'d [Outlined<'d, 't>]) -> Self {
+        let mut all: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, o) in outlines.iter().enumerate() {
+            let group = part(d, o.shape.group).unwrap_or_else(|| owner(d, o.shape.group));
+            all.entry(group).or_default().push(k);
+        }
+        let alone =
+            all.into_iter().filter(|(group, k)| k.len() == 1 && *group != 0 && !d.groups[*group].layer);
+        Owners { d, outlines, of_group: alone.map(|(group, k)| (group, k[0])).collect() }
+    }
+
+    fn of_shape(&self, s: &Shape<'_>) -> Option<usize> {
+        self.at(s.group, middle(s))
+    }
+
+    fn at(&self, mut group: usize, p: Point2) -> Option<usize> {
+        loop {
+            if let Some(&k) = self.of_group.get(&group) {
+                return Some(k);
+            }
+            match self.d.groups[group].parent {
+                Some(parent) => group = parent,
+                None => break,
+            }
+        }
+        let on = (0..self.outlines.len()).filter(|&k| self.outlines[k].has(p));
+        let least = on.min_by(|&i, &j| self.outlines[i].area.total_cmp(&self.outlines[j].area));
+        least.or_else(|| {
+            let far = |k: usize| {
+                self.outlines[k].polygon.iter().map(|q| (q - p).norm()).fold(f64::INFINITY, f64::min)
+            };
+            let near = (0..self.outlines.len()).map(|k| (far(k), k)).min_by(|a, b| a.0.total_cmp(&b.0));
+            near.filter(|(far, _)| *far <= NEAR).map(|(_, k)| k)
+        })
+    }
+}
+
+/// The middle of the box around a shape.
+fn middle(s: &Shape<'_>) -> Point2 {
+    let points =
+        || s.lines.iter().flat_map(|l| std::iter::once(l.start).chain(l.parts.iter().map(|(_, end)| *end)));
+    let first = points().next().unwrap_or_else(Point2::origin);
+    let (lo, hi) = points().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
+    nalgebra::center(&lo, &hi)
+}
+
+/// Whether a point lies in a polygon.
+fn inside(polygon: &[Point2], p: Point2) -> bool {
+    let mut odd = false;
+    for k in 0..polygon.len() {
+        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
+        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+            odd = !odd;
+        }
+    }
+    odd
+}
+
+/// From where to where a line runs: between the ends of an open one, along the longest way through a closed one.
+fn ends(line: &Line) -> (Point2, Point2) {
+    if !line.closed && (line.end() - line.start).norm() > JOINT {
+        return (line.start, line.end());
+    }
+    let points: Vec<Point2> =
+        std::iter::once(line.start).chain(line.parts.iter().map(|(_, end)| *end)).take(200).collect();
+    let pairs = points.iter().flat_map(|a| points.iter().map(move |b| (*a, *b)));
+    let far = |(a, b): &(Point2, Point2)| (b - a).norm();
+    pairs.max_by(|x, y| far(x).total_cmp(&far(y))).unwrap_or((line.start, line.start))
+}
+
+/// A piece under construction, for errors.
+struct Drawn<'a> {
+    name: &'a str,
+    place: Place,
+}
+
+impl Drawn<'_> {
+    fn fault(&self, what: &'static str) -> Damage {
+        Damage::Piece { piece: self.name.to_owned(), place: self.place.clone(), what }
+    }
+
+    fn no_fold(&self, place: Place) -> Damage {
+        Damage::Fold { piece: self.name.to_owned(), place }
+    }
+
+    fn piece(
+        &self,
+        outline: &Outlined<'_, '_>,
+        mine: &[&Shape<'_>],
+        told: &mut Vec<String>,
+    ) -> Result<Piece, Damage> {
+        let fold = self.fold(mine)?;
+        let mut sides = self.closed(outline, fold.as_ref().map(|(fold, _)| fold), told)?;
+        let grain = longest(mine, |role| matches!(role, Role::Grain { .. })).map(|(line, _)| ends(line));
+        let turn = turn(grain);
+        let up = move |p: Point2| Point2::new(turn.x * p.x - turn.y * p.y, turn.y * p.x + turn.x * p.y);
+        sides = sides.iter().map(|s| s.moved(up, false)).collect();
+        let mut marks = Marks::of(outline, mine, up);
+        if let Some((fold, at)) = fold {
+            let (a, b) = (up(fold.at), up(fold.at + fold.way));
+            let turned = Fold::through(a, b).ok_or_else(|| self.no_fold(at.clone()))?;
+            sides = turned.unfolded(&sides).ok_or_else(|| self.no_fold(at))?;
+            marks.unfold(&turned);
+            told.push(format!("piece \"{}\" is unfolded at its fold", self.name));
+        }
+        let sides = counter_clockwise(sides);
+        self.simple(&sides, turn)?;
+        let outer = pattern_loop(&sides);
+        Ok(Piece {
+            name: self.name.to_owned(),
+            notches: notched(&outer, &marks.notches),
+            outer,
+            holes: marks.holes.into_iter().enumerate().map(|(k, corners)| hole(k, corners)).collect(),
+            lines: marks.lines,
+            drill_holes: marks.drills,
+            grain: grain.and_then(|(a, b)| upright(up(a), up(b))),
+            ..Piece::default()
+        })
+    }
+
+    /// The line at which the piece is cut on the fold, and where it stands in the file.
+    fn fold(&self, mine: &[&Shape<'_>]) -> Result<Option<(Fold, Place)>, Damage> {
+        let Some((line, shape)) = longest(mine, |r| matches!(r, Role::Fold | Role::Grain { fold: true }))
+        else {
+            return Ok(None);
+        };
+        let (at, (a, b)) = (place(shape.node), ends(line));
+        Fold::through(a, b).map(|fold| Some((fold, at.clone()))).ok_or_else(|| self.no_fold(at))
+    }
+
+    /// The outline as a loop.
+    fn closed(
+        &self,
+        outline: &Outlined<'_, '_>,
+        fold: Option<&Fold>,
+        told: &mut Vec<String>,
+    ) -> Result<Vec<Side>, Damage> {
+        if outline.closed {
+            return Ok(outline.sides.clone());
+        }
+        let mut sides = outline.sides.clone();
+        // What is cut on the fold may be drawn without its middle.
+        if let (Some(fold), [side]) = (fold, &sides[..])
+            && fold.has(side.start)
+            && fold.has(side.end())
+        {
+            let mut parts = side.parts.clone();
+            parts.push((EdgeCurve::Line, side.start));
+            return Ok(split(side.start, &parts));
+        }
+        if let Some(fold) = fold {
+            sides.extend(missing(fold, &sides));
+        }
+        let page = |p: Point2| (p.x * 1e3, -p.y * 1e3);
+        let sides = chained(sides, self.name, told).map_err(|gap| Damage::Open {
+            piece: self.name.to_owned(),
+            place: self.place.clone(),
+            gap_mm: gap.wide * 1e3,
+            x: page(gap.at).0,
+            y: page(gap.at).1,
+        })?;
+        if sides.len() < 2 { Err(self.fault("its outline is one open line")) } else { Ok(sides) }
+    }
+
+    fn simple(&self, sides: &[Side], turn: Vector2) -> Result<(), Damage> {
+        let points = points(sides);
+        let n = points.len() as u32;
+        if n < 3 || polygon_area(&points).abs() < LEAST {
+            return Err(self.fault("it encloses no area"));
+        }
+        let segments: Vec<[u32; 2]> = (0..n).map(|i| [i, (i + 1) % n]).collect();
+        let Some([_, other]) = first_crossing(&points, &segments) else { return Ok(()) };
+        let p = points[other];
+        // Back to the page.
+        let (x, y) = (turn.x * p.x + turn.y * p.y, turn.x * p.y - turn.y * p.x);
+        let (piece, place) = (self.name.to_owned(), self.place.clone());
+        Err(Damage::Crosses { piece, place, x: x * 1e3, y: -y * 1e3 })
+    }
+}
+
+/// The edge on the fold that open lines leave out.
+fn missing(fold: &Fold, sides: &[Side]) -> Option<Side> {
+    let ends = || sides.iter().flat_map(|s| [s.start, s.end()]);
+    let met = |p: &Point2| ends().filter(|q| (q - p).norm() <= JOINT).count() > 1;
+    let free: Vec<Point2> = ends().filter(|p| fold.has(*p) && !met(p)).collect();
+    match free[..] {
+        [a, b] => Some(Side::polyline("fold".into(), &[a, b])),
+        _ => None,
+    }
+}
+
+/// The longest line of some role, and its shape.
+fn longest<'d, 't>(mine: &[&'d Shape<'t>], is: impl Fn(Role) -> bool) -> Option<(&'d Line, &'d Shape<'t>)> {
+    let of_role = mine.iter().filter(|s| s.role.is_some_and(&is));
+    let lines = of_role.flat_map(|s| s.lines.iter().map(move |l| (l, *s)));
+    let long = |line: &Line| {
+        let (a, b) = ends(line);
+        (b - a).norm()
+    };
+    lines.filter(|(l, _)| long(l) > 1e-4).max_by(|a, b| long(a.0).total_cmp(&long(b.0)))
+}
+
+/// Sine and cosine by which the grain is turned up: by the lesser angle, as it is drawn where it lies level.
+fn turn(grain: Option<(Point2, Point2)>) -> Vector2 {
+    let way = grain.and_then(|(a, b)| (b - a).try_normalize(1e-9));
+    let upwards = way.map(|d| if d.y < -LEVEL { -d } else { d });
+    upwards.map_or_else(Vector2::x, |d| Vector2::new(d.y, d.x))
+}
+
+/// A grain line as a piece keeps it: from its foot straight up.
+fn upright(a: Point2, b: Point2) -> Option<[Point2; 2]> {
+    let (low, high) = if a.y <= b.y { (a, b) } else { (b, a) };
+    (high.y - low.y > 1e-6).then(|| [low, Point2::new(low.x, high.y)])
+}
+
+/// What is drawn on a piece beside its outline.
+struct Marks {
+    notches: Vec<(Point2, f64)>,
+    drills: Vec<Point2>,
+    holes: Vec<Vec<Point2>>,
+    lines: Vec<PieceLine>,
+}
+
+impl Marks {
+    fn of(outline: &Outlined<'_, '_>, mine: &[&Shape<'_>], up: impl Fn(Point2) -> Point2 + Copy) -> Self {
+        let with = |role: Role| mine.iter().filter(move |s| s.role == Some(role));
+        let at = |s: &&&Shape<'_>| up(middle(s));
+        let drawn_in = outline.holes.iter().map(|h| h.iter().map(|p| up(*p)).collect());
+        let around = |s: &&Shape<'_>| closed(s).map(|o| o.polygon.iter().map(|p| up(*p)).collect::<Vec<_>>());
+        let polygons = with(Role::Hole).filter_map(around).filter(|p| polygon_area(p).abs() > 1e-6);
+        let lines = with(Role::Mark).flat_map(|s| &s.lines).filter_map(|l| {
+            let side = Side { name: String::new(), start: l.start, parts: drawn(l) }.moved(up, false);
+            (side.length() > 1e-4).then(|| side.points())
+        });
+        let line = |(k, points): (usize, Vec<Point2>)| PieceLine {
+            name: format!("line_{k}"),
+            purpose: LinePurpose::Mark,
+            points,
+        };
+        Marks {
+            notches: with(Role::Notch).map(|s| (at(&s), 0.0)).collect(),
+            drills: with(Role::Drill).map(|s| at(&s)).collect(),
+            holes: polygons.chain(drawn_in).collect(),
+            lines: lines.enumerate().map(line).collect(),
+        }
+    }
+
+    /// Adds the image of each.
+    fn unfold(&mut self, fold: &Fold) {
+        let to = |p: &Point2| fold.mirror(*p);
+        self.notches.extend(self.notches.clone().iter().map(|(p, d)| (to(p), *d)));
+        self.drills.extend(self.drills.clone().iter().map(to));
+        self.holes.extend(self.holes.clone().iter().map(|h| h.iter().map(to).collect()));
+        let image = |l: &PieceLine| PieceLine {
+            name: format!("{}_m", l.name),
+            points: l.points.iter().map(to).collect(),
+            ..l.clone()
+        };
+        self.lines.extend(self.lines.clone().iter().map(image));
+    }
+}
