@@ -338,8 +338,8 @@ mod tests {
                 origin_px: Point2::new(150.0, 290.0),
                 px_per_metre: 500.0,
                 mirrored: false,
- turn: 0.0,
- }),
+                turn: 0.0,
+            }),
         }
     }
 

@@ -6,7 +6,7 @@
 use toile_core::artifact::{Point2, Vector2};
 
 /// Parts in which a bow is walked.
-const PARTS: usize = 24;
+const PARTS: usize = 16;
 
 /// A cubic edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,16 +73,5 @@ impl Bow {
             t = (t + (p - self.at(t)).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
         }
         t
-    }
-
-    /// The same edge from its end to its start.
-    pub(super) fn turned(&self) -> Bow {
-        Bow { a: self.b, b: self.a, bow: [-self.bow[1], -self.bow[0]] }
-    }
-
-    /// The same edge seen in a mirror that stands upright at u = 0.
-    pub(super) fn mirrored(&self) -> Bow {
-        let flip = |p: Point2| Point2::new(-p.x, p.y);
-        Bow { a: flip(self.a), b: flip(self.b), bow: self.bow.map(|b| -b) }
     }
 }

@@ -1,7 +1,7 @@
 //! A cubic edge of a piece, which can be parted and turned.
 
 use super::bow::Bow;
-use toile_core::artifact::{Point2, Vector2};
+use toile_core::artifact::Point2;
 
 /// A Bézier curve by its four points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,11 +39,6 @@ impl Curve {
         let (abc, bcd) = (mix(ab, bc), mix(bc, cd));
         let middle = mix(abc, bcd);
         [Curve([a, ab, abc, middle]), Curve([middle, bcd, cd, d])]
-    }
-
-    /// The direction at its start, not of length 1.
-    pub(super) fn start_way(&self) -> Vector2 {
-        self.0[1] - self.0[0]
     }
 
     /// Evenly spaced parameters' points, both ends included.

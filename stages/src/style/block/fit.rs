@@ -1,10 +1,11 @@
 //! A form's template fitted to a whole outline by least squares.
 //!
-//! Method: the template is symmetric about an axis whose tilt and place are sought with it; sleeves lie as they fall, each side by itself. It
-//! starts from the cuts of both halves ([`super::segment`]), together and each alone. Then every point of the outline is drawn to the nearest place of the template, and
+//! Method: the template is symmetric about an axis whose tilt and place are sought with it, as far as the outline lets it: corners of both sides are
+//! believed to mirror each other to 2 % of the size, but those of sleeves and legs, which lie as they fall. It
+//! starts from the cuts of both halves ([`super::segment`]), or, where they differ, from each alone. Then every point of the outline is drawn to the nearest place of the template, and
 //! places of the template to the outline, along the distance between them (point to line: Chen and Medioni 1992), by damped Gauss-Newton
 //! steps. Far-off points count less (Geman and McClure 1985), so that a fold or a rag moves no edge. Cost: some milliseconds a form.
-//! Limits: what both halves have in common must show on one of them.
+//! Limits: a fold along the whole of a side is taken for the side.
 
 use super::bow::Bow;
 use super::form::{EdgeForm, Form};
@@ -21,11 +22,22 @@ const FAR: [f64; 2] = [5.0, 2.0];
 const STEPS: usize = 30;
 /// Weight of beliefs about bows beside a point of the outline.
 const BELIEF: f64 = 0.3;
+/// How far corners of both sides differ, as a share of the size; and bows.
+const ALIKE: [f64; 2] = [0.02, 0.05];
 /// Places on each edge that are drawn to the outline, and their weight.
 const PLACES: usize = 8;
 const PULL: f64 = 0.5;
 /// Squared spreads that a point adds to the score at most.
 const MOST: f64 = 16.0;
+/// What the sum of squares of the cut adds to the score, for each of its points; and what every corner adds, since more corners fit better.
+const UNUSUAL: f64 = 0.5;
+const CORNER: f64 = 0.1;
+/// A fit of this score is taken from its first start.
+const WELL: f64 = 1.0;
+/// A step that moves every corner by less than this share of the size is the last, once far points have their last weight.
+const LAST: f64 = 2e-5;
+/// Share of the steps in which far points come to their last weight.
+const SETTLES: f64 = 0.4;
 /// Step of a difference quotient.
 const DIFFERENCE: f64 = 1e-6;
 
@@ -48,10 +60,16 @@ pub(super) fn fit(upright: &Upright, form: &Form) -> Option<Fit> {
     let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
     let [Some(a), Some(b)] = cuts else { return None };
     let unusual = (a.cost + b.cost) / (2.0 * upright.halves[0].len() as f64);
-    let starts = [[&a, &b], [&a, &a], [&b, &b]];
-    let fits = starts.iter().map(|s| Problem::new(upright, form, *s).solve());
-    let best = fits.min_by(|x, y| x.score.total_cmp(&y.score))?;
-    Some(Fit { score: best.score + 0.5 * unusual, ..best })
+    let mut best = Problem::new(upright, form, [&a, &b]).solve();
+    // Halves that differ: what only one of them shows is looked for from that one alone.
+    if best.score > WELL {
+        for alone in [&a, &b] {
+            let other = Problem::new(upright, form, [alone, alone]).solve();
+            best = if other.score < best.score { other } else { best };
+        }
+    }
+    let score = best.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64;
+    Some(Fit { score, ..best })
 }
 
 /// Where a point of the outline, or a place of the template, is drawn to.
@@ -97,23 +115,28 @@ impl<'a> Problem<'a> {
     fn solve(mut self) -> Fit {
         let mut damping = 1e-3;
         for step in 0..STEPS {
-            let share = (step as f64 / (STEPS as f64 * 0.6)).min(1.0);
+            let share = (step as f64 / (STEPS as f64 * SETTLES)).min(1.0);
             let far = FAR[0] + (FAR[1] - FAR[0]) * share;
             let pairs = self.pairs(&model(self.form, &self.at), far);
             let before = self.rest(&self.at, &pairs);
             let slopes = self.slopes(&pairs, &before);
             let (normal, right) = (slopes.tr_mul(&slopes), slopes.tr_mul(&before));
+            let mut moved = 0.0;
             for _ in 0..6 {
                 let mut damped = normal.clone();
                 (0..damped.nrows()).for_each(|k| damped[(k, k)] += damping * (1e-9 + normal[(k, k)]));
                 let Some(way) = damped.cholesky().map(|c| c.solve(&right)) else { break };
-                let next = &self.at - way;
+                let next = &self.at - &way;
                 if self.rest(&next, &pairs).norm_squared() <= before.norm_squared() {
                     self.at = next;
+                    moved = way.amax();
                     damping = (damping * 0.3).max(1e-9);
                     break;
                 }
                 damping = (damping * 10.0).min(1e3);
+            }
+            if share >= 1.0 && moved < LAST * self.upright.size {
+                break;
             }
         }
         self.found()
@@ -154,10 +177,16 @@ impl<'a> Problem<'a> {
             p.weight * off.dot(&p.along) / self.spread
         };
         let mut all: Vec<f64> = pairs.iter().map(of).collect();
-        for side in &m.sides {
-            for (e, bow) in self.form.edges.iter().zip(side) {
-                all.extend(bow.bow.iter().map(|b| BELIEF * (b - e.bow[0]) / e.bow[1]));
+        for (k, e) in self.form.edges.iter().enumerate() {
+            let [one, other] = [0, 1].map(|s: usize| m.sides[s][k]);
+            for bow in [one.bow, other.bow] {
+                all.extend(bow.map(|b| BELIEF * (b - e.bow[0]) / e.bow[1]));
             }
+            let corner = if e.own_end { Vector2::zeros() } else { one.b - other.b };
+            let bows =
+                if own(self.form.edges, k) { [0.0; 2] } else { [0, 1].map(|i| one.bow[i] - other.bow[i]) };
+            all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
+            all.extend(bows.map(|b| b / ALIKE[1]));
         }
         DVector::from_vec(all)
     }
@@ -236,46 +265,35 @@ fn own(edges: &[EdgeForm], k: usize) -> bool {
     edges[k].own_end || (k > 0 && edges[k - 1].own_end)
 }
 
-/// Parameters of a template: the axis, the heights of its ends on the axis, corners, bows.
+/// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of each side.
 fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
     let last = form.edges.len() - 1;
     let mean = |a: f64, b: f64| 0.5 * (a + b);
-    let mut at = vec![0.0, 0.0, mean(sides[0][0].a.y, sides[1][0].a.y), mean(sides[0][last].b.y, sides[1][last].b.y)];
-    for (k, e) in form.edges.iter().enumerate() {
-        if k < last {
-            put(&mut at, e.own_end, [0, 1].map(|s| [sides[s][k].b.x, sides[s][k].b.y]));
+    let low = mean(sides[0][0].a.y, sides[1][0].a.y);
+    let mut at = vec![0.0, 0.0, low, mean(sides[0][last].b.y, sides[1][last].b.y)];
+    for side in sides {
+        for (k, bow) in side.iter().enumerate() {
+            at.extend(bow.bow);
+            if k < last {
+                at.extend([bow.b.x, bow.b.y]);
+            }
         }
-        put(&mut at, own(form.edges, k), [0, 1].map(|s| sides[s][k].bow));
     }
     DVector::from_vec(at)
 }
 
-fn put(at: &mut Vec<f64>, own: bool, [a, b]: [[f64; 2]; 2]) {
-    match own {
-        true => at.extend(a.into_iter().chain(b)),
-        false => at.extend([0, 1].map(|i| 0.5 * (a[i] + b[i]))),
-    }
-}
-
 fn model(form: &Form, at: &DVector<f64>) -> Model {
     let last = form.edges.len() - 1;
-    let mut next = 4;
-    let mut take = |own: bool| {
-        let pair = |i: usize| [at[i], at[i + 1]];
-        let both = [pair(next), pair(if own { next + 2 } else { next })];
-        next += if own { 4 } else { 2 };
-        both
-    };
-    let mut sides = [Vec::new(), Vec::new()];
-    let mut from = [Point2::new(0.0, at[2]); 2];
-    for (k, e) in form.edges.iter().enumerate() {
-        let ends = if k < last { take(e.own_end) } else { [[0.0, at[3]]; 2] };
-        let bows = take(own(form.edges, k));
-        for s in 0..2 {
-            let end = Point2::new(ends[s][0], ends[s][1]);
-            sides[s].push(Bow { a: from[s], b: end, bow: bows[s] });
-            from[s] = end;
-        }
-    }
+    let mut numbers = at.iter().skip(4).copied();
+    let mut two = || [0, 1].map(|_| numbers.next().unwrap_or(0.0));
+    let sides = [0, 1].map(|_| {
+        let mut from = Point2::new(0.0, at[2]);
+        let edge = |k: usize| {
+            let bow = two();
+            let end = if k < last { Point2::from(two()) } else { Point2::new(0.0, at[3]) };
+            Bow { a: std::mem::replace(&mut from, end), b: end, bow }
+        };
+        (0..=last).map(edge).collect()
+    });
     Model { sides, turn: at[0], shift: at[1] }
 }

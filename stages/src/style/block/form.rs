@@ -19,13 +19,30 @@ pub(super) struct EdgeForm {
     pub own_end: bool,
 }
 
+/// What a form must show, each with what is said where it does not.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Mark {
+    /// The outline turns inwards where an edge starts, by so many degrees at least.
+    Dent(usize, f64, &'static str),
+    /// The outline turns outwards where an edge starts, by so many degrees at least.
+    Corner(usize, f64, &'static str),
+    /// An edge curves into the garment by so much of its chord at least.
+    Hollow(usize, f64, &'static str),
+    /// An edge bows by no more than so much of its chord.
+    Level(usize, f64, &'static str),
+    /// The first edge reaches from side to side by no more than so much of the second.
+    Narrower(usize, usize, f64, &'static str),
+    /// An edge rises by no more than so many degrees from across.
+    Below(usize, f64, &'static str),
+}
+
 /// A form: its word in messages, and its edges.
 #[derive(Debug)]
 pub(super) struct Form {
     /// With its article.
     pub word: &'static str,
-    /// Where the outline must turn inwards: the edge that starts there, the least turn in degrees, and what is said where it does not.
-    pub dent: Option<(usize, f64, &'static str)>,
+    /// What makes it this form and no other.
+    pub marks: &'static [Mark],
     /// Its edges from the axis below to the axis above.
     pub edges: &'static [EdgeForm],
 }
@@ -38,6 +55,8 @@ const fn own(name: &'static str, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) 
     EdgeForm { name, way, bow, chord, own_end: true }
 }
 
+const NO_ARMHOLE: &str = "its sides run up to the shoulders without an armhole";
+const NO_SHOULDER: &str = "it has no shoulder beside the neck";
 const NO_ARMPIT: &str = "its sides run up without an armpit";
 
 const HEM: EdgeForm = edge("hem", [2.0, 10.0], [0.0, 0.06], [0.15, 1.2]);
@@ -47,7 +66,7 @@ const NECK: EdgeForm = edge("neck", [200.0, 30.0], [0.1, 0.15], [0.06, 0.6]);
 /// No sleeves: vest, strap top, muscle tank.
 pub(super) const VEST: Form = Form {
     word: "a vest",
-    dent: None,
+    marks: &[Mark::Hollow(2, 0.03, NO_ARMHOLE), Mark::Corner(3, 25.0, NO_SHOULDER)],
     edges: &[
         HEM,
         SIDE,
@@ -60,7 +79,11 @@ pub(super) const VEST: Form = Form {
 /// A sleeveless dress whose skirt flares from the waist.
 pub(super) const DRESS: Form = Form {
     word: "a dress without sleeves",
-    dent: Some((2, 8.0, "its sides run up without a waist")),
+    marks: &[
+        Mark::Dent(2, 12.0, "its sides run up without a waist"),
+        Mark::Hollow(3, 0.03, NO_ARMHOLE),
+        Mark::Corner(4, 25.0, NO_SHOULDER),
+    ],
     edges: &[
         HEM,
         edge("skirt", [100.0, 12.0], [0.0, 0.06], [0.3, 1.6]),
@@ -74,7 +97,7 @@ pub(super) const DRESS: Form = Form {
 /// Sleeves that end above the elbow.
 pub(super) const TEE: Form = Form {
     word: "a T-shirt",
-    dent: Some((2, 25.0, NO_ARMPIT)),
+    marks: &[Mark::Dent(2, 25.0, NO_ARMPIT), Mark::Below(2, 65.0, NO_ARMPIT)],
     edges: &[
         HEM,
         SIDE,
@@ -88,7 +111,7 @@ pub(super) const TEE: Form = Form {
 /// Sleeves that end below the elbow.
 pub(super) const LONG: Form = Form {
     word: "a top with long sleeves",
-    dent: Some((2, 25.0, NO_ARMPIT)),
+    marks: &[Mark::Dent(2, 25.0, NO_ARMPIT), Mark::Below(2, 65.0, NO_ARMPIT)],
     edges: &[
         HEM,
         SIDE,
@@ -102,21 +125,26 @@ pub(super) const LONG: Form = Form {
 /// Waist to hem.
 pub(super) const SKIRT: Form = Form {
     word: "a skirt",
-    dent: None,
+    marks: &[
+        Mark::Corner(3, 40.0, "it has no waist"),
+        Mark::Narrower(3, 0, 0.95, "its waist is as wide as its hem"),
+        Mark::Level(0, 0.15, "its hem is not even"),
+    ],
     edges: &[
         edge("hem", [5.0, 12.0], [0.0, 0.1], [0.2, 1.5]),
-        edge("side", [100.0, 12.0], [0.0, 0.08], [0.4, 2.5]),
-        edge("waist", [180.0, 8.0], [0.0, 0.06], [0.1, 0.9]),
+        edge("side", [98.0, 12.0], [0.0, 0.06], [0.3, 2.5]),
+        edge("hip", [105.0, 15.0], [0.0, 0.06], [0.06, 0.8]),
+        edge("waist", [180.0, 8.0], [0.0, 0.08], [0.1, 0.9]),
     ],
 };
 
 /// Two legs.
 pub(super) const TROUSERS: Form = Form {
     word: "a pair of trousers",
-    dent: None,
+    marks: &[Mark::Below(0, -50.0, "it has no legs"), Mark::Corner(3, 40.0, "it has no waist")],
     edges: &[
-        edge("inseam", [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
-        edge("hem", [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
+        own("inseam", [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
+        own("hem", [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
         edge("outseam", [95.0, 10.0], [0.0, 0.06], [0.4, 3.5]),
         edge("waist", [180.0, 8.0], [0.0, 0.06], [0.12, 0.7]),
     ],

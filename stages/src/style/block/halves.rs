@@ -4,7 +4,7 @@ use super::super::shape::Shape;
 use toile_core::artifact::{Outline, Point2};
 
 /// Points of a half.
-pub(super) const POINTS: usize = 130;
+pub(super) const POINTS: usize = 100;
 
 /// An upright outline with its halves.
 #[derive(Debug, Clone)]

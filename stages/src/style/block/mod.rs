@@ -8,6 +8,7 @@ mod curve;
 mod fit;
 mod form;
 mod halves;
+mod marks;
 mod pieces;
 mod refusal;
 mod seams;
@@ -19,6 +20,7 @@ mod tests;
 use fit::{Fit, fit};
 use form::Form;
 use halves::Upright;
+use marks::missing;
 use nalgebra::Rotation2;
 use pieces::{Flat, Layer};
 use rayon::prelude::*;
@@ -145,6 +147,7 @@ impl Block {
             return Err(refusal::strays(panel, form, &fit, stray, auto));
         }
         tell(panel, form, &fit, upright.size, cx);
+        tell_uneven(panel, form, &fit, upright.size, cx);
         Ok((name, form, Fitted { upright, fit }))
     }
 }
@@ -155,16 +158,10 @@ const TOLD: f64 = 0.025;
 /// A fit that the form allows, or why there is none.
 fn sound(upright: &Upright, form: &Form) -> Result<Fit, &'static str> {
     let fit = fit(upright, form).ok_or("its edges are not in their usual places")?;
-    match form.dent {
-        Some((k, least, reason)) if fit.sides.iter().any(|s| dent(s, k) < least) => Err(reason),
-        _ => Ok(fit),
+    match form.marks.iter().find_map(|m| missing(&fit, m)) {
+        Some(reason) => Err(reason),
+        None => Ok(fit),
     }
-}
-
-/// How far the outline turns inwards where an edge starts, degrees.
-fn dent(side: &[bow::Bow], k: usize) -> f64 {
-    let (a, b) = (side[k - 1].b - side[k - 1].a, side[k].b - side[k].a);
-    (-a.perp(&b)).atan2(a.dot(&b)).to_degrees()
 }
 
 /// The value that 19 of 20 do not exceed.
@@ -185,6 +182,21 @@ fn tell(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
                 e.name,
                 stray * 1e3,
                 form.word
+            ));
+        }
+    }
+}
+
+/// Tells edges that are longer on one side: the garment lies uneven.
+fn tell_uneven(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
+    for (k, e) in form.edges.iter().enumerate() {
+        let [a, b] = [0, 1].map(|s: usize| fit.sides[s][k].length());
+        if (a - b).abs() > TOLD * size {
+            cx.warn(format!(
+                "\"{panel}\" lies uneven: its {} measures {:.0} mm on one side and {:.0} mm on the other; it is cut as it lies",
+                e.name,
+                a * 1e3,
+                b * 1e3
             ));
         }
     }

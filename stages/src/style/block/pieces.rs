@@ -150,7 +150,8 @@ pub(super) fn layer(fit: &Fit, form: &Form, layer: Layer) -> Vec<Flat> {
     edges.push((form.edges[last].name.to_owned(), Run::Both([right_top, left_top])));
     edges.extend(sides[1].named(&cut[1].trunk));
     edges.push(("hem".to_owned(), Run::Both([left_hem, right_hem])));
-    let trunk = Flat { name: layer.word().into(), edges, part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 };
+    let trunk =
+        Flat { name: layer.word().into(), edges, part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 };
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
     std::iter::once(trunk).chain(sleeves).collect()
 }

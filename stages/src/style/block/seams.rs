@@ -14,7 +14,12 @@ pub(super) fn seams(pieces: &[Flat], form: &Form) -> Vec<PatternSeam> {
         let back = front.name.replace("front", "back");
         for (edge, _) in &front.edges {
             let apart = edge.starts_with("armhole") && form.underarm().is_some();
-            if !OPEN.contains(&edge.as_str()) && !apart && edge != "cap" && edge != "rise" && !is_open(edge, form) {
+            if !OPEN.contains(&edge.as_str())
+                && !apart
+                && edge != "cap"
+                && edge != "rise"
+                && !is_open(edge, form)
+            {
                 found.push(seam(edge, (&front.name, edge), (&back, edge), &front.name));
             }
         }
@@ -44,5 +49,9 @@ fn seam(word: &str, a: (&str, &str), b: (&str, &str), of: &str) -> PatternSeam {
     let one = |(panel, edge): (&str, &str), reversed: bool| {
         vec![EdgeUse { edge: EdgeRef { panel: panel.to_owned(), edge: edge.to_owned() }, reversed }]
     };
-    PatternSeam { name: format!("{word} of {of}"), kind: SeamKind::Matched, sides: vec![one(a, false), one(b, true)] }
+    PatternSeam {
+        name: format!("{word} of {of}"),
+        kind: SeamKind::Matched,
+        sides: vec![one(a, false), one(b, true)],
+    }
 }

@@ -22,8 +22,10 @@ impl Stand {
     /// `top` is the height of neck or waist in the garment's frame, `landmark` that of the body which it hangs at.
     pub(super) fn of(body: &Body, landmark: &str, top: f64) -> Result<Stand, StageError> {
         let at = body.landmarks.get(landmark).ok_or_else(|| {
-            StageError::invalid(format!("the body has no landmark \"{landmark}\", from which the garment hangs"))
-                .hint("take a Mannequin")
+            StageError::invalid(format!(
+                "the body has no landmark \"{landmark}\", from which the garment hangs"
+            ))
+            .hint("take a Mannequin")
         })?;
         let crown = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
         let side = body.landmarks.get("shoulder_left").map_or(f64::INFINITY, |p| p.x.abs());

@@ -44,7 +44,8 @@ const TROUSERS: &[[f64; 2]] =
     &[[0.0, 700.0], [90.0, 0.0], [230.0, 0.0], [240.0, 720.0], [200.0, 950.0], [0.0, 950.0]];
 
 fn outline(points: Vec<Point2>) -> Outline {
-    let frame = PhotoFrame { origin_px: Point2::new(500.0, 900.0), px_per_metre: 1000.0, mirrored: false, turn: 0.0 };
+    let frame =
+        PhotoFrame { origin_px: Point2::new(500.0, 900.0), px_per_metre: 1000.0, mirrored: false, turn: 0.0 };
     Outline {
         outer: Loop { points, corners: vec![] },
         holes: vec![],
@@ -61,9 +62,17 @@ fn turned(points: Vec<Point2>, degrees: f64) -> Vec<Point2> {
 
 /// A mannequin's landmarks on a body of a few points.
 fn body() -> Body {
-    let marks = [("neck_left", [0.07, 1.4, 0.0]), ("shoulder_left", [0.18, 1.35, 0.0]), ("waist_front", [0.0, 1.0, 0.1])];
+    let marks = [
+        ("neck_left", [0.07, 1.4, 0.0]),
+        ("shoulder_left", [0.18, 1.35, 0.0]),
+        ("waist_front", [0.0, 1.0, 0.1]),
+    ];
     Body {
-        positions: vec![Point3::new(0.0, 0.9, 0.12), Point3::new(0.0, 0.9, -0.12), Point3::new(0.0, 1.6, 0.0)],
+        positions: vec![
+            Point3::new(0.0, 0.9, 0.12),
+            Point3::new(0.0, 0.9, -0.12),
+            Point3::new(0.0, 1.6, 0.0),
+        ],
         landmarks: marks.map(|(n, [x, y, z])| (n.to_owned(), Point3::new(x, y, z))).into(),
         ..Body::default()
     }
@@ -132,9 +141,12 @@ fn pieces_know_their_place_in_the_photo() {
     let (pattern, outlines, _) = cut(&of(BlockStyle::TShirt), points.clone()).unwrap();
     let photo = outline(vec![]).frame.unwrap();
     let off = |p: Point2| points.iter().map(|q| (photo.to_px(*q) - p).norm()).fold(f64::INFINITY, f64::min);
-    for (name, edge) in
-        [("front", "side_left"), ("front", "hem"), ("left_sleeve_front", "cuff"), ("right_sleeve_front", "underarm")]
-    {
+    for (name, edge) in [
+        ("front", "side_left"),
+        ("front", "hem"),
+        ("left_sleeve_front", "cuff"),
+        ("right_sleeve_front", "underarm"),
+    ] {
         let frame = outlines.get(name).unwrap().frame.unwrap();
         let path = pattern.piece(name).unwrap().path(edge).unwrap();
         for share in [0.2, 0.5, 0.8] {
@@ -250,7 +262,6 @@ proptest! {
     fn a_bow_is_its_bezier_curve_whichever_way_it_is_seen(bow in bow(), t in 0.0..1.0_f64) {
         let at = bow.at(t);
         prop_assert!((Curve::from(bow).at(t) - at).norm() < 1e-12);
-        prop_assert!((bow.turned().at(1.0 - t) - at).norm() < 1e-12);
         prop_assert!((Curve::from(bow).turned().at(1.0 - t) - at).norm() < 1e-12);
         prop_assert!((flip(Curve::from(bow).moved(flip).at(t)) - at).norm() < 1e-12);
         let slope = (bow.at(t + 1e-6) - bow.at(t - 1e-6)) / 2e-6;
