@@ -151,6 +151,11 @@ pub(super) const TROUSERS: Form = Form {
 };
 
 impl Form {
+    /// Whether it has two legs.
+    pub(super) fn has_legs(&self) -> bool {
+        self.edges.iter().any(|e| e.name == "inseam")
+    }
+
     /// The number of its underarm edge: it has sleeves.
     pub(super) fn underarm(&self) -> Option<usize> {
         self.edges.iter().position(|e| e.name == "underarm")

@@ -1,31 +1,33 @@
 //! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
 //!
 //! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
-//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body. Cost: a tenth of a second a form.
+//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]). Cost: a tenth of a second a form.
 
 mod bow;
 mod curve;
 mod fit;
 mod form;
 mod halves;
+mod lay;
 mod marks;
 mod pieces;
 mod refusal;
 mod seams;
 mod segment;
 mod stand;
+mod tell;
 #[cfg(test)]
 mod tests;
+mod wearable;
 
 use fit::{Fit, fit};
 use form::Form;
 use halves::Upright;
+use lay::{Fitted, mirrored, pattern};
 use marks::missing;
-use nalgebra::Rotation2;
-use pieces::{Flat, Layer};
+use pieces::Layer;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
-use std::sync::Arc;
+use tell::at_95;
 use toile_core::prelude::*;
 
 /// What the garment is.
@@ -68,10 +70,10 @@ impl BlockStyle {
 
 /// Cuts a sewing pattern to the outline of a garment that lies flat.
 ///
-/// A template with a garment's landmarks (a block) is fitted to the whole outline by least squares, symmetric about its own axis, so
-/// that folds and rags do little and a garment that lies askew is straightened. The pieces are front and back, and sleeves that are
-/// set into armholes of their caps' length. How far the outline strays from the template is told by edges. Needs the
-/// photo `front`; without one of the back, the back is cut as the front is.
+/// A template with a garment's landmarks (a block) is fitted to the whole outline by least squares, as symmetric about its own axis as
+/// the outline lets it be, so that rags and small folds do little and a garment that lies askew is straightened. The pieces are front and back,
+/// and sleeves that are set into armholes of their caps' length. How far the outline strays from the template is told by edges. Needs
+/// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
@@ -103,6 +105,7 @@ impl Block {
         if self.style == BlockStyle::Auto {
             cx.warn(format!("\"front\" is taken for {}; `Block(style: {name})` settles it", form.word));
         }
+        wearable::check(form, &before.fit, body)?;
         let mirrored = mirrored(front);
         let back = outlines.get("back").unwrap_or(&mirrored);
         let (.., behind) = self.fitted("back", back, vec![(name, form)], cx)?;
@@ -110,12 +113,6 @@ impl Block {
         let layers = [(Layer::Front, front, before), (Layer::Back, back, behind)];
         pattern(form, &layers, body, cx)
     }
-}
-
-/// A fit with the upright outline that it belongs to.
-struct Fitted {
-    upright: Upright,
-    fit: Fit,
 }
 
 impl Block {
@@ -146,14 +143,15 @@ impl Block {
         if stray > self.stray * upright.size {
             return Err(refusal::strays(panel, form, &fit, stray, auto));
         }
-        tell(panel, form, &fit, upright.size, cx);
-        tell_uneven(panel, form, &fit, upright.size, cx);
+        tell::figures(panel, form, &fit, cx);
+        // What is seen in a mirror is told once.
+        if panel == "front" || !outline.frame.is_some_and(|f| f.mirrored) {
+            tell::astray(panel, form, &fit, upright.size, cx);
+            tell::uneven(panel, form, &fit, upright.size, cx);
+        }
         Ok((name, form, Fitted { upright, fit }))
     }
 }
-
-/// An edge that strays by more than this share of the size is told.
-const TOLD: f64 = 0.025;
 
 /// A fit that the form allows, or why there is none.
 fn sound(upright: &Upright, form: &Form) -> Result<Fit, &'static str> {
@@ -162,91 +160,4 @@ fn sound(upright: &Upright, form: &Form) -> Result<Fit, &'static str> {
         Some(reason) => Err(reason),
         None => Ok(fit),
     }
-}
-
-/// The value that 19 of 20 do not exceed.
-fn at_95(misses: &[f64]) -> f64 {
-    let mut sorted = misses.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    quantile(&sorted, 0.95)
-}
-
-/// Tells how far the outline strays from the template.
-fn tell(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
-    for (e, misses) in form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty()) {
-        let stray = at_95(misses);
-        cx.figure(&format!("stray_{panel}_{}", e.name), stray * 1e3, "mm");
-        if stray > TOLD * size {
-            cx.warn(format!(
-                "the {} of \"{panel}\" strays by {:.0} mm from that of {}; it is cut as the block has it",
-                e.name,
-                stray * 1e3,
-                form.word
-            ));
-        }
-    }
-}
-
-/// Tells edges that are longer on one side: the garment lies uneven.
-fn tell_uneven(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
-    for (k, e) in form.edges.iter().enumerate() {
-        let [a, b] = [0, 1].map(|s: usize| fit.sides[s][k].length());
-        if (a - b).abs() > TOLD * size {
-            cx.warn(format!(
-                "\"{panel}\" lies uneven: its {} measures {:.0} mm on one side and {:.0} mm on the other; it is cut as it lies",
-                e.name,
-                a * 1e3,
-                b * 1e3
-            ));
-        }
-    }
-}
-
-/// The outline seen from the other side: what its photo's mirror image shows.
-fn mirrored(outline: &Outline) -> Outline {
-    let n = outline.outer.points.len();
-    let flip = |p: &Point2| Point2::new(-p.x, p.y);
-    let frame = outline.frame.map(|f| PhotoFrame { mirrored: !f.mirrored, turn: -f.turn, ..f });
-    let outer = Loop {
-        points: outline.outer.points.iter().rev().map(flip).collect(),
-        corners: outline.outer.corners.iter().rev().map(|c| n - 1 - c).collect(),
-    };
-    Outline { outer, holes: Vec::new(), edges: Vec::new(), inner: Vec::new(), frame }
-}
-
-/// The pattern of both layers, its outlines with their places in the photos, and its sewing plan.
-fn pattern(
-    form: &Form,
-    layers: &[(Layer, &Outline, Fitted)],
-    body: &Body,
-    cx: &Context,
-) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
-    let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
-    let (mut flats, mut pieces, mut frames) = (Vec::new(), Vec::new(), BTreeMap::new());
-    for (layer, outline, fitted) in layers {
-        let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
-        let stand = stand::Stand::of(body, hung, top)?;
-        for flat in pieces::layer(&fitted.fit, form, *layer) {
-            let pose = Some(stand.pose(&flat, *layer));
-            pieces.push(Piece { pose, ..flat.piece() });
-            frames.insert(flat.name.clone(), outline.frame.map(|f| frame(f, fitted, &flat)));
-            flats.push(flat);
-        }
-    }
-    let pattern = Pattern { name: "block".into(), pieces, seams: seams::seams(&flats, form) };
-    let lowered = pattern.lower().map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
-    lowered.notes.into_iter().for_each(|what| cx.warn(what));
-    let framed = |(name, o): (String, Outline)| {
-        let frame = frames.get(&name).copied().flatten();
-        (name, Arc::new(Outline { frame, ..o }))
-    };
-    Ok((pattern, Set(lowered.outlines.into_iter().map(framed).collect()), lowered.plan))
-}
-
-/// Where a piece lies in the photo of its layer.
-fn frame(photo: PhotoFrame, fitted: &Fitted, flat: &Flat) -> PhotoFrame {
-    let turn = fitted.upright.tilt.to_radians() + fitted.fit.turn;
-    let origin = Rotation2::new(turn) * (flat.origin + Vector2::new(fitted.fit.shift, 0.0));
-    let at = fitted.upright.centre + origin.coords;
-    PhotoFrame { origin_px: photo.to_px(at), turn: photo.turn + turn + flat.turn, ..photo }
 }

@@ -138,7 +138,7 @@ impl Side {
 /// The pieces of one layer.
 pub(super) fn layer(fit: &Fit, form: &Form, layer: Layer) -> Vec<Flat> {
     let sides = [0, 1].map(|k| Side::of(fit, form, layer, k));
-    if form.edges[0].name == "inseam" {
+    if form.has_legs() {
         return sides.iter().map(|s| leg(s, layer)).collect();
     }
     let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form)).collect();

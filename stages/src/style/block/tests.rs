@@ -3,6 +3,7 @@
 use super::bow::Bow;
 use super::curve::Curve;
 use super::*;
+use nalgebra::Rotation2;
 use proptest::prelude::*;
 
 /// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below to above.
@@ -248,6 +249,17 @@ fn a_block_says_why_it_does_not_fit() {
     let strict = Block { stray: 0.001, ..of(BlockStyle::Skirt) };
     let e = refusal(&strict, garment(TEE));
     assert!(e.starts_with("\"front\" was to be a skirt, but strays from one by "), "{e}");
+}
+
+#[test]
+fn a_garment_that_the_body_cannot_wear_is_refused_before_it_is_sewn() {
+    let front: Set<Outline> = [("front".to_owned(), outline(garment(TEE)))].into_iter().collect();
+    let wearer = |bust: f64| Body { measurements: [("bust".to_owned(), bust)].into(), ..body() };
+    let stage = of(BlockStyle::TShirt);
+    assert!(stage.run(front.clone(), &wearer(1.1), &Context::quiet()).is_ok());
+    let e = stage.run(front, &wearer(1.4), &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "the garment is too small: its chest measures 100 cm around, the body's 140 cm");
+    assert_eq!(e.hint.unwrap(), "check the photo's `width`, which gives the scale; else take a smaller body");
 }
 
 fn bow() -> impl Strategy<Value = Bow> {
