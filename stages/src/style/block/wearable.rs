@@ -89,7 +89,7 @@ fn arm_girth(body: &Body, from: Point3, to: Point3, share: f64) -> Option<f64> {
         let flat = Point2::new(d.dot(&across), d.dot(&front));
         (d.dot(&axis).abs() < SLICE && flat.coords.norm() < REACH).then_some(flat)
     };
-    let hull = convex_hull(&body.positions.iter().filter_map(near).collect::<Vec<_>>());
+    let hull = convex_hull(body.positions.iter().filter_map(near).collect());
     let n = hull.len();
     (n > 2).then(|| (0..n).map(|i| (hull[(i + 1) % n] - hull[i]).norm()).sum())
 }
