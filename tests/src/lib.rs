@@ -52,5 +52,13 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 7] =
-    ["vest.ron", "tshirt.ron", "photo_tee.ron", "photo_vest.ron", "scene.ron", "skirt.ron", "pattern.ron"];
+pub const PIPELINES: [&str; 8] = [
+    "vest.ron",
+    "tshirt.ron",
+    "photo.ron",
+    "photo_tee.ron",
+    "photo_vest.ron",
+    "scene.ron",
+    "skirt.ron",
+    "pattern.ron",
+];

@@ -6,7 +6,7 @@ use toile_core::golden::{compare, parse};
 use toile_tests::{Answer, napkin, pipeline, root, toile};
 
 /// Of the photos' pipelines, those that take longest: the others go the same way. `.ci/wide` checks them.
-const SLOW: [&str; 3] = ["tshirt.ron", "photo_tee.ron", "photo_vest.ron"];
+const SLOW: [&str; 4] = ["tshirt.ron", "photo.ron", "photo_tee.ron", "photo_vest.ron"];
 
 fn agree(slow: bool) {
     for name in toile_tests::PIPELINES.into_iter().filter(|name| SLOW.contains(name) == slow) {

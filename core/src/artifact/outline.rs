@@ -1,5 +1,7 @@
 //! The closed curves that bound a piece of cloth.
 
+use nalgebra::Rotation2;
+
 use super::sound::{ensure, finite, positive};
 use super::{Artifact, ArtifactType, Digester, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
 
@@ -53,7 +55,7 @@ pub struct InnerLine {
     pub gauge: Option<Gauge>,
 }
 
-/// How pattern coordinates map to the photo: `px = origin + (x, -y) * px_per_metre`, x mirrored
+/// How pattern coordinates map to the photo: turned, then `px = origin + (x, -y) * px_per_metre`, x mirrored
 /// where the photo is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhotoFrame {
@@ -63,12 +65,15 @@ pub struct PhotoFrame {
     pub px_per_metre: f64,
     /// True where the pattern is the mirror image of the photo.
     pub mirrored: bool,
+    /// How far the pattern lies turned in its photo, counter-clockwise, radians; before it is mirrored.
+    pub turn: f64,
 }
 
 impl PhotoFrame {
     /// The pixel under a pattern point.
     pub fn to_px(&self, p: Point2) -> Point2 {
         let sign = if self.mirrored { -1.0 } else { 1.0 };
+        let p = Rotation2::new(self.turn) * p;
         Point2::new(
             self.origin_px.x + sign * p.x * self.px_per_metre,
             self.origin_px.y - p.y * self.px_per_metre,
@@ -98,10 +103,11 @@ impl PhotoFrame {
     /// The pattern point over a pixel.
     pub fn to_metres(&self, px: Point2) -> Point2 {
         let sign = if self.mirrored { -1.0 } else { 1.0 };
-        Point2::new(
+        let turned = Point2::new(
             sign * (px.x - self.origin_px.x) / self.px_per_metre,
             (self.origin_px.y - px.y) / self.px_per_metre,
-        )
+        );
+        Rotation2::new(-self.turn) * turned
     }
 }
 

@@ -59,7 +59,8 @@ mod tests {
     }
 
     fn outline() -> PortValue {
-        let frame = PhotoFrame { origin_px: Point2::new(10.0, 20.0), px_per_metre: 100.0, mirrored: true };
+        let frame =
+            PhotoFrame { origin_px: Point2::new(10.0, 20.0), px_per_metre: 100.0, mirrored: true, turn: 0.0 };
         PortValue::One(Arc::new(Outline {
             outer: Loop::default(),
             holes: Vec::new(),
@@ -87,7 +88,8 @@ mod tests {
         // The middle of a pixel lies one pixel right of the first of its three.
         assert_eq!(figures(&[photo(3, 8)], outline()), [31.0, 61.0, 300.0]);
         assert_eq!(figures(&[outline(), photo(3, 8)], outline()), [10.0, 20.0, 100.0], "framed before");
-        let frame = PhotoFrame { origin_px: Point2::new(31.0, 61.0), px_per_metre: 300.0, mirrored: true };
+        let frame =
+            PhotoFrame { origin_px: Point2::new(31.0, 61.0), px_per_metre: 300.0, mirrored: true, turn: 0.0 };
         let back = frame.joined(3);
         assert_eq!((back.origin_px, back.px_per_metre), (Point2::new(10.0, 20.0), 100.0));
         assert_eq!((frame.joined(1), frame.parted(1)), (frame, frame));

@@ -168,7 +168,7 @@ pub fn nothing() -> Outline {
 pub fn frame(outline: &Outline) -> PhotoFrame {
     let (lo, hi) = outline.bounds();
     let origin_px = p((MARGIN - lo.x * SCALE).round(), (MARGIN + hi.y * SCALE).round());
-    PhotoFrame { origin_px, px_per_metre: SCALE, mirrored: false }
+    PhotoFrame { origin_px, px_per_metre: SCALE, mirrored: false, turn: 0.0 }
 }
 
 /// The cloth's share of the pixel around a place, 0 to 1, from 4 by 4 samples.
@@ -284,7 +284,7 @@ pub fn panel(columns: usize, rows: usize, width: f64, height: f64) -> Panel {
     let positions: Vec<Point2> =
         (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))).map(|(i, j)| place(i, j)).collect();
     let origin = p(MARGIN + width * SCALE / 2.0, MARGIN + height * SCALE);
-    let frame = PhotoFrame { origin_px: origin, px_per_metre: SCALE, mirrored: false };
+    let frame = PhotoFrame { origin_px: origin, px_per_metre: SCALE, mirrored: false, turn: 0.0 };
     Panel {
         photo_px: positions.iter().map(|q| frame.to_px(*q)).collect(),
         triangles: cells.flat_map(split).collect(),

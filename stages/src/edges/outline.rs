@@ -178,6 +178,7 @@ fn in_metres(photo: &Photo, outer: Loop, holes: Vec<Loop>) -> Result<Outline, St
         origin_px: Point2::new((left + right) / 2.0, -bottom),
         px_per_metre: scale(photo, right - left)?,
         mirrored: photo.mirrored,
+        turn: 0.0,
     };
     let convert = |l: Loop| {
         let to = |p: &Point2| frame.to_metres(Point2::new(p.x, -p.y));

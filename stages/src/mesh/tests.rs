@@ -231,7 +231,7 @@ fn a_thin_strip_without_names_is_divided_finer() {
 
 #[test]
 fn photo_coordinates_follow_the_frame() {
-    let frame = PhotoFrame { origin_px: p(800.0, 1500.0), px_per_metre: 2000.0, mirrored: true };
+    let frame = PhotoFrame { origin_px: p(800.0, 1500.0), px_per_metre: 2000.0, mirrored: true, turn: 0.0 };
     let outline = Outline { frame: Some(frame), ..vest() };
     for mesher in MESHERS {
         let panel = mesher(&outline, 0.03).unwrap();

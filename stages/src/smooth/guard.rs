@@ -6,6 +6,7 @@
 //! survives.
 
 use super::topology::{Stretch, Topology};
+use nalgebra::Matrix2;
 use toile_core::artifact::{CHORD_TOLERANCE, Panel, Point2, Vector2, polyline_length};
 use toile_core::{Context, StageError};
 
@@ -142,12 +143,31 @@ fn angle(points: &[Point2], t: &[u32; 3]) -> f64 {
 fn moved(panel: &Panel, points: Vec<Point2>) -> Panel {
     let mut photo_px = panel.photo_px.clone();
     if photo_px.len() == points.len() {
-        let scale = photo_scale(panel);
+        let to_px = photo_map(panel);
         for ((px, new), old) in photo_px.iter_mut().zip(&points).zip(&panel.positions) {
-            *px += (new - old).component_mul(&scale);
+            *px += to_px * (new - old);
         }
     }
     Panel { positions: points, photo_px, ..panel.clone() }
+}
+
+/// A panel whose axes are those of its photo, to this share, is moved along them exactly.
+const STRAIGHT: f64 = 1e-9;
+
+/// How a way on the panel becomes one in the photo, pixels per metre: the least-squares map of all vertices, since a panel may lie turned.
+fn photo_map(panel: &Panel) -> Matrix2<f64> {
+    let mean = |points: &[Point2]| points.iter().map(|p| p.coords).sum::<Vector2>() / points.len() as f64;
+    let (flat, px) = (mean(&panel.positions), mean(&panel.photo_px));
+    let (mut spread, mut both) = (Matrix2::zeros(), Matrix2::zeros());
+    for (p, q) in panel.positions.iter().zip(&panel.photo_px) {
+        let (p, q) = (p.coords - flat, q.coords - px);
+        spread += p * p.transpose();
+        both += q * p.transpose();
+    }
+    match spread.try_inverse().map(|i| both * i) {
+        Some(m) if m[(0, 1)].abs().max(m[(1, 0)].abs()) > STRAIGHT * m.norm() => m,
+        _ => Matrix2::from_diagonal(&photo_scale(panel)),
+    }
 }
 
 /// Pixels per metre along x and y, with sign, from the two vertices farthest apart in each.

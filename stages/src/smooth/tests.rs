@@ -124,7 +124,8 @@ fn laplacian_leaves_the_outline_and_betters_a_shaken_inside() {
 
 #[test]
 fn photo_coordinates_move_with_their_vertices() {
-    let frame = PhotoFrame { origin_px: Point2::new(800.0, 1500.0), px_per_metre: 2000.0, mirrored: true };
+    let frame =
+        PhotoFrame { origin_px: Point2::new(800.0, 1500.0), px_per_metre: 2000.0, mirrored: true, turn: 0.0 };
     let panel = gridded(&Outline { frame: Some(frame), ..vest() });
     let smoothed = laplacian(&panel).unwrap();
     assert_ne!(panel.positions, smoothed.positions);

@@ -4,6 +4,7 @@
 //! or an extra corner does no harm ([`naming`]); seams are checked and their edges agree on their
 //! divisions in [`sewing`]. [`neckline`] then looks at the photo for what the outline cannot show.
 
+mod block;
 mod naming;
 mod neck;
 mod neckline;
@@ -15,6 +16,7 @@ mod tests;
 mod tshirt;
 mod vest;
 
+pub use block::{Block, BlockStyle};
 pub use neckline::Neckline;
 pub use seams::{SeamEntry, Seams};
 pub use tshirt::TShirt;
@@ -35,6 +37,7 @@ fn edges_of(style: &str) -> Option<Vec<String>> {
 pub fn register(registry: &mut Registry) {
     registry.add::<Vest>();
     registry.add::<TShirt>();
+    registry.add::<Block>();
     registry.add::<Neckline>();
     registry.add::<Seams>();
 }

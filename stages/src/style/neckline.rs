@@ -34,6 +34,8 @@ const ACROSS: (f64, f64) = (0.025, 1.5);
 /// a back's collar is no neckline of the front.
 const MARGIN: f64 = 2.5;
 const INSIDE: f64 = 0.7;
+/// Of a front with armholes, the share of the height from armpits to neck points above which its neckline ends: what shows below is a print.
+const ABOVE_ARMPITS: f64 = 0.8;
 /// Least change of colour across the curve, in levels of 0 to 255.
 const LEAST_CHANGE: f64 = 3.0;
 /// Depths that are tried to either side of the curve that was found, and how far they reach, in half
@@ -49,6 +51,7 @@ const SPACING: f64 = 1e-3;
 /// The back keeps its outline. A front whose outline dips at the neck already is left as it is.
 #[stage(
     role = Style,
+    version = 2,
     source = "deformable templates: Yuille, Hallinan, Cohen, 1992",
     example = "Neckline(depth: \"8 cm\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
@@ -100,7 +103,10 @@ impl Neckline {
         let found = match self.depth {
             Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
             None => {
-                photo.zip(outline.frame).and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar))
+                let most = chord.deepest(outline);
+                photo
+                    .zip(outline.frame)
+                    .and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar, most))
             }
         };
         let curve = found.unwrap_or_else(|| {
@@ -188,10 +194,20 @@ impl Chord {
         (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre)
     }
 
-    /// The curve of the most even change of colour below the present edge.
-    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64]) -> Option<Curve> {
+    /// How deep a neckline may be at most: it ends above the armpits, where the outline has armholes.
+    fn deepest(&self, outline: &Outline) -> f64 {
+        let holes = outline.edges.iter().filter(|e| e.name.starts_with("armhole"));
+        let points = &outline.outer.points;
+        let depth = |i: usize| (points[i] - self.middle).dot(&self.down);
+        let armpits = holes.map(|e| depth(e.start).max(depth(e.end)));
+        ABOVE_ARMPITS * armpits.fold(f64::INFINITY, f64::min)
+    }
+
+    /// The curve of the most even change of colour below the present edge, and no deeper than `most`.
+    fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64], most: f64) -> Option<Curve> {
         let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
-        let depths = (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width);
+        let depths =
+            (0..=steps).map(|k| (DEPTHS.0 + k as f64 * DEPTHS.2) * self.width).filter(|d| *d <= most);
         // Above the collar lies the ground, whose border is no neckline.
         let clear = MARGIN * self.across(frame);
         let inside = |c: &Curve| {
@@ -338,6 +354,7 @@ mod tests {
                 origin_px: Point2::new(150.0, 290.0),
                 px_per_metre: 500.0,
                 mirrored: false,
+                turn: 0.0,
             }),
         }
     }
@@ -408,6 +425,20 @@ mod tests {
         let once = run(&Neckline::default(), 0.08);
         let again = Neckline::default().run(once.clone(), both(&photo(0.08)), &Context::quiet()).unwrap();
         assert_eq!(once.get("front").unwrap().outer, again.get("front").unwrap().outer);
+    }
+
+    #[test]
+    fn a_print_below_the_armpits_is_no_neckline() {
+        let mut armholed = shirt();
+        for (name, side) in [("armhole_left", "side_left"), ("armhole_right", "side_right")] {
+            armholed.edges.iter_mut().filter(|e| e.name == side).for_each(|e| e.name = name.into());
+        }
+        // An armhole from 20 cm below the neck points: half of the side.
+        armholed.outer.points[0].y = 0.3;
+        armholed.outer.points[5].y = 0.3;
+        let cut = Neckline::default().run(both(&armholed), both(&photo(0.18)), &Context::quiet()).unwrap();
+        assert!(lowest(cut.get("front").unwrap()) < 0.16 + 1e-9);
+        assert!((lowest(run(&Neckline::default(), 0.18).get("front").unwrap()) - 0.18).abs() < 0.004);
     }
 
     #[test]

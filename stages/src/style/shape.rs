@@ -33,6 +33,8 @@ pub(super) struct Shape {
     pub(super) size: f64,
     /// Tilt of the axis, degrees, positive where the garment leans to the left.
     pub(super) tilt: f64,
+    /// The outline's centroid, which is the frame's origin.
+    pub(super) centre: Point2,
     /// Mean distance between the outline and its mirror image, as a share of the size.
     pub(super) asymmetry: f64,
     /// Box in the frame: least and greatest corner.
@@ -76,6 +78,7 @@ impl Shape {
             mirrored: false,
             size,
             tilt,
+            centre,
             asymmetry: misfit(tilt) / size,
             bounds: [lo, hi],
         })

@@ -14,8 +14,14 @@ mod texture_size;
 pub use photo_texturer::{BodyShown, Light, PhotoTexturer};
 
 use toile_core::Registry;
+use toile_core::prelude::*;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<PhotoTexturer>();
+}
+
+/// The photo that shows a panel: that of its name, or of the last word of its name, such as `front` for `left_sleeve_front`.
+pub(crate) fn of_panel<'a>(photos: &'a Set<Photo>, panel: &str) -> Option<&'a Photo> {
+    photos.get(panel).or_else(|| photos.get(panel.rsplit('_').next()?))
 }

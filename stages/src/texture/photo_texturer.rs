@@ -6,7 +6,7 @@
 
 use super::inside::{PixelBox, covered};
 use super::texture_size::{self, LARGEST};
-use super::{bleed, crop, parts};
+use super::{bleed, crop, of_panel, parts};
 use rayon::prelude::*;
 use toile_core::cost::Size;
 use toile_core::decide::{Decision, Known};
@@ -36,7 +36,8 @@ pub enum BodyShown {
 ///
 /// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
 /// and carried past it, so that no background shows at a seam or when the texture is seen from afar. A panel
-/// without a photo gets a plain cloth.
+/// takes the photo of its own name, or of the last word of its name: `left_sleeve_front` that of `front`. One without a photo gets a plain
+/// cloth.
 #[stage(
     role = Texturer,
     source = "garment modelling thesis, 2012: replace and modulate",
@@ -143,7 +144,7 @@ impl PhotoTexturer {
 
 /// The panel's photo, where both it and the panel's place in it are known.
 fn photo_of<'a>(panel: &GarmentPanel, photos: Option<&'a Set<Photo>>, cx: &Context) -> Option<&'a Photo> {
-    let photo = photos?.get(&panel.name)?;
+    let photo = of_panel(photos?, &panel.name)?;
     if panel.photo_px.len() != panel.vertices.len() {
         cx.warn(format!("panel \"{}\" does not know its place in its photo", panel.name));
         return None;

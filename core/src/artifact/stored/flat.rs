@@ -145,6 +145,7 @@ fn frame_fields(f: &PhotoFrame) -> Record<'_> {
         .owned("origin_px", [f.origin_px])
         .number("px_per_metre", f.px_per_metre)
         .flag("mirrored", f.mirrored)
+        .maybe_number("turn", (f.turn != 0.0).then_some(f.turn))
 }
 
 fn frame_of(r: &Reader<'_>) -> Result<PhotoFrame, String> {
@@ -152,6 +153,7 @@ fn frame_of(r: &Reader<'_>) -> Result<PhotoFrame, String> {
         origin_px: r.one("origin_px")?,
         px_per_metre: r.one("px_per_metre")?,
         mirrored: r.flag("mirrored")?,
+        turn: r.maybe_one("turn")?.unwrap_or(0.0),
     })
 }
 

@@ -32,7 +32,12 @@ fn outline() -> Outline {
             points: vec![Point2::new(0.01, 0.01), Point2::new(0.02, 0.02)],
             gauge: None,
         }],
-        frame: Some(PhotoFrame { origin_px: Point2::new(1.0, 2.0), px_per_metre: 900.0, mirrored: false }),
+        frame: Some(PhotoFrame {
+            origin_px: Point2::new(1.0, 2.0),
+            px_per_metre: 900.0,
+            mirrored: false,
+            turn: 0.0,
+        }),
     }
 }
 

@@ -10,6 +10,7 @@ mod trace;
 
 pub use trace::{Trace, trace};
 
+use crate::texture::of_panel;
 use serde::{Deserialize, Serialize};
 use toile_core::prelude::*;
 
@@ -91,7 +92,7 @@ fn origins(garment: &Garment, panels: Option<&Set<Panel>>, photos: Option<&Set<P
     let of = |p: &GarmentPanel| {
         let first = p.vertices.start as u32;
         let flat = panels.and_then(|set| set.get(&p.name));
-        let photo = photos.and_then(|set| set.get(&p.name)).filter(|_| !p.photo_px.is_empty());
+        let photo = photos.and_then(|set| of_panel(set, &p.name)).filter(|_| !p.photo_px.is_empty());
         PanelOrigin {
             name: p.name.clone(),
             photo: photo.map(|f| PhotoOrigin { file: f.file.clone(), mirrored: f.mirrored }),

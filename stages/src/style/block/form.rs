@@ -1,0 +1,163 @@
+//! The forms of garments: which edges a half of the flat garment has, and how they usually run.
+//!
+//! A half runs counter-clockwise from the axis below to the axis above. Directions and bows are beliefs with a spread: they choose between
+//! ways to lay a template over an outline, and weigh little against the outline itself. They were set by the proportions of basic blocks (Aldrich,
+//! Metric Pattern Cutting, 2008) and not by the photos that are measured.
+
+/// An edge of a form.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct EdgeForm {
+    /// A tailor's word.
+    pub name: &'static str,
+    /// Direction of its chord, degrees from across, counter-clockwise; and the spread.
+    pub way: [f64; 2],
+    /// How far it usually stands to the left of its chord (into the garment), in chord lengths; and the spread.
+    pub bow: [f64; 2],
+    /// Least and greatest length of its chord, as shares of the garment's size (the root of its area).
+    pub chord: [f64; 2],
+    /// Whether each half has its own end of it: sleeves lie as they fall.
+    pub own_end: bool,
+}
+
+/// What a form must show, each with what is said where it does not.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Mark {
+    /// The outline turns inwards where an edge starts, by so many degrees at least.
+    Dent(usize, f64, &'static str),
+    /// The outline turns outwards where an edge starts, by so many degrees at least.
+    Corner(usize, f64, &'static str),
+    /// An edge curves into the garment by so much of its chord at least.
+    Hollow(usize, f64, &'static str),
+    /// An edge bows by no more than so much of its chord.
+    Level(usize, f64, &'static str),
+    /// The first edge reaches from side to side by no more than so much of the second.
+    Narrower(usize, usize, f64, &'static str),
+    /// An edge rises by no more than so many degrees from across.
+    Below(usize, f64, &'static str),
+}
+
+/// A form: its word in messages, and its edges.
+#[derive(Debug)]
+pub(super) struct Form {
+    /// With its article.
+    pub word: &'static str,
+    /// What makes it this form and no other.
+    pub marks: &'static [Mark],
+    /// Its edges from the axis below to the axis above.
+    pub edges: &'static [EdgeForm],
+}
+
+const fn edge(name: &'static str, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
+    EdgeForm { name, way, bow, chord, own_end: false }
+}
+
+const fn own(name: &'static str, way: [f64; 2], bow: [f64; 2], chord: [f64; 2]) -> EdgeForm {
+    EdgeForm { name, way, bow, chord, own_end: true }
+}
+
+const NO_ARMHOLE: &str = "its sides run up to the shoulders without an armhole";
+const NO_SHOULDER: &str = "it has no shoulder beside the neck";
+const NO_ARMPIT: &str = "its sides run up without an armpit";
+
+const HEM: EdgeForm = edge("hem", [2.0, 10.0], [0.0, 0.06], [0.15, 1.2]);
+const SIDE: EdgeForm = edge("side", [92.0, 10.0], [0.0, 0.05], [0.3, 2.0]);
+const NECK: EdgeForm = edge("neck", [200.0, 30.0], [0.1, 0.15], [0.06, 0.6]);
+
+/// No sleeves: vest, strap top, muscle tank.
+pub(super) const VEST: Form = Form {
+    word: "a vest",
+    marks: &[Mark::Hollow(2, 0.03, NO_ARMHOLE), Mark::Corner(3, 25.0, NO_SHOULDER)],
+    edges: &[
+        HEM,
+        SIDE,
+        edge("armhole", [97.0, 20.0], [0.12, 0.15], [0.12, 0.7]),
+        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
+        NECK,
+    ],
+};
+
+/// A sleeveless dress whose skirt flares from the waist.
+pub(super) const DRESS: Form = Form {
+    word: "a dress without sleeves",
+    marks: &[
+        Mark::Dent(2, 12.0, "its sides run up without a waist"),
+        Mark::Hollow(3, 0.03, NO_ARMHOLE),
+        Mark::Corner(4, 25.0, NO_SHOULDER),
+    ],
+    edges: &[
+        HEM,
+        edge("skirt", [100.0, 12.0], [0.0, 0.06], [0.3, 1.6]),
+        edge("side", [80.0, 12.0], [0.0, 0.05], [0.15, 0.8]),
+        edge("armhole", [100.0, 18.0], [0.15, 0.15], [0.12, 0.6]),
+        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.02, 0.3]),
+        NECK,
+    ],
+};
+
+/// Sleeves that end above the elbow.
+pub(super) const TEE: Form = Form {
+    word: "a T-shirt",
+    marks: &[Mark::Dent(2, 25.0, NO_ARMPIT), Mark::Below(2, 65.0, NO_ARMPIT)],
+    edges: &[
+        HEM,
+        SIDE,
+        own("underarm", [-35.0, 30.0], [0.0, 0.08], [0.02, 0.45]),
+        own("cuff", [55.0, 25.0], [0.0, 0.05], [0.12, 0.5]),
+        edge("top", [150.0, 14.0], [0.0, 0.06], [0.25, 0.9]),
+        NECK,
+    ],
+};
+
+/// Sleeves that end below the elbow.
+pub(super) const LONG: Form = Form {
+    word: "a top with long sleeves",
+    marks: &[Mark::Dent(2, 25.0, NO_ARMPIT), Mark::Below(2, 65.0, NO_ARMPIT)],
+    edges: &[
+        HEM,
+        SIDE,
+        own("underarm", [-40.0, 35.0], [0.0, 0.08], [0.45, 1.6]),
+        own("cuff", [50.0, 35.0], [0.0, 0.06], [0.06, 0.35]),
+        edge("top", [145.0, 25.0], [0.0, 0.08], [0.6, 2.0]),
+        NECK,
+    ],
+};
+
+/// Waist to hem.
+pub(super) const SKIRT: Form = Form {
+    word: "a skirt",
+    marks: &[
+        Mark::Corner(3, 40.0, "it has no waist"),
+        Mark::Narrower(3, 0, 0.95, "its waist is as wide as its hem"),
+        Mark::Level(0, 0.15, "its hem is not even"),
+    ],
+    edges: &[
+        edge("hem", [5.0, 12.0], [0.0, 0.1], [0.2, 1.5]),
+        edge("side", [98.0, 12.0], [0.0, 0.06], [0.3, 2.5]),
+        edge("hip", [105.0, 15.0], [0.0, 0.06], [0.06, 0.8]),
+        edge("waist", [180.0, 8.0], [0.0, 0.08], [0.1, 0.9]),
+    ],
+};
+
+/// Two legs.
+pub(super) const TROUSERS: Form = Form {
+    word: "a pair of trousers",
+    marks: &[Mark::Below(0, -50.0, "it has no legs"), Mark::Corner(3, 40.0, "it has no waist")],
+    edges: &[
+        own("inseam", [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
+        own("hem", [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
+        edge("outseam", [95.0, 10.0], [0.0, 0.06], [0.4, 3.5]),
+        edge("waist", [180.0, 8.0], [0.0, 0.06], [0.12, 0.7]),
+    ],
+};
+
+impl Form {
+    /// Whether it has two legs.
+    pub(super) fn has_legs(&self) -> bool {
+        self.edges.iter().any(|e| e.name == "inseam")
+    }
+
+    /// The number of its underarm edge: it has sleeves.
+    pub(super) fn underarm(&self) -> Option<usize> {
+        self.edges.iter().position(|e| e.name == "underarm")
+    }
+}

@@ -1,0 +1,78 @@
+//! An outline stood upright, and its two halves.
+
+use super::super::shape::Shape;
+use toile_core::artifact::{Outline, Point2};
+
+/// Points of a half.
+pub(super) const POINTS: usize = 100;
+
+/// An upright outline with its halves.
+#[derive(Debug, Clone)]
+pub(super) struct Upright {
+    /// The outline, evenly spaced.
+    pub points: Vec<Point2>,
+    /// Each half from the axis below to the axis above, counter-clockwise, the left one seen in a mirror.
+    pub halves: [Vec<Point2>; 2],
+    /// The root of the area, metres.
+    pub size: f64,
+    /// Tilt of the axis in the photo, degrees.
+    pub tilt: f64,
+    /// Where the upright origin lies in the outline.
+    pub centre: Point2,
+}
+
+impl Upright {
+    /// `None` for an outline without area, or that its axis does not cut.
+    pub(super) fn of(outline: &Outline) -> Option<Upright> {
+        let shape = Shape::new(outline)?;
+        let points: Vec<Point2> = (0..outline.outer.points.len()).map(|i| shape.at(i)).collect();
+        let mirrored: Vec<Point2> = points.iter().rev().map(|p| Point2::new(-p.x, p.y)).collect();
+        let halves = [half(&points)?, half(&mirrored)?];
+        Some(Upright {
+            points: even(&points, true, 2 * POINTS),
+            halves,
+            size: shape.size,
+            tilt: shape.tilt,
+            centre: shape.centre,
+        })
+    }
+}
+
+/// The stretch at positive u from the lowest to the highest crossing of the axis, evenly spaced.
+fn half(points: &[Point2]) -> Option<Vec<Point2>> {
+    let n = points.len();
+    let crossing = |i: usize| {
+        let (a, b) = (points[i], points[(i + 1) % n]);
+        ((a.x > 0.0) != (b.x > 0.0)).then(|| (i, a + (b - a) * (a.x / (a.x - b.x))))
+    };
+    let crossings: Vec<(usize, Point2)> = (0..n).filter_map(crossing).collect();
+    let height = |c: &&(usize, Point2), d: &&(usize, Point2)| c.1.y.total_cmp(&d.1.y);
+    let (low, top) = (crossings.iter().min_by(height)?, crossings.iter().max_by(height)?);
+    let count = (top.0 + n - low.0) % n;
+    let inner = (1..=count).map(|k| points[(low.0 + k) % n]);
+    let path: Vec<Point2> = std::iter::once(low.1).chain(inner).chain([top.1]).collect();
+    let right = path.iter().filter(|p| p.x > 0.0).count();
+    (2 * right > path.len()).then(|| even(&path, false, POINTS))
+}
+
+/// Evenly spaced points of a path; of an open one both ends are kept.
+pub(super) fn even(points: &[Point2], closed: bool, count: usize) -> Vec<Point2> {
+    let mut path = points.to_vec();
+    if closed {
+        path.push(points[0]);
+    }
+    let mut along = vec![0.0];
+    for w in path.windows(2) {
+        along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
+    }
+    let total = along[along.len() - 1];
+    let parts = if closed { count } else { count - 1 };
+    let at = |k: usize| {
+        let s = total * k as f64 / parts as f64;
+        let i = along.partition_point(|a| *a < s).clamp(1, path.len() - 1);
+        let piece = along[i] - along[i - 1];
+        let t = if piece > 0.0 { (s - along[i - 1]) / piece } else { 0.0 };
+        path[i - 1] + (path[i] - path[i - 1]) * t
+    };
+    (0..count).map(at).collect()
+}

@@ -1,0 +1,163 @@
+//! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
+//!
+//! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
+//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]). Cost: a tenth of a second a form.
+
+mod bow;
+mod curve;
+mod fit;
+mod form;
+mod halves;
+mod lay;
+mod marks;
+mod pieces;
+mod refusal;
+mod seams;
+mod segment;
+mod stand;
+mod tell;
+#[cfg(test)]
+mod tests;
+mod wearable;
+
+use fit::{Fit, fit};
+use form::Form;
+use halves::Upright;
+use lay::{Fitted, mirrored, pattern};
+use marks::missing;
+use pieces::Layer;
+use rayon::prelude::*;
+use tell::at_95;
+use toile_core::prelude::*;
+
+/// What the garment is.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum BlockStyle {
+    /// Found by the outline.
+    Auto,
+    /// No sleeves: vest, tank, strap top.
+    Vest,
+    /// Short sleeves.
+    TShirt,
+    /// Sleeves beyond the elbow.
+    LongSleeve,
+    /// No sleeves, and a skirt from the waist.
+    Dress,
+    /// From waist to hem.
+    Skirt,
+    /// Two legs, long or short.
+    Trousers,
+}
+
+impl BlockStyle {
+    /// All that can be named, with their forms.
+    const NAMED: [(BlockStyle, &'static str, &'static Form); 6] = [
+        (BlockStyle::Vest, "Vest", &form::VEST),
+        (BlockStyle::TShirt, "TShirt", &form::TEE),
+        (BlockStyle::LongSleeve, "LongSleeve", &form::LONG),
+        (BlockStyle::Dress, "Dress", &form::DRESS),
+        (BlockStyle::Skirt, "Skirt", &form::SKIRT),
+        (BlockStyle::Trousers, "Trousers", &form::TROUSERS),
+    ];
+
+    /// The forms that come into question, with their names.
+    fn forms(self) -> Vec<(&'static str, &'static Form)> {
+        let asked = |s: &BlockStyle| self == BlockStyle::Auto || *s == self;
+        Self::NAMED.into_iter().filter(|(s, ..)| asked(s)).map(|(_, name, form)| (name, form)).collect()
+    }
+}
+
+/// Cuts a sewing pattern to the outline of a garment that lies flat.
+///
+/// A template with a garment's landmarks (a block) is fitted to the whole outline by least squares, as symmetric about its own axis as
+/// the outline lets it be, so that rags and small folds do little and a garment that lies askew is straightened. The pieces are front and back,
+/// and sleeves that are set into armholes of their caps' length. How far the outline strays from the template is told by edges. Needs
+/// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
+#[stage(
+    role = Style,
+    source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
+    example = "Block(style: TShirt)",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct Block {
+    /// What the garment is.
+    #[param(default = BlockStyle::Auto)]
+    style: BlockStyle,
+    /// How far the outline may stray from the template, as a share of the garment's size (the root of its area); 19 of 20 of its points lie nearer.
+    #[param(default = 0.05, min = 0.001, max = 0.5)]
+    stray: f64,
+}
+
+#[stage]
+impl Block {
+    pub(crate) fn run(
+        &self,
+        outlines: Set<Outline>,
+        body: &Body,
+        cx: &Context,
+    ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
+        let front = outlines.get("front").ok_or_else(refusal::no_front)?;
+        for (name, _) in outlines.iter().filter(|(n, _)| *n != "front" && *n != "back") {
+            cx.warn(format!("a block is cut from \"front\" and \"back\"; the photo \"{name}\" is not used"));
+        }
+        let (name, form, before) = self.fitted("front", front, self.style.forms(), cx)?;
+        if self.style == BlockStyle::Auto {
+            cx.warn(format!("\"front\" is taken for {}; `Block(style: {name})` settles it", form.word));
+        }
+        wearable::check(form, &before.fit, body)?;
+        let mirrored = mirrored(front);
+        let back = outlines.get("back").unwrap_or(&mirrored);
+        let (.., behind) = self.fitted("back", back, vec![(name, form)], cx)?;
+        cx.check()?;
+        let layers = [(Layer::Front, front, before), (Layer::Back, back, behind)];
+        pattern(form, &layers, body, cx)
+    }
+}
+
+impl Block {
+    /// The best of the forms, fitted.
+    fn fitted(
+        &self,
+        panel: &str,
+        outline: &Outline,
+        forms: Vec<(&'static str, &'static Form)>,
+        cx: &Context,
+    ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
+        let auto = forms.len() > 1;
+        let upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
+        cx.check()?;
+        let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(&upright, form)).collect();
+        let mut found: Vec<_> = Vec::new();
+        let mut reasons = Vec::new();
+        for ((name, form), result) in forms.into_iter().zip(tried) {
+            match result {
+                Ok(fit) => found.push((name, form, fit)),
+                Err(reason) => reasons.push((form, reason)),
+            }
+        }
+        let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
+        let Some((name, form, fit)) = best else { return Err(refusal::none(panel, &reasons)) };
+        let all: Vec<f64> = fit.misses.iter().flatten().copied().collect();
+        let stray = at_95(&all);
+        if stray > self.stray * upright.size {
+            return Err(refusal::strays(panel, form, &fit, stray, auto));
+        }
+        tell::figures(panel, form, &fit, cx);
+        // What is seen in a mirror is told once.
+        if panel == "front" || !outline.frame.is_some_and(|f| f.mirrored) {
+            tell::astray(panel, form, &fit, upright.size, cx);
+            tell::uneven(panel, form, &fit, upright.size, cx);
+        }
+        Ok((name, form, Fitted { upright, fit }))
+    }
+}
+
+/// A fit that the form allows, or why there is none.
+fn sound(upright: &Upright, form: &Form) -> Result<Fit, &'static str> {
+    let fit = fit(upright, form).ok_or("its edges are not in their usual places")?;
+    match form.marks.iter().find_map(|m| missing(&fit, m)) {
+        Some(reason) => Err(reason),
+        None => Ok(fit),
+    }
+}

@@ -1,0 +1,47 @@
+//! What is said where no template fits.
+
+use super::fit::Fit;
+use super::form::Form;
+use super::tell::at_95;
+use toile_core::prelude::*;
+
+/// What a photographer can do.
+const LAY: &str = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
+
+pub(super) fn no_front() -> StageError {
+    StageError::invalid("there is no photo \"front\" to cut the garment from")
+        .hint("call the photo of the garment's front \"front\"")
+}
+
+pub(super) fn no_axis(panel: &str) -> StageError {
+    StageError::invalid(format!("the garment in \"{panel}\" has no left and right half")).hint(LAY)
+}
+
+/// No form at all, with the reason of each.
+pub(super) fn none(panel: &str, reasons: &[(&Form, &'static str)]) -> StageError {
+    match reasons {
+        [(form, reason)] => {
+            StageError::invalid(format!("\"{panel}\" does not look like {}: {reason}", form.word)).hint(LAY)
+        }
+        _ => {
+            let words: Vec<&str> = reasons.iter().map(|(form, _)| form.word).collect();
+            StageError::invalid(format!("\"{panel}\" looks like none of these: {}", words.join(", ")))
+                .hint(LAY)
+        }
+    }
+}
+
+/// A form that fits badly, with its worst edge.
+pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool) -> StageError {
+    let worst =
+        form.edges.iter().zip(&fit.misses).map(|(e, m)| (e.name, if m.is_empty() { 0.0 } else { at_95(m) }));
+    let (edge, most) = worst.max_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or(("hem", stray));
+    let looks = if auto { "looks most like" } else { "was to be" };
+    StageError::invalid(format!(
+        "\"{panel}\" {looks} {}, but strays from one by {:.0} mm, most at its {edge}, by {:.0} mm",
+        form.word,
+        stray * 1e3,
+        most * 1e3
+    ))
+    .hint(LAY)
+}

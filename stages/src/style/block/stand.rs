@@ -1,0 +1,57 @@
+//! Where the pieces of a block stand around a body: as they lie, front before it and back behind it.
+
+use super::pieces::{Flat, Layer};
+use nalgebra::Rotation2;
+use toile_core::prelude::*;
+
+/// How far pieces stand from the farthest point of the trunk, metres.
+const AWAY: f64 = 0.04;
+/// How far neck and waist start above the body's, metres.
+const ABOVE: f64 = 0.01;
+/// Heights of the trunk as shares of the body's: feet and head stick out and do not count.
+const TRUNK: (f64, f64) = (0.3, 0.8);
+
+/// Where a garment's axis stands: the height of its origin, and the planes of its layers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stand {
+    height: f64,
+    depth: (f64, f64),
+}
+
+impl Stand {
+    /// `top` is the height of neck or waist in the garment's frame, `landmark` that of the body which it hangs at.
+    pub(super) fn of(body: &Body, landmark: &str, top: f64) -> Result<Stand, StageError> {
+        let at = body.landmarks.get(landmark).ok_or_else(|| {
+            StageError::invalid(format!(
+                "the body has no landmark \"{landmark}\", from which the garment hangs"
+            ))
+            .hint("take a Mannequin")
+        })?;
+        let crown = body.positions.iter().map(|p| p.y).fold(0.0, f64::max);
+        let side = body.landmarks.get("shoulder_left").map_or(f64::INFINITY, |p| p.x.abs());
+        let trunk = || {
+            let counts = |p: &&Point3| p.x.abs() < side && p.y > TRUNK.0 * crown && p.y < TRUNK.1 * crown;
+            body.positions.iter().filter(counts).map(|p| p.z)
+        };
+        let depth = (trunk().fold(0.0, f64::max) + AWAY, trunk().fold(0.0, f64::min) - AWAY);
+        Ok(Stand { height: at.y + ABOVE - top, depth })
+    }
+
+    /// The pose of a piece.
+    pub(super) fn pose(&self, flat: &Flat, layer: Layer) -> Pose {
+        // A piece behind the body is seen from behind: its right is the body's left.
+        let (sign, z) = match layer {
+            Layer::Front => (1.0, self.depth.0),
+            Layer::Back => (-1.0, self.depth.1),
+        };
+        let way = |v: Vector2| {
+            let v = Rotation2::new(flat.turn) * v;
+            Vector3::new(sign * v.x, v.y, 0.0)
+        };
+        Pose {
+            origin: Point3::new(sign * flat.origin.x, self.height + flat.origin.y, z),
+            across: way(Vector2::x()),
+            along: way(Vector2::y()),
+        }
+    }
+}

@@ -1,0 +1,329 @@
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use super::bow::Bow;
+use super::curve::Curve;
+use super::*;
+use nalgebra::Rotation2;
+use proptest::prelude::*;
+
+/// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below to above.
+fn garment(half: &[[f64; 2]]) -> Vec<Point2> {
+    let right = half.iter().map(|p| Point2::new(p[0] / 1e3, p[1] / 1e3));
+    let left = half.iter().rev().filter(|p| p[0] > 0.0).map(|p| Point2::new(-p[0] / 1e3, p[1] / 1e3));
+    let corners: Vec<Point2> = right.chain(left).collect();
+    let n = corners.len();
+    let side = |i: usize| {
+        let (a, b) = (corners[i], corners[(i + 1) % n]);
+        let parts = ((b - a).norm() / 5e-3).ceil() as usize;
+        (0..parts).map(move |k| a + (b - a) * (k as f64 / parts as f64))
+    };
+    (0..n).flat_map(side).collect()
+}
+
+const TEE: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [260.0, 0.0],
+    [250.0, 420.0],
+    [360.0, 360.0],
+    [440.0, 500.0],
+    [230.0, 640.0],
+    [90.0, 680.0],
+    [0.0, 660.0],
+];
+const VEST: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [250.0, 0.0],
+    [240.0, 400.0],
+    [180.0, 460.0],
+    [170.0, 640.0],
+    [90.0, 660.0],
+    [70.0, 590.0],
+    [0.0, 570.0],
+];
+const SKIRT: &[[f64; 2]] = &[[0.0, 0.0], [320.0, 0.0], [180.0, 600.0], [0.0, 600.0]];
+const TROUSERS: &[[f64; 2]] =
+    &[[0.0, 700.0], [90.0, 0.0], [230.0, 0.0], [240.0, 720.0], [200.0, 950.0], [0.0, 950.0]];
+
+fn outline(points: Vec<Point2>) -> Outline {
+    let frame =
+        PhotoFrame { origin_px: Point2::new(500.0, 900.0), px_per_metre: 1000.0, mirrored: false, turn: 0.0 };
+    Outline {
+        outer: Loop { points, corners: vec![] },
+        holes: vec![],
+        edges: vec![],
+        inner: vec![],
+        frame: Some(frame),
+    }
+}
+
+fn turned(points: Vec<Point2>, degrees: f64) -> Vec<Point2> {
+    let turn = Rotation2::new(degrees.to_radians());
+    points.into_iter().map(|p| turn * p + Vector2::new(0.03, -0.02)).collect()
+}
+
+/// A mannequin's landmarks on a body of a few points.
+fn body() -> Body {
+    let marks = [
+        ("neck_left", [0.07, 1.4, 0.0]),
+        ("shoulder_left", [0.18, 1.35, 0.0]),
+        ("waist_front", [0.0, 1.0, 0.1]),
+    ];
+    Body {
+        positions: vec![
+            Point3::new(0.0, 0.9, 0.12),
+            Point3::new(0.0, 0.9, -0.12),
+            Point3::new(0.0, 1.6, 0.0),
+        ],
+        landmarks: marks.map(|(n, [x, y, z])| (n.to_owned(), Point3::new(x, y, z))).into(),
+        ..Body::default()
+    }
+}
+
+fn cut(stage: &Block, points: Vec<Point2>) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
+    let front = [("front".to_owned(), outline(points))].into_iter().collect();
+    stage.run(front, &body(), &Context::quiet())
+}
+
+fn of(style: BlockStyle) -> Block {
+    Block { style, ..Block::default() }
+}
+
+fn length(pattern: &Pattern, piece: &str, edge: &str) -> f64 {
+    1e3 * pattern.piece(piece).unwrap().path(edge).unwrap().length()
+}
+
+/// The length of a straight edge between two corners of a half, mm.
+fn between(half: &[[f64; 2]], i: usize) -> f64 {
+    (half[i + 1][0] - half[i][0]).hypot(half[i + 1][1] - half[i][1])
+}
+
+#[test]
+fn a_shirt_gets_pieces_of_its_own_lengths() {
+    let (pattern, ..) = cut(&of(BlockStyle::TShirt), turned(garment(TEE), 7.0)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    let sleeves = ["left_sleeve_front", "right_sleeve_front"];
+    assert_eq!(names[..3], ["front", sleeves[0], sleeves[1]]);
+    assert_eq!(names.len(), 6);
+    let near = |piece: &str, edge: &str, want: f64| {
+        let is = length(&pattern, piece, edge);
+        assert!((is - want).abs() < 4.0, "{piece} {edge}: {is:.1} for {want:.1} mm");
+    };
+    for piece in ["front", "back"] {
+        near(piece, "hem", 520.0);
+        near(piece, "side_left", between(TEE, 1));
+        near(piece, "side_right", between(TEE, 1));
+    }
+    for sleeve in sleeves {
+        near(sleeve, "underarm", between(TEE, 2));
+        near(sleeve, "cuff", between(TEE, 3));
+    }
+    // From cuff to neck the upper edge is one curve, shared by sleeve and shoulder.
+    let top = length(&pattern, "left_sleeve_front", "top") + length(&pattern, "front", "shoulder_left");
+    assert!((top - between(TEE, 4) - between(TEE, 5)).abs() < 6.0, "{top}");
+}
+
+#[test]
+fn every_cap_is_as_long_as_its_armhole() {
+    let (pattern, _, plan) = cut(&of(BlockStyle::TShirt), garment(TEE)).unwrap();
+    for layer in ["front", "back"] {
+        for side in ["left", "right"] {
+            let cap = length(&pattern, &format!("{side}_sleeve_{layer}"), "cap");
+            let armhole = length(&pattern, layer, &format!("armhole_{side}"));
+            assert!((cap - armhole).abs() < 0.1 && cap > 150.0, "{cap} {armhole}");
+        }
+    }
+    assert_eq!(plan.seams.len(), 12);
+    assert!(plan.seams.iter().all(|s| !s.reversed && s.kind == SeamKind::Matched), "{:?}", plan.seams);
+}
+
+#[test]
+fn pieces_know_their_place_in_the_photo() {
+    let points = turned(garment(TEE), 7.0);
+    let (pattern, outlines, _) = cut(&of(BlockStyle::TShirt), points.clone()).unwrap();
+    let photo = outline(vec![]).frame.unwrap();
+    let off = |p: Point2| points.iter().map(|q| (photo.to_px(*q) - p).norm()).fold(f64::INFINITY, f64::min);
+    for (name, edge) in [
+        ("front", "side_left"),
+        ("front", "hem"),
+        ("left_sleeve_front", "cuff"),
+        ("right_sleeve_front", "underarm"),
+    ] {
+        let frame = outlines.get(name).unwrap().frame.unwrap();
+        let path = pattern.piece(name).unwrap().path(edge).unwrap();
+        for share in [0.2, 0.5, 0.8] {
+            let miss = off(frame.to_px(path.at(share * path.length())));
+            assert!(miss < 5.0, "{name} {edge}: {miss:.1} px of a millimetre each");
+        }
+    }
+    // What no photo shows is the front seen in a mirror: the wearer's left sleeve lies where the photo has it.
+    let middle = |name: &str| {
+        let o = outlines.get(name).unwrap();
+        let (lo, hi) = o.bounds();
+        o.frame.unwrap().to_px(nalgebra::center(&lo, &hi))
+    };
+    assert!((middle("left_sleeve_front") - middle("left_sleeve_back")).norm() < 5.0);
+    assert!(middle("left_sleeve_front").x > middle("right_sleeve_front").x + 300.0);
+}
+
+#[test]
+fn pieces_stand_as_they_lie_front_before_and_back_behind() {
+    let (pattern, ..) = cut(&of(BlockStyle::TShirt), garment(TEE)).unwrap();
+    let at = |name: &str, edge: &str, share: f64| {
+        let piece = pattern.piece(name).unwrap();
+        let path = piece.path(edge).unwrap();
+        piece.pose.unwrap().at(path.at(share * path.length()))
+    };
+    let (front, back) = (at("front", "side_left", 0.5), at("back", "side_left", 0.5));
+    assert!(front.z > 0.15 && back.z < -0.15 && front.x > 0.2);
+    assert!((front.x - back.x).abs() < 2e-3 && (front.y - back.y).abs() < 2e-3);
+    // Cap and armhole lie on each other.
+    let (cap, armhole) = (at("right_sleeve_back", "cap", 0.3), at("back", "armhole_right", 0.7));
+    assert!((cap - armhole).norm() < 1e-3, "{cap} {armhole}");
+    // The neck hangs at the body's.
+    assert!((at("front", "shoulder_left", 1.0).y - 1.41).abs() < 1e-9);
+    let outside = pattern.piece("right_sleeve_back").unwrap().pose.unwrap().outside();
+    assert!(outside.z < -0.99);
+}
+
+/// A tongue of 30 mm stands out of the side, as a label or a fold would.
+#[test]
+fn a_rag_moves_no_edge() {
+    let (clean, ..) = cut(&of(BlockStyle::Vest), garment(VEST)).unwrap();
+    assert!((length(&clean, "front", "hem") - 500.0).abs() < 4.0);
+    let mut vest = garment(VEST);
+    for p in &mut vest {
+        if p.x > 0.2 && (0.12..0.17).contains(&p.y) {
+            p.x += 0.03;
+        }
+    }
+    let (rag, ..) = cut(&of(BlockStyle::Vest), vest).unwrap();
+    for edge in ["hem", "side_left", "side_right", "armhole_left", "shoulder_left"] {
+        let (a, b) = (length(&clean, "front", edge), length(&rag, "front", edge));
+        assert!((a - b).abs() < 2.0, "{edge}: {a:.1} without, {b:.1} with the rag");
+    }
+}
+
+#[test]
+fn auto_names_what_it_sees() {
+    for (half, word) in [(TEE, "TShirt"), (VEST, "Vest"), (SKIRT, "Skirt"), (TROUSERS, "Trousers")] {
+        let cx = Context::quiet();
+        let front = [("front".to_owned(), outline(garment(half)))].into_iter().collect();
+        Block::default().run(front, &body(), &cx).unwrap();
+        let told = cx.take_notes().1.remove(0);
+        assert!(told.ends_with(&format!("`Block(style: {word})` settles it")), "{told}");
+    }
+}
+
+#[test]
+fn trousers_are_closed_in_their_middle() {
+    let (pattern, _, plan) = cut(&of(BlockStyle::Trousers), garment(TROUSERS)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["left_leg_front", "right_leg_front", "right_leg_back", "left_leg_back"]);
+    assert_eq!(plan.seams.len(), 6);
+    for name in names {
+        assert!((length(&pattern, name, "rise") - 250.0).abs() < 4.0);
+        assert!((length(&pattern, name, "inseam") - between(TROUSERS, 0)).abs() < 4.0);
+    }
+}
+
+fn refusal(stage: &Block, points: Vec<Point2>) -> String {
+    cut(stage, points).unwrap_err().message
+}
+
+#[test]
+fn a_block_says_why_it_does_not_fit() {
+    assert_eq!(
+        refusal(&of(BlockStyle::TShirt), garment(VEST)),
+        "\"front\" does not look like a T-shirt: its sides run up without an armpit"
+    );
+    assert_eq!(
+        refusal(&of(BlockStyle::Trousers), garment(SKIRT)),
+        "\"front\" does not look like a pair of trousers: its edges are not in their usual places"
+    );
+    let empty = Block::default().run(Set::default(), &body(), &Context::quiet()).unwrap_err();
+    assert_eq!(empty.message, "there is no photo \"front\" to cut the garment from");
+    assert_eq!(
+        refusal(&Block::default(), vec![Point2::origin(); 30]),
+        "the garment in \"front\" has no left and right half"
+    );
+    let strict = Block { stray: 0.001, ..of(BlockStyle::Skirt) };
+    let e = refusal(&strict, garment(TEE));
+    assert!(e.starts_with("\"front\" was to be a skirt, but strays from one by "), "{e}");
+}
+
+#[test]
+fn a_garment_that_the_body_cannot_wear_is_refused_before_it_is_sewn() {
+    let front: Set<Outline> = [("front".to_owned(), outline(garment(TEE)))].into_iter().collect();
+    let wearer = |bust: f64| Body { measurements: [("bust".to_owned(), bust)].into(), ..body() };
+    let stage = of(BlockStyle::TShirt);
+    assert!(stage.run(front.clone(), &wearer(1.1), &Context::quiet()).is_ok());
+    let e = stage.run(front, &wearer(1.4), &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "the garment is too small: its chest measures 100 cm around, the body's 140 cm");
+    assert_eq!(e.hint.unwrap(), "check the photo's `width`, which gives the scale; else take a smaller body");
+}
+
+fn bow() -> impl Strategy<Value = Bow> {
+    let q = || (-1.0..1.0_f64, -1.0..1.0_f64).prop_map(|(x, y)| Point2::new(x, y));
+    (q(), q(), -0.4..0.4_f64, -0.4..0.4_f64).prop_map(|(a, b, c, d)| Bow { a, b, bow: [c, d] })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn a_bow_is_its_bezier_curve_whichever_way_it_is_seen(bow in bow(), t in 0.0..1.0_f64) {
+        let at = bow.at(t);
+        prop_assert!((Curve::from(bow).at(t) - at).norm() < 1e-12);
+        prop_assert!((Curve::from(bow).turned().at(1.0 - t) - at).norm() < 1e-12);
+        prop_assert!((flip(Curve::from(bow).moved(flip).at(t)) - at).norm() < 1e-12);
+        let slope = (bow.at(t + 1e-6) - bow.at(t - 1e-6)) / 2e-6;
+        prop_assert!((slope - bow.direction(t)).norm() < 1e-6);
+    }
+
+    #[test]
+    fn parts_of_a_curve_follow_it(bow in bow(), t in 0.0..1.0_f64, s in 0.0..1.0_f64) {
+        let whole = Curve::from(bow);
+        let [a, b] = whole.parted(t);
+        prop_assert!((a.at(s) - whole.at(s * t)).norm() < 1e-12);
+        prop_assert!((b.at(s) - whole.at(t + s * (1.0 - t))).norm() < 1e-12);
+    }
+
+    /// The nearest place is no farther than any other.
+    #[test]
+    fn the_nearest_place_of_a_bow_is_nearest(bow in bow(), x in -2.0..2.0_f64, y in -2.0..2.0_f64) {
+        let p = Point2::new(x, y);
+        let found = (bow.at(bow.nearest(p)) - p).norm();
+        let least = (0..=400).map(|k| (bow.at(f64::from(k) / 400.0) - p).norm()).fold(f64::INFINITY, f64::min);
+        prop_assert!(found <= least + 2e-2 * (bow.b - bow.a).norm(), "{found} {least}");
+    }
+}
+
+fn flip(p: Point2) -> Point2 {
+    Point2::new(-p.x, p.y)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Star-shaped outlines of any kind become a sound pattern, or an error.
+    #[test]
+    fn no_outline_makes_a_block_panic(radii in prop::collection::vec(0.001..1.0f64, 3..60)) {
+        let n = radii.len();
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+        let points = (0..n).map(|i| Point2::new(radii[i] * angle(i).cos(), radii[i] * angle(i).sin())).collect();
+        if let Ok((pattern, outlines, _)) = cut(&Block { stray: 0.5, ..Block::default() }, points) {
+            prop_assert!(pattern.pieces.iter().all(|p| outlines.get(&p.name).is_some()));
+        }
+    }
+
+    /// A shirt keeps its lengths wherever and however askew it lies, and in any size.
+    #[test]
+    fn lengths_do_not_depend_on_the_lie(degrees in -12.0..12.0f64, scale in 0.4..1.6f64) {
+        let points = turned(garment(TEE), degrees).into_iter().map(|p| p * scale).collect();
+        let (pattern, ..) = cut(&of(BlockStyle::TShirt), points).unwrap();
+        for (edge, want) in [("hem", 520.0), ("side_left", between(TEE, 1))] {
+            let is = length(&pattern, "front", edge) / scale;
+            prop_assert!((is - want).abs() < 4.0, "{edge}: {is:.1} for {want:.1}");
+        }
+    }
+}

@@ -1,0 +1,95 @@
+//! Whether a body can wear the garment: known before anything is sewn.
+//!
+//! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at its armpits, its waist and hip, and its
+//! cuffs; what a closure would open is not known.
+
+use super::bow::Bow;
+use super::fit::Fit;
+use super::form::Form;
+use crate::body::convex_hull;
+use toile_core::prelude::*;
+
+/// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
+const NARROWEST: f64 = 0.8;
+/// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin may lie, metres.
+const SLICE: f64 = 0.012;
+const REACH: f64 = 0.08;
+
+/// A girth of the garment beside that of the body, metres.
+struct Girth {
+    what: &'static str,
+    garment: f64,
+    of_body: &'static str,
+    body: f64,
+}
+
+/// Refuses a garment that is much too narrow for the body.
+pub(super) fn check(form: &Form, fit: &Fit, body: &Body) -> Result<(), StageError> {
+    let small = girths(form, fit, body).into_iter().find(|g| g.garment < NARROWEST * g.body);
+    small.map_or(Ok(()), |g| Err(too_small(&g)))
+}
+
+fn too_small(g: &Girth) -> StageError {
+    let cm = |m: f64| (m * 100.0).round();
+    StageError::invalid(format!(
+        "the garment is too small: its {} measures {} cm around, {} {} cm",
+        g.what,
+        cm(g.garment),
+        g.of_body,
+        cm(g.body)
+    ))
+    .hint("check the photo's `width`, which gives the scale; else take a smaller body")
+}
+
+/// What can be compared.
+fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
+    let at = |name: &str| form.edges.iter().position(|e| e.name == name);
+    let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
+    let tape = |what, of_body, level: &str, garment: Option<f64>| {
+        Some(Girth { what, garment: garment?, of_body, body: *body.measurements.get(level)? })
+    };
+    let armpit = at("underarm").or_else(|| at("armhole"));
+    let widest = |k: usize| {
+        let most = |s: &[Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
+        2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
+    };
+    let hip = at("hip").or_else(|| at("outseam"));
+    let found = [
+        tape("chest", "the body's", "bust", armpit.map(across)),
+        tape("waist", "the body's", "waist", at("waist").map(across)),
+        tape("hip", "the body's", "hip", hip.map(widest)),
+    ];
+    found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
+}
+
+/// The narrower cuff beside the arm there: the upper arm for short sleeves, else the wrist.
+fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
+    let cuff = form.edges.iter().position(|e| e.name == "cuff")?;
+    let long = form.edges[cuff - 1].chord[1] > 1.0;
+    let (of_body, ends, share) = if long {
+        ("the wrist", ["elbow", "wrist"], 1.0)
+    } else {
+        ("the upper arm", ["shoulder", "elbow"], 0.6)
+    };
+    let [from, to] = ends.map(|name| body.landmarks.get(&format!("{name}_left")).copied());
+    let around = arm_girth(body, from?, to?, share)?;
+    let girth = |s: &[Bow]| 2.0 * s[cuff].length();
+    let garment = fit.sides.iter().map(|s| girth(s)).fold(f64::INFINITY, f64::min);
+    Some(Girth { what: "narrower cuff", garment, of_body, body: around })
+}
+
+/// The girth of an arm at a share of the way between two of its landmarks.
+fn arm_girth(body: &Body, from: Point3, to: Point3, share: f64) -> Option<f64> {
+    let axis = (to - from).try_normalize(1e-6)?;
+    let middle = from + (to - from) * share;
+    let across = axis.cross(&Vector3::z()).try_normalize(1e-6)?;
+    let front = across.cross(&axis);
+    let near = |p: &Point3| {
+        let d = p - middle;
+        let flat = Point2::new(d.dot(&across), d.dot(&front));
+        (d.dot(&axis).abs() < SLICE && flat.coords.norm() < REACH).then_some(flat)
+    };
+    let hull = convex_hull(body.positions.iter().filter_map(near).collect());
+    let n = hull.len();
+    (n > 2).then(|| (0..n).map(|i| (hull[(i + 1) % n] - hull[i]).norm()).sum())
+}
