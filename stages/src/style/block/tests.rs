@@ -75,7 +75,8 @@ fn body() -> Body {
             Point3::new(0.0, 1.6, 0.0),
         ],
         landmarks: marks.map(|(n, [x, y, z])| (n.to_owned(), Point3::new(x, y, z))).into(),
-        ..Body::default()
+        triangles: vec![],
+        measurements: [].into(),
     }
 }
 
@@ -240,7 +241,7 @@ fn a_block_says_why_it_does_not_fit() {
         refusal(&of(BlockStyle::Trousers), garment(SKIRT)),
         "\"front\" does not look like a pair of trousers: its edges are not in their usual places"
     );
-    let empty = Block::default().run(Set::default(), &body(), &Context::quiet()).unwrap_err();
+    let empty = Block::default().run(Set([].into()), &body(), &Context::quiet()).unwrap_err();
     assert_eq!(empty.message, "there is no photo \"front\" to cut the garment from");
     assert_eq!(
         refusal(&Block::default(), vec![Point2::origin(); 30]),
