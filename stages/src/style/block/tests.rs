@@ -118,9 +118,11 @@ fn a_shirt_gets_pieces_of_its_own_lengths() {
         near(sleeve, "underarm", between(TEE, 2));
         near(sleeve, "cuff", between(TEE, 3));
     }
-    // From cuff to neck the upper edge is one curve, shared by sleeve and shoulder.
-    let top = length(&pattern, "left_sleeve_front", "top") + length(&pattern, "front", "shoulder_left");
-    assert!((top - between(TEE, 4) - between(TEE, 5)).abs() < 6.0, "{top}");
+    // The upper border as a whole; where shoulder and neck meet at a blunt corner, one may be longer and the other shorter by a centimetre.
+    let parts = [("left_sleeve_front", "top", 1.0), ("front", "shoulder_left", 1.0), ("front", "neck", 0.5)];
+    let border: f64 = parts.iter().map(|(piece, edge, share)| share * length(&pattern, piece, edge)).sum();
+    let want = between(TEE, 4) + between(TEE, 5) + between(TEE, 6);
+    assert!((border - want).abs() < 5.0, "{border:.1} for {want:.1} mm");
 }
 
 #[test]
@@ -239,7 +241,7 @@ fn a_block_says_why_it_does_not_fit() {
     );
     assert_eq!(
         refusal(&of(BlockStyle::Trousers), garment(SKIRT)),
-        "\"front\" does not look like a pair of trousers: its edges are not in their usual places"
+        "\"front\" does not look like a pair of trousers: it has no legs"
     );
     let empty = Block::default().run(Set([].into()), &body(), &Context::quiet()).unwrap_err();
     assert_eq!(empty.message, "there is no photo \"front\" to cut the garment from");
