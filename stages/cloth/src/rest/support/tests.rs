@@ -63,7 +63,8 @@ fn contact_that_is_hard_brings_a_node_out_of_the_body() {
     on_its_body(&scene, |mut system, body, _| {
         let mut x = scene.positions.clone();
         let top = (0..x.len()).min_by(|&a, &b| x[a].xz().norm().total_cmp(&x[b].xz().norm())).unwrap();
-        x[top] -= Vec3::y() * (body.nearest(&x[top], 1.0).unwrap().distance + 5e-3);
+        let height = body.nearest(&x[top], 1.0).unwrap().distance;
+        x[top] -= Vec3::y() * (height + 5e-3);
         let of = |system: &System<'_>, i: usize| system.support.as_ref().unwrap().stiffness[i];
         let before = (of(&system, top), of(&system, top + 1));
         system.touch(&x);
