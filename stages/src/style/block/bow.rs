@@ -8,6 +8,10 @@ use toile_core::artifact::{Point2, Vector2};
 /// Parts in which a bow is walked.
 const PARTS: usize = 16;
 
+/// Steps to the nearest place, and the least step that is looked at.
+const STEPS: usize = 3;
+const LEAST: f64 = 1e-4;
+
 /// A cubic edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Bow {
@@ -68,9 +72,15 @@ impl Bow {
         let far = |k: &usize| (points[*k] - p).norm_squared();
         let k = (0..=PARTS).min_by(|a, b| far(a).total_cmp(&far(b))).unwrap_or(0);
         let mut t = k as f64 * step;
-        for _ in 0..3 {
+        for _ in 0..STEPS {
             let d = self.direction(t);
-            t = (t + (p - self.at(t)).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+            let mut by = (p - self.at(t)).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE);
+            // Where the curve bends much, a whole step may lead away.
+            while by.abs() > LEAST && (self.at((t + by).clamp(0.0, 1.0)) - p).norm() > (self.at(t) - p).norm()
+            {
+                by *= 0.25;
+            }
+            t = (t + by).clamp(0.0, 1.0);
         }
         t
     }

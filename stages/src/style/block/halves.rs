@@ -9,7 +9,7 @@ pub(super) const POINTS: usize = 100;
 /// An upright outline with its halves.
 #[derive(Debug, Clone)]
 pub(super) struct Upright {
-    /// The outline, evenly spaced.
+    /// The outline: the points of both halves.
     pub points: Vec<Point2>,
     /// Each half from the axis below to the axis above, counter-clockwise, the left one seen in a mirror.
     pub halves: [Vec<Point2>; 2],
@@ -29,7 +29,7 @@ impl Upright {
         let mirrored: Vec<Point2> = points.iter().rev().map(|p| Point2::new(-p.x, p.y)).collect();
         let halves = [half(&points)?, half(&mirrored)?];
         Some(Upright {
-            points: even(&points, true, 2 * POINTS),
+            points: joined(&halves),
             halves,
             size: shape.size,
             tilt: shape.tilt,
@@ -52,27 +52,28 @@ fn half(points: &[Point2]) -> Option<Vec<Point2>> {
     let inner = (1..=count).map(|k| points[(low.0 + k) % n]);
     let path: Vec<Point2> = std::iter::once(low.1).chain(inner).chain([top.1]).collect();
     let right = path.iter().filter(|p| p.x > 0.0).count();
-    (2 * right > path.len()).then(|| even(&path, false, POINTS))
+    (2 * right > path.len()).then(|| even(&path, POINTS))
 }
 
-/// Evenly spaced points of a path; of an open one both ends are kept.
-pub(super) fn even(points: &[Point2], closed: bool, count: usize) -> Vec<Point2> {
-    let mut path = points.to_vec();
-    if closed {
-        path.push(points[0]);
-    }
+/// Both halves as one closed outline, so that its points on the axis (a crotch) are among it.
+fn joined([right, left]: &[Vec<Point2>; 2]) -> Vec<Point2> {
+    let back = left[1..left.len() - 1].iter().rev().map(|p| Point2::new(-p.x, p.y));
+    right.iter().copied().chain(back).collect()
+}
+
+/// Evenly spaced points of a path, both ends included.
+fn even(path: &[Point2], count: usize) -> Vec<Point2> {
     let mut along = vec![0.0];
     for w in path.windows(2) {
         along.push(along[along.len() - 1] + (w[1] - w[0]).norm());
     }
     let total = along[along.len() - 1];
-    let parts = if closed { count } else { count - 1 };
     let at = |k: usize| {
-        let s = total * k as f64 / parts as f64;
+        let s = total * k as f64 / (count - 1) as f64;
         let i = along.partition_point(|a| *a < s).clamp(1, path.len() - 1);
         let piece = along[i] - along[i - 1];
         let t = if piece > 0.0 { (s - along[i - 1]) / piece } else { 0.0 };
-        path[i - 1] + (path[i] - path[i - 1]) * t
+        path[i - 1] + (path[i] - path[i - 1]) * t.min(1.0)
     };
     (0..count).map(at).collect()
 }

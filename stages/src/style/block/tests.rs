@@ -249,9 +249,9 @@ fn a_block_says_why_it_does_not_fit() {
         refusal(&Block::default(), vec![Point2::origin(); 30]),
         "the garment in \"front\" has no left and right half"
     );
-    let strict = Block { stray: 0.001, ..of(BlockStyle::Skirt) };
+    let strict = Block { stray: 0.001, ..of(BlockStyle::TShirt) };
     let e = refusal(&strict, garment(TEE));
-    assert!(e.starts_with("\"front\" was to be a skirt, but strays from one by "), "{e}");
+    assert!(e.starts_with("\"front\" was to be a T-shirt, but strays from one by "), "{e}");
 }
 
 #[test]
@@ -306,7 +306,7 @@ fn flip(p: Point2) -> Point2 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(8))]
 
     /// Star-shaped outlines of any kind become a sound pattern, or an error.
     #[test]
