@@ -100,22 +100,22 @@ impl Neckline {
         if self.depth.is_none() && lowest > DIPS * chord.width {
             return None;
         }
+        let most = if self.depth.is_some() { f64::INFINITY } else { chord.deepest(outline) };
+        let usual = (self.usual * chord.width).min(most);
         let found = match self.depth {
             Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
-            None => {
-                let most = chord.deepest(outline);
-                photo
-                    .zip(outline.frame)
-                    .and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar, most))
-            }
+            None => photo
+                .zip(outline.frame)
+                .and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar, most)),
         };
         let curve = found.unwrap_or_else(|| {
             cx.warn(format!(
                 "the photo of \"{name}\" shows no neckline; it is cut {:.0} mm deep (`Neckline(depth: ...)` sets it)",
-                self.usual * chord.width * 1e3
+                usual * 1e3
             ));
-            Curve { depth: self.usual * chord.width, power: 2.0 }
+            Curve { depth: usual, power: 2.0 }
         });
+        let curve = Curve { depth: curve.depth.min(most), ..curve };
         cx.figure("depth", curve.depth, "m");
         Some(replaced(outline, neck, &chord.points(&curve)))
     }

@@ -111,7 +111,9 @@ fn of_piece(side: &[Stretch], piece: usize) -> (Vec<usize>, f64, f64) {
 /// The point of a piece at a share of a side.
 fn at_share(pattern: &Pattern, side: &[Stretch], piece: usize, share: f64) -> Point2 {
     let own = || side.iter().filter(|s| s.piece == piece);
-    let Some(s) = own().find(|s| share <= s.to).or_else(|| own().next_back()) else { return Point2::origin() };
+    let Some(s) = own().find(|s| share <= s.to).or_else(|| own().next_back()) else {
+        return Point2::origin();
+    };
     let path = pattern.pieces[piece].outer.path(s.edge);
     let along = ((share - s.from) / (s.to - s.from).max(1e-12)).clamp(0.0, 1.0) * path.length();
     path.at(if s.reversed { path.length() - along } else { along })
