@@ -2,6 +2,7 @@
 
 use crate::body::grown;
 use toile_cloth::contact::body::Body as Solid;
+use toile_cloth::contact::past::Start;
 use toile_cloth::rest::solve::{RestError, Rested};
 use toile_core::prelude::*;
 
@@ -11,14 +12,17 @@ pub(super) const MOST_DIP: f64 = 1e-4;
 /// Why a garment is sewn once more around a thin figure, in words; nothing where it came out well, or where that would not help.
 pub(super) fn why_again(result: &Result<Rested, RestError>) -> Option<&'static str> {
     match result {
-        Err(RestError::SeamNotClosed { .. }) => Some("the body keeps seams of the garment open"),
+        Err(RestError::SeamNotClosed { .. }) => Some("the body keeps seams open"),
         Err(RestError::Tangled { .. } | RestError::Crossing { .. }) => {
-            Some("the garment does not come out of itself")
+            Some("cloth does not come out of cloth")
         }
-        Err(RestError::FallsPast(_)) => Some("the garment slides off the body"),
-        Ok(state) => (state.dip > MOST_DIP).then_some("the garment passes through the body"),
+        // What stands beside the body falls past the thin figure, too.
+        Err(RestError::FallsPast(fallen)) => {
+            (fallen.start == Start::Around).then_some("the cloth slides off the body")
+        }
+        Ok(state) => (state.dip > MOST_DIP).then_some("the body comes through the cloth"),
         Err(RestError::NotAtRest { state, .. }) => {
-            (state.dip > MOST_DIP).then_some("the garment passes through the body")
+            (state.dip > MOST_DIP).then_some("the body comes through the cloth")
         }
         Err(_) => None,
     }
@@ -46,6 +50,7 @@ pub(super) fn thin_of(collider: &Collider) -> Vec<Solid> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use toile_cloth::contact::past::Fallen;
     use toile_cloth::rest::unrest::{Meets, Unbalanced};
 
     fn state(dip: f64) -> Box<Rested> {
@@ -82,15 +87,22 @@ mod tests {
         Err(RestError::SeamNotClosed { seam: "side".into(), gap: 0.1, force: 1.0, reversed: vec![] })
     }
 
+    fn fallen(start: Start) -> Result<Rested, RestError> {
+        let fallen = Fallen { cloth: "'front'".into(), start, body: 1.7, is_certain: true };
+        Err(RestError::FallsPast(Box::new(fallen)))
+    }
+
     #[test]
     fn a_garment_is_sewn_again_where_another_way_may_help() {
         assert_eq!(why_again(&at_rest(0.0)), None);
         assert_eq!(why_again(&not_at_rest(0.0)), None, "more steps would help, another way would not");
         assert_eq!(why_again(&Err(RestError::Stopped)), None);
-        assert_eq!(why_again(&at_rest(1e-3)), Some("the garment passes through the body"));
-        assert_eq!(why_again(&not_at_rest(1e-3)), Some("the garment passes through the body"));
-        assert_eq!(why_again(&crossing()), Some("the garment does not come out of itself"));
-        assert_eq!(why_again(&open()), Some("the body keeps seams of the garment open"));
+        assert_eq!(why_again(&at_rest(1e-3)), Some("the body comes through the cloth"));
+        assert_eq!(why_again(&not_at_rest(1e-3)), Some("the body comes through the cloth"));
+        assert_eq!(why_again(&crossing()), Some("cloth does not come out of cloth"));
+        assert_eq!(why_again(&open()), Some("the body keeps seams open"));
+        assert_eq!(why_again(&fallen(Start::Around)), Some("the cloth slides off the body"));
+        assert_eq!(why_again(&fallen(Start::Below(0.1))), None, "it would fall past the thin figure, too");
     }
 
     #[test]

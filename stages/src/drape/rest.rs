@@ -24,7 +24,7 @@ use toile_core::prelude::*;
 /// Sews the garment and brings it to rest, without the way there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
-/// fraction of the time of a simulated fall and ends at rest: no vertex would gain `speed` if it
+/// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static` would gain `speed` if it
 /// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
@@ -44,11 +44,11 @@ pub struct Rest {
     /// Downward acceleration; a scene's own phases come before it.
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
-    /// At rest, no vertex gains more than this in a sixtieth of a second.
+    /// At rest, no vertex but the share `non_static` gains more than this in a sixtieth of a second.
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// The share of the vertices that may gain more, for garments that lie where the skin of a body folds, as in an armpit: some
-    /// vertices there never come to rest. The figure `non_static` tells the share that does.
+    /// vertices there never come to rest. The figure `non_static` tells the share that still moves.
     #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
     /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
@@ -125,7 +125,9 @@ impl Rest {
             let thin = thin_of(collider);
             let around: Vec<&dyn Skin> = thin.iter().map(|f| f as &dyn Skin).collect();
             if !around.is_empty() {
-                cx.warn(format!("{why}: it is sewn again around a thin figure, which grows to the body"));
+                cx.warn(format!(
+                    "{why}: the garment is sewn again around a thin figure, which grows to the body"
+                ));
                 // Both ways share the time that the user gives.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };

@@ -16,7 +16,7 @@ mod grid;
 mod lattice;
 mod layout;
 mod polyline;
-mod predicates;
+pub(crate) mod predicates;
 mod refine;
 #[cfg(test)]
 mod tests;

@@ -17,13 +17,22 @@ pub use garment_code::GarmentCode;
 pub use svg::SvgPattern;
 
 use std::path::Path;
-use toile_core::Registry;
+use toile_core::{ErrorCode, Registry, StageError};
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<GarmentCode>();
     registry.add::<DxfPattern>();
     registry.add::<SvgPattern>();
+}
+
+/// Refuses a reader whose file is not named; `example` is such a file.
+fn named(file: &str, example: &str) -> Result<(), StageError> {
+    if file.is_empty() {
+        let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the pattern from");
+        return Err(e.hint(format!("write `file: \"{example}\"`")).at("file"));
+    }
+    Ok(())
 }
 
 /// The file's name without folder, extension and the word that GarmentCode adds.

@@ -25,6 +25,7 @@ pub mod multifrontal;
 mod nearby;
 pub mod newton;
 mod part;
+mod patience;
 pub mod pattern;
 pub mod pieces;
 mod pierce;

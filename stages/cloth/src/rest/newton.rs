@@ -50,8 +50,8 @@ const CALM: usize = 3;
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
-/// Speed in a long step of pseudo-time above which rest is not tried, m/s, however fast cloth at rest may be: what slides down a body slowly
-/// is not at rest.
+/// Speed in a step of pseudo-time above which rest is not tried, and a coarser mesh is not left, m/s, however fast cloth at rest may be: in
+/// such a step, which may last a second, what slides down a body slowly goes far.
 const CREEP: f64 = 0.01;
 
 /// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see [`crate::rest::layers::Layers::hold`]): what

@@ -5,6 +5,7 @@ use super::error::MOST_EDGES;
 use super::graded::stages;
 use super::height_springs::HeightSprings;
 use super::newton::Pace;
+use super::patience::Patience;
 use super::solve::{Progress, RestError};
 use super::start::probably_reversed;
 use super::system::System;
@@ -14,7 +15,6 @@ use crate::contact::skin::Skin;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
 use nalgebra::Vector3;
-use std::cell::Cell;
 
 type Vec3 = Vector3<f64>;
 
@@ -191,7 +191,7 @@ impl Work<'_> {
                 asleep: self.plan.rest.asleep && self.plan.around.is_empty(),
                 ..self.pace()
             };
-            let shrinking = Shrinking::default();
+            let shrinking = Patience::new(SHRINKING);
             let closed = |_: &System<'_>, x: &[Vec3]| {
                 let gap = widest(x, pairs);
                 gap < self.plan.rest.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
@@ -321,32 +321,6 @@ impl Work<'_> {
     }
 }
 
-/// Whether a gap still shrinks.
-struct Shrinking {
-    least: Cell<f64>,
-    steps: Cell<usize>,
-}
-
-impl Default for Shrinking {
-    fn default() -> Self {
-        Self { least: Cell::new(f64::INFINITY), steps: Cell::new(0) }
-    }
-}
-
-impl Shrinking {
-    /// Looks at the gap after a step; whether it has shrunk of late.
-    fn goes_on(&self, gap: f64) -> bool {
-        let (most, share) = SHRINKING;
-        if gap < (1.0 - share) * self.least.get() {
-            self.least.set(gap);
-            self.steps.set(0);
-        } else {
-            self.steps.set(self.steps.get() + 1);
-        }
-        self.steps.get() < most
-    }
-}
-
 /// Whether a gap, `before` one pull and `after` a harder one, stays open under the hardest, when so many rounds of pulling are over.
 fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
     let (factor, most) = HARDER;
@@ -384,17 +358,5 @@ mod tests {
         assert!(!is_hopeless(0.30, 0.28, 2), "nine times the pull may close it");
         assert!(is_hopeless(0.30, 0.28, 3), "three times will not");
         assert!(!is_hopeless(0.30, 0.25, 3));
-    }
-
-    #[test]
-    fn a_gap_goes_on_shrinking_while_it_does() {
-        let shrinking = Shrinking::default();
-        let mut gap = 1.0;
-        for _ in 0..50 {
-            gap *= 0.98;
-            assert!(shrinking.goes_on(gap));
-        }
-        let steps = (0..50).take_while(|_| shrinking.goes_on(gap)).count();
-        assert_eq!(steps, SHRINKING.0 - 1);
     }
 }

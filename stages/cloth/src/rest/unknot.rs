@@ -5,12 +5,12 @@
 //! more run from near rest a try. Limits: two layers that lie far in each other are both smoothed, and still cross.
 
 use super::newton::Pace;
+use super::patience::Patience;
 use super::solve::{LevelReport, Progress, RestError};
 use super::system::System;
 use super::work::Work;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
-use std::cell::Cell;
 
 type Vec3 = Vector3<f64>;
 
@@ -37,48 +37,39 @@ impl Work<'_> {
         if !self.plan.rest.sew_through {
             return self.run(system, sheet, layout, x, pace, &|_, _| false, progress);
         }
-        let stuck = Stuck::default();
-        let mut report = self.run(system, sheet, layout, x, pace, &|s, _| stuck.looks_at(s), progress)?;
+        let mut report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
         for rings in RINGS {
             if !system.is_tangled() {
                 break;
             }
             smooth(sheet, x, &around(system, sheet, rings));
-            let stuck = Stuck::default();
-            report = self.run(system, sheet, layout, x, pace, &|s, _| stuck.looks_at(s), progress)?;
+            report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
         }
         Ok(report)
     }
-}
 
-/// Whether tangled nodes come free no more.
-struct Stuck {
-    least: Cell<usize>,
-    steps: Cell<usize>,
-}
-
-impl Default for Stuck {
-    fn default() -> Self {
-        Self { least: Cell::new(usize::MAX), steps: Cell::new(0) }
+    /// Runs one level to rest, or until tangled nodes come free no more.
+    fn run_until_stuck(
+        &self,
+        system: &mut System<'_>,
+        sheet: &Sheet,
+        layout: &[Vec3],
+        x: &mut [Vec3],
+        pace: &Pace,
+        progress: &mut Progress<'_>,
+    ) -> Result<LevelReport, RestError> {
+        let patience = Patience::new((PATIENCE, 0.0));
+        let is_stuck = |system: &System<'_>, _: &[Vec3]| {
+            let count = tangled(system);
+            !patience.goes_on(count as f64) && count > 0
+        };
+        self.run(system, sheet, layout, x, pace, &is_stuck, progress)
     }
 }
 
-impl Stuck {
-    /// Looks at the cloth after a step; whether it is stuck.
-    fn looks_at(&self, system: &System<'_>) -> bool {
-        let count = |tangled: &Vec<bool>| tangled.iter().filter(|t| **t).count();
-        self.counts(system.layers.as_ref().map_or(0, |l| count(&l.tangled)))
-    }
-
-    fn counts(&self, tangled: usize) -> bool {
-        if tangled < self.least.get() {
-            self.least.set(tangled);
-            self.steps.set(0);
-        } else {
-            self.steps.set(self.steps.get() + 1);
-        }
-        tangled > 0 && self.steps.get() >= PATIENCE
-    }
+/// How many nodes are tangled.
+fn tangled(system: &System<'_>) -> usize {
+    system.layers.as_ref().map_or(0, |l| l.tangled.iter().filter(|t| **t).count())
 }
 
 /// The tangled nodes and so many rings of nodes around them, but for those that are pinned.
@@ -142,14 +133,5 @@ mod tests {
         assert!(tree.crossings(&x).is_empty());
         let kept = x.iter().zip(&flat).zip(&chosen).filter(|(_, c)| !**c);
         assert!(kept.clone().count() > 100 && kept.into_iter().all(|((x, p), _)| x == p));
-    }
-
-    #[test]
-    fn cloth_is_stuck_when_no_tangled_node_came_free_for_long() {
-        let stuck = Stuck::default();
-        assert!((0..100).all(|k| !stuck.counts(200 - k)), "one comes free at each step");
-        let steps = (0..PATIENCE + 5).take_while(|_| !stuck.counts(101)).count();
-        assert_eq!(steps, PATIENCE - 1);
-        assert!((0..2 * PATIENCE).all(|_| !Stuck::default().counts(0)), "what is free is not stuck");
     }
 }

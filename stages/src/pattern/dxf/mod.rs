@@ -58,11 +58,7 @@ impl DxfPattern {
     }
 
     fn named(&self) -> Result<(), StageError> {
-        if self.file.is_empty() {
-            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the pattern from");
-            return Err(e.hint("write `file: \"tank.dxf\"`").at("file"));
-        }
-        Ok(())
+        super::named(&self.file, "tank.dxf")
     }
 
     /// Whether the files are there.

@@ -58,11 +58,7 @@ impl GarmentCode {
     }
 
     fn named(&self) -> Result<(), StageError> {
-        if self.file.is_empty() {
-            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the pattern from");
-            return Err(e.hint("write `file: \"shirt_specification.json\"`").at("file"));
-        }
-        Ok(())
+        super::named(&self.file, "shirt_specification.json")
     }
 
     /// Whether the file is there; what stands in it is read by the run, at once: patterns come first.

@@ -14,6 +14,8 @@ use toile_core::prelude::*;
 const CAP: (f64, f64) = (0.02, 0.08);
 /// A band may be shorter and longer than what it is sewn along by this share.
 const BAND: (f64, f64) = (0.02, 0.02);
+/// A long edge of a band is longer than this share of the band's outline.
+const LONG: f64 = 0.4;
 /// Notches that are farther apart than this say nothing, metres.
 const NOTCHES: f64 = 0.03;
 
@@ -51,16 +53,7 @@ pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(P
     let free: BTreeSet<At> = rings.iter().flat_map(|r| r.edges.iter().copied()).collect();
     let bands = free.iter().filter(|e| {
         let c = one(e);
-        c.band
-            && c.length
-                > 0.4
-                    * pieces[e.0]
-                        .outer
-                        .edges
-                        .iter()
-                        .enumerate()
-                        .map(|(k, _)| pieces[e.0].outer.path(k).length())
-                        .sum::<f64>()
+        c.band && c.length > LONG * perimeter(&pieces[e.0])
     });
     for band in bands {
         for (n, ring) in around.iter().enumerate().filter(|(_, r)| !is_hem(r)) {
@@ -81,6 +74,10 @@ pub(super) fn attach(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<(P
         }
     }
     out
+}
+
+fn perimeter(piece: &Piece) -> f64 {
+    (0..piece.outer.edges.len()).map(|k| piece.outer.path(k).length()).sum()
 }
 
 /// How well a length fits another, between 0.75 and 1; none where it is too short or too long.

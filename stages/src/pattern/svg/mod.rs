@@ -53,11 +53,7 @@ impl SvgPattern {
     }
 
     fn named(&self) -> Result<(), StageError> {
-        if self.file.is_empty() {
-            let e = StageError::new(ErrorCode::InvalidParameter, "no file is named to read the pattern from");
-            return Err(e.hint("write `file: \"teagan.svg\"`").at("file"));
-        }
-        Ok(())
+        super::named(&self.file, "teagan.svg")
     }
 
     /// Whether the files are there.

@@ -16,6 +16,7 @@ use super::path::Line;
 use super::role::{Role, cut};
 use super::source::place;
 use crate::mesh::crossing::first_crossing;
+use crate::mesh::predicates::inside;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
@@ -341,18 +342,6 @@ fn middle(s: &Shape<'_>) -> Point2 {
     let first = points().next().unwrap_or_else(Point2::origin);
     let (lo, hi) = points().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
     nalgebra::center(&lo, &hi)
-}
-
-/// Whether a point lies in a polygon.
-fn inside(polygon: &[Point2], p: Point2) -> bool {
-    let mut odd = false;
-    for k in 0..polygon.len() {
-        let (a, b) = (polygon[k], polygon[(k + 1) % polygon.len()]);
-        if (a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x) {
-            odd = !odd;
-        }
-    }
-    odd
 }
 
 /// From where to where a line runs: between the ends of an open one, along the longest way through a closed one.
