@@ -17,7 +17,7 @@ pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
 pub use mixed_precision::Precision;
 pub use projective::Projective;
-pub use rest::Rest;
+pub use rest::{Proof, Rest};
 pub use spring::SpringDraper;
 use toile_core::Registry;
 pub use xpbd::Xpbd;

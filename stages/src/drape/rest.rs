@@ -21,11 +21,22 @@ use toile_cloth::rest::unrest::unrest;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
+/// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds gains speed in it.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Proof {
+    /// A sixtieth of a second: the least force left over shows.
+    Short,
+    /// A tenth of a second and more, too: what slides or falls shows. Small folds may still settle by a millimetre or two, which in garments
+    /// of many gathers takes long and changes nothing that is seen.
+    Long,
+}
+
 /// Sews the garment and brings it to rest, without the way there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static` would gain `speed` if it
-/// were let go for a sixtieth of a second, with friction within its limit. Seams are joined
+/// were let go for a sixtieth of a second (see `proof`), with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
 /// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
@@ -35,7 +46,7 @@ use toile_core::prelude::*;
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 18,
+    version = 19,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -44,13 +55,16 @@ pub struct Rest {
     /// Downward acceleration; a scene's own phases come before it.
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
-    /// At rest, no vertex but the share `non_static` gains more than this in a sixtieth of a second.
+    /// At rest, no vertex but the share `non_static` gains more than this in a step that proves rest (see `proof`).
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// The share of the vertices that may gain more, for garments that lie where the skin of a body folds, as in an armpit: some
     /// vertices there never come to rest. The figure `non_static` tells the share that still moves.
     #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
+    /// Which steps prove rest.
+    #[param(default = Proof::Short, trades)]
+    pub proof: Proof,
     /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
     #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
@@ -75,7 +89,7 @@ pub struct Rest {
     #[param(default = false, way)]
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
-    /// What crosses itself then is sewn again without passing, where its seams close so; else the sewn garment is taken out of itself. What
+    /// What crosses itself then is taken out of itself along the contours where it does (Volino, Magnenat-Thalmann 2006). What
     /// starts in the body is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh. Where the body keeps
     /// seams open, or the cloth does not come out of itself or of the body, the garment is sewn again around a thin figure of the body's pose,
     /// which grows to its full size in it; that is told, and the better result is taken.
@@ -188,6 +202,7 @@ impl Rest {
             graded: self.graded,
             from_here: self.from_here,
             sew_through: self.sew_through,
+            long_proof: self.proof == Proof::Long,
             precision: self.precision.into(),
             asleep: self.asleep,
         }

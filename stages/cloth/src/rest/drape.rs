@@ -227,6 +227,7 @@ impl<'a> Work<'a> {
             non_static: self.plan.rest.non_static,
             farthest,
             prove: false,
+            long_proof: self.plan.rest.long_proof,
             rough: false,
             yields: self.plan.rest.sew_through,
             one_by_one: false,

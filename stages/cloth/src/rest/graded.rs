@@ -27,7 +27,10 @@ const STRIDE: f64 = 8.0;
 
 /// Edges of a level in the bending length that it lets go to. What bends over fewer bends as its mesh lies: another mesh would
 /// pick other folds.
-const EDGES: f64 = 8.0;
+pub(super) const EDGES: f64 = 8.0;
+
+/// The same for cloth that is sewn through itself, whose patterns have tens of thousands of vertices: coarser meshes do more of the way.
+pub(super) const EDGES_THROUGH: f64 = 2.0;
 
 /// How stiff bending is on the way.
 #[derive(Debug, Clone, Copy)]
@@ -36,15 +39,18 @@ pub(super) struct Grade {
     length: f64,
     /// Bending length of the first state, m.
     first: f64,
+    /// Edges of a level in the bending length that it lets go to.
+    edges: f64,
 }
 
 impl Grade {
-    /// Of a garment of that size, the root of its area in metres; nothing where cloth has no bending or no weight.
-    pub(super) fn of(cloths: &[&Fabric], gravity: f64, size: f64) -> Option<Self> {
+    /// Of a garment of that size, the root of its area in metres, whose levels let go to a bending length of so many edges; nothing where
+    /// cloth has no bending or no weight.
+    pub(super) fn of(cloths: &[&Fabric], gravity: f64, size: f64, edges: f64) -> Option<Self> {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
         // Bending so small that its stiffest state is no finite number counts as none: it would be let go for ever.
-        Some(Self { length, first: FIRST_LENGTH * size })
+        Some(Self { length, first: FIRST_LENGTH * size, edges })
             .filter(|g| g.first().is_finite() && length.is_finite())
     }
 
@@ -56,7 +62,7 @@ impl Grade {
     /// The least factor whose folds edges of that length carry, m: one of the same steps for every mesh, so that all of them
     /// let go through the same states.
     pub(super) fn resolved(&self, edge: f64) -> f64 {
-        let strides = (self.first() / self.factor(EDGES * edge)).log(STRIDE).floor();
+        let strides = (self.first() / self.factor(self.edges * edge)).log(STRIDE).floor();
         self.first() / STRIDE.powf(strides.max(0.0))
     }
 
@@ -93,19 +99,22 @@ mod tests {
     #[test]
     fn every_mesh_lets_go_through_the_same_states() {
         let cloth = Fabric::isotropic(0.1, 1000.0, 0.0, 0.1 * 10.0 * 0.02_f64.powi(3));
-        let grade = Grade::of(&[&cloth], 10.0, 0.8).unwrap();
+        let grade = Grade::of(&[&cloth], 10.0, 0.8, EDGES).unwrap();
         // Factors of 8000, 1000, 125, 15.6 and 1.95: of the last, edges of 3 mm carry the folds.
         assert!((grade.resolved(0.01) - 125.0).abs() < 1e-9);
         assert!((grade.resolved(0.003) - 1.953125).abs() < 1e-9);
         assert!((grade.first() - 8000.0).abs() < 1e-6);
+        // Of fewer edges in the bending length, coarser meshes do more of the way.
+        let through = Grade::of(&[&cloth], 10.0, 0.8, EDGES_THROUGH).unwrap();
+        assert!((through.resolved(0.01) - 1.953125).abs() < 1e-9);
     }
 
     #[test]
     fn without_bending_or_weight_there_is_nothing_to_grade() {
         let limp =
             Fabric { bending_warp: 0.0, bending_weft: 0.0, ..Fabric::isotropic(0.1, 1000.0, 0.0, 0.0) };
-        assert!(Grade::of(&[&limp], 10.0, 1.0).is_none());
-        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-6)], 0.0, 1.0).is_none());
-        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-320)], 10.0, 1.0).is_none());
+        assert!(Grade::of(&[&limp], 10.0, 1.0, EDGES).is_none());
+        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-6)], 0.0, 1.0, EDGES).is_none());
+        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-320)], 10.0, 1.0, EDGES).is_none());
     }
 }

@@ -197,6 +197,7 @@ impl<'a> Live<'a> {
             rough: false,
             yields: false,
             one_by_one: false,
+            long_proof: self.rest.long_proof,
             asleep: self.rest.asleep,
             precision: self.rest.precision,
         }

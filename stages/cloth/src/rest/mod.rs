@@ -4,6 +4,7 @@ mod assemble;
 mod awake;
 pub mod clear;
 pub mod coarsen;
+mod contour;
 mod dense;
 pub mod dissect;
 mod drape;

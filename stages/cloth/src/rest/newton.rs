@@ -93,6 +93,8 @@ pub struct Pace {
     pub farthest: f64,
     /// Whether rest must be proved by a step of [`REST_STEP`].
     pub prove: bool,
+    /// Whether a whole step of [`SLOW_STEP`] and more in which nothing is fast proves rest, too.
+    pub long_proof: bool,
     /// Whether steps are taken without a search along them: the cloth gets about in rough ground, where some nodes never come to rest.
     pub rough: bool,
     /// Whether a step that raises the potential, because some of its nodes are stopped, is sought again with these held still.
@@ -382,6 +384,7 @@ impl Descent {
             system.layers.iter_mut().for_each(|l| l.hold(false));
         }
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
+        self.outcome.at_rest |= calm && pace.long_proof;
         self.calm = if calm { self.calm + 1 } else { 0 };
         self.proves = pace.prove && self.calm >= if self.failed { CALM } else { 1 };
     }

@@ -3,7 +3,7 @@
 use super::assemble::{Wearer, assemble, cloths, gravity, kept_threads};
 use super::coarsen::{Coarser, coarsen};
 use super::error::RestError;
-use super::graded::Grade;
+use super::graded::{EDGES, EDGES_THROUGH, Grade};
 use super::level::Level;
 use super::pieces::Pieces;
 use super::pile::pile_of;
@@ -105,7 +105,8 @@ impl<'a> Plan<'a> {
     /// How bending is let go in a garment of that size, if it is.
     pub(super) fn grade(&self, size: f64) -> Option<Grade> {
         let gravity = gravity(self.scene).norm();
-        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size)).flatten()
+        let edges = if self.rest.sew_through { EDGES_THROUGH } else { EDGES };
+        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size, edges)).flatten()
     }
 
     /// Level `k`, sewn, with its nodes nowhere yet.

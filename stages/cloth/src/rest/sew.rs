@@ -1,6 +1,7 @@
 //! Panels are sewn, on the coarsest level.
 
 use super::assemble::{Wearer, assemble, gravity, spacing, strongest};
+use super::contour::uncross;
 use super::error::MOST_EDGES;
 use super::graded::stages;
 use super::height_springs::HeightSprings;
@@ -70,6 +71,7 @@ impl Work<'_> {
             self.close(&sheet, &pairs, &mut x, progress)?;
         }
         self.x = self.plan.pieces[coarsest].sew(&x, sheet.masses());
+        self.crossed = if self.through { self.uncross()? } else { 0 };
         if let (Some(body), [first, next @ ..]) = (self.plan.body, self.plan.around) {
             // Friction would hold the cloth where its seams happened to close.
             let solid = |skin| Wearer { skin, friction: 0.0 };
@@ -82,7 +84,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Closes the seams. Where cloth may pass through cloth and crosses itself then, they are closed again without, if they can be.
+    /// Closes the seams.
     fn close(
         &mut self,
         sheet: &Sheet,
@@ -90,23 +92,8 @@ impl Work<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        let start = x.to_vec();
         self.through = self.plan.rest.sew_through;
-        let mut force = self.draw(sheet, pairs, x, progress)?;
-        let is_closed = widest(x, pairs) <= self.most_gap();
-        if self.through
-            && is_closed
-            && self.plan.scene.self_collision
-            && !self.plan.tree(sheet, &start, true).crossings(x).is_empty()
-        {
-            let mut around = start;
-            self.through = false;
-            let other = self.draw(sheet, pairs, &mut around, progress)?;
-            if widest(&around, pairs) <= self.most_gap() {
-                x.copy_from_slice(&around);
-                force = other;
-            }
-        }
+        let force = self.draw(sheet, pairs, x, progress)?;
         let gap = widest(x, pairs);
         self.joined_at = Some(gap);
         if gap > self.most_gap() {
@@ -115,6 +102,19 @@ impl Work<'_> {
             return Err(RestError::SeamNotClosed { seam, gap, force, reversed });
         }
         Ok(())
+    }
+
+    /// Takes the cloth, just sewn, out of itself; how often it still crosses itself.
+    fn uncross(&mut self) -> Result<usize, RestError> {
+        if !self.plan.scene.self_collision {
+            return Ok(0);
+        }
+        let pieces = &self.plan.pieces[self.plan.pieces.len() - 1];
+        let sheet = pieces.sewn_sheet(&self.plan.cloths)?;
+        let tree = self.plan.tree(&sheet, &self.x, false);
+        let mut pinned = vec![false; pieces.nodes];
+        pieces.node.iter().zip(&pieces.pinned).for_each(|(n, p)| pinned[*n as usize] |= p);
+        Ok(uncross(&sheet, &tree, &pinned, &mut self.x))
     }
 
     /// Draws the seams of cloth together that is as stiff as its first state is to be, or else, each time from the start, as stiff as they

@@ -67,6 +67,8 @@ pub struct Rest {
     /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep them open, and the sewn
     /// garment is taken out of itself.
     pub sew_through: bool,
+    /// Whether a step of a tenth of a second and more in which nothing is faster than `speed` proves rest, too.
+    pub long_proof: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
     /// Whether what rests sleeps while few nodes move, which settle by themselves.
@@ -86,6 +88,7 @@ impl Default for Rest {
             graded: false,
             from_here: false,
             sew_through: false,
+            long_proof: false,
             precision: Precision::default(),
             asleep: true,
         }

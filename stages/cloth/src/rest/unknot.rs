@@ -1,9 +1,10 @@
 //! Knots: cloth that crosses itself in a few places, and that its contacts do not take out of itself.
 //!
-//! Method: the nodes of what crosses, and the rings of nodes around them, move to the mean of their neighbours again and again (Laplacian
-//! smoothing, Field 1988), which lays a fold that is knotted flat; then cloth comes to rest from there. Each try takes more rings. Cost: one
-//! more run from near rest a try. Limits: two layers that lie far in each other are both smoothed, and still cross.
+//! Method: the contours along which it crosses itself are shortened (see `contour`). Where that leaves some, the nodes of what crosses, and
+//! the rings of nodes around them, move to the mean of their neighbours again and again (Laplacian smoothing, Field 1988), which lays a fold
+//! that is knotted flat. Then cloth comes to rest from there. Each try takes more rings. Cost: one more run from near rest a try.
 
+use super::contour::uncross;
 use super::newton::Pace;
 use super::patience::Patience;
 use super::solve::{LevelReport, Progress, RestError};
@@ -42,7 +43,9 @@ impl Work<'_> {
             if !system.is_tangled() {
                 break;
             }
-            smooth(sheet, x, &around(system, sheet, rings));
+            if uncross(sheet, &self.plan.tree(sheet, x, false), &system.pinned, x) > 0 {
+                smooth(sheet, x, &around(system, sheet, rings));
+            }
             report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
         }
         Ok(report)

@@ -27,12 +27,15 @@ const CLEARINGS: usize = 8;
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
 
+/// Most points of a coarsest mesh that is taken because a coarser one still crossed itself when it was sewn.
+const MOST_CROSSED: usize = 4000;
+
 /// How the levels ended.
 pub(super) enum Draped {
     Rested(Box<Rested>),
     /// The state carried to a level crosses itself and could not be undone.
     Tangled(Entangled),
-    /// The body comes through a coarse level between its vertices.
+    /// The body comes through a coarse level between its vertices, or the cloth crosses itself where it was sewn on one.
     Pierced {
         /// Points of the next finer level.
         finer: usize,
@@ -51,6 +54,8 @@ pub(super) struct Work<'a> {
     pub(super) reports: Vec<LevelReport>,
     /// Whether cloth passes through cloth while its seams close.
     pub(super) through: bool,
+    /// How often the sewn garment crosses itself on the coarsest level.
+    pub(super) crossed: usize,
     /// What fell past the body in the last state that was tried, where it did.
     pub(super) last_fall: Option<RestError>,
 }
@@ -65,6 +70,7 @@ impl<'a> Work<'a> {
             dip: None,
             reports: vec![],
             through: false,
+            crossed: 0,
             last_fall: None,
         }
     }
@@ -74,6 +80,12 @@ impl<'a> Work<'a> {
         self.sew(progress)?;
         let coarsest = self.plan.pieces.len() - 1;
         let sheet = self.plan.pieces[coarsest].sewn_sheet(&self.plan.cloths)?;
+        // What a mesh so coarse does not take out of itself a finer one may.
+        let finer =
+            coarsest.checked_sub(1).map(|k| self.plan.pieces[k].points).filter(|n| *n <= MOST_CROSSED);
+        if let Some(finer) = finer.filter(|_| self.crossed > 0) {
+            return Ok(Draped::Pierced { finer });
+        }
         match self.pierced(coarsest, &sheet, &self.x) {
             Some(draped) => Ok(draped),
             None => self.drape(progress),

@@ -37,6 +37,7 @@ fn pace() -> Pace {
         rough: false,
         yields: false,
         one_by_one: true,
+        long_proof: false,
         asleep: true,
         precision: Precision::Mixed,
     }

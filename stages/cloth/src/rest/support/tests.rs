@@ -43,6 +43,7 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
         rough: false,
         yields: false,
         one_by_one: false,
+        long_proof: false,
         asleep: true,
     };
     let layout = scene.positions.clone();
