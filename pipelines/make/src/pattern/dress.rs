@@ -1,6 +1,6 @@
 //! A dress: bodice with bust and waist darts, skirt gathered to the waist seam, short set-in sleeves.
 //!
-//! For the mannequin of 172 cm, bust 88 and waist 70 cm: 94 cm at the bust, 74 cm at the waist.
+//! For the mannequin of 172 cm, bust 88 and waist 70 cm: 95 cm at the bust, 74 cm at the waist.
 
 use super::{Garment, P, Panel, bent, curve, dart, distance, line, sleeve};
 

@@ -14,27 +14,31 @@ struct Piece {
     inner: P,
     /// The centre seam at the neck.
     neck: f64,
+    /// How far towards the shoulder the neckline stays level.
+    round: f64,
     /// Controls of the armhole, from armpit to shoulder.
     armhole: [P; 2],
 }
 
 /// Hem, hip, armpit, shoulder and neck at the shoulder, of front and back alike.
-const SIDE: [P; 3] = [[16.8, 32.0], [17.4, 51.0], [16.5, 74.0]];
-const SHOULDER: P = [12.0, 87.2];
-const NECK: P = [6.5, 89.6];
+const SIDE: [P; 3] = [[16.6, 31.0], [17.4, 48.0], [16.5, 74.0]];
+const SHOULDER: P = [12.0, 86.8];
+const NECK: P = [6.4, 89.6];
 
 const FRONT: Piece = Piece {
-    fork: [-3.5, 40.0],
-    seat: 46.5,
-    inner: [-1.5, 32.0],
+    fork: [-3.5, 38.5],
+    seat: 45.0,
+    inner: [-1.5, 31.0],
     neck: 84.0,
+    round: 0.9,
     armhole: [[12.0, 74.0], [10.5, 80.0]],
 };
 const BACK: Piece = Piece {
-    fork: [-6.0, 40.0],
-    seat: 48.0,
-    inner: [-3.5, 32.0],
+    fork: [-6.0, 38.5],
+    seat: 46.5,
+    inner: [-3.5, 31.0],
     neck: 87.8,
+    round: 0.6,
     armhole: [[12.5, 74.0], [11.2, 80.0]],
 };
 
@@ -45,12 +49,12 @@ fn piece(name: &str, p: &Piece) -> Panel {
     let corners = [p.inner, hem, hip, armpit, SHOULDER, NECK, neck, seat, p.fork];
     let edges = [
         line("hem"),
-        line("side_leg"),
-        curve("side", hip, armpit, &[[15.3, 62.0]]),
+        curve("side_leg", hem, hip, &[[17.8, 43.0]]),
+        curve("side", hip, armpit, &[[16.2, 63.0]]),
         curve("armhole", armpit, SHOULDER, &p.armhole),
         line("shoulder"),
         // The neckline is level in the middle.
-        curve("neck", NECK, neck, &[[NECK[0] * 0.9, p.neck]]),
+        curve("neck", NECK, neck, &[[NECK[0] * p.round, p.neck]]),
         line("centre"),
         curve("crotch", seat, p.fork, &[[0.0, p.fork[1]]]),
         line("inseam"),
