@@ -82,18 +82,17 @@ impl Edge {
         let point = |[along, across]: P| {
             [from[0] + along * d[0] - across * d[1], from[1] + along * d[1] + across * d[0]]
         };
-        let mut hull = vec![from];
-        hull.extend(self.controls.iter().copied().map(point));
-        hull.push(to);
-        // De Casteljau.
+        let hull: Vec<P> = self.controls.iter().copied().map(point).collect();
         let at = |t: f64| {
-            let mut p = hull.clone();
-            while p.len() > 1 {
-                p = p.windows(2).map(|w| [0, 1].map(|k| (1.0 - t) * w[0][k] + t * w[1][k])).collect();
-            }
-            p[0]
+            let u = 1.0 - t;
+            [0, 1].map(|k| match hull[..] {
+                [] => u * from[k] + t * to[k],
+                [c] => u * u * from[k] + 2.0 * t * u * c[k] + t * t * to[k],
+                [c, e, ..] => u * u * u * from[k] + 3.0 * t * u * (u * c[k] + t * e[k]) + t * t * t * to[k],
+            })
         };
-        (0..2000).map(|k| distance(at(f64::from(k) / 2000.0), at(f64::from(k + 1) / 2000.0))).sum()
+        let chord = |k: u32| distance(at(f64::from(k) / 2000.0), at(f64::from(k + 1) / 2000.0));
+        (0..2000).map(chord).sum()
     }
 }
 

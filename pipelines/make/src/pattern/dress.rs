@@ -101,8 +101,7 @@ fn bodice(name: &str, b: &Bodice, side: Option<f64>) -> Panel {
 fn skirt(name: &str, half: f64) -> Panel {
     let (inner, outer, hem) = (GATHER * INNER, GATHER * half, GATHER * half + 9.0);
     let long = 56.0;
-    let corners =
-        [[-hem, -long], [hem, -long], [outer, 0.0], [inner, 0.0], [-inner, 0.0], [-outer, 0.0]];
+    let corners = [[-hem, -long], [hem, -long], [outer, 0.0], [inner, 0.0], [-inner, 0.0], [-outer, 0.0]];
     let edges = [
         line("hem"),
         line("side_left"),

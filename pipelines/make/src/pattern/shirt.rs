@@ -40,7 +40,7 @@ pub(super) fn shirt() -> Garment {
     let (low, high) = ([-11.5, 34.0], [11.5, 42.0]);
     let sleeve = |name: &str, scoop: f64, z: f64| {
         // The cap is eased into the armhole by a hundredth.
-        let armhole = length(armpit, shoulder, [0.3, scoop]) * 1.01;
+        let armhole = bent("", 0.3, scoop).length(armpit, shoulder) * 1.01;
         let cap = bend_for(armhole, high, low, 0.5);
         let corners = [[-7.0, 0.0], [7.0, 0.0], high, low];
         let edges = [line("wrist"), line("over_arm"), bent("cap", 0.5, -cap), line("under_arm")];
@@ -52,7 +52,7 @@ pub(super) fn shirt() -> Garment {
         Panel { turn: ARM, ..Panel::new(name, "arm", &corners, &edges, [CUFF_END[0], CUFF_END[1], z]) }
     };
     let collar = |name: &str, depth: f64, z: f64| {
-        let half = length(neck, [-neck[0], neck[1]], [0.5, 2.0 * depth / (2.0 * neck[0])]) / 2.0;
+        let half = bent("", 0.5, 2.0 * depth / (2.0 * neck[0])).length(neck, [-neck[0], neck[1]]) / 2.0;
         let corners = [[-half, 0.0], [half, 0.0], [half, 4.0], [-half, 4.0]];
         let edges = [line("neck"), line("end_left"), line("edge"), line("end_right")];
         Panel::new(name, "body", &corners, &edges, [0.0, 148.0, z])
@@ -95,28 +95,12 @@ pub(super) fn shirt() -> Garment {
     g
 }
 
-/// The length of a quadratic curve, from many chords: what is matched by it is matched to a hundredth of a millimetre.
-fn length(from: P, to: P, [along, across]: P) -> f64 {
-    let d = [to[0] - from[0], to[1] - from[1]];
-    let control = [from[0] + along * d[0] - across * d[1], from[1] + along * d[1] + across * d[0]];
-    let at = |t: f64| {
-        let of =
-            |k: usize| (1.0 - t) * (1.0 - t) * from[k] + 2.0 * t * (1.0 - t) * control[k] + t * t * to[k];
-        [of(0), of(1)]
-    };
-    let chord = |k: u32| {
-        let (a, b) = (at(f64::from(k) / 2000.0), at(f64::from(k + 1) / 2000.0));
-        (a[0] - b[0]).hypot(a[1] - b[1])
-    };
-    (0..2000).map(chord).sum()
-}
-
 /// How far a curve over that chord must bend to have that length; 0 where the chord is longer.
 fn bend_for(wanted: f64, from: P, to: P, along: f64) -> f64 {
     let (mut low, mut high) = (0.0, 2.0);
     for _ in 0..60 {
         let middle = (low + high) / 2.0;
-        if length(from, to, [along, middle]) < wanted { low = middle } else { high = middle }
+        if bent("", along, middle).length(from, to) < wanted { low = middle } else { high = middle }
     }
     low
 }

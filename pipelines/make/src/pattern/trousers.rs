@@ -26,14 +26,8 @@ struct Leg {
     band: f64,
 }
 
-const FRONT: Leg = Leg {
-    fork: [-5.5, 63.0],
-    seat: [0.0, 71.0],
-    centre: [1.0, 98.0],
-    inner: -1.0,
-    dart: 9.0,
-    band: BAND[0],
-};
+const FRONT: Leg =
+    Leg { fork: [-5.5, 63.0], seat: [0.0, 71.0], centre: [1.0, 98.0], inner: -1.0, dart: 9.0, band: BAND[0] };
 const BACK: Leg = Leg {
     fork: [-10.5, 62.5],
     seat: [-0.5, 73.0],
