@@ -36,7 +36,7 @@ const FRONT: Piece = Piece {
 const BACK: Piece = Piece {
     fork: [-6.0, 38.5],
     seat: 46.5,
-    inner: [-3.5, 31.0],
+    inner: [-4.0, 31.0],
     neck: 87.8,
     round: 0.6,
     armhole: [[12.5, 74.0], [11.2, 80.0]],
