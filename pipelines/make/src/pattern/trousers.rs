@@ -1,6 +1,6 @@
 //! Straight trousers: two fronts and two backs with a dart each, and a waistband in two halves.
 //!
-//! For the mannequin of 172 cm, waist 70 and hip 96 cm: 72 cm at the waist, 101 cm at the hip.
+//! For the mannequin of 172 cm, waist 70 and hip 96 cm: 72 cm at the waist, 100 cm at the hip.
 
 use super::{Garment, P, Panel, curve, dart, distance, line};
 
@@ -9,7 +9,7 @@ const HEM: f64 = 9.0;
 /// Half of the waistband before and behind.
 const BAND: [f64; 2] = [18.5, 17.5];
 /// The side seam, at the hem, at the hip, above it and at the waist, from the middle of the body.
-const SIDE: [P; 4] = [[20.0, 0.0], [25.5, 78.0], [25.8, 87.0], [22.0, 98.5]];
+const SIDE: [P; 4] = [[20.0, 0.0], [25.2, 76.0], [25.4, 86.0], [22.0, 98.5]];
 
 /// What sets the front of a leg apart from its back.
 struct Leg {
