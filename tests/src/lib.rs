@@ -52,7 +52,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 8] = [
+pub const PIPELINES: [&str; 11] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -61,4 +61,7 @@ pub const PIPELINES: [&str; 8] = [
     "scene.ron",
     "skirt.ron",
     "pattern.ron",
+    "trousers.ron",
+    "dress.ron",
+    "onepiece.ron",
 ];

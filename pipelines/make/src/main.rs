@@ -1,4 +1,4 @@
-//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, and two sewing patterns.
+//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, and sewing patterns of a shirt, trousers, a dress and a one-piece.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the first argument, and as the second a factor for the photos' resolution:
