@@ -27,8 +27,8 @@ use toile_core::prelude::*;
 pub enum Proof {
     /// A sixtieth of a second: the least force left over shows.
     Short,
-    /// A tenth of a second and more, too: what slides or falls shows. Small folds may still settle by a millimetre or two, which in garments
-    /// of many gathers takes long and changes nothing that is seen.
+    /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in garments of many gathers by some centimetres
+    /// in the end; the way there is what takes longest.
     Long,
 }
 
@@ -36,7 +36,7 @@ pub enum Proof {
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
 /// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static` would gain `speed` if it
-/// were let go for a sixtieth of a second (see `proof`), with friction within its limit. Seams are joined
+/// were let go for a short while (see `proof`), with friction within its limit. Seams are joined
 /// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
 /// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
 /// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger

@@ -4,7 +4,8 @@
 //! from there into the triangles beside the edge. Edge and triangle move against each other in the direction in which the contour becomes
 //! shorter the fastest; a contour that ends at a hem is drawn out over it, a closed one shrinks to nothing. Between these moves edges that
 //! were stretched are drawn back to their lengths. No side need be known. Cost: a look for crossings a sweep. Limits: contours that are as
-//! long whichever way the cloth moves, as where one tube passes straight through another, stay.
+//! long whichever way the cloth moves, as where one tube passes straight through another, or a hem lies below cloth along its whole length, may
+//! stay.
 
 use crate::contact::tree::ClothTree;
 use crate::mesh::{Edge, Sheet};
@@ -15,6 +16,9 @@ type Vec3 = Vector3<f64>;
 
 /// How far an edge moves in a sweep at most, as a share of the mean edge, and the gradient at which it moves 0.7 of that.
 const STEP: (f64, f64) = (0.3, 0.3);
+
+/// After so many sweeps without fewer crossings moves are this share of that: the last ones are stepped over, to and fro.
+const SHORTER: (usize, f64) = (20, 0.3);
 
 /// Sweeps at most, and those in which the least number of crossings must fall.
 const SWEEPS: usize = 400;
@@ -48,7 +52,7 @@ pub(super) fn uncross(sheet: &Sheet, tree: &ClothTree, pinned: &[bool], x: &mut 
         if least == 0 || since > PATIENCE {
             break;
         }
-        let step = if since > PATIENCE / 3 { 0.3 * STEP.0 } else { STEP.0 };
+        let step = if since > SHORTER.0 { SHORTER.1 * STEP.0 } else { STEP.0 };
         let mut moves = vec![(Vec3::zeros(), 0.0); at.len()];
         for (e, t) in &crossings {
             let found = beside.get(e).and_then(|sides| meeting(*e, *t, sides, &at));

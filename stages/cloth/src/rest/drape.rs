@@ -51,7 +51,7 @@ impl<'a> Work<'a> {
                 self.bring(k, &mut level, &mut bending, progress).map(|()| true)
             })?;
             if !is_free {
-                return Ok(Draped::Pierced { finer: plan.pieces[k].points });
+                return Ok(Draped::TooCoarse { finer: plan.pieces[k].points });
             }
             // What was sewn through itself may come free on a finer mesh; nothing is gained by sewing it there anew.
             if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {

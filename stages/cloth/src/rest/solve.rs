@@ -210,7 +210,7 @@ impl Rest {
                     return Err(tangled(scene, gravity(scene).norm(), entangled));
                 }
                 (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
-                (Ok(Draped::Pierced { finer }), _) => finer,
+                (Ok(Draped::TooCoarse { finer }), _) => finer,
                 // What slides off while it is stiff may stay on as cloth.
                 (Err(RestError::FallsPast(fallen)), _) if rest.graded && !fallen.is_certain => {
                     rest.graded = false;

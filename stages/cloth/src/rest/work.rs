@@ -27,7 +27,8 @@ const CLEARINGS: usize = 8;
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
 
-/// Most points of a coarsest mesh that is taken because a coarser one still crossed itself when it was sewn.
+/// Most points of a mesh on which the garment is sewn anew because it still crossed itself on a coarser one: larger ones take long to sew, and
+/// what is left may come free while it drapes.
 const MOST_CROSSED: usize = 4000;
 
 /// How the levels ended.
@@ -35,8 +36,8 @@ pub(super) enum Draped {
     Rested(Box<Rested>),
     /// The state carried to a level crosses itself and could not be undone.
     Tangled(Entangled),
-    /// The body comes through a coarse level between its vertices, or the cloth crosses itself where it was sewn on one.
-    Pierced {
+    /// The body comes through a coarse level between its vertices, or cloth that was sewn on it stays crossed.
+    TooCoarse {
         /// Points of the next finer level.
         finer: usize,
     },
@@ -84,7 +85,7 @@ impl<'a> Work<'a> {
         let finer =
             coarsest.checked_sub(1).map(|k| self.plan.pieces[k].points).filter(|n| *n <= MOST_CROSSED);
         if let Some(finer) = finer.filter(|_| self.crossed > 0) {
-            return Ok(Draped::Pierced { finer });
+            return Ok(Draped::TooCoarse { finer });
         }
         match self.pierced(coarsest, &sheet, &self.x) {
             Some(draped) => Ok(draped),
@@ -96,7 +97,7 @@ impl<'a> Work<'a> {
     pub(super) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
         let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
         let wearer = self.plan.body?;
-        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::Pierced { finer })
+        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
     /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.

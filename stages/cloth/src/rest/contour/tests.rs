@@ -5,6 +5,7 @@ use super::*;
 use crate::rest::assemble::cloths;
 use crate::rest::pieces::Pieces;
 use crate::scene::generate;
+use proptest::prelude::*;
 
 const CELLS: usize = 12;
 
@@ -69,4 +70,25 @@ fn what_is_clear_and_what_is_pinned_stay_where_they_are() {
     let mut held = start.clone();
     let left = uncross(&sheet, &tree, &vec![true; held.len()], &mut held);
     assert_eq!((left, &held), (tree.crossings(&start).len(), &start));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Whatever crumple it begins with: no more crossings, numbers that are finite, what is pinned in its place, and the count is that of the result.
+    #[test]
+    fn it_never_makes_it_worse(
+        noise in prop::collection::vec([-1.0..1.0f64, -1.0..1.0, -1.0..1.0], (CELLS + 1) * (CELLS + 1)),
+        size in 0.0..0.3f64,
+        held in prop::collection::vec(prop::bool::weighted(0.1), (CELLS + 1) * (CELLS + 1)),
+    ) {
+        let (sheet, tree, flat) = cloth();
+        let start: Vec<Vec3> = flat.iter().zip(&noise).map(|(p, n)| p + Vec3::from(*n) * size).collect();
+        let mut x = start.clone();
+        let left = uncross(&sheet, &tree, &held, &mut x);
+        prop_assert!(x.iter().all(|p| p.iter().all(|c| c.is_finite())));
+        prop_assert_eq!(left, tree.crossings(&x).len());
+        prop_assert!(left <= tree.crossings(&start).len());
+        prop_assert!(x.iter().zip(&start).zip(&held).all(|((p, q), held)| !held || p == q));
+    }
 }
