@@ -178,6 +178,14 @@ fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], strea
             f.edge_strain.p99 * 1e2,
             f.steps
         ));
+        let cm = |m: f64| m * 100.0;
+        for (level, g) in &f.girths {
+            let (cloth, body) = (cm(g.cloth_m), cm(g.body_m));
+            streams.say(format!(
+                "{level}: {cloth:.1} cm of cloth around {body:.1} cm, ease {:.1} cm",
+                cloth - body
+            ));
+        }
     }
     if let Some(quality) = &metrics.quality {
         streams.say(format!("quality {quality}"));

@@ -35,6 +35,15 @@ pub struct PenetrationFigures {
     pub max_m: f64,
 }
 
+/// The tape around a garment and around its body, at the same height.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct GirthFigures {
+    /// Cloth, as long as it was cut, metres.
+    pub cloth_m: f64,
+    /// The body's measure, metres.
+    pub body_m: f64,
+}
+
 /// The garment's figures, SI units; the names are those of `metrics.json`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct GarmentFigures {
@@ -46,7 +55,7 @@ pub struct GarmentFigures {
     pub seam_gap_max_m: f64,
     /// Strain of edges.
     pub edge_strain: StrainFigures,
-    /// 99th percentile of the strain of the edges that the body stretches: both ends lie on it; `None` without a body.
+    /// 99th percentile of the strain of the edges that the body stretches; `None` without a body.
     pub tight_p99: Option<f64>,
     /// Vertices inside the body; `None` without a body.
     pub body_penetration: Option<PenetrationFigures>,
@@ -56,6 +65,8 @@ pub struct GarmentFigures {
     pub self_crossings: Option<usize>,
     /// The share that is still in its place on the body, of the panel that has slid farthest; `None` where nothing told.
     pub on_body: Option<f64>,
+    /// By level (`bust`, `waist`, `hip`): where the garment closes around its body.
+    pub girths: BTreeMap<String, GirthFigures>,
     /// Elastic and gravitational energy.
     pub energy_j: f64,
     /// Greatest speed of a vertex at the end.
@@ -114,6 +125,9 @@ impl Artifact for Figures {
         }
         m.push("seam_gap_max", g.seam_gap_max_m * 1e3, "mm", 0.5);
         m.push("strain_p99", g.edge_strain.p99 * 1e2, "%", 1.0);
+        for (level, girth) in &g.girths {
+            m.push(&format!("cloth_at_{level}"), girth.cloth_m * 1e3, "mm", 5.0);
+        }
         if let Some(p) = &g.body_penetration {
             m.count("vertices_in_body", p.vertices);
         }

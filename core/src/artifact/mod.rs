@@ -36,7 +36,9 @@ pub use body::{Body, Landmark};
 pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact, Surface};
 pub use digest::{Digest, Digester};
 pub use fabric::{Curve, Fabric};
-pub use figures::{Figures, GarmentFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures};
+pub use figures::{
+    Figures, GarmentFigures, GirthFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures,
+};
 pub use files::{OutputFile, OutputFiles};
 pub use garment::{Garment, GarmentPanel, GarmentSeam, SeamState, SolveStatus, quantile};
 pub use gauge::{CHORD_TOLERANCE, Gauge};

@@ -12,6 +12,8 @@ pub struct Texture {
     pub name: String,
     /// Pixels, sRGB, top row first.
     pub pixels: Shared<RgbImage>,
+    /// True where the picture goes on beyond its edges by repeating itself; else its border goes on.
+    pub repeats: bool,
 }
 
 /// How a surface looks.
@@ -41,7 +43,8 @@ pub struct Mesh {
     pub positions: Vec<Point3>,
     /// Unit normals, one a vertex.
     pub normals: Vec<Vector3>,
-    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom right.
+    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom right, and what lies outside is as
+    /// [`Texture::repeats`] says.
     /// Empty where the material has no texture.
     pub uv: Vec<[f32; 2]>,
     /// Triangles.
@@ -100,6 +103,9 @@ impl Artifact for Model {
         }
         for texture in &self.textures {
             d.text(&texture.name).bytes(texture.pixels.as_raw());
+            if texture.repeats {
+                d.text("repeats");
+            }
         }
     }
 

@@ -281,6 +281,6 @@ pub fn model() -> Model {
     Model {
         meshes: vec![cloth, skin],
         materials: vec![material("front", Some(0)), material("body", None)],
-        textures: vec![Texture { name: "front".into(), pixels: shapes::photo().pixels }],
+        textures: vec![Texture { name: "front".into(), pixels: shapes::photo().pixels, repeats: false }],
     }
 }

@@ -105,7 +105,11 @@ impl Ironed {
             uv = panel.photo_px.iter().map(|px| crop.uv(px)).collect();
             let scale = px_per_metre(garment, panel, &triangles) / crop.step;
             let pixels = self.texture(crop, scale, cx)?.ok_or_else(|| beside(&panel.name, &photo.file))?;
-            model.textures.push(Texture { name: panel.name.clone(), pixels: Shared::new(pixels) });
+            model.textures.push(Texture {
+                name: panel.name.clone(),
+                pixels: Shared::new(pixels),
+                repeats: false,
+            });
             texture = Some(model.textures.len() - 1);
         }
         let colour = if texture.is_some() { [1.0; 3] } else { PLAIN };

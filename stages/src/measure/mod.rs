@@ -1,5 +1,6 @@
 //! The judgement of a finished garment, behind `metrics.json`.
 
+mod girth;
 mod on_body;
 mod quality;
 mod tight;

@@ -5,8 +5,8 @@
 //! collider, what crosses the body between its vertices is found on the body's own triangles; without
 //! collider or body they are not measured, and `metrics.json` says so with a null.
 
-use super::on_body;
 use super::tight::Tight;
+use super::{girth, on_body};
 use crate::cloth::check_garment;
 use crate::collide::crossing::body_crossings;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// misses a limit is written all the same, with exit code 4.
 #[stage(
     role = Writer,
-    version = 3,
+    version = 4,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -42,8 +42,9 @@ pub struct Measure {
     /// Greatest 99th percentile of the edge strain, as a share; edges that the body stretches count as not strained.
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
-    /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a share: they lie on the body, and the cloth
-    /// there is longer in some direction than it was cut, by at least as much. Beyond it the garment is too small for the body (woven cotton
+    /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a share: they lie on the body or hang together
+    /// with it through cloth that is stretched by 2 % and more, and the cloth there is longer in some direction than it was cut, by at least
+    /// as much. Beyond it the garment is too small for the body (woven cotton
     /// tears at some 25 %); from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
@@ -76,6 +77,7 @@ impl Measure {
         let loose = panel_figures(garment, Some(&tight))?;
         figures.shortfalls = self.shortfalls(&figures.garment, &loose, tight.rest());
         figures.shortfalls.extend(tight.judge(garment, self.max_strain, self.max_tight, cx));
+        girth::tell(&figures.garment.girths, cx);
         figures.shortfalls.extend(on_body::shortfall(garment, self.least_on_body));
         Ok(figures)
     }
@@ -211,6 +213,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<
         body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b).len()),
         self_crossings: collider.map(|c| crossings(garment, c)),
         on_body: on_body::least(garment).map(|(_, share)| share),
+        girths: body.map(|b| girth::girths(garment, b)).unwrap_or_default(),
         energy_j: garment.status.energy,
         max_speed_m_s: garment.status.max_speed,
         steps: garment.status.steps,

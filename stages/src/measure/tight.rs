@@ -1,9 +1,11 @@
 //! Cloth that the body stretches.
 //!
 //! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body is there. Such cloth is told of, and not
-//! held against the solver. A triangle is taut where all of it lies on the body and it is stretched in some direction; what of it is shorter
-//! in another direction, by no more, is drawn so by that stretch (shear, Poisson's ratio), and counts with it. Limit: cloth that friction
-//! holds stretched on the body, though the pattern is wide enough, counts too.
+//! held against the solver. A triangle is taut where all of it lies on the body and it is stretched in some direction. So is cloth that
+//! spans a hollow of the body: what is stretched by more than its weight could, and hangs together with a triangle on the body through
+//! cloth that is stretched so. What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch (shear,
+//! Poisson's ratio), and counts with it. Limit: cloth that friction holds stretched on the body, though the pattern is wide enough, counts
+//! too.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{BodyContact, Garment, GarmentPanel, Shortfall, quantile};
@@ -12,6 +14,9 @@ use toile_core::prelude::*;
 /// How far cloth on the body may be from it, in thicknesses of the collider: contact begins at one, edges over a round body stand off
 /// farther.
 const ON: f64 = 3.0;
+
+/// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin stretches by 0.2 % under its weight.
+const DRAWN: f64 = 0.02;
 
 /// An edge of a garment.
 struct Edge {
@@ -25,7 +30,7 @@ struct Edge {
 /// The edges of a garment, and how far the body stretches each triangle.
 pub(super) struct Tight {
     edges: Vec<Edge>,
-    /// By the vertices of triangles that lie on the body: the greatest stretch, as a strain.
+    /// By the vertices of the taut triangles: the greatest stretch, as a strain.
     taut: BTreeMap<[u32; 3], f64>,
 }
 
@@ -33,10 +38,10 @@ impl Tight {
     /// Of a garment on a collider's body; nothing is taut without one.
     pub(super) fn of(garment: &Garment, collider: Option<&Collider>) -> Self {
         let on = on_body(garment, collider);
-        let stretches = garment.stretches().into_iter().map(|s| s - 1.0);
-        let all_on = |t: &[u32; 3]| t.iter().all(|v| on[*v as usize]);
-        let taut: BTreeMap<[u32; 3], f64> =
-            garment.triangles.iter().copied().zip(stretches).filter(|(t, s)| *s > 0.0 && all_on(t)).collect();
+        let strains: Vec<f64> = garment.stretches().into_iter().map(|s| s - 1.0).collect();
+        let is_taut = taut_triangles(garment, &on, &strains);
+        let all = garment.triangles.iter().copied().zip(strains).zip(is_taut);
+        let taut: BTreeMap<[u32; 3], f64> = all.filter_map(|(of, is_taut)| is_taut.then_some(of)).collect();
         let mut most = BTreeMap::new();
         for (t, stretch) in &taut {
             for k in 0..3 {
@@ -99,6 +104,46 @@ impl Tight {
     }
 }
 
+/// Which triangles the body stretches: stretched ones that lie on it, and drawn ones that hang together with it.
+fn taut_triangles(garment: &Garment, on: &[bool], strains: &[f64]) -> Vec<bool> {
+    let on = |v: &u32| on[*v as usize];
+    let lies = |(t, s): (&[u32; 3], &f64)| *s > 0.0 && t.iter().all(on) || *s > DRAWN && t.iter().any(on);
+    let mut taut: Vec<bool> = garment.triangles.iter().zip(strains).map(lies).collect();
+    let beside = neighbours(garment);
+    let mut open: Vec<usize> = (0..taut.len()).filter(|&t| taut[t] && strains[t] > DRAWN).collect();
+    while let Some(t) = open.pop() {
+        for &next in &beside[t] {
+            if !taut[next] && strains[next] > DRAWN {
+                taut[next] = true;
+                open.push(next);
+            }
+        }
+    }
+    taut
+}
+
+/// For every triangle those that share an edge with it, across seams as well.
+fn neighbours(garment: &Garment) -> Vec<Vec<usize>> {
+    let mut point: Vec<u32> = (0..garment.positions.len() as u32).collect();
+    for pair in garment.seams.iter().flat_map(|s| &s.pairs) {
+        let least = pair.iter().map(|&v| point[v as usize]).min();
+        pair.iter().for_each(|&v| point[v as usize] = least.unwrap_or(v));
+    }
+    let mut sides = Vec::with_capacity(3 * garment.triangles.len());
+    for (t, v) in garment.triangles.iter().enumerate() {
+        let v = v.map(|v| point[v as usize]);
+        sides.extend((0..3).map(|k| (v[k].min(v[(k + 1) % 3]), v[k].max(v[(k + 1) % 3]), t)));
+    }
+    sides.sort_unstable();
+    let mut beside = vec![Vec::new(); garment.triangles.len()];
+    for of in sides.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+        for (a, b) in of.iter().flat_map(|a| of.iter().map(move |b| (a.2, b.2))).filter(|(a, b)| a != b) {
+            beside[a].push(b);
+        }
+    }
+    beside
+}
+
 /// Which vertices lie on the body.
 fn on_body(garment: &Garment, collider: Option<&Collider>) -> Vec<bool> {
     let mut on = vec![false; garment.positions.len()];
@@ -155,6 +200,23 @@ mod tests {
             assert_eq!(tight.taut(), 0.0);
             assert!((tight.rest() - 0.08).abs() < 0.01, "{}", tight.rest());
         }
+    }
+
+    #[test]
+    fn cloth_that_spans_a_hollow_between_two_places_of_the_body_is_stretched_by_it() {
+        let (mut sheet, _) = sheet(0.08, 0.0);
+        let row = |y: f64| Point3::new(0.1, y, 0.0);
+        // Two thin bars under the two ends, along z.
+        let ends =
+            sheet.positions.iter().map(|p| p.x).fold((f64::MAX, f64::MIN), |(a, b), x| (a.min(x), b.max(x)));
+        for p in &mut sheet.positions {
+            p.y = 1.0;
+        }
+        let bar = |x: f64| ([x, row(0.979).y, -5.0], [x, row(0.979).y, 5.0], 0.02);
+        let both = Capsules::new(&[bar(ends.0), bar(ends.1)]);
+        let tight = Tight::of(&sheet, Some(&both.collider()));
+        assert!(tight.rest() < 1e-3, "{}", tight.rest());
+        assert!((tight.taut() - 0.08).abs() < 0.01, "{}", tight.taut());
     }
 
     #[test]

@@ -6,8 +6,8 @@
 //! using the Talisman architecture*, 1997).
 //! Cost: a third more memory, eight texels a lookup.
 
-use image::RgbImage;
 use std::sync::LazyLock;
+use toile_core::artifact::Texture;
 
 /// Linear light of every sRGB level.
 pub(crate) static LINEAR: LazyLock<[f32; 256]> =
@@ -97,14 +97,17 @@ struct Level {
     width: usize,
     height: usize,
     texels: Vec<[u8; 3]>,
+    /// Whether it repeats beyond its edges; else its border goes on.
+    repeats: bool,
 }
 
 impl Mips {
-    /// All levels of a picture; none for an empty one.
-    pub(crate) fn new(picture: &RgbImage) -> Mips {
-        let (w, h) = picture.dimensions();
-        let texels = picture.pixels().map(|p| p.0).collect();
-        let mut levels = vec![Level { width: w as usize, height: h as usize, texels }];
+    /// All levels of a texture; none for an empty one.
+    pub(crate) fn new(texture: &Texture) -> Mips {
+        let (w, h) = texture.pixels.dimensions();
+        let texels = texture.pixels.pixels().map(|p| p.0).collect();
+        let mut levels =
+            vec![Level { width: w as usize, height: h as usize, texels, repeats: texture.repeats }];
         while let Some(next) = levels.last().and_then(Level::halved) {
             levels.push(next);
         }
@@ -140,12 +143,15 @@ impl Level {
                 texels.push([0, 1, 2].map(|c| encode(four.iter().map(|t| t[c]).sum::<f32>() / 4.0)));
             }
         }
-        Some(Level { width, height, texels })
+        Some(Level { width, height, texels, repeats: self.repeats })
     }
 
-    /// The four texels around a lookup; the border goes on outwards.
+    /// The four texels around a lookup.
     fn around(&self, x: i64, y: i64) -> Option<[[u8; 3]; 4]> {
-        let clamp = |v: i64, n: usize| v.min(n as i64 - 1).max(0) as usize;
+        let clamp = |v: i64, n: usize| match self.repeats {
+            true => v.rem_euclid((n as i64).max(1)) as usize,
+            false => v.min(n as i64 - 1).max(0) as usize,
+        };
         let (x0, x1) = (clamp(x, self.width), clamp(x.saturating_add(1), self.width));
         let row = |y: i64| {
             let from = clamp(y, self.height) * self.width;

@@ -60,7 +60,7 @@ impl<'a> Scene<'a> {
     }
 
     fn prepare(model: &'a Model, fineness: Fineness, remember: Option<Remember<'a>>) -> Scene<'a> {
-        let textures = model.textures.par_iter().map(|t| Mips::new(&t.pixels)).collect();
+        let textures = model.textures.par_iter().map(Mips::new).collect();
         let region = region(model);
         let make = || light::ambient(model, region, fineness);
         let ambient = match &remember {

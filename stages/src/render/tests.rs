@@ -103,7 +103,7 @@ fn a_texture_stands_upright() {
         (0, _) => Rgb([0, 0, 255]),
         _ => Rgb([255, 255, 255]),
     });
-    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels) };
+    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels), repeats: false };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
     let model =
         Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };
@@ -115,9 +115,23 @@ fn a_texture_stands_upright() {
 }
 
 #[test]
+fn a_texture_that_repeats_goes_on_beyond_its_edges() {
+    let pixels = RgbImage::from_fn(2, 1, |x, _| Rgb([if x == 0 { 255 } else { 0 }, 0, 255]));
+    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels), repeats: true };
+    let mut square = square("a", 0.0, 0.5, 0);
+    // Two repeats across.
+    square.uv.iter_mut().for_each(|uv| uv[0] = uv[0] * 2.0 - 7.0);
+    let material = Material { texture: Some(0), ..paint([1.0; 3]) };
+    let model = Model { meshes: vec![square], materials: vec![material], textures: vec![texture] };
+    let picture = render(&model, &flat(80, 80));
+    let reds: Vec<u8> = [25, 35, 45, 55].map(|x| picture.get_pixel(x, 40).0[0]).to_vec();
+    assert!(reds[0] > 200 && reds[1] < 100 && reds[2] > 200 && reds[3] < 100, "{reds:?}");
+}
+
+#[test]
 fn a_fine_pattern_seen_from_afar_turns_even() {
     let pixels = RgbImage::from_fn(512, 512, |x, y| Rgb([if (x + y) % 2 == 0 { 255 } else { 0 }; 3]));
-    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels) };
+    let texture = Texture { name: "t".into(), pixels: Shared::new(pixels), repeats: false };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
     let model =
         Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };

@@ -2,6 +2,7 @@
 
 mod bleed;
 mod crop;
+mod fabric_texturer;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod inside;
@@ -10,7 +11,9 @@ mod photo_texturer;
 #[cfg(test)]
 mod tests;
 mod texture_size;
+mod weave;
 
+pub use fabric_texturer::{FabricTexture, FabricTexturer};
 pub use photo_texturer::{BodyShown, Light, PhotoTexturer};
 
 use toile_core::Registry;
@@ -19,6 +22,7 @@ use toile_core::prelude::*;
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<PhotoTexturer>();
+    registry.add::<FabricTexturer>();
 }
 
 /// The photo that shows a panel: that of its name, or of the last word of its name, such as `front` for `left_sleeve_front`.

@@ -138,7 +138,7 @@ impl PhotoTexturer {
         if !bleed::bleed(&mut crop.pixels, &sure) && !bleed::bleed(&mut crop.pixels, &crop.inside) {
             return Err(off_photo(panel, photo));
         }
-        Ok(Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels) })
+        Ok(Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels), repeats: false })
     }
 }
 

@@ -8,6 +8,7 @@ use super::check::check_model;
 use super::names::check_name;
 use super::texture_file::TextureFormat;
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use toile_core::prelude::*;
 
 /// Writes the model as one GLB file that any glTF viewer opens.
@@ -52,10 +53,11 @@ const UNSIGNED_SHORT: u32 = 5123;
 const UNSIGNED_INT: u32 = 5125;
 const ARRAY_BUFFER: u32 = 34962;
 const ELEMENT_ARRAY_BUFFER: u32 = 34963;
-/// Filters: linear, and linear over mip-maps; wrap: clamp to the edge.
+/// Filters: linear, and linear over mip-maps; wrap: clamp to the edge, and repeat.
 const LINEAR: u32 = 9729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
 const CLAMP_TO_EDGE: u32 = 33071;
+const REPEAT: u32 = 10497;
 
 /// The file: header, JSON chunk, binary chunk. `images` holds the model's textures, encoded.
 pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u8>, StageError> {
@@ -87,12 +89,21 @@ pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u
     });
     // The standard forbids empty lists.
     if !images.is_empty() {
-        let textures = (0..images.len()).map(|i| json!({ "source": i, "sampler": 0 })).collect();
+        let wraps: Vec<u32> = model
+            .textures
+            .iter()
+            .map(|t| if t.repeats { REPEAT } else { CLAMP_TO_EDGE })
+            .collect::<BTreeSet<_>>()
+            .into_iter()
+            .rev()
+            .collect();
+        let sampler = |t: &Texture| wraps.iter().position(|w| t.repeats == (*w == REPEAT));
+        let texture = |(i, t): (usize, &Texture)| json!({ "source": i, "sampler": sampler(t) });
+        let textures = model.textures.iter().enumerate().map(texture).collect();
         root["images"] = Value::Array(images);
         root["textures"] = Value::Array(textures);
-        root["samplers"] = json!([{
-            "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR, "wrapS": CLAMP_TO_EDGE, "wrapT": CLAMP_TO_EDGE,
-        }]);
+        let sampler = |wrap: &u32| json!({ "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR, "wrapS": wrap, "wrapT": wrap });
+        root["samplers"] = wraps.iter().map(sampler).collect();
     }
     if unlit {
         root["extensionsUsed"] = json!(["KHR_materials_unlit"]);

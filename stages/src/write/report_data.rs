@@ -308,6 +308,10 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         cloth.push(row("vertices inside the body", inside.vertices as f64, ""));
         fit.push(row("deepest in the body", inside.max_m * 1e3, "mm"));
     }
+    for (level, girth) in judged.iter().flat_map(|g| &g.girths) {
+        fit.push(row(&format!("cloth around the {level}"), girth.cloth_m * 1e2, "cm"));
+        fit.push(row(&format!("ease at the {level}"), (girth.cloth_m - girth.body_m) * 1e2, "cm"));
+    }
     if let Some(crossings) = judged.and_then(|g| g.body_crossings) {
         cloth.push(row("pairs of triangles that cross the body", crossings as f64, ""));
     }

@@ -91,9 +91,9 @@ impl Pattern {
         }
         let by_name: BTreeMap<&str, &Names> =
             self.pieces.iter().zip(&names).map(|(p, n)| (p.name.as_str(), n)).collect();
-        let mut seams = Vec::new();
+        let (mut seams, mut gathers) = (Vec::new(), Vec::new());
         for s in &self.seams {
-            let kind = kind(self, s, &mut notes);
+            let kind = kind(self, s, &mut gathers);
             let first = cuts.links(&s.sides[0]);
             for other in &s.sides[1..] {
                 let pairs = first.iter().zip(cuts.links(other));
@@ -101,6 +101,7 @@ impl Pattern {
             }
         }
         share_gauges(&mut outlines, &seams);
+        notes.extend(told(&gathers));
         Ok(Lowered { outlines, plan: SewingPlan { seams, placements: BTreeMap::new() }, notes })
     }
 }
@@ -113,8 +114,29 @@ fn not_itself(s: &PatternSeam) -> Result<(), LoweringError> {
     }
 }
 
+/// A seam whose longer side is gathered because nothing else was said of it, with both lengths, metres.
+struct Gather<'a> {
+    seam: &'a str,
+    long: f64,
+    short: f64,
+}
+
+/// One sentence of all seams that are gathered.
+fn told(gathers: &[Gather<'_>]) -> Option<String> {
+    let ratio = |g: &Gather<'_>| g.long / g.short;
+    let most = gathers.iter().reduce(|a, b| if ratio(b) > ratio(a) { b } else { a })?;
+    let (seam, long, short) = (most.seam, most.long * 1e3, most.short * 1e3);
+    let what = match gathers.len() {
+        1 => format!("the seam \"{seam}\" joins {long:.1} mm to {short:.1} mm: the longer side is gathered"),
+        n => format!(
+            "{n} seams join sides of unlike length, of which the longer is gathered: most of all \"{seam}\", {long:.1} mm to {short:.1} mm,"
+        ),
+    };
+    Some(format!("{what} in the ratio {:.3}", ratio(most)))
+}
+
 /// The kind of a seam: matched sides of very different lengths are gathered, which is told.
-fn kind(pattern: &Pattern, s: &PatternSeam, notes: &mut Vec<String>) -> SeamKind {
+fn kind<'a>(pattern: &Pattern, s: &'a PatternSeam, gathers: &mut Vec<Gather<'a>>) -> SeamKind {
     match s.kind {
         SeamKind::Matched => {}
         SeamKind::Gathered
@@ -130,13 +152,7 @@ fn kind(pattern: &Pattern, s: &PatternSeam, notes: &mut Vec<String>) -> SeamKind
     if long - short <= EASE * long {
         return SeamKind::Matched;
     }
-    notes.push(format!(
-        "the seam \"{}\" joins {:.1} mm to {:.1} mm: the longer side is gathered in the ratio {:.3}",
-        s.name,
-        long * 1e3,
-        short * 1e3,
-        long / short
-    ));
+    gathers.push(Gather { seam: &s.name, long, short });
     SeamKind::Gathered
 }
 

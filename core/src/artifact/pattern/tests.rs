@@ -179,6 +179,20 @@ fn three_pieces_in_one_seam_share_one_gauge() {
 }
 
 #[test]
+fn many_gathers_are_told_in_one_sentence() {
+    let heights = [("a", 0.3), ("b", 0.3), ("c", 0.36), ("d", 0.6)];
+    let pieces: Vec<Piece> = heights.map(|(n, height)| rectangle(n, 0.2, height)).into();
+    let sew = |name: &str, a: &str, b: &str| {
+        seam(name, SeamKind::Matched, [a, b].map(|n| side(&[(n, "right", false)])).into())
+    };
+    let seams = vec![sew("ab", "a", "b"), sew("ac", "a", "c"), sew("bd", "b", "d")];
+    let lowered = Pattern { name: "t".into(), pieces, seams }.lower().unwrap();
+    let told = "2 seams join sides of unlike length, of which the longer is gathered: most of all \"bd\", 600.0 mm to 300.0 mm, in the \
+                ratio 2.000";
+    assert_eq!(lowered.notes, [told]);
+}
+
+#[test]
 fn a_corner_within_an_edge_stays_a_corner_and_is_no_curve() {
     let mut piece = rectangle("a", 0.4, 0.3);
     piece.outer.edges[0].curve = EdgeCurve::Polyline { points: vec![p(0.2, 0.1)] };

@@ -1,9 +1,9 @@
 //! Records of plans and judgements: fabrics, seams, phases, figures, finished files.
 
 use super::super::{
-    Air, Curve, EdgeRef, Fabric, Figures, GarmentFigures, Limb, OutputFile, OutputFiles, PanelFigures,
-    PanelPlacement, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall, StrainFigures,
-    Vector3,
+    Air, Curve, EdgeRef, Fabric, Figures, GarmentFigures, GirthFigures, Limb, OutputFile, OutputFiles,
+    PanelFigures, PanelPlacement, PenetrationFigures, Phase, Phases, Seam, SeamKind, SewingPlan, Shortfall,
+    StrainFigures, Vector3,
 };
 use super::flat::{value, word};
 use super::{Reader, Record, Stored};
@@ -210,9 +210,18 @@ fn garment_fields(g: &GarmentFigures) -> Record<'_> {
         .count("steps", g.steps)
         .flag("converged", g.converged)
         .maybe_number("tight_p99", g.tight_p99)
-        .maybe_number("on_body", g.on_body);
+        .maybe_number("on_body", g.on_body)
+        .records("girths", g.girths.iter().map(|(level, g)| girth_fields(level, g)));
     let counts = [("body_crossings", g.body_crossings), ("self_crossings", g.self_crossings)];
     counts.into_iter().filter_map(|(name, n)| Some((name, n?))).fold(record, |r, (name, n)| r.count(name, n))
+}
+
+fn girth_fields<'a>(level: &'a str, g: &GirthFigures) -> Record<'a> {
+    Record::new().text("level", level).number("cloth_m", g.cloth_m).number("body_m", g.body_m)
+}
+
+fn girth_of(r: &Reader<'_>) -> Result<(String, GirthFigures), String> {
+    Ok((r.text("level")?, GirthFigures { cloth_m: r.one("cloth_m")?, body_m: r.one("body_m")? }))
 }
 
 fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
@@ -232,6 +241,7 @@ fn garment_of(r: &Reader<'_>) -> Result<GarmentFigures, String> {
         body_crossings: maybe_count("body_crossings")?,
         self_crossings: maybe_count("self_crossings")?,
         on_body: r.maybe_one("on_body")?,
+        girths: r.records("girths")?.map(|g| girth_of(&g)).collect::<Result<_, _>>()?,
         energy_j: r.one("energy_j")?,
         max_speed_m_s: r.one("max_speed_m_s")?,
         steps: r.count("steps")?,

@@ -149,8 +149,11 @@ impl Model {
 
 impl Stored for Model {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
-        let texture =
-            |t: Reader<'_>| Ok::<_, String>(Texture { name: t.text("name")?, pixels: t.rgb("pixels")? });
+        let texture = |t: Reader<'_>| {
+            // Programs from before textures could repeat do not name it.
+            let repeats = t.find("repeats").map_or(Ok(false), |_| t.flag("repeats"))?;
+            Ok::<_, String>(Texture { name: t.text("name")?, pixels: t.rgb("pixels")?, repeats })
+        };
         Ok(Model {
             meshes: r.records("meshes")?.map(|m| mesh_of(&m)).collect::<Result<_, _>>()?,
             materials: r.records("materials")?.map(|m| material_of(&m)).collect::<Result<_, _>>()?,
@@ -160,7 +163,8 @@ impl Stored for Model {
 }
 
 fn texture_fields(t: &Texture) -> Record<'_> {
-    rgb(Record::new(), &t.pixels).text("name", &t.name)
+    let record = rgb(Record::new(), &t.pixels).text("name", &t.name);
+    if t.repeats { record.flag("repeats", true) } else { record }
 }
 
 fn mesh_fields(m: &Mesh) -> Record<'_> {

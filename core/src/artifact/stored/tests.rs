@@ -133,7 +133,7 @@ fn model() -> Model {
             roughness: 0.9,
             double_sided: true,
         }],
-        textures: vec![Texture { name: "t".into(), pixels: photo().pixels }],
+        textures: vec![Texture { name: "t".into(), pixels: photo().pixels, repeats: true }],
     }
 }
 
@@ -169,6 +169,7 @@ fn figures() -> Figures {
             self_crossings: Some(4),
             tight_p99: Some(0.06),
             on_body: Some(0.75),
+            girths: BTreeMap::from([("bust".to_owned(), GirthFigures { cloth_m: 0.95, body_m: 0.88 })]),
             ..GarmentFigures::default()
         },
         shortfalls: vec![Shortfall { code: ErrorCode::BodyIntersection, message: "inside".into() }],
