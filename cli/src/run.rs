@@ -6,14 +6,14 @@ use crate::progress::Bar;
 use crate::validate::{Refused, inspect, open, warn_unused};
 use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
 use serde_json::json;
-use std::path::PathBuf;
-use std::sync::Arc;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;
 use toile_core::cache::Cache;
 use toile_core::pipeline::{Fault, Faults, Pipeline};
 use toile_core::{
-    Cancel, ErrorCode, Listener, Metrics, Reads, Registry, RunError, RunOptions, RunResult, StageError,
-    check_folder, run as run_stages, write_files,
+    Cancel, ErrorCode, Listener, Metrics, Reads, Registry, RunError, RunOptions, RunResult, SoFar,
+    StageError, check_folder, run as run_stages, write_files,
 };
 
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
@@ -57,7 +57,9 @@ pub(crate) fn once(
         watch::note_plugins(&pipeline, reads);
     }
     let known = Arc::new(Known::of(&args.cache, args.threads));
+    let so_far = SoFar::default();
     let options = RunOptions {
+        so_far: Some(so_far.clone()),
         meter: Some(Arc::new(costs::stopwatch())),
         expect: Some(known.clone()),
         until: args.until.clone(),
@@ -68,13 +70,47 @@ pub(crate) fn once(
     };
     let outcome = under_a_bar(&pipeline, &options, args.threads, streams);
     match outcome {
-        Err(e) => fail_run(&pipeline, &e, args.json, streams),
+        Err(e) => {
+            let code = fail_run(&pipeline, &e, args.json, streams);
+            leave(&folder(args), &so_far, args.json, streams);
+            code
+        }
         Ok(result) => {
             known.keep(&pipeline, &result.costs);
             let locked =
                 lock.map_or(exit::DONE, |l| lock::compare(&l, &pipeline, registry, &result, streams));
             finish(args, &pipeline, result, &known, streams).max(locked)
         }
+    }
+}
+
+/// Writes what a run that failed has made until then below its own folder, where nobody takes it for a result.
+fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
+    let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
+    if files.is_empty() {
+        return;
+    }
+    let dir = dir.join(FAILED);
+    clear(&dir);
+    interrupt::begin_writing();
+    match write_files(&dir, &files) {
+        Ok(_) if json => {}
+        Ok(_) => {
+            let page = files.iter().find(|f| f.path.ends_with(".html")).map_or("", |f| f.path.as_str());
+            streams.tell(format!("what the run made until then: {}", dir.join(page).display()));
+        }
+        Err(e) => streams.warn(e.to_string()),
+    }
+}
+
+/// The folder of a run that failed, within its output folder.
+const FAILED: &str = "failed";
+
+/// Takes away what an earlier run that failed has left in its folder; a folder that is not such a run's stays.
+fn clear(dir: &Path) {
+    if dir.join("reason.txt").is_file() {
+        // What cannot be taken away lies beside the new files.
+        let _ = std::fs::remove_dir_all(dir);
     }
 }
 
@@ -138,6 +174,7 @@ fn finish(
     if let Err(error) = write_files(&dir, &files) {
         return unwritable(pipeline, error, args.json, streams);
     }
+    clear(&dir.join(FAILED));
     match args.json {
         true => streams.say(result.metrics.to_json()),
         false if streams.is_quiet() => {}

@@ -1,8 +1,8 @@
 //! What a running stage may ask of the outside world.
 
-use crate::artifact::{Digest, Digester, Measure};
+use crate::artifact::{ArtifactType, Digest, Digester, Measure};
 use crate::cache::{Cache, Hash};
-use crate::{ErrorCode, StageError};
+use crate::{ErrorCode, PortValue, StageError};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,6 +87,7 @@ pub struct Context {
     listener: Arc<dyn Listener>,
     figures: Mutex<Vec<Measure>>,
     warnings: Mutex<Vec<String>>,
+    so_far: Mutex<Option<PortValue>>,
     reads: Mutex<Vec<(String, Option<Hash>)>>,
     parallel: Option<Arc<dyn Parallel>>,
     /// Where parts of the stage's work are kept, under keys that begin with the stage's own.
@@ -104,6 +105,7 @@ impl Context {
             listener,
             figures: Mutex::default(),
             warnings: Mutex::default(),
+            so_far: Mutex::default(),
             reads: Mutex::default(),
             parallel: None,
             memo: None,
@@ -202,6 +204,24 @@ impl Context {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Warning(text.clone()));
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text);
+    }
+
+    /// Keeps what the stage has come to, for a look should it fail: a garment with an open seam, the mask of a photo that is refused. The last
+    /// one counts.
+    pub fn so_far(&self, artifact: impl ArtifactType) {
+        self.take_over(Some(PortValue::One(Arc::new(artifact))));
+    }
+
+    /// Keeps what another context was given, where it was given something.
+    pub(crate) fn take_over(&self, artifact: Option<PortValue>) {
+        if artifact.is_some() {
+            *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = artifact;
+        }
+    }
+
+    /// What the stage has come to.
+    pub fn take_so_far(&self) -> Option<PortValue> {
+        self.so_far.lock().unwrap_or_else(PoisonError::into_inner).take()
     }
 
     /// Keeps a figure for report and metrics: `figure("threshold", 131.0, "grey levels")`.

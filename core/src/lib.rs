@@ -67,7 +67,9 @@ pub use metrics::{Metrics, StageMetrics};
 pub use output::{check_folder, write_files};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{Outlook, Reads, RunError, RunOptions, RunResult, add_implicit, faults, forecast, plan, run};
+pub use run::{
+    Outlook, Reads, RunError, RunOptions, RunResult, SoFar, add_implicit, faults, forecast, plan, run,
+};
 pub use stage::{
     Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, Placed, PluginId, PortValue, Role, Set,
     Stage, StageMeta, StageType,

@@ -55,7 +55,7 @@ pub use pattern::{
 };
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
-pub use runlog::{RunLog, StageRecord};
+pub use runlog::{Failure, RunLog, StageRecord};
 pub use seam_kind::{PleatFold, SeamKind};
 pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
 pub use shared::Shared;

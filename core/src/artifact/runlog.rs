@@ -40,6 +40,19 @@ pub struct RunLog {
     pub stages: Vec<StageRecord>,
     /// Names of stages that were not needed, with the reason.
     pub skipped: Vec<(String, String)>,
+    /// Why the run ended early; none while it goes on.
+    pub failure: Option<Failure>,
+}
+
+/// Why a run ended early.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Failure {
+    /// The stage's id, and the entry of its set at work.
+    pub stage: String,
+    /// What went wrong.
+    pub message: String,
+    /// What the user may do about it.
+    pub hint: Option<String>,
 }
 
 impl ArtifactType for RunLog {
@@ -60,6 +73,9 @@ impl Artifact for RunLog {
         }
         for s in &self.stages {
             d.text(&s.id).text(&s.params);
+        }
+        if let Some(failure) = &self.failure {
+            d.text("failure").text(&failure.stage).text(&failure.message);
         }
     }
 

@@ -48,6 +48,7 @@ pub fn forecast(
         meter: None,
         expect: None,
         steps: Vec::new(),
+        so_far: None,
     };
     let mut outlooks = Vec::new();
     for (node, skipped) in pipeline.nodes.iter().zip(plan) {

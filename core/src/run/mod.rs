@@ -8,6 +8,7 @@ mod node;
 mod pixels;
 mod recall;
 mod record;
+mod so_far;
 mod steps;
 mod value;
 
@@ -15,6 +16,7 @@ pub use faults::faults;
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
 pub(crate) use node::Made;
+pub use so_far::SoFar;
 
 use crate::artifact::{Artifact, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
 use crate::cache::{Cache, Hash};
@@ -42,6 +44,8 @@ pub struct RunOptions {
     pub cache: Option<Arc<Cache>>,
     /// Takes all files that stages read, or tried to, whether the run comes to its end or not.
     pub reads: Option<Reads>,
+    /// Takes what a run that fails has made until then, for a look.
+    pub so_far: Option<SoFar>,
     /// Measures what stages take; none measures nothing but wall time.
     pub meter: Option<Arc<dyn Meter>>,
     /// Says what stages were expected to take, for the record and the report; none says nothing.
@@ -118,10 +122,16 @@ pub fn run(
         meter: options.meter.as_deref(),
         expect: options.expect.as_deref(),
         steps: Vec::new(),
+        so_far: None,
     };
     for (node, skipped) in pipeline.nodes.iter().zip(plan) {
         match skipped {
-            None => unbroken(node, || run.step())?,
+            None => {
+                if let Err(error) = unbroken(node, || run.step()) {
+                    so_far::leave(&mut run, options, &error);
+                    return Err(error);
+                }
+            }
             Some(reason) => run.steps.push(Step::Skipped(reason)),
         }
     }

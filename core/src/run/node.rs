@@ -41,7 +41,10 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
     reads.extend(named_files(node, cx));
     cx.absorb_reads(&reads);
     match outcome {
-        Err(e) => Err((entry, e)),
+        Err(e) => {
+            cx.take_over(own.take_so_far());
+            Err((entry, e))
+        }
         Ok(outputs) => {
             let (figures, warnings) = own.take_notes();
             Ok(Made { entry, outputs, figures, warnings, reads })

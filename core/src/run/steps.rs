@@ -42,6 +42,8 @@ pub(super) struct Run<'a> {
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<Step>,
+    /// What the stage that failed had come to.
+    pub(super) so_far: Option<PortValue>,
 }
 
 impl Run<'_> {
@@ -122,6 +124,7 @@ impl Run<'_> {
         let made = run_entries(node, jobs, cx);
         let used = self.meter.map(Meter::stop);
         self.note_reads(cx.take_reads());
+        self.so_far = cx.take_so_far().filter(|_| made.is_err());
         made.map(|made| (made, used)).map_err(|e| located(self.pipeline, node, e))
     }
 

@@ -2,6 +2,7 @@
 //! none, more than one, or half of one.
 
 use super::cut_out::{CutOut, cut_out};
+use super::marked::marked;
 use super::morphology::{close, open};
 use super::regions::{Piece, Regions};
 use super::tone::OPAQUE;
@@ -62,7 +63,7 @@ pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) ->
     let mask = close(&open(&mask, settings.open), settings.close);
     cx.check()?;
     let pieces = Regions::of(&mask);
-    let kept = one_garment(&pieces, photo, settings)?;
+    let kept = one_garment(&pieces, photo, settings).inspect_err(|_| cx.so_far(marked(photo, &mask)))?;
     cx.check()?;
     let mask = fill_holes(pieces.paint(|i, _| i == kept), settings.holes);
     let mask = Mask { pixels: mask.into() };

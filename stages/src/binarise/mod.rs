@@ -19,6 +19,7 @@ mod finish;
 mod global;
 mod graph_cut;
 mod local;
+mod marked;
 mod mixture;
 mod morphology;
 mod otsu;

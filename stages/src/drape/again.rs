@@ -84,7 +84,8 @@ mod tests {
     }
 
     fn open() -> Result<Rested, RestError> {
-        Err(RestError::SeamNotClosed { seam: "side".into(), gap: 0.1, force: 1.0, reversed: vec![] })
+        let (seam, reversed, positions) = ("side".into(), vec![], vec![]);
+        Err(RestError::SeamNotClosed { seam, gap: 0.1, force: 1.0, reversed, positions })
     }
 
     fn fallen(start: Start) -> Result<Rested, RestError> {

@@ -164,6 +164,9 @@ impl Rest {
             );
         }
         let steps = progress.steps;
+        if let Some(positions) = result.as_ref().err().and_then(RestError::so_far) {
+            cx.so_far(self.at(garment, positions));
+        }
         let (state, converged) = self.judge(result, cx)?;
         cx.figure("residual", state.residual, "N");
         cx.figure("non_static", state.outcome.non_static, "");
@@ -224,10 +227,16 @@ impl Rest {
         }
     }
 
-    fn finish(&self, garment: &Garment, state: &Rested, steps: usize, converged: bool) -> Garment {
+    /// The garment at rest somewhere.
+    fn at(&self, garment: &Garment, positions: &[Vector3<f64>]) -> Garment {
         let mut garment = garment.clone();
-        garment.positions = state.positions.iter().map(|p| Point3::from(*p)).collect();
+        garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
         garment.velocities.fill(Vector3::zeros());
+        garment
+    }
+
+    fn finish(&self, garment: &Garment, state: &Rested, steps: usize, converged: bool) -> Garment {
+        let mut garment = self.at(garment, &state.positions);
         weld_seams(&mut garment);
         garment.status = SolveStatus {
             steps: garment.status.steps + steps,

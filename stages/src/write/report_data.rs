@@ -29,11 +29,22 @@ pub(super) struct Page {
     quality: String,
     version: &'static str,
     total: String,
+    /// Why the run ended early; none of one that came to its end.
+    failure: Option<Ended>,
     views: Vec<Shown>,
     shortfalls: Vec<String>,
     figures: Vec<Vec<Figure>>,
     stages: Vec<Section>,
     skipped: Vec<Figure>,
+}
+
+/// Why a run ended early.
+#[derive(Debug, Serialize)]
+struct Ended {
+    stage: String,
+    message: String,
+    /// Empty where nobody knows what may help.
+    hint: String,
 }
 
 /// A picture as the page holds it.
@@ -97,6 +108,11 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
         quality: run.quality.clone().unwrap_or_default(),
         version: env!("CARGO_PKG_VERSION"),
         total: seconds(total),
+        failure: run.failure.as_ref().map(|f| Ended {
+            stage: f.stage.clone(),
+            message: f.message.clone(),
+            hint: f.hint.clone().unwrap_or_default(),
+        }),
         views,
         shortfalls: shortfalls(run),
         figures: key_figures(run),

@@ -64,6 +64,8 @@ pub enum RestError {
         force: f64,
         /// Seams whose pairs seem to run against each other.
         reversed: Vec<String>,
+        /// The state carried to the finest level.
+        positions: Vec<Vec3>,
     },
     /// Cloth came through cloth while it was brought to rest.
     #[error(
@@ -124,6 +126,15 @@ pub enum RestError {
 }
 
 impl RestError {
+    /// How far the cloth has come, where that is known: vertices of the finest level, m.
+    #[must_use]
+    pub fn so_far(&self) -> Option<&[Vec3]> {
+        match self {
+            Self::SeamNotClosed { positions, .. } | Self::Timeout { positions, .. } => Some(positions),
+            _ => None,
+        }
+    }
+
     /// Whether a finer mesh to begin on may help, where this one's edges have a mean length, m.
     pub(super) fn is_of_a_coarse_mesh(&self, edge: f64) -> bool {
         match self {

@@ -99,7 +99,8 @@ impl Work<'_> {
         if gap > self.most_gap() {
             let seam = self.widest_seam(self.plan.pieces.len() - 1, x);
             let reversed = probably_reversed(self.plan.scene, &self.plan.starts[0]);
-            return Err(RestError::SeamNotClosed { seam, gap, force, reversed });
+            let positions = self.carried(x);
+            return Err(RestError::SeamNotClosed { seam, gap, force, reversed, positions });
         }
         Ok(())
     }

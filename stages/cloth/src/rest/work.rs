@@ -248,7 +248,7 @@ impl<'a> Work<'a> {
     }
 
     /// The level's nodes, sewn or open, carried to the finest vertices.
-    fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
+    pub(super) fn carried(&self, x: &[Vec3]) -> Vec<Vec3> {
         let k = self.level_of(x);
         let vertices =
             if self.plan.pieces[k].nodes == x.len() { self.plan.pieces[k].spread(x) } else { x.to_vec() };
@@ -263,7 +263,8 @@ impl<'a> Work<'a> {
         }
         let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
         let force = KEPT_PULL * strongest(&self.plan.cloths);
-        Err(RestError::SeamNotClosed { seam, gap, force, reversed: vec![] })
+        let positions = self.carried(x);
+        Err(RestError::SeamNotClosed { seam, gap, force, reversed: vec![], positions })
     }
 
     /// Refuses cloth that the strain limit could not hold.
