@@ -29,6 +29,12 @@ pub fn toile(arguments: &[&str]) -> Answer {
     Answer { code, out: text(out), err: text(err) }
 }
 
+/// Whether an output folder holds nothing but what a run that failed leaves for a look.
+pub fn wrote_no_result(out: &Path) -> bool {
+    let Ok(entries) = std::fs::read_dir(out) else { return true };
+    entries.flatten().all(|e| e.file_name() == "failed")
+}
+
 /// The repository's root.
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -1,8 +1,8 @@
-//! What bad input gets: a clear error with its place and a hint, exit code 3, and nothing written.
+//! What bad input gets: a clear error with its place and a hint, exit code 3, and no result written.
 
 use image::{Rgb, RgbImage};
 use std::path::{Path, PathBuf};
-use toile_tests::{Answer, pipeline, root, toile};
+use toile_tests::{Answer, pipeline, root, toile, wrote_no_result};
 
 const GROUND: Rgb<u8> = Rgb([220, 210, 190]);
 const CLOTH: Rgb<u8> = Rgb([40, 60, 120]);
@@ -16,13 +16,13 @@ fn picture(dir: &Path, name: &str, is_cloth: impl Fn(u32, u32) -> bool) -> PathB
     path
 }
 
-/// Runs the vest with something set, and proves that nothing was written.
+/// Runs the vest with something set, and proves that no result was written.
 fn refused(set: &str) -> Answer {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");
     let answer = toile(&["run", &pipeline("vest.ron"), "--out", &out.display().to_string(), "--set", set]);
     assert_eq!(answer.code, 3, "{}{}", answer.out, answer.err);
-    assert!(!out.exists(), "something was written");
+    assert!(wrote_no_result(&out), "something was written");
     answer
 }
 
@@ -134,6 +134,37 @@ fn a_garment_cut_by_the_frame() {
     let dir = tempfile::tempdir().unwrap();
     let path = picture(dir.path(), "cut.png", |x, y| x < 500 && (200..600).contains(&y));
     assert_says(&refused(&with_front(&path)), "is cut by the frame");
+}
+
+#[test]
+fn what_ran_until_a_fault_lies_in_a_folder_of_its_own_until_a_run_is_good() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = picture(dir.path(), "cut.png", |x, y| x < 500 && (200..600).contains(&y));
+    let (out, set) = (dir.path().join("out"), with_front(&path));
+    let out_text = out.display().to_string();
+    let answer = toile(&["run", &pipeline("vest.ron"), "--out", &out_text, "--set", &set]);
+    let page = out.join("failed/report.html");
+    assert!(
+        answer.err.ends_with(&format!("what the run made until then: {}\n", page.display())),
+        "{}",
+        answer.err
+    );
+    let reason = std::fs::read_to_string(out.join("failed/reason.txt")).unwrap();
+    assert!(reason.starts_with("Otsu (front): the garment in"), "{reason}");
+    assert!(reason.contains("\nhelp: leave a margin of ground on all sides"), "{reason}");
+    let page = std::fs::read_to_string(page).unwrap();
+    let (top, rest) = page.split_once("<h2>Time</h2>").unwrap();
+    assert!(top.contains("<h2>The run failed in Otsu</h2>") && top.contains("is cut by the frame"));
+    assert!(rest.contains("data:image"), "the stages' pictures");
+    // What was taken for the garment: its own colour inside, the line at its edge, dark ground.
+    let marked = image::open(out.join("failed/stages/Otsu/photo.png")).unwrap().into_rgb8();
+    assert_eq!(marked.get_pixel(250, 400), &CLOTH);
+    assert_eq!(marked.get_pixel(500, 400).0, [255, 0, 120]);
+    assert_eq!(marked.get_pixel(600, 400).0, GROUND.0.map(|c| (0.4 * f64::from(c)) as u8));
+
+    let good = toile(&["run", &pipeline("vest.ron"), "--out", &out_text, "--until", "Otsu"]);
+    assert_eq!(good.code, 0, "{}", good.err);
+    assert!(!out.join("failed").exists());
 }
 
 #[test]

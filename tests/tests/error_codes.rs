@@ -150,7 +150,7 @@ fn vest(change: &str) -> (u8, Value) {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out").display().to_string();
     let answer = toile(&["run", &pipeline("vest.ron"), "--json", "--out", &out, "--set", change]);
-    assert!(!dir.path().join("out").exists(), "nothing is written");
+    assert!(toile_tests::wrote_no_result(&dir.path().join("out")), "no result is written");
     (answer.code, serde_json::from_str(&answer.out).unwrap())
 }
 

@@ -23,7 +23,10 @@ pub(crate) struct Made {
     pub(crate) reads: Vec<(String, Option<Hash>)>,
 }
 
-/// Runs a stage for some entries, in parallel; the first failure in their order counts.
+/// The entry that people take a photo of first; the back is often its mirror image, and fails with it.
+const FRONT: &str = "front";
+
+/// Runs a stage for some entries, in parallel; the front's failure counts, else the first in their order.
 pub(super) fn run_entries(
     node: &Node,
     jobs: Vec<(String, Inputs)>,
@@ -31,7 +34,11 @@ pub(super) fn run_entries(
 ) -> Result<Vec<Made>, Failure> {
     let runs: Vec<Result<Made, Failure>> =
         jobs.into_par_iter().map(|(entry, inputs)| run_entry(node, entry, &inputs, cx)).collect();
-    runs.into_iter().collect()
+    let front = runs.iter().position(|r| matches!(r, Err((entry, _)) if entry == FRONT));
+    match front {
+        Some(k) => runs.into_iter().skip(k).collect(),
+        None => runs.into_iter().collect(),
+    }
 }
 
 fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Result<Made, Failure> {

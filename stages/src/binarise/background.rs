@@ -59,12 +59,14 @@ pub struct Background {
 #[stage]
 impl Background {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: 0, close: 0, holes: self.holes, touch: self.touch };
+        let settings =
+            Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`GraphCut()`" };
         mask_of(photo, settings, cx, || {
             let small = Small::of(photo, self.size);
             cx.check()?;
-            let mask = background(&small, self.modes as usize, self.rim, self.shadow)
-                .ok_or_else(|| no_garment(photo, "it has the colours of the frame's rim all over"))?;
+            let mask = background(&small, self.modes as usize, self.rim, self.shadow).ok_or_else(|| {
+                no_garment(photo, "it has the colours of the frame's rim all over", settings.next)
+            })?;
             cx.progress(0.5, "ground and garment parted");
             refine(photo, &small, &mask, cx)
         })

@@ -22,6 +22,8 @@ pub struct Finish {
     /// The garment may touch the frame over this share of the photo's shorter side; where it touches
     /// more, it is cut.
     pub touch: f64,
+    /// The binariser to try where this one is wrong, as it is written in a pipeline.
+    pub next: &'static str,
 }
 
 /// The least share of the photo that a garment covers: anything smaller is a speck.
@@ -63,7 +65,8 @@ pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) ->
     let mask = close(&open(&mask, settings.open), settings.close);
     cx.check()?;
     let pieces = Regions::of(&mask);
-    let kept = one_garment(&pieces, photo, settings).inspect_err(|_| cx.so_far(marked(photo, &mask)))?;
+    let kept =
+        one_garment(&pieces, photo, settings, cx.stage()).inspect_err(|_| cx.so_far(marked(photo, &mask)))?;
     cx.check()?;
     let mask = fill_holes(pieces.paint(|i, _| i == kept), settings.holes);
     let mask = Mask { pixels: mask.into() };
@@ -96,11 +99,11 @@ pub fn fill_holes(mask: GrayImage, share: f64) -> GrayImage {
 }
 
 /// The one garment among the pieces.
-fn one_garment(regions: &Regions, photo: &Photo, settings: Finish) -> Result<usize, StageError> {
+fn one_garment(regions: &Regions, photo: &Photo, settings: Finish, stage: &str) -> Result<usize, StageError> {
     let order = regions.by_size();
     let least = LEAST_AREA * frame_area(photo);
     let Some(&largest) = order.first().filter(|&&i| regions.pieces[i].area as f64 >= least) else {
-        return Err(no_garment(photo, "nothing stands out from the ground along the frame"));
+        return Err(no_garment(photo, "nothing stands out from the ground along the frame", settings.next));
     };
     let garment = regions.pieces[largest];
     let (w, h) = photo.pixels.dimensions();
@@ -110,7 +113,7 @@ fn one_garment(regions: &Regions, photo: &Photo, settings: Finish) -> Result<usi
             "the garment in \"{}\" is cut by the frame: it touches it over {} px",
             photo.file, garment.frame
         ))
-        .hint("leave a margin of ground on all sides; where there is one, this binariser took ground for garment, so try `GraphCut()`"));
+        .hint(cut_hint(stage, touch, settings.next)));
     }
     let second = order.get(1).map_or(0, |&i| regions.pieces[i].area);
     if second as f64 >= SECOND_GARMENT * garment.area as f64 {
@@ -118,15 +121,25 @@ fn one_garment(regions: &Regions, photo: &Photo, settings: Finish) -> Result<usi
             "two garments found in \"{}\": {} and {} pixels",
             photo.file, garment.area, second
         ))
-        .hint("photograph one garment at a time; where there is only one, try `GraphCut()`"));
+        .hint(format!("photograph one garment at a time; where there is only one, try {}", settings.next)));
     }
     Ok(largest)
 }
 
-/// The error for a photo that shows no garment, with the reason.
-pub fn no_garment(photo: &Photo, reason: &str) -> StageError {
+/// What may help a garment that touches the frame over a share of the photo's shorter side.
+fn cut_hint(stage: &str, touch: f64, next: &str) -> String {
+    // The next tenth, so that the option holds for a photo a little different.
+    let enough = (touch * 10.0).floor() / 10.0 + 0.1;
+    format!(
+        "leave a margin of ground on all sides; if nothing of it is cut off, let it touch the frame: --set 'stages.{stage}.touch={enough:.1}'; if \
+         there is a margin, ground was taken for garment: try {next}"
+    )
+}
+
+/// The error for a photo that shows no garment, with the reason and the binariser to try.
+pub fn no_garment(photo: &Photo, reason: &str, next: &str) -> StageError {
     StageError::invalid(format!("no garment found in \"{}\": {reason}", photo.file))
-        .hint("lay the garment on a ground of another colour, or try `GraphCut()`")
+        .hint(format!("lay the garment on a ground of another colour, or try {next}"))
 }
 
 /// Refuses photos of no pixels, which no method can work on.

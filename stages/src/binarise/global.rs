@@ -42,7 +42,13 @@ pub struct Global {
 #[stage]
 impl Global {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
+        let settings = Finish {
+            open: self.open,
+            close: self.close,
+            holes: self.holes,
+            touch: self.touch,
+            next: "`GraphCut()`",
+        };
         mask_of(photo, settings, cx, || Ok(global(&luma(&photo.pixels), photo, self.threshold, self.garment)))
     }
 }

@@ -63,7 +63,8 @@ pub struct GraphCut {
 #[stage]
 impl GraphCut {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: 0, close: 0, holes: self.holes, touch: self.touch };
+        let settings =
+            Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Background()`" };
         mask_of(photo, settings, cx, || {
             let mask = self.coarse(photo, cx)?;
             let small = Small::of(photo, self.size);
@@ -112,7 +113,7 @@ impl GraphCut {
 }
 
 fn one_colour(photo: &Photo) -> StageError {
-    no_garment(photo, "it has the colours of the frame's rim all over")
+    no_garment(photo, "it has the colours of the frame's rim all over", "`Background()`")
 }
 
 /// Colour models of both sides.

@@ -70,7 +70,13 @@ const MAX_RADIUS_PX: u32 = 2000;
 #[stage]
 impl Local {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
+        let settings = Finish {
+            open: self.open,
+            close: self.close,
+            holes: self.holes,
+            touch: self.touch,
+            next: "`GraphCut()`",
+        };
         mask_of(photo, settings, cx, || {
             let grey = luma(&photo.pixels);
             let dark = is_dark(&grey, photo, self.garment);

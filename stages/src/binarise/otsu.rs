@@ -52,7 +52,13 @@ const LEAST_CONTRAST: f64 = 10.0;
 #[stage]
 impl Otsu {
     pub(crate) fn run(&self, photo: &Photo, cx: &Context) -> Result<Mask, StageError> {
-        let settings = Finish { open: self.open, close: self.close, holes: self.holes, touch: self.touch };
+        let settings = Finish {
+            open: self.open,
+            close: self.close,
+            holes: self.holes,
+            touch: self.touch,
+            next: "`GraphCut()`",
+        };
         mask_of(photo, settings, cx, || self.raw(photo, cx))
     }
 
@@ -66,6 +72,7 @@ impl Otsu {
             return Err(no_garment(
                 photo,
                 &format!("its two tones differ by {contrast:.0} grey levels only"),
+                "`GraphCut()`",
             ));
         };
         let threshold = (f64::from(split.threshold) + self.bias).round().clamp(0.0, 254.0);

@@ -178,6 +178,9 @@ fn a_blank_photo_holds_no_garment() {
     ] {
         assert!(result.unwrap_err().to_string().starts_with("no garment found in \"front.jpg\": "));
     }
+    // No binariser proposes itself.
+    let error = GraphCut::default().run(&plain, &Context::quiet()).unwrap_err();
+    assert_eq!(error.hint.unwrap(), "lay the garment on a ground of another colour, or try `Background()`");
 }
 
 #[test]
@@ -205,6 +208,9 @@ fn a_garment_cut_by_the_frame_is_refused_unless_allowed() {
         error.to_string(),
         "the garment in \"front.jpg\" is cut by the frame: it touches it over 40 px"
     );
+    let hint = "leave a margin of ground on all sides; if nothing of it is cut off, let it touch the frame: --set 'stages.test.touch=0.5'; if \
+                there is a margin, ground was taken for garment: try `GraphCut()`";
+    assert_eq!(error.hint.unwrap(), hint);
     let allowed = Otsu { touch: 0.5, ..Otsu::default() };
     assert_eq!(allowed.run(&cut, &Context::quiet()).unwrap().area_px(), 3200);
 }

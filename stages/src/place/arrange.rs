@@ -2,12 +2,13 @@
 //!
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves, cuffs) are bent to cylinders around it, as the
 //! arrangement points of garment CAD do: halves before and behind the arm that are sewn to each other share one cylinder, whose girth
-//! is theirs, or the arm's where that is more. Poses that were made for a body whose origin is its middle are raised onto the
+//! is theirs, or the arm's where that is more. Flat halves of legs that stand beside the body's are swung before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised onto the
 //! floor. A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk and legs keep the flat places of
 //! the file, from which `Rest(sew_through: true)` sews them.
 
+mod legs;
 mod limb;
 mod region;
 mod stand;
@@ -38,13 +39,14 @@ const MIDDLE: f64 = 0.65;
 /// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
-    version = 2,
+    version = 3,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Arrange {
-    /// Whether sleeves and cuffs are bent around the arms; flat where the pattern puts them otherwise.
+    /// Whether sleeves and cuffs are bent around the arms, and flat halves of legs that miss the body's are swung before them; where the pattern puts
+    /// them otherwise.
     #[param(default = true)]
     bend: bool,
     /// Least distance of a bent piece from the arm.
@@ -73,6 +75,7 @@ impl Arrange {
         };
         self.raise(&mut places, body, cx);
         if self.bend {
+            legs::swing(pattern, body, &mut places).into_iter().for_each(|what| cx.warn(what));
             for limb in Limb::arms(body) {
                 let mine = match &sleeves {
                     Some(all) => {

@@ -378,6 +378,7 @@ fn run_log() -> RunLog {
     }];
     RunLog {
         pipeline: "vest <script>".to_owned(),
+        failure: None,
         quality: None,
         stages: vec![
             record("Photos", Role::Reader, vec![photos()]),
@@ -546,7 +547,7 @@ proptest! {
             predicted: None,
         };
         let (pipeline, quality) = (text.clone(), Some(text.clone()));
-        let run = RunLog { pipeline, quality, stages: vec![record], skipped: vec![(text.clone(), text)] };
+        let run = RunLog { pipeline, quality, stages: vec![record], skipped: vec![(text.clone(), text)], failure: None };
         assert_balanced(&report(&run, "()"));
     }
 }

@@ -3,7 +3,8 @@
 //! Method: what the photo shows is kept edge by edge. A garment that is laid flat is two equal layers, so front and back are cut along the template's outline. Sleeves are
 //! cut off along the armhole, which runs from armpit to shoulder point and is the sleeve's cap as well: both have one length. Each
 //! layer of a sleeve is a piece, so that each shows its own photo. The shoulder point, which a flat shirt does not show, lies where the shoulder of a
-//! block does: at 88 % of the chest's half (Aldrich 2008). Limits: a raglan sleeve is cut as a set-in one.
+//! block does: at 88 % of the chest's half (Aldrich 2008). So do the points of a fork, which lie folded (`leg`). Limits: a raglan sleeve is cut as a
+//! set-in one.
 
 use super::curve::Curve;
 use super::fit::Fit;
@@ -18,6 +19,15 @@ const SHOULDER: f64 = 0.88;
 const ALONG: [f64; 2] = [0.25, 0.8];
 /// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up above.
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
+/// The seat's height above the fork, as a share of the rise.
+const SEAT: f64 = 0.35;
+/// Both points of the fork, as a share of the seat's girth.
+const FORK: f64 = 0.15;
+/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is there, of the point; and of the inseam below the
+/// point.
+const STRAIGHT: f64 = 0.7;
+const HOLLOW: f64 = 0.15;
+const INNER: f64 = 0.15;
 /// Parts in which hem and neck are drawn.
 const PARTS: usize = 24;
 
@@ -210,11 +220,29 @@ fn sleeve(side: &Side, curves: &[Curve; 4], layer: Layer) -> Option<Flat> {
     })
 }
 
-/// The layer of a leg, closed along the middle of the garment.
+/// The layer of a leg: inseam, hem, outseam, waist, and the rise along the middle of the garment.
+///
+/// Trousers that lie flat hide what goes between the legs: the points of the fork lie folded under the other leg. A block gives them 15 % of the
+/// seat's girth, a third of it before and two behind (Aldrich 2008); what the fork shows beyond the seat's width is part of it.
 fn leg(side: &Side, layer: Layer) -> Flat {
+    let edge = |name: &str| side.edges.iter().find(|e| e.0 == name).map(|e| e.1);
     let (low, high) = (side.edges[0].1.0[0], side.edges[side.edges.len() - 1].1.0[3]);
-    let rise = Curve([high, high + (low - high) / 3.0, high + (low - high) * (2.0 / 3.0), low]);
+    let width = |share: f64| edge("outseam").map_or(0.0, |c| at_height(&c, low.y + share * (high.y - low.y)));
+    let (seat, fork) = (width(SEAT) - low.x, width(0.0) - low.x);
+    let hidden = (FORK * 4.0 * seat - 2.0 * (fork - seat).max(0.0)).max(0.0);
+    let point = match layer {
+        Layer::Front => hidden / 3.0,
+        Layer::Back => hidden * (2.0 / 3.0),
+    };
+    let out = |share: f64| Vector2::new(-share * point, 0.0);
+    let tip = low + out(1.0);
+    // Straight down, then out to the point.
+    let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
     let all = side.edges.iter().copied().chain([("rise", rise)]);
+    let all = all.map(|(name, c)| match name {
+        "inseam" => (name, Curve([tip, c.0[1] + out(INNER), c.0[2], c.0[3]])),
+        _ => (name, c),
+    });
     let mut edges: Vec<(String, Run)> =
         all.map(|(name, c)| (name.to_owned(), Run::Cubic(side.laid(c)))).collect();
     if side.mirrored {
@@ -227,4 +255,13 @@ fn leg(side: &Side, layer: Layer) -> Flat {
         origin: Point2::origin(),
         turn: 0.0,
     }
+}
+
+/// How far out a curve lies at a height: where it passes it, or its end that is nearer.
+fn at_height(c: &Curve, y: f64) -> f64 {
+    let points = c.points(PARTS);
+    let passes = points.windows(2).find(|w| (w[0].y - y) * (w[1].y - y) <= 0.0 && w[0].y != w[1].y);
+    let nearer =
+        || points.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs())).map_or(0.0, |p| p.x);
+    passes.map_or_else(nearer, |w| w[0].x + (w[1].x - w[0].x) * (y - w[0].y) / (w[1].y - w[0].y))
 }

@@ -14,6 +14,8 @@ const NARROWEST: f64 = 0.8;
 /// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin may lie, metres.
 const SLICE: f64 = 0.012;
 const REACH: f64 = 0.08;
+/// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
+const UPPERMOST: f64 = 0.5;
 
 /// A girth of the garment beside that of the body, metres.
 struct Girth {
@@ -62,20 +64,22 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
     found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
 }
 
-/// The narrower cuff beside the arm there: the upper arm for short sleeves, else the wrist.
+/// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is long.
 fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
     let cuff = form.edges.iter().position(|e| e.name == "cuff")?;
-    let long = form.edges[cuff - 1].chord[1] > 1.0;
-    let (of_body, ends, share) = if long {
-        ("the wrist", ["elbow", "wrist"], 1.0)
-    } else {
-        ("the upper arm", ["shoulder", "elbow"], 0.6)
+    let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();
+    let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
+    let (upper, fore) = ((elbow - shoulder).norm(), (wrist - elbow).norm());
+    let armpit = mark("armpit").map_or(0.0, |p| (p - shoulder).dot(&(elbow - shoulder)) / upper.max(1e-6));
+    let narrower = fit.sides.iter().min_by(|a, b| a[cuff].length().total_cmp(&b[cuff].length()))?;
+    let along = armpit.max(0.0) + narrower[cuff - 1].length();
+    let (of_body, from, to, share) = match along - upper {
+        below if below < 0.0 => ("the upper arm", shoulder, elbow, (along / upper).max(UPPERMOST)),
+        below if below < 0.8 * fore => ("the forearm", elbow, wrist, below / fore),
+        _ => ("the wrist", elbow, wrist, 1.0),
     };
-    let [from, to] = ends.map(|name| body.landmarks.get(&format!("{name}_left")).copied());
-    let around = arm_girth(body, from?, to?, share)?;
-    let girth = |s: &[Bow]| 2.0 * s[cuff].length();
-    let garment = fit.sides.iter().map(|s| girth(s)).fold(f64::INFINITY, f64::min);
-    Some(Girth { what: "narrower cuff", garment, of_body, body: around })
+    let around = arm_girth(body, from, to, share)?;
+    Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
 }
 
 /// The girth of an arm at a share of the way between two of its landmarks.
