@@ -63,6 +63,10 @@ pub(super) enum Damage {
     Itself { stitch: usize, panel: String, edge: usize },
     #[error("stitches {stitch} and {other} sew the same edges in opposite directions")]
     Contradiction { stitch: usize, other: usize },
+    #[error("edge {edge} of panel \"{panel}\" is sewn by stitch {stitch} and by stitch {other}")]
+    Shared { panel: String, edge: usize, stitch: usize, other: usize },
+    #[error("`{field}` stands twice in {of}")]
+    Twice { field: String, of: String },
     #[error("{what}")]
     Unsewable { what: String, remedy: &'static str },
 }
@@ -91,7 +95,7 @@ impl Damage {
             Damage::NoLength { .. } => "draw the edge, or take its stitch out".into(),
             Damage::Open { .. } => "close the loop: gaps of up to 5 mm are closed by themselves".into(),
             Damage::Crosses { .. } | Damage::NoArea { .. } => "draw the panel so that its edges meet at corners alone".into(),
-            Damage::Sides { .. } => "a stitch names two edges; three panels in one seam are two stitches".into(),
+            Damage::Sides { .. } => "a stitch names two edges; three panels in one seam are not sewn".into(),
             Damage::Word { .. } => "the only word is \"right_wrong\"".into(),
             Damage::NoPanel { panel, known, .. } => match nearest(panel, known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean \"{near}\"?"),
@@ -100,6 +104,8 @@ impl Damage {
             Damage::NoEdge { .. } => "edges are counted from 0".into(),
             Damage::Itself { .. } => "cut the edge in two and sew its halves".into(),
             Damage::Contradiction { .. } => "keep the stitch that is meant".into(),
+            Damage::Shared { .. } => "keep the stitch that is meant; three panels in one seam are not sewn".into(),
+            Damage::Twice { .. } => "keep the one that is meant".into(),
             Damage::Unsewable { remedy, .. } => (*remedy).into(),
         }
     }
@@ -131,6 +137,8 @@ impl Damage {
             | Damage::NoEdge { .. }
             | Damage::Itself { .. }
             | Damage::Contradiction { .. }
+            | Damage::Shared { .. }
+            | Damage::Twice { .. }
             | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
         StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at("file")

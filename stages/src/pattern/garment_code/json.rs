@@ -4,6 +4,7 @@
 
 use super::damage::Damage;
 use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use std::collections::BTreeSet;
 
 /// Values in one file; the largest known garment has some ten thousand.
 const MOST_VALUES: usize = 2_000_000;
@@ -38,7 +39,24 @@ impl Json {
                 most: MOST_VALUES,
             });
         }
-        serde_json::from_slice(bytes).map_err(|e| syntax(bytes, &e))
+        let json: Self = serde_json::from_slice(bytes).map_err(|e| syntax(bytes, &e))?;
+        json.each_once("the file").map(|()| json)
+    }
+
+    /// Refuses a field that stands twice in an object; panels of one name are told by the reader.
+    fn each_once(&self, of: &str) -> Result<(), Damage> {
+        match self {
+            Json::Object(fields) => {
+                let mut seen = BTreeSet::new();
+                let twice = fields.iter().find(|(k, _)| !seen.insert(k)).filter(|_| of != "`panels`");
+                match twice {
+                    Some((field, _)) => Err(Damage::Twice { field: field.clone(), of: of.to_owned() }),
+                    None => fields.iter().try_for_each(|(k, v)| v.each_once(&format!("`{k}`"))),
+                }
+            }
+            Json::List(items) => items.iter().try_for_each(|v| v.each_once(of)),
+            Json::Null | Json::Flag(_) | Json::Number(_) | Json::Text(_) => Ok(()),
+        }
     }
 
     /// What it is, in words.

@@ -51,19 +51,26 @@ pub(super) fn seams(
     Ok(out)
 }
 
-/// Every stitch once.
+/// Every stitch once; no edge is sewn by two.
 fn once<'a>(
     stitches: &'a [RawStitch],
     panels: &[RawPanel],
     told: &mut Vec<String>,
 ) -> Result<Vec<Stitch<'a>>, Damage> {
     let mut seen: BTreeMap<[(usize, usize); 2], usize> = BTreeMap::new();
+    let mut sewn: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     let mut out: Vec<Stitch<'a>> = Vec::new();
     for (number, raw) in stitches.iter().enumerate() {
         let mut key = raw.sides;
         key.sort_unstable();
         match seen.get(&key).map(|&i| &out[i]) {
             None => {
+                for side in key {
+                    if let Some(stitch) = sewn.insert(side, number) {
+                        let (panel, edge) = (panels[side.0].name.clone(), side.1);
+                        return Err(Damage::Shared { panel, edge, stitch, other: number });
+                    }
+                }
                 seen.insert(key, out.len());
                 out.push(Stitch { number, raw, start_to_end: !raw.right_wrong });
             }

@@ -397,6 +397,22 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
 }
 
 #[test]
+fn what_stands_twice_is_refused() {
+    refused(
+        |f| f["pattern"]["stitches"].as_array_mut().unwrap().push(stitch(("back", 1), ("front", 1))),
+        "edge 1 of panel \"front\" is sewn by stitch 0 and by stitch 2",
+        "keep the stitch that is meant; three panels in one seam are not sewn",
+    );
+    let once = serde_json::to_string(&tube()).unwrap();
+    let twice = once.replacen("\"stitches\":", "\"stitches\":[],\"stitches\":", 1);
+    let refusal = pattern(twice.as_bytes(), "test").unwrap_err();
+    assert_eq!(
+        (refusal.to_string(), refusal.remedy()),
+        ("`stitches` stands twice in `pattern`".into(), "keep the one that is meant".into())
+    );
+}
+
+#[test]
 fn damage_of_panels_is_refused_with_panel_and_edge() {
     refused(
         |f| f["pattern"]["panels"]["front"]["edges"][2]["endpoints"] = json!([2, 7]),
@@ -456,7 +472,7 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
 
 #[test]
 fn damage_of_stitches_is_refused_with_its_number() {
-    let sides = "a stitch names two edges; three panels in one seam are two stitches";
+    let sides = "a stitch names two edges; three panels in one seam are not sewn";
     let push = |f: &mut Value, s: Value| f["pattern"]["stitches"].as_array_mut().unwrap().push(s);
     refused(|f| push(f, json!([side("front", 0)])), "stitch 2 has 1 sides, 2 are wanted", sides);
     refused(

@@ -38,11 +38,12 @@ pub(super) fn swing(
         if !rows.iter().any(misses) {
             continue;
         }
-        let away = |k: &i64| legs.get(k).map(|x| x - 0.5 * (rows[k][0] + rows[k][1]));
+        let away: BTreeMap<i64, f64> =
+            legs.iter().map(|(k, x)| (*k, x - 0.5 * (rows[k][0] + rows[k][1]))).collect();
         let mut moved = 0.0f64;
         for p in points.iter_mut().filter(|p| p.y < crotch) {
             let set_in = ((crotch - p.y) / SETS_IN).min(1.0);
-            let by = set_in * set_in * (3.0 - 2.0 * set_in) * between(&away, &legs, p.y / STEP);
+            let by = set_in * set_in * (3.0 - 2.0 * set_in) * between(&away, p.y / STEP);
             moved = if by.abs() > moved.abs() { by } else { moved };
             p.x += by;
         }
@@ -77,13 +78,17 @@ fn leg_at(body: &Body, y: f64, hand: f64) -> Option<f64> {
     Some(leg.centre().x)
 }
 
-/// The move at a height between the middles of two rows; that of the nearest row beyond the last.
-fn between(away: &impl Fn(&i64) -> Option<f64>, legs: &BTreeMap<i64, f64>, at: f64) -> f64 {
-    let (Some(first), Some(last)) = (legs.keys().next(), legs.keys().next_back()) else { return 0.0 };
-    let at = (at - 0.5).clamp(*first as f64, *last as f64);
-    let (low, share) = (at.floor(), at.fract());
-    let value = |k: f64| away(&(k as i64)).unwrap_or(0.0);
-    value(low) + share * (value((low + 1.0).min(*last as f64)) - value(low))
+/// The move at a height, in rows, between those of the next row below and above; that of the last row beyond it.
+fn between(away: &BTreeMap<i64, f64>, at: f64) -> f64 {
+    // A row's middle lies half a row above its number.
+    let at = at - 0.5;
+    let below = away.range(..=at.floor() as i64).next_back();
+    let above = away.range(at.floor() as i64 + 1..).next();
+    match (below, above) {
+        (Some((k, a)), Some((l, b))) => a + (b - a) * (at - *k as f64) / (l - k) as f64,
+        (Some((_, by)), None) | (None, Some((_, by))) => *by,
+        (None, None) => 0.0,
+    }
 }
 
 #[cfg(test)]
@@ -99,7 +104,7 @@ mod tests {
     /// The half of a left leg from waist to ankle, 20 cm wide, that leaves the middle by so much a metre.
     fn half(spread: f64) -> (Pattern, BTreeMap<String, Vec<Point3>>) {
         let row = |k: usize| {
-            let y = 0.1 + 0.02 * k as f64;
+            let y = 0.105 + 0.02 * k as f64;
             let out = spread * (0.8 - y).max(0.0);
             (0..5).map(move |i| Point3::new(out + 0.05 * f64::from(i), y, 0.2))
         };
