@@ -74,7 +74,7 @@ fn colours(model: &Model, mesh: &Mesh) -> Vec<[u8; 3]> {
     let material = model.materials.get(mesh.material);
     let own = material.map_or([1.0; 3], |m| m.colour);
     let texture = material.and_then(|m| m.texture).and_then(|t| model.textures.get(t));
-    match texture.map(|t| Mips::new(t)) {
+    match texture.map(Mips::new) {
         Some(mips) => mesh.uv.iter().map(|uv| times(mips.sample(*uv, VERTEX_LOD), own)).collect(),
         None => vec![times([1.0; 3], own); mesh.positions.len()],
     }
