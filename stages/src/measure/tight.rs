@@ -15,7 +15,8 @@ use toile_core::prelude::*;
 /// farther.
 const ON: f64 = 3.0;
 
-/// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin stretches by 0.2 % under its weight.
+/// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin stretches by 0.03 % under its
+/// weight, of interlock knit by 0.4 % (presets, weft).
 const DRAWN: f64 = 0.02;
 
 /// An edge of a garment.

@@ -100,6 +100,11 @@ impl FabricTexturer {
             let plain = parts::plain_cloth(&panel.name, [1.0; 3]);
             model.materials.push(Material { texture: Some(k), ..plain });
         }
+        // Only the fabrics tell whether `Auto` finds denim.
+        let is_denim = |t: &(FabricTexture, f64)| t.0 == FabricTexture::Denim;
+        if self.texture == FabricTexture::Auto && self.second.is_some() && !tiles.iter().any(is_denim) {
+            return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
+        }
         if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
             model.meshes.push(parts::body_mesh(body, model.materials.len()));
             model.materials.push(parts::mannequin());
@@ -117,16 +122,12 @@ impl FabricTexturer {
     fn fault(&self) -> Option<StageError> {
         use FabricTexture::{Auto, Check, Denim, Stripe};
         let of = |name: &'static str, given: bool, with: &[FabricTexture], what: &str| {
-            (given && !with.contains(&self.texture)).then(|| {
-                StageError::invalid(format!("`{name}` does nothing with `texture: {:?}`", self.texture))
-                    .hint(format!("it is for {what}: leave it out, or choose one of these"))
-                    .at(name)
-            })
+            let texture = || format!("`texture: {:?}`", self.texture);
+            (given && !with.contains(&self.texture)).then(|| idle(name, &texture(), what))
         };
         let colours = [("colour", &self.colour), ("second", &self.second)];
         let bad = |(name, text): (&'static str, &Option<String>)| Some(parse(text.as_ref()?).err()?.at(name));
-        let of_second = "denim, checks and stripes (`Auto` may find denim)";
-        of("second", self.second.is_some(), &[Auto, Denim, Check, Stripe], of_second)
+        of("second", self.second.is_some(), &[Auto, Denim, Check, Stripe], OF_SECOND)
             .or_else(|| of("repeat", self.repeat.is_some(), &[Check, Stripe], "checks and stripes"))
             .or_else(|| colours.into_iter().find_map(bad))
     }
@@ -161,6 +162,16 @@ impl FabricTexturer {
             FabricTexture::Stripe => Cloth::Stripe { first: colour, second },
         })
     }
+}
+
+/// What a second colour is for.
+const OF_SECOND: &str = "denim, checks and stripes";
+
+/// A parameter that does nothing with a texture.
+fn idle(name: &'static str, texture: &str, what: &str) -> StageError {
+    StageError::invalid(format!("`{name}` does nothing with {texture}"))
+        .hint(format!("it is for {what}: leave it out, or choose one of these"))
+        .at(name)
 }
 
 /// Linear light of `#rrggbb`.
@@ -217,6 +228,14 @@ mod tests {
         assert_eq!(fault(&striped), ("`repeat` does nothing with `texture: Jersey`".into(), hint.into()));
         let two = FabricTexturer { second: Some("#ffffff".into()), ..texturer(FabricTexture::Plain) };
         assert_eq!(fault(&two).0, "`second` does nothing with `texture: Plain`");
+        // No panel of the garment is of denim.
+        let auto = FabricTexturer { texture: FabricTexture::Auto, ..two };
+        let e = auto.run(&dress::garment(), None, &Context::quiet()).unwrap_err();
+        assert_eq!(e.message, "`second` does nothing with `texture: Auto`, which found no denim");
+        assert_eq!(
+            e.hint.unwrap(),
+            "it is for denim, checks and stripes: leave it out, or choose one of these"
+        );
     }
 
     #[test]

@@ -50,7 +50,7 @@ pub(super) fn swing(
         if moved.abs() > LEAST {
             let way = if moved * hand > 0.0 { "outwards" } else { "inwards" };
             told.push(format!(
-                "{} is swung {way} by {:.0} mm, to before the leg",
+                "{} is swung {way} by {:.0} mm, to where the body's leg is",
                 piece.name,
                 moved.abs() * 1e3
             ));
