@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 11] = [
+pub const PIPELINES: [&str; 12] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -70,4 +70,5 @@ pub const PIPELINES: [&str; 11] = [
     "trousers.ron",
     "dress.ron",
     "onepiece.ron",
+    "pleats.ron",
 ];

@@ -24,16 +24,18 @@ pub enum SeamKind {
     Gathered,
     /// The two legs of a dart, which end in one point.
     Dart,
-    /// The fold lines of a pleat are laid on each other, then held.
+    /// Two lines of one piece are laid on each other and sewn, the cloth between them folded behind. The first side is a fold that is seen;
+    /// of a box pleat the second is, too, and they meet in the middle.
     Pleat(PleatFold),
-    /// A band that is shorter than the edge that it is sewn to and draws it in.
+    /// A band that is shorter than the edge that it is sewn to and draws it in. Of one side it lies along an edge or an inner line; of
+    /// more sides these are sewn to each other, too, and the first counts.
     Elastic {
         /// The band's length at rest as a share of the edge's, above 0.
         ratio: f64,
         /// Its stiffness: the force that stretches it to twice its length, N.
         stiffness: f64,
     },
-    /// The edge of a piece that lies on another, sewn to a line inside that.
+    /// The edge of a piece that lies on another (the first side), sewn to a line inside that (the second).
     Patch,
     /// Matched, and pressed to stay folded.
     Folded {

@@ -1,6 +1,5 @@
 //! What a solver refuses before it starts.
 
-use crate::engine::joined;
 use toile_core::prelude::*;
 
 /// Triangles thinner than this share of their longest edge squared count as of no area.
@@ -21,7 +20,6 @@ pub fn check_garment(garment: &Garment) -> Result<(), StageError> {
     if garment.triangles.iter().flatten().chain(seams).chain(&garment.weld).any(|&i| i as usize >= n) {
         return Err(StageError::invalid(format!("the garment names a vertex beyond its {n} vertices")));
     }
-    garment.seams.iter().try_for_each(|s| joined(s.kind, &s.name))?;
     check_finite(garment)?;
     check_fabrics(garment)?;
     check_triangles(garment)

@@ -1,7 +1,7 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
 use crate::cloth::check_garment;
-use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use crate::engine::{self, SchemeSkin, Setting, cloth_error, only_joins, scene_error, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -39,6 +39,7 @@ pub(super) fn drape(
     cx: &Context,
 ) -> Result<Garment, StageError> {
     check_garment(garment)?;
+    garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
     check_wind(&course.air)?;
     let card = collider.map(|c| c.scheme.card());
     let setting = Setting {

@@ -7,7 +7,7 @@
 //! strain is the weight below a point over that stiffness, under 1 % for a garment.
 
 use crate::cloth::{CentralDifferences, Rest, Settings, Simulation, Softening, check_garment};
-use crate::engine::{self, FallWatch};
+use crate::engine::{self, FallWatch, only_joins};
 use nalgebra::Vector3;
 use toile_core::prelude::*;
 
@@ -96,6 +96,7 @@ impl SpringDraper {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         check_garment(garment)?;
+        garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
         let scheme = collider.map(|c| c.scheme.as_ref());
         let mut simulation =
             Simulation::new(garment, scheme, Box::<CentralDifferences>::default(), self.settings(garment));

@@ -10,11 +10,9 @@ pub fn lost(scene: &Scene) -> Vec<String> {
     let panels = |is: &dyn Fn(&toile_cloth::scene::Panel) -> bool| {
         names(scene.panels.iter().filter(|p| is(p)).map(|p| p.name.as_str()))
     };
-    let bands = names(scene.bands.iter().map(|b| b.name.as_str()));
     let limit = "its strain limit is left out: a garment's fabric has curves instead";
     let poisson = (0..scene.panels.len()).any(|k| scene.fabric_of(k).poisson != 0.0);
     let found = [
-        bands.map(|b| format!("its elastic bands ({b}) are left out: a garment holds none")),
         scene.strain_limit.map(|_| limit.to_owned()),
         seams(|s| !s.joined).map(|s| format!("its seams {s} are joined: a garment has no threads")),
         panels(&|p| p.layer != 0).map(|p| format!("the layers of its panels {p} are left out")),

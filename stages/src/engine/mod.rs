@@ -15,7 +15,7 @@ mod skin;
 pub use arithmetic::arithmetic;
 pub use fall::FallWatch;
 pub use fault::{OBJ_HINT, cloth_error, scene_error};
-pub(crate) use kinds::joined;
+pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};

@@ -1,13 +1,13 @@
 //! Garments as the engine's scenes and back.
 
-use super::{cloth_error, joined};
+use super::cloth_error;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric as engine;
 use toile_cloth::force::Air;
-use toile_cloth::scene::{Panel, Phase, Scene, Seam};
+use toile_cloth::scene::{Band, Panel, Phase, Scene, Seam};
 use toile_core::StageError;
 use toile_core::artifact::{
     Curve, Fabric, Garment, GarmentPanel, GarmentSeam, Point2, Point3, SeamKind, SeamState, SolveStatus,
@@ -29,9 +29,8 @@ pub struct Setting {
 /// The scene of a garment; the body answers for itself.
 ///
 /// # Errors
-/// A fabric whose curves the engine does not take, a kind of seam that it does not carry out.
+/// A fabric whose curves the engine does not take.
 pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageError> {
-    garment.seams.iter().try_for_each(|s| joined(s.kind, &s.name))?;
     let mut panels = Vec::with_capacity(garment.panels.len());
     for p in &garment.panels {
         let material = fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;
@@ -46,7 +45,7 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
         triangles: garment.triangles.clone(),
         panels,
         seams: seams(garment),
-        bands: vec![],
+        bands: bands(garment),
         pinned: garment.pinned.clone(),
         body: None,
         material: material.unwrap_or_else(|| engine::Fabric::isotropic(0.1, 500.0, 0.0, 1e-5)),
@@ -86,20 +85,36 @@ fn fabric(f: &Fabric, thickness: f64) -> Result<engine::Fabric, ClothError> {
 fn seams(garment: &Garment) -> Vec<Seam> {
     let mut known = BTreeSet::new();
     let mut seam = |s: &GarmentSeam| {
-        let is_new = |p: &&[u32; 2]| known.insert([p[0].min(p[1]), p[0].max(p[1])]);
+        let is_new = |p: &&[u32; 2]| p[0] != p[1] && known.insert([p[0].min(p[1]), p[0].max(p[1])]);
         let seam = Seam::new(s.name.clone(), s.pairs.iter().filter(is_new).copied().collect());
-        let gather = match s.kind {
+        match s.kind {
             SeamKind::Matched
             | SeamKind::Dart
             | SeamKind::Pleat(_)
             | SeamKind::Elastic { .. }
-            | SeamKind::Patch
-            | SeamKind::Folded { .. } => None,
-            SeamKind::Gathered => Some(gather(&seam.pairs, &garment.rest)),
-        };
-        Seam { gather, ..seam }
+            | SeamKind::Patch => seam,
+            SeamKind::Folded { angle } => Seam { fold: Some(angle), ..seam },
+            SeamKind::Gathered => Seam { gather: Some(gather(&seam.pairs, &garment.rest)), ..seam },
+        }
     };
-    garment.seams.iter().map(&mut seam).collect()
+    garment.seams.iter().map(&mut seam).filter(|s| !s.pairs.is_empty()).collect()
+}
+
+/// The elastic bands along the garment's seams and edges.
+fn bands(garment: &Garment) -> Vec<Band> {
+    let band = |s: &GarmentSeam| match s.kind {
+        SeamKind::Elastic { ratio, stiffness } => {
+            let vertices = s.pairs.iter().map(|p| p[0]).collect();
+            Some(Band { name: s.name.clone(), vertices, ratio, stiffness })
+        }
+        SeamKind::Matched
+        | SeamKind::Gathered
+        | SeamKind::Dart
+        | SeamKind::Pleat(_)
+        | SeamKind::Patch
+        | SeamKind::Folded { .. } => None,
+    };
+    garment.seams.iter().filter_map(band).filter(|b| b.vertices.len() > 1).collect()
 }
 
 /// How many times longer one side of a seam is than the other.
@@ -120,17 +135,28 @@ pub fn garment_of(scene: &Scene) -> Garment {
         rest: scene.rest.iter().map(|p| Point2::from(*p)).collect(),
         triangles: scene.triangles.clone(),
         panels: (0..scene.panels.len()).map(|k| garment_panel(k, scene)).collect(),
-        seams: scene.seams.iter().map(garment_seam).collect(),
+        seams: scene.seams.iter().map(garment_seam).chain(scene.bands.iter().map(elastic)).collect(),
         weld: (0..n as u32).collect(),
         pinned: scene.pinned.clone(),
         status: SolveStatus::default(),
     }
 }
 
+/// A band as a seam of one side: pairs of a vertex with itself.
+fn elastic(b: &Band) -> GarmentSeam {
+    GarmentSeam {
+        name: b.name.clone(),
+        kind: SeamKind::Elastic { ratio: b.ratio, stiffness: b.stiffness },
+        pairs: b.vertices.iter().map(|v| [*v, *v]).collect(),
+        state: SeamState::Open,
+    }
+}
+
 fn garment_seam(s: &Seam) -> GarmentSeam {
+    let gathered = if s.gather.is_some() { SeamKind::Gathered } else { SeamKind::Matched };
     GarmentSeam {
         name: s.name.clone(),
-        kind: if s.gather.is_some() { SeamKind::Gathered } else { SeamKind::Matched },
+        kind: s.fold.map_or(gathered, |angle| SeamKind::Folded { angle }),
         pairs: s.pairs.clone(),
         state: SeamState::Open,
     }

@@ -17,6 +17,9 @@ use std::fmt::Write;
 use toile_core::pipeline::nearest;
 use toile_core::prelude::*;
 
+/// Names of edges in a message.
+const MOST_NAMES: usize = 12;
+
 /// Bytes of one file.
 const MOST_BYTES: usize = 4 << 20;
 
@@ -118,10 +121,22 @@ fn edge_use(text: &str, pieces: &[Piece]) -> Result<EdgeUse, (String, Option<Str
     if piece.path(&edge.edge).is_none() {
         let names = || piece.outer.edges.iter().map(|e| &e.name).chain(piece.lines.iter().map(|l| &l.name));
         let near = nearest(&edge.edge, names().map(String::as_str));
-        let hint = near.map(|n| format!("did you mean \"{}.{n}\"?", edge.panel));
+        let hint = match near {
+            Some(n) => format!("did you mean \"{}.{n}\"?", edge.panel),
+            None => format!("it has {}", list(names())),
+        };
+        let hint = Some(hint);
         return Err((format!("piece \"{}\" has no edge \"{}\"", edge.panel, edge.edge), hint));
     }
     Ok(EdgeUse { edge, reversed })
+}
+
+/// Names in a row, the first dozen.
+fn list<'n>(names: impl Iterator<Item = &'n String>) -> String {
+    let all: Vec<&str> = names.map(String::as_str).collect();
+    let more =
+        if all.len() > MOST_NAMES { format!(" and {} more", all.len() - MOST_NAMES) } else { String::new() };
+    all[..all.len().min(MOST_NAMES)].join(", ") + &more
 }
 
 /// Seams as such a file, each with what speaks for it as a comment.

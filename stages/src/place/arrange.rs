@@ -3,13 +3,15 @@
 //! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves, cuffs) are bent to cylinders around it, as the
 //! arrangement points of garment CAD do: halves before and behind the arm that are sewn to each other share one cylinder, whose girth
 //! is theirs, or the arm's where that is more. Flat halves of legs that stand beside the body's are swung before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised onto the
-//! floor. A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
+//! floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk and legs keep the flat places of
 //! the file, from which `Rest(sew_through: true)` sews them.
 
 mod legs;
 mod limb;
+mod patches;
+mod pleats;
 mod region;
 mod stand;
 mod tubes;
@@ -39,7 +41,7 @@ const MIDDLE: f64 = 0.65;
 /// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
-    version = 3,
+    version = 4,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -67,26 +69,44 @@ impl Arrange {
     ) -> Result<Garment, StageError> {
         let offsets = offsets(&panels)?;
         let seams = seams(plan, &offsets)?;
+        let folded = pleats::fold(pattern, &offsets)?;
+        let mut flat = offsets.clone();
+        for (name, of) in &folded {
+            cx.warn(format!("\"{name}\" is {}", of.told));
+            if let Some((_, panel)) = flat.get_mut(name.as_str()) {
+                *panel = &of.panel;
+            }
+        }
+        let patches = patches::names(pattern);
+        let worn = patches::without(pattern, &patches);
+        let mut standing = flat.clone();
+        standing.retain(|name, _| !patches.contains(*name));
         // A pattern without any pose is placed by what its pieces are.
-        let unplaced = pattern.pieces.iter().all(|p| p.pose.is_none());
-        let (mut places, sleeves) = match unplaced && !pattern.pieces.is_empty() {
-            true => self.stood(pattern, &offsets, body, cx)?,
-            false => (posed(pattern, &offsets)?, None),
+        let unplaced = worn.pieces.iter().all(|p| p.pose.is_none());
+        let (mut places, sleeves) = match unplaced && !worn.pieces.is_empty() {
+            true => self.stood(&worn, &standing, body, cx)?,
+            false => (posed(&worn, &standing)?, None),
         };
         self.raise(&mut places, body, cx);
         if self.bend {
-            legs::swing(pattern, body, &mut places).into_iter().for_each(|what| cx.warn(what));
+            legs::swing(&worn, body, &mut places).into_iter().for_each(|what| cx.warn(what));
             for limb in Limb::arms(body) {
                 let mine = match &sleeves {
                     Some(all) => {
                         all.iter().filter(|s| s.1 * limb.root.x > 0.0).map(|s| s.0.clone()).collect()
                     }
-                    None => tubes::around(&limb, pattern, &places),
+                    None => tubes::around(&limb, &worn, &places),
                 };
                 let bent = tubes::bend(&limb, &mine, &mut places, &seams, &offsets, self.clearance.metres());
                 bent.into_iter().for_each(|what| cx.warn(what));
             }
         }
+        for (name, of) in &folded {
+            if let Some(places) = places.get_mut(name) {
+                of.deepen(places);
+            }
+        }
+        patches::lay(&patches, &mut places, &seams, &flat)?.into_iter().for_each(|what| cx.warn(what));
         cx.check()?;
         let points: Vec<Point3> = places.into_values().flatten().collect();
         Ok(whole(&offsets, seams, fabric, points))

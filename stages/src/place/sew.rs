@@ -1,6 +1,5 @@
 //! Seams as vertex pairs of the garment.
 
-use crate::engine::joined;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
@@ -13,7 +12,6 @@ pub(crate) fn seams(plan: &SewingPlan, panels: &Offsets) -> Result<Vec<GarmentSe
 }
 
 fn pair(seam: &Seam, panels: &Offsets) -> Result<GarmentSeam, StageError> {
-    joined(seam.kind, &seam.name())?;
     let a = vertices(&seam.a, panels)?;
     let mut b = vertices(&seam.b, panels)?;
     if a.len() != b.len() {
@@ -22,8 +20,9 @@ fn pair(seam: &Seam, panels: &Offsets) -> Result<GarmentSeam, StageError> {
     if !seam.reversed {
         b.reverse();
     }
-    // The legs of a dart share its tip.
-    let pairs = a.into_iter().zip(b).filter(|(a, b)| a != b).map(|(a, b)| [a, b]).collect();
+    // The legs of a dart share its tip; an elastic band along one edge has that edge twice.
+    let is_one = seam.a == seam.b;
+    let pairs = a.into_iter().zip(b).filter(|(a, b)| is_one || a != b).map(|(a, b)| [a, b]).collect();
     Ok(GarmentSeam { name: seam.name(), kind: seam.kind, pairs, state: SeamState::Open })
 }
 

@@ -1,7 +1,7 @@
 //! `Scene`: a prepared scene in the form `garment-scene-1`.
 //!
 //! Method: the engine's reader checks every index and number; the body becomes a collider over boxes along the axes, as
-//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: bands, strain limits, layers and threads have no place
+//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: strain limits, layers and threads have no place
 //! in a garment; the stage names what it leaves out, and what was mended.
 
 use crate::body::Units;

@@ -213,10 +213,7 @@ fn what_a_garment_cannot_hold_is_named() {
         cx.take_notes().1
     };
     assert_eq!(warnings(&generate::tube(4, 5)), Vec::<String>::new());
-    assert_eq!(
-        warnings(&generate::banded(4, 4, 0.7)),
-        ["the scene is not held whole: its elastic bands (\"cuff\") are left out: a garment holds none"]
-    );
+    assert_eq!(warnings(&generate::banded(4, 4, 0.7)), Vec::<String>::new());
     let mut scene = generate::tube(4, 5);
     scene.strain_limit = Some(toile_cloth::scene::StrainLimit { warp: 0.05, weft: 0.05 });
     scene.seams[0].joined = false;

@@ -8,6 +8,7 @@
 //! reported; nothing is torn or pulled through the body.
 
 use crate::cloth::{CentralDifferences, Rest, SeamPull, Settings, Simulation, Softening, check_garment};
+use crate::engine::only_joins;
 use nalgebra::Vector3;
 use toile_core::prelude::*;
 
@@ -87,6 +88,7 @@ impl SpringStitcher {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         check_garment(garment)?;
+        garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
         let scheme = collider.map(|c| c.scheme.as_ref());
         check_start(garment, scheme, self.deepest_start.metres())?;
         let mut sewing = Sewing::new(self, garment, scheme);

@@ -1,5 +1,6 @@
 //! What every pattern must be, whichever reader made it: numbers finite, names unique, seams along edges that there are.
 
+use super::super::SeamKind;
 use super::super::sound::{Sound, ensure, finite, finite_figure};
 use super::{EdgeCurve, Pattern, PatternLoop, PatternSeam, Piece, Pose};
 use std::collections::BTreeSet;
@@ -87,7 +88,8 @@ fn pose(p: &Pose) -> Sound {
 
 fn seam(s: &PatternSeam, pattern: &Pattern) -> Sound {
     s.kind.check()?;
-    ensure(s.sides.len() >= 2, || format!("it has {} sides, 2 are the least", s.sides.len()))?;
+    let least = if matches!(s.kind, SeamKind::Elastic { .. }) { 1 } else { 2 };
+    ensure(s.sides.len() >= least, || format!("it has {} sides, {least} are the least", s.sides.len()))?;
     ensure(s.sides.iter().all(|side| !side.is_empty()), || "a side of it has no edge".to_owned())?;
     for u in s.sides.iter().flatten() {
         let piece = pattern.piece(&u.edge.panel);

@@ -2,7 +2,7 @@
 //!
 //! Method: the edges of every seam are cut until they meet one to one ([`super::chain`]); each part becomes a named edge of its
 //! piece's outline, and each pair of parts a seam. Parts that are sewn to each other, directly or through others, share one
-//! [`Gauge`], so that meshers divide all of them alike. Cost: linear in the length of the edges, a few milliseconds a piece.
+//! [`Gauge`], so that meshers divide all of them alike. Layers of pleats are sewn first ([`super::pleats`]). Cost: linear in the length of the edges, a few milliseconds a piece.
 //! Limits: holes keep their edges unsewn; a slit is not cut, which is told.
 
 use super::super::{
@@ -72,6 +72,13 @@ impl Pattern {
     /// Errors: a pattern that is not sound, an edge sewn to itself, chains that divide each other without end.
     pub fn lower(&self) -> Result<Lowered, LoweringError> {
         super::check::check(self).map_err(LoweringError::Unsound)?;
+        match self.pleated() {
+            Some(pleated) => pleated.lowered(),
+            None => self.lowered(),
+        }
+    }
+
+    fn lowered(&self) -> Result<Lowered, LoweringError> {
         self.seams.iter().try_for_each(not_itself)?;
         let cuts = Cuts::of(self)?;
         let names: Vec<Names> = self.pieces.iter().map(|p| Names::of(p, &cuts)).collect();
@@ -95,6 +102,10 @@ impl Pattern {
         for s in &self.seams {
             let kind = kind(self, s, &mut gathers);
             let first = cuts.links(&s.sides[0]);
+            if s.sides.len() == 1 {
+                // A band along one edge: the edge with itself, start to start.
+                seams.extend(first.iter().map(|a| seam(a, a, kind, &by_name)));
+            }
             for other in &s.sides[1..] {
                 let pairs = first.iter().zip(cuts.links(other));
                 seams.extend(pairs.map(|(a, b)| seam(a, &b, kind, &by_name)));

@@ -7,6 +7,7 @@ mod check;
 mod curve;
 mod lower;
 mod piece;
+mod pleats;
 mod seam;
 mod svg;
 #[cfg(test)]

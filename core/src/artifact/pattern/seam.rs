@@ -11,7 +11,7 @@ pub struct EdgeUse {
     pub reversed: bool,
 }
 
-/// Two or more sides that are sewn together. Each side is a chain of edges; all sides run the same way, so that their starts
+/// Two or more sides that are sewn together, or the one side of an elastic band along an edge or line. Each side is a chain of edges; all sides run the same way, so that their starts
 /// meet, and their ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PatternSeam {

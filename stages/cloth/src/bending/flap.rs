@@ -43,8 +43,13 @@ pub(crate) fn flaps(sheet: &Sheet, rigidity: &Rigidity) -> Vec<Flap> {
 
 fn flap(sheet: &Sheet, rigidity: &Rigidity, e: &Edge) -> Option<Flap> {
     let (left, right) = (e.sides.0, e.sides.1?);
-    let (l, r) = (leaf_of(sheet, &left), leaf_of(sheet, &right));
-    // The right triangle runs through the edge backwards, so its share along the edge counts from the other end.
+    let (l, mut r) = (leaf_of(sheet, &left), leaf_of(sheet, &right));
+    // The right triangle runs through the edge backwards, so its share along the edge counts from the other end; but where a seam sews
+    // the right side of one sheet to the wrong side of the other.
+    let (t, k) = (sheet.triangles()[right.triangle as usize], right.corner as usize);
+    if t[(k + 1) % 3] == e.vertices[0] {
+        r.along = 1.0 - r.along;
+    }
     let weights = [
         -(1.0 - l.along) / l.height - r.along / r.height,
         -l.along / l.height - (1.0 - r.along) / r.height,

@@ -114,6 +114,14 @@ impl Sheet {
         self.masses.len()
     }
 
+    /// The ends and rest length of every edge, once each where a seam of more than two sheets has it as several.
+    pub fn distinct_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> + '_ {
+        let ends = |e: &Edge| [e.vertices[0].min(e.vertices[1]), e.vertices[0].max(e.vertices[1])];
+        let is_new = move |k: usize| k == 0 || ends(&self.edges[k]) != ends(&self.edges[k - 1]);
+        let edges = self.edges.iter().enumerate().filter(move |(k, _)| is_new(*k));
+        edges.map(|(_, e)| (e.vertices, e.rest_length))
+    }
+
     /// Vertices of each triangle, counter-clockwise in the rest shape.
     #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {

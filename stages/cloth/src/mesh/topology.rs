@@ -81,12 +81,45 @@ pub(super) fn edges(
     let mut edges = Vec::with_capacity(halves.len() / 2 + triangles.len());
     let mut of_triangle = vec![[0; 3]; triangles.len()];
     for group in halves.chunk_by(|a, b| (a.low, a.high) == (b.low, b.high)) {
-        for h in group {
-            of_triangle[h.side.triangle as usize][h.side.corner as usize] = edges.len() as u32;
+        none_twice(group)?;
+        for part in parts(group, rest, facing) {
+            for h in &part {
+                of_triangle[h.side.triangle as usize][h.side.corner as usize] = edges.len() as u32;
+            }
+            edges.push(pair(&part, facing)?);
         }
-        edges.push(pair(group, facing)?);
     }
     Ok((edges, of_triangle))
+}
+
+/// The halves that meet at an edge, two and two. Where a seam joins more than two sheets, the two halves of one sheet belong together: a
+/// line inside it to which another is sewn. Of what is left, the first two are a seam like any other, and each further sheet hangs on it
+/// by its border alone, without a fold.
+fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<Half>> {
+    if group.len() <= 2 || facing == Facing::Alike {
+        return vec![group.to_vec()];
+    }
+    let ends = |h: &Half| {
+        let (corners, k) = (&rest[h.side.triangle as usize], h.side.corner as usize);
+        let (a, b) = (corners[(k + 1) % 3], corners[(k + 2) % 3]);
+        if h.forward { [a, b] } else { [b, a] }
+    };
+    let (mut left, mut parts) = (group.to_vec(), Vec::new());
+    let mut k = 0;
+    while k < left.len() {
+        let is_other_half = |o: &Half| o.forward != left[k].forward && ends(o) == ends(&left[k]);
+        match left[k + 1..].iter().take(MOST_SHARING).position(is_other_half) {
+            Some(at) => {
+                let other = left.remove(k + 1 + at);
+                parts.push(vec![left.remove(k), other]);
+            }
+            None => k += 1,
+        }
+    }
+    let hung = left.split_off(left.len().min(2));
+    parts.extend((!left.is_empty()).then_some(left));
+    parts.extend(hung.into_iter().map(|h| vec![h]));
+    parts
 }
 
 fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) -> Half {
@@ -101,10 +134,8 @@ fn half(t: usize, corner: usize, triangle: &[u32; 3], rest: &[Vector2<f64>; 3]) 
     }
 }
 
-fn pair(group: &[Half], facing: Facing) -> Result<Edge, ClothError> {
-    let bad = |why| ClothError::NonManifoldEdge { a: group[0].low as usize, b: group[0].high as usize, why };
-    let first = group[0];
-    let vertices = if first.forward { [first.low, first.high] } else { [first.high, first.low] };
+/// No triangle is listed twice.
+fn none_twice(group: &[Half]) -> Result<(), ClothError> {
     let twice = |a: &Half, b: &Half| {
         let mut of = [a.low, a.high, a.side.opposite];
         of.sort_unstable();
@@ -117,6 +148,13 @@ fn pair(group: &[Half], facing: Facing) -> Result<Edge, ClothError> {
             return Err(twice(a, b));
         }
     }
+    Ok(())
+}
+
+fn pair(group: &[Half], facing: Facing) -> Result<Edge, ClothError> {
+    let bad = |why| ClothError::NonManifoldEdge { a: group[0].low as usize, b: group[0].high as usize, why };
+    let first = group[0];
+    let vertices = if first.forward { [first.low, first.high] } else { [first.high, first.low] };
     match group {
         [one] => Ok(Edge { vertices, rest_length: one.length, sides: (one.side, None) }),
         [one, two] if one.forward != two.forward || facing == Facing::Any => {

@@ -71,7 +71,7 @@ pub(super) fn assemble<'a>(
         offsets: panel.iter().map(thickness).collect(),
         offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
         depth: longest.clamp(0.02, 0.1),
-        edges: sheet.edges().iter().map(|e| (e.vertices, e.rest_length)).collect(),
+        edges: sheet.distinct_edges().collect(),
         clear: pieces.rest.len() == scene.rest.len(),
         grows: false,
         hard: false,
@@ -107,7 +107,8 @@ pub(super) fn assemble<'a>(
         Elastic::calibrated_on(uncut.as_ref().unwrap_or(sheet), sheet, &cloths, scene.strain_limit, |t| {
             pieces.cloth(t)
         })
-        .with(pieces.springs(open));
+        .with(pieces.springs(open))
+        .creased(if open { Vec::new() } else { pieces.creases(sheet) });
     Ok(System {
         elastic,
         masses: sheet.masses().to_vec(),

@@ -79,6 +79,7 @@ fn restrict(fine: &Pieces, kept: &[u32], triangles: Vec<[u32; 3]>) -> Pieces {
         nodes,
         panel: kept.iter().map(|&v| fine.panel[v as usize]).collect(),
         gathered: kept.iter().map(|&v| fine.gathered[v as usize]).collect(),
+        fold: kept.iter().map(|&v| fine.fold[v as usize]).collect(),
         bands: fine.bands.iter().map(|b| b.restrict(&number)).collect(),
         piece: kept.iter().map(|&v| fine.piece[v as usize]).collect(),
         pinned: kept.iter().map(|&v| fine.pinned[v as usize]).collect(),

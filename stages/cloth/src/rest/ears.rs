@@ -2,11 +2,12 @@
 //!
 //! Where a mesher cuts the same ear off both panels at a seam (a triangle with two sides on it), the ears' third sides lie
 //! between the same two points of the seam: sewn, four triangles share one edge, and the sheet is no surface. One panel's
-//! edge is flipped there to the ear's tip, as in Lawson 1977; the vertices stay as they are. Cost O(n log n). Limit: an
-//! edge that cannot be flipped without turning a triangle over stays.
+//! edge is flipped there to the ear's tip, as in Lawson 1977; the vertices stay as they are. Edges along a seam stay, however
+//! many sheets it joins. Cost O(n log n). Limit: an edge that cannot be flipped without turning a triangle over stays.
 
 use super::coarsen::signed_quality;
 use super::pieces::Pieces;
+use crate::scene::Seam;
 
 /// Least shape quality (1 equilateral) of a triangle that a flip makes.
 const LEAST_QUALITY: f64 = 0.05;
@@ -23,9 +24,17 @@ struct Side {
 type Flipped = [(usize, [u32; 3]); 2];
 
 impl Pieces {
-    /// Flips edges that more than two triangles would share once the seams are joined.
-    pub(super) fn part_ears(&mut self) {
-        for sides in self.non_manifold_edges() {
+    /// Flips edges that more than two triangles would share once the seams are joined, but for those along a seam.
+    pub(super) fn part_ears(&mut self, seams: &[Seam]) {
+        let found = self.non_manifold_edges();
+        if found.is_empty() {
+            return;
+        }
+        let along = self.along(seams);
+        for sides in found {
+            if along.binary_search(&self.sewn(&sides[0])).is_ok() {
+                continue;
+            }
             let flips = sides.chunk_by(|a, b| a.ends == b.ends).filter_map(|s| self.flip(s));
             if let Some((_, changed)) = flips.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 changed.into_iter().for_each(|(t, corners)| self.triangles[t] = corners);
@@ -33,19 +42,31 @@ impl Pieces {
         }
     }
 
+    /// The nodes of an edge, ascending.
+    fn sewn(&self, s: &Side) -> [u32; 2] {
+        let [a, b] = s.ends.map(|v| self.node[v as usize]);
+        [a.min(b), a.max(b)]
+    }
+
+    /// The edges between pairs of a seam that follow each other, ascending.
+    fn along(&self, seams: &[Seam]) -> Vec<[u32; 2]> {
+        let steps = seams.iter().flat_map(|s| s.pairs.windows(2)).map(|w| {
+            let [a, b] = [w[0][0], w[1][0]].map(|v| self.node[v as usize]);
+            [a.min(b), a.max(b)]
+        });
+        let mut all: Vec<[u32; 2]> = steps.collect();
+        all.sort_unstable();
+        all
+    }
+
     /// The sides of triangles at each sewn edge that has more than two.
     fn non_manifold_edges(&self) -> Vec<Vec<Side>> {
-        let node = |v: u32| self.node[v as usize];
-        let sewn = |s: &Side| {
-            let [a, b] = s.ends.map(node);
-            [a.min(b), a.max(b)]
-        };
         let mut all: Vec<([u32; 2], Side)> = self
             .triangles
             .iter()
             .enumerate()
             .flat_map(|(t, c)| sides(t, *c))
-            .map(|s| (sewn(&s), s))
+            .map(|s| (self.sewn(&s), s))
             .collect();
         all.sort_unstable();
         let groups = all.chunk_by(|a, b| a.0 == b.0).filter(|g| g.len() > 2);

@@ -9,6 +9,7 @@
 
 mod assembly;
 mod border;
+mod crease;
 mod hold;
 mod law;
 mod part;
@@ -23,6 +24,7 @@ use crate::mesh::{Edge, Sheet, Side};
 use crate::scene::StrainLimit;
 use assembly::{Assembly, Local};
 use border::Border;
+use crease::Crease;
 use hold::Hold;
 use law::{Law, Response};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
@@ -56,6 +58,7 @@ pub struct Elastic {
     hinges: Vec<Hinge>,
     borders: Vec<Border>,
     springs: Vec<Spring>,
+    creases: Vec<Crease>,
     assembly: Assembly,
     /// What friction between yarns may hold, hinge by hinge; empty where no cloth has any.
     frictions: Vec<Hold>,
@@ -105,8 +108,9 @@ impl Elastic {
         };
         let frictions = frictions(&hinges, sheet, |t| cloths[of(t)]);
         let held = Vec::new();
-        let (springs, assembly, foretold) = (Vec::new(), Assembly::default(), Vec::new());
-        Self { laws, triangles, hinges, borders, springs, assembly, frictions, held, foretold }
+        let (springs, creases) = (Vec::new(), Vec::new());
+        let (assembly, foretold) = (Assembly::default(), Vec::new());
+        Self { laws, triangles, hinges, borders, springs, creases, assembly, frictions, held, foretold }
     }
 
     /// The same with elastic bands.
@@ -162,6 +166,7 @@ impl Elastic {
             + sum(&self.hinges, bending)
             + sum(&self.borders, |b| b.value(x))
             + sum(&self.springs, |s| s.value(x))
+            + self.value_of_creases(x)
     }
 
     /// Adds the derivative of the energy, N.
@@ -184,6 +189,7 @@ impl Elastic {
         self.add_gradient_of_holds(x, gradient);
         self.borders.iter().for_each(|b| b.add_gradient(x, gradient));
         self.springs.iter().for_each(|s| s.add_gradient(x, gradient));
+        self.add_gradient_of_creases(x, gradient);
     }
 
     /// Writes the second derivative with the foretold stress and a share of its `compression`, N/m; positive semi-definite

@@ -6,7 +6,7 @@ use super::support::Support;
 use super::system::System;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::mesh::Sheet;
+use crate::mesh::{Sheet, Side};
 use crate::scene::{Band, Scene};
 use nalgebra::{Vector2, Vector3};
 
@@ -29,6 +29,8 @@ pub struct Pieces {
     pub panel: Vec<u32>,
     /// Whether a vertex lies on a seam that gathers.
     pub gathered: Vec<bool>,
+    /// The angle at rest between the two sheets of a seam that is pressed to stay folded, on its vertices, radians.
+    pub fold: Vec<Option<f64>>,
     /// Elastic bands.
     pub bands: Vec<Path>,
     /// The connected piece that each vertex belongs to.
@@ -96,11 +98,15 @@ impl Pieces {
         let mut gathered = vec![false; n];
         let gathers = scene.seams.iter().filter(|s| s.gather.is_some());
         gathers.flat_map(|s| &s.pairs).flatten().for_each(|&v| gathered[v as usize] = true);
+        let mut fold = vec![None; n];
+        for s in scene.seams.iter().filter(|s| s.fold.is_some()) {
+            s.pairs.iter().flatten().for_each(|&v| fold[v as usize] = s.fold);
+        }
         let bands = scene.bands.iter().map(|b| Path::new(b, scene, &point)).collect();
         let (rest, triangles) = (scene.rest.clone(), scene.triangles.clone());
         let mut pieces =
-            Self { rest, triangles, point, points, node, nodes, panel, gathered, bands, piece, pinned };
-        pieces.part_ears();
+            Self { rest, triangles, point, points, node, nodes, panel, gathered, fold, bands, piece, pinned };
+        pieces.part_ears(&scene.seams);
         pieces
     }
 
@@ -173,6 +179,28 @@ impl Pieces {
             }
         }
         springs
+    }
+
+    /// Edges of the sewn sheet that are pressed to stay folded: the number of each among those with two triangles, and its angle.
+    #[must_use]
+    pub fn creases(&self, sheet: &Sheet) -> Vec<(usize, f64)> {
+        if self.fold.iter().all(Option::is_none) {
+            return Vec::new();
+        }
+        let ends = |side: &Side| {
+            let (t, k) = (self.triangles[side.triangle as usize], side.corner as usize);
+            let mut ends = [t[(k + 1) % 3], t[(k + 2) % 3]];
+            ends.sort_unstable_by_key(|v| self.node[*v as usize]);
+            ends
+        };
+        let inner = sheet.edges().iter().filter_map(|e| Some((e.sides.0, e.sides.1?)));
+        let crease = |(k, (one, other)): (usize, (Side, Side))| {
+            let (a, b) = (ends(&one), ends(&other));
+            let angle = |v: u32| self.fold[v as usize];
+            let is_seam = a[0] != b[0] && a[1] != b[1];
+            angle(a[1]).and(angle(a[0])).filter(|_| is_seam).map(|angle| (k, angle))
+        };
+        inner.enumerate().filter_map(crease).collect()
     }
 
     /// The panel of a triangle, counted from 1; 0 for none.

@@ -170,7 +170,7 @@ impl Ridges {
     pub(super) fn new(support: &Support<'_>, sheet: &Sheet) -> Option<Self> {
         Some(Self {
             sharp: support.body.sharp()?,
-            edges: sheet.edges().iter().map(|e| e.vertices).collect(),
+            edges: sheet.distinct_edges().map(|(ends, _)| ends).collect(),
             triangles: sheet.triangles().to_vec(),
             thickness: support.offset,
             longest: sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max),

@@ -104,7 +104,7 @@ impl Seam {
     /// A seam whose pairs become one point each.
     #[must_use]
     pub fn new(name: impl Into<String>, pairs: Vec<[u32; 2]>) -> Self {
-        Self { name: name.into(), pairs, joined: true, gather: None }
+        Self { name: name.into(), pairs, joined: true, gather: None, fold: None }
     }
 }
 

@@ -41,6 +41,7 @@ pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     check_panels(scene)?;
     check_seams(scene)?;
     check_gathers(scene)?;
+    check_folds(scene)?;
     check_bands(scene)?;
     check_fabric(&scene.material)?;
     if let Some(limit) = scene.strain_limit {
@@ -138,6 +139,18 @@ fn check_seams(scene: &Scene) -> Result<(), SceneError> {
         }
         None => Ok(()),
     }
+}
+
+fn check_folds(scene: &Scene) -> Result<(), SceneError> {
+    for seam in &scene.seams {
+        let Some(angle) = seam.fold else { continue };
+        let degrees = angle.to_degrees();
+        check_parameter("fold", degrees, |v| (0.0..=360.0).contains(&v), "from 0 to 360 degrees")?;
+        if !seam.joined {
+            return Err(SceneError::FoldOpen { seam: seam.name.clone() });
+        }
+    }
+    Ok(())
 }
 
 /// Difference of a gathered seam's ratio from the stated one that is rounding of the pattern.

@@ -5,7 +5,7 @@
 mod sewn;
 mod worn;
 
-pub use sewn::{banded, dart, gathered, pleat};
+pub use sewn::{banded, dart, folded, gathered, pleat, pocket, three_sheets};
 pub use worn::{layered, sleeve};
 
 use super::{Panel, Phase, Scene, SceneBody, Seam};

@@ -89,6 +89,9 @@ pub struct Seam {
     /// How many times longer one side is than the other, where it is gathered: its folds, too small for the mesh, then take up the
     /// difference, and do not press the other side long. The pairs must follow the seam.
     pub gather: Option<f64>,
+    /// Where the seam is pressed to stay folded: the angle between the outsides of its two sheets at rest, radians. Pi lies flat, 0 has
+    /// the outsides face to face, 2 pi the insides.
+    pub fold: Option<f64>,
 }
 
 /// An elastic band along a path of vertices: a waistband, a cuff.
@@ -193,6 +196,14 @@ pub enum SceneError {
         pair: usize,
         /// What is wrong.
         why: &'static str,
+    },
+    /// A seam with threads has two lines of vertices and no fold.
+    #[error(
+        "seam '{seam}' is to stay folded, but it is held by threads; leave out `joined: false` or `fold`"
+    )]
+    FoldOpen {
+        /// The seam.
+        seam: String,
     },
     /// A gathered seam whose sides are not as they are said to be.
     #[error("seam '{seam}' is to gather {stated} to 1, but its sides are {found:.3} to 1")]

@@ -78,6 +78,7 @@ pub(super) struct RawSeam {
     #[serde(default = "yes")]
     joined: bool,
     gather: Option<f64>,
+    fold: Option<f64>,
 }
 
 #[derive(Deserialize)]
@@ -277,7 +278,13 @@ fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
         gravity: Vector3::from(p.gravity),
         air: p.air.map(air),
     };
-    let seam = |s: RawSeam| Seam { name: s.name, pairs: s.pairs, joined: s.joined, gather: s.gather };
+    let seam = |s: RawSeam| Seam {
+        name: s.name,
+        pairs: s.pairs,
+        joined: s.joined,
+        gather: s.gather,
+        fold: s.fold.map(f64::to_radians),
+    };
     let band =
         |b: RawBand| Band { name: b.name, vertices: b.vertices, ratio: b.ratio, stiffness: b.stiffness };
     Ok(Scene {

@@ -59,6 +59,9 @@ fn phase(p: &Phase) -> Value {
 
 fn seam(s: &Seam) -> Value {
     let mut value = json!({ "name": s.name, "pairs": s.pairs, "joined": s.joined });
+    if let Some(angle) = s.fold {
+        value["fold"] = json!(angle.to_degrees());
+    }
     if let Some(ratio) = s.gather {
         value["gather"] = json!(ratio);
     }

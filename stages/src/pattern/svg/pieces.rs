@@ -215,6 +215,13 @@ fn drawn(line: &Line) -> Vec<(EdgeCurve, Point2)> {
     parts
 }
 
+/// What an element of one line is called by its author, if that serves as the name of an edge.
+fn own_name(shape: &Shape<'_>) -> Option<String> {
+    let name =
+        shape.name.as_ref().filter(|n| !n.generated && !n.text.contains('.') && shape.lines.len() == 1);
+    name.map(|n| n.text.clone())
+}
+
 /// The lines of a group that may be chained to one outline: those that are called so, else those that are called nothing. A fold may be the
 /// one that is missing.
 fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
@@ -223,10 +230,7 @@ fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, '
     let mut sides = Vec::new();
     for shape in mine() {
         for line in &shape.lines {
-            let name = match &shape.name {
-                Some(n) if !n.generated && !n.text.contains('.') && shape.lines.len() == 1 => n.text.clone(),
-                _ => format!("edge_{}", sides.len()),
-            };
+            let name = own_name(shape).unwrap_or_else(|| format!("edge_{}", sides.len()));
             let parts = drawn(line);
             if !parts.is_empty() {
                 sides.push(Side { name, start: line.start, parts });
@@ -516,20 +520,28 @@ impl Marks {
         let drawn_in = outline.holes.iter().map(|h| h.iter().map(|p| up(*p)).collect());
         let around = |s: &&Shape<'_>| closed(s).map(|o| o.polygon.iter().map(|p| up(*p)).collect::<Vec<_>>());
         let polygons = with(Role::Hole).filter_map(around).filter(|p| polygon_area(p).abs() > 1e-6);
-        let lines = with(Role::Mark).flat_map(|s| &s.lines).filter_map(|l| {
+        let own_lines = with(Role::Mark).flat_map(|s| s.lines.iter().map(move |l| (own_name(s), l)));
+        let lines = own_lines.filter_map(|(name, l)| {
             let side = Side { name: String::new(), start: l.start, parts: drawn(l) }.moved(up, false);
-            (side.length() > 1e-4).then(|| side.points())
+            (side.length() > 1e-4).then(|| (name, side.points()))
         });
-        let line = |(k, points): (usize, Vec<Point2>)| PieceLine {
-            name: format!("line_{k}"),
+        let lines: Vec<(Option<String>, Vec<Point2>)> = lines.collect();
+        // A name serves if no other line or edge of the piece has it.
+        let is_own = |name: &String| {
+            lines.iter().filter(|l| l.0.as_ref() == Some(name)).count() == 1
+                && outline.sides.iter().all(|s| s.name != *name)
+                && !["edge_", "line_", "hole_"].iter().any(|start| name.starts_with(start))
+        };
+        let line = |(k, (name, points)): (usize, &(Option<String>, Vec<Point2>))| PieceLine {
+            name: name.clone().filter(is_own).unwrap_or_else(|| format!("line_{k}")),
             purpose: LinePurpose::Mark,
-            points,
+            points: points.clone(),
         };
         Marks {
             notches: with(Role::Notch).map(|s| (at(&s), 0.0)).collect(),
             drills: with(Role::Drill).map(|s| at(&s)).collect(),
             holes: polygons.chain(drawn_in).collect(),
-            lines: lines.enumerate().map(line).collect(),
+            lines: lines.iter().enumerate().map(line).collect(),
         }
     }
 

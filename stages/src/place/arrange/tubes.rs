@@ -90,7 +90,7 @@ fn middle(points: &[Point3]) -> Point3 {
 /// Which panels are sewn to which, and to themselves; both ways round.
 fn sewn(seams: &[GarmentSeam], offsets: &Offsets) -> BTreeSet<(String, String)> {
     let mut found = BTreeSet::new();
-    for [a, b] in seams.iter().flat_map(|s| s.pairs.first()) {
+    for [a, b] in seams.iter().flat_map(|s| s.pairs.first()).filter(|[a, b]| a != b) {
         if let (Some(a), Some(b)) = (panel_of(*a, offsets), panel_of(*b, offsets)) {
             found.insert((a.to_owned(), b.to_owned()));
             found.insert((b.to_owned(), a.to_owned()));
@@ -146,7 +146,8 @@ fn file_axis(
         places.get(name)?.get(v as usize - offsets.get(name)?.0).copied()
     };
     let mut sum = Vector3::zeros();
-    for seam in seams {
+    // A band along one edge runs across.
+    for seam in seams.iter().filter(|s| s.pairs.iter().any(|[a, b]| a != b)) {
         let (Some(first), Some(last)) = (seam.pairs.first(), seam.pairs.last()) else { continue };
         for k in 0..2 {
             let (one, other) = (of_tube(first[k]), of_tube(first[1 - k]));

@@ -29,6 +29,7 @@ impl Elastic {
             hinges: woken.iter().map(|&h| hinge(&self.hinges[h])).collect(),
             borders: self.borders.iter().filter_map(|b| Border::part(b, cut)).collect(),
             springs: self.springs.iter().filter(|s| cut.wakes(&s.nodes)).map(spring).collect(),
+            creases: self.creases.iter().filter_map(|c| c.renumbered(&woken)).collect(),
             assembly: Assembly::default(),
             frictions: woken.iter().filter_map(|&h| self.frictions.get(h)).copied().collect(),
             held: woken.iter().filter_map(|&h| self.held.get(h)).copied().collect(),

@@ -111,6 +111,71 @@ fn an_elastic_band_draws_its_edge_together() {
     assert!(drawn < 0.39 && ends < 0.36, "{drawn} {ends}");
 }
 
+/// The angle between the outsides of the two sheets at the seam, degrees, from the rows beside it.
+fn angle_at_seam(scene: &Scene, x: &[Vec3], n: usize) -> f64 {
+    let at = |v: u32| x[v as usize];
+    let middle = scene.seams[0].pairs[n / 2];
+    let row = n as u32 + 1;
+    let (up, down) = (at(middle[0] + row) - at(middle[0]), at(middle[1] - row) - at(middle[1]));
+    // Both outsides look forward, to +z, where it lies flat.
+    let fold = up.angle(&down).to_degrees();
+    if down.z > 0.0 { fold } else { 360.0 - fold }
+}
+
+#[test]
+fn a_seam_that_is_pressed_stays_folded() {
+    for wanted in [90.0_f64, 270.0] {
+        let scene = generate::folded(10, wanted.to_radians());
+        let state = settle(&scene).unwrap();
+        let x = &state.positions;
+        picture(&scene, x, &format!("folded_{wanted}"));
+        assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+        let found = angle_at_seam(&scene, x, 10);
+        // Its weight opens it a little.
+        assert!((found - wanted).abs() < 20.0, "{found} of {wanted}");
+    }
+    let flat = settle(&generate::folded(10, std::f64::consts::PI)).unwrap();
+    assert!(flat.positions.iter().all(|p| p.z.abs() < 1e-6));
+}
+
+#[test]
+fn three_sheets_meet_at_one_seam() {
+    let scene = generate::three_sheets(24, 16);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "three_sheets");
+    assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+    let all = strains(&scene, x);
+    assert!(all[all.len() * 98 / 100] < 0.02, "{}", all[all.len() * 98 / 100]);
+    // The outer panel hangs before the inner one.
+    let (outer, inner) = (&scene.panels[1].vertices, &scene.panels[2].vertices);
+    let low = |panel: &std::ops::Range<usize>| x[panel.start + 12].z;
+    assert!(low(outer) > low(inner) + 1e-3, "{} {}", low(outer), low(inner));
+}
+
+#[test]
+fn a_pocket_is_sewn_onto_a_panel() {
+    let scene = generate::pocket(24);
+    let state = settle(&scene).unwrap();
+    let x = &state.positions;
+    picture(&scene, x, "pocket");
+    assert_eq!((gap(&scene, x), crossings(&scene, x)), (0.0, 0));
+    let all = strains(&scene, x);
+    assert!(all[all.len() * 98 / 100] < 0.02, "{}", all[all.len() * 98 / 100]);
+}
+
+#[test]
+fn a_fold_is_refused_where_it_cannot_be() {
+    let mut scene = generate::folded(4, 2.5 * std::f64::consts::PI);
+    let text = "fold = 450 is out of range: from 0 to 360 degrees";
+    assert_eq!(scene.check().unwrap_err().to_string(), text);
+    scene.seams[0].fold = Some(1.0);
+    scene.seams[0].joined = false;
+    let text =
+        "seam 'fold' is to stay folded, but it is held by threads; leave out `joined: false` or `fold`";
+    assert_eq!(scene.check().unwrap_err().to_string(), text);
+}
+
 #[test]
 fn what_is_wrong_with_gathers_and_bands_is_named() {
     let mut scene = generate::gathered(8, 4, 1.5);

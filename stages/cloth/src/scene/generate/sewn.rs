@@ -1,6 +1,7 @@
-//! Scenes of what sewing does beside plain seams: gathers, darts, pleats, elastic bands.
+//! Scenes of what sewing does beside plain seams: gathers, darts, pleats, elastic bands, folds, three sheets in one seam, patches.
 
 use super::{cloth, patch};
+use crate::fabric::Fabric;
 use crate::scene::{Band, Scene, Seam};
 use nalgebra::{Vector2, Vector3};
 
@@ -111,5 +112,63 @@ pub fn banded(nx: u32, ny: u32, ratio: f64) -> Scene {
     scene.add_panel("front", &rest, &positions, &triangles);
     scene.bands = vec![Band { name: "cuff".into(), vertices: (0..=nx).collect(), ratio, stiffness: 20.0 }];
     scene.pinned = (ny * (nx + 1)..(ny + 1) * (nx + 1)).collect();
+    scene
+}
+
+/// Two square panels of 0.2 m sewn edge to edge, `n` by `n` cells each, the seam pressed to `angle` (radians) between their outsides; the
+/// first is held flat, the second is free.
+#[must_use]
+pub fn folded(n: u32, angle: f64) -> Scene {
+    let (rest, triangles) = panel(n, n, 0.2, 0.2);
+    let cloth = Fabric { density: 0.05, bending_warp: 2e-3, bending_weft: 2e-3, ..cloth() };
+    let mut scene = Scene::new(format!("folded_{n}"), cloth);
+    let held = scene.add_panel("held", &rest, &upright(&rest, Vector3::zeros()), &triangles);
+    let below =
+        scene.add_panel("free", &rest, &upright(&rest, Vector3::new(0.0, -0.21, 0.0)), &triangles).start;
+    let pairs = (0..=n).map(|i| [held.start + i, below + n * (n + 1) + i]).collect();
+    scene.seams = vec![Seam { fold: Some(angle), ..Seam::new("fold", pairs) }];
+    scene.pinned = held.collect();
+    scene
+}
+
+/// A strip held at its upper edge, to whose lower edge two panels of 0.3 m by 0.2 m are sewn by one seam each: three sheets at one line.
+#[must_use]
+pub fn three_sheets(nx: u32, ny: u32) -> Scene {
+    let (strip, strip_cells) = panel(nx, 4, 0.3, 0.06);
+    let (sheet, sheet_cells) = panel(nx, ny, 0.3, 0.2);
+    let mut scene = Scene::new(format!("three_sheets_{nx}x{ny}"), cloth());
+    let top = scene.add_panel("strip", &strip, &upright(&strip, Vector3::zeros()), &strip_cells).start;
+    for (name, z) in [("outer", 0.02), ("inner", -0.02)] {
+        let at = upright(&sheet, Vector3::new(0.0, -0.07, z));
+        let first = scene.add_panel(name, &sheet, &at, &sheet_cells).start;
+        let pairs = (0..=nx).map(|i| [top + i, first + ny * (nx + 1) + i]).collect();
+        scene.seams.push(Seam::new(format!("strip and {name}"), pairs));
+    }
+    scene.pinned = (0..=nx).map(|i| top + 4 * (nx + 1) + i).collect();
+    scene
+}
+
+/// A panel of `n` by `n` cells and 0.4 m, held at its upper edge, with a pocket of a quarter of its cells sewn onto it along three sides.
+#[must_use]
+pub fn pocket(n: u32) -> Scene {
+    let (rest, triangles) = panel(n, n, 0.4, 0.4);
+    let cells = n / 4;
+    let size = 0.4 * f64::from(cells) / f64::from(n);
+    let (patch, patch_cells) = panel(cells, cells, size, size);
+    let mut scene = Scene::new(format!("pocket_{n}"), cloth());
+    let base = scene.add_panel("front", &rest, &upright(&rest, Vector3::zeros()), &triangles).start;
+    let (left, low) = (n / 2 - cells / 2, n / 4);
+    let at = |i: u32, j: u32| base + (low + j) * (n + 1) + left + i;
+    let corner = rest[(at(0, cells) - base) as usize];
+    let by = Vector3::new(corner.x + 0.5 * size, corner.y, 0.006);
+    let first = scene.add_panel("pocket", &patch, &upright(&patch, by), &patch_cells).start;
+    let own = |i: u32, j: u32| first + j * (cells + 1) + i;
+    // Down one side, along the bottom, up the other.
+    let around = (0..cells)
+        .map(|k| (0, cells - k))
+        .chain((0..cells).map(|k| (k, 0)))
+        .chain((0..=cells).map(|k| (cells, k)));
+    scene.seams = vec![Seam::new("pocket", around.map(|(i, j)| [at(i, j), own(i, j)]).collect())];
+    scene.pinned = (0..=n).map(|i| base + n * (n + 1) + i).collect();
     scene
 }
