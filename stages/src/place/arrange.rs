@@ -32,6 +32,13 @@ const BELOW: f64 = 0.1;
 /// Every garment reaches higher than this on a body that stands on the floor, as a share of its height: to its waist.
 const WORN: f64 = 0.5;
 
+/// Nothing is worn that reaches higher above the body than this share of its height.
+const BEYOND: f64 = 0.25;
+/// Or that reaches up no further than this share of it.
+const LEAST_WORN: f64 = 0.3;
+/// Or whose middle lies farther from the body's than this share of its height.
+const ASIDE: f64 = 0.35;
+
 /// The height of that origin as a share of the body's: that of a standing figure whose origin lies at its waist.
 const MIDDLE: f64 = 0.65;
 
@@ -88,6 +95,7 @@ impl Arrange {
             false => (posed(&worn, &standing)?, None),
         };
         self.raise(&mut places, body, cx);
+        at_the_body(&places, body)?;
         if self.bend {
             legs::swing(&worn, body, &mut places).into_iter().for_each(|what| cx.warn(what));
             for limb in Limb::arms(body) {
@@ -147,6 +155,47 @@ impl Arrange {
             by * 1e2
         ));
     }
+}
+
+/// The pieces stand where the body is.
+fn at_the_body(places: &BTreeMap<String, Vec<Point3>>, body: &Body) -> Result<(), StageError> {
+    let span = |all: &mut dyn Iterator<Item = f64>| {
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v), hi.max(v)))
+    };
+    let body_of = |k: usize| span(&mut body.positions.iter().map(|p| p[k]));
+    let ((floor, top), height) = (body_of(1), body_of(1).1 - body_of(1).0);
+    let heights = span(&mut places.values().flatten().map(|p| p.y));
+    let wrong = |what: String| {
+        let e = StageError::new(ErrorCode::PatternLoading, what);
+        Err(e.hint(
+            "take the body that the pattern was drafted for, and look at the pattern's units and places",
+        ))
+    };
+    if body.positions.is_empty() || places.values().all(Vec::is_empty) {
+        return Ok(());
+    }
+    if heights.1 > top + BEYOND * height {
+        let over = (heights.1 - top) * 1e2;
+        return wrong(format!(
+            "the pattern reaches {over:.0} cm above the body, which is {:.0} cm high",
+            height * 1e2
+        ));
+    }
+    if heights.1 < floor + LEAST_WORN * height {
+        let at = (heights.1 - floor) * 1e2;
+        return wrong(format!(
+            "the highest point of the pattern stands {at:.0} cm above the floor, the body is {:.0} cm high: nothing would hold it",
+            height * 1e2
+        ));
+    }
+    for k in [0, 2] {
+        let (middle, own) = (span(&mut places.values().flatten().map(|p| p[k])), body_of(k));
+        let off = (f64::midpoint(middle.0, middle.1) - f64::midpoint(own.0, own.1)).abs();
+        if off > ASIDE * height {
+            return wrong(format!("the middle of the pattern stands {:.0} cm beside the body", off * 1e2));
+        }
+    }
+    Ok(())
 }
 
 /// The vertices of every panel where its piece's pose puts them, in the order of the offsets.

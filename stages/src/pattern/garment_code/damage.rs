@@ -7,6 +7,12 @@ use toile_core::{ErrorCode, StageError};
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub(super) enum Damage {
+    #[error("it is empty")]
+    Empty,
+    #[error("it is text of 16 bits a letter (UTF-16)")]
+    Wide,
+    #[error("a comment stands at line {line} column {column}")]
+    Comment { line: usize, column: usize },
     #[error("it is no JSON: {what} at line {line} column {column}")]
     Syntax { what: String, line: usize, column: usize },
     #[error("{word} at line {line} column {column} is no number")]
@@ -42,6 +48,12 @@ pub(super) enum Damage {
     #[error("edge {edge} of panel \"{panel}\" has no length and is stitched")]
     NoLength { panel: String, edge: usize },
     #[error(
+        "a control point of edge {edge} of panel \"{panel}\" lies {times:.0} times the edge's length away from it"
+    )]
+    Overshoot { panel: String, edge: usize, times: f64 },
+    #[error("the radius of edge {edge} of panel \"{panel}\" is {radius}")]
+    Radius { panel: String, edge: usize, radius: f64 },
+    #[error(
         "the loop of panel \"{panel}\" is open: edge {edge} ends {gap_mm:.1} mm from where edge {next} starts"
     )]
     Open { panel: String, edge: usize, next: usize, gap_mm: f64 },
@@ -63,6 +75,10 @@ pub(super) enum Damage {
     Itself { stitch: usize, panel: String, edge: usize },
     #[error("stitches {stitch} and {other} sew the same edges in opposite directions")]
     Contradiction { stitch: usize, other: usize },
+    #[error("stitches {stitch} and {other} are mirror images of each other and run in opposite ways")]
+    Opposed { stitch: usize, other: usize },
+    #[error("{count} stitches of panel \"{panel}\" run against the way in which it is placed")]
+    Turned { panel: String, count: usize },
     #[error("edge {edge} of panel \"{panel}\" is sewn by stitch {stitch} and by stitch {other}")]
     Shared { panel: String, edge: usize, stitch: usize, other: usize },
     #[error("`{field}` stands twice in {of}")]
@@ -75,10 +91,14 @@ impl Damage {
     /// What the user may do about it.
     pub(super) fn remedy(&self) -> String {
         match self {
+            Damage::Empty => "give the file that GarmentCode wrote, a `_specification.json`".into(),
+            Damage::Wide => "save it as UTF-8".into(),
+            Damage::Comment { .. } => "JSON has no comments: take it out".into(),
             Damage::Syntax { .. } => "write the file again with the program that made it".into(),
             Damage::NoNumber { .. } => "give the number that is meant; JSON knows no such word".into(),
             Damage::Large { .. } | Damage::Many { .. } => "no garment needs so many: is it the file that is meant?".into(),
-            Damage::Missing { .. } | Damage::Type { .. } => {
+            Damage::Type { wanted, .. } => format!("write {wanted} there, as GarmentCode does"),
+            Damage::Missing { .. } => {
                 "GarmentCode writes `pattern` with `panels` and `stitches`, and `properties`; is it a `_specification.json`?".into()
             }
             Damage::NoPanels => "draft the garment again; an empty pattern cannot be sewn".into(),
@@ -93,18 +113,24 @@ impl Damage {
                 "`quadratic` has 1 control point, `cubic` 2, `circle` a radius and two flags".into()
             }
             Damage::NoLength { .. } => "draw the edge, or take its stitch out".into(),
+            Damage::Overshoot { .. } => {
+                "correct the control point; where it is meant in the panel's coordinates, write \"absolute\" as `curvature_coords`".into()
+            }
+            Damage::Radius { .. } => "give a radius above 0; the flags say to which side the arc turns".into(),
             Damage::Open { .. } => "close the loop: gaps of up to 5 mm are closed by themselves".into(),
             Damage::Crosses { .. } | Damage::NoArea { .. } => "draw the panel so that its edges meet at corners alone".into(),
-            Damage::Sides { .. } => "a stitch names two edges; three panels in one seam are not sewn".into(),
+            Damage::Sides { .. } => "a stitch names two edges".into(),
             Damage::Word { .. } => "the only word is \"right_wrong\"".into(),
             Damage::NoPanel { panel, known, .. } => match nearest(panel, known.iter().map(String::as_str)) {
-                Some(near) => format!("did you mean \"{near}\"?"),
+                Some(near) => format!("add the panel, or take the stitch out; or did you mean \"{near}\"?"),
                 None => "add the panel, or take the stitch out".into(),
             },
             Damage::NoEdge { .. } => "edges are counted from 0".into(),
             Damage::Itself { .. } => "cut the edge in two and sew its halves".into(),
             Damage::Contradiction { .. } => "keep the stitch that is meant".into(),
-            Damage::Shared { .. } => "keep the stitch that is meant; three panels in one seam are not sewn".into(),
+            Damage::Opposed { .. } => "take \"right_wrong\" out of one of them, or give it to both".into(),
+            Damage::Turned { .. } => "correct the panel's `rotation`, or the stitches".into(),
+            Damage::Shared { .. } => "keep the stitch that is meant".into(),
             Damage::Twice { .. } => "keep the one that is meant".into(),
             Damage::Unsewable { remedy, .. } => (*remedy).into(),
         }
@@ -114,7 +140,10 @@ impl Damage {
     pub(super) fn error(&self, file: &str) -> StageError {
         let code = match self {
             Damage::Crosses { .. } | Damage::NoArea { .. } => ErrorCode::DegenerateTriangles,
-            Damage::Syntax { .. }
+            Damage::Empty
+            | Damage::Wide
+            | Damage::Comment { .. }
+            | Damage::Syntax { .. }
             | Damage::NoNumber { .. }
             | Damage::Large { .. }
             | Damage::Many { .. }
@@ -130,6 +159,8 @@ impl Damage {
             | Damage::NoVertex { .. }
             | Damage::Curvature { .. }
             | Damage::NoLength { .. }
+            | Damage::Overshoot { .. }
+            | Damage::Radius { .. }
             | Damage::Open { .. }
             | Damage::Sides { .. }
             | Damage::Word { .. }
@@ -137,6 +168,8 @@ impl Damage {
             | Damage::NoEdge { .. }
             | Damage::Itself { .. }
             | Damage::Contradiction { .. }
+            | Damage::Opposed { .. }
+            | Damage::Turned { .. }
             | Damage::Shared { .. }
             | Damage::Twice { .. }
             | Damage::Unsewable { .. } => ErrorCode::PatternLoading,

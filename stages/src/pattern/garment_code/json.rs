@@ -30,6 +30,13 @@ impl Json {
             return Err(Damage::Large { bytes: bytes.len(), most: MOST_BYTES });
         }
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+        if bytes.iter().all(u8::is_ascii_whitespace) {
+            return Err(Damage::Empty);
+        }
+        // ASCII in 16 bits has a zero in every other byte.
+        if bytes.iter().take(64).filter(|b| **b == 0).count() > bytes.len().min(64) / 4 {
+            return Err(Damage::Wide);
+        }
         let commas = bytes.iter().filter(|b| **b == b',').count();
         if commas > MOST_VALUES {
             return Err(Damage::Many {
@@ -89,6 +96,11 @@ fn syntax(bytes: &[u8], e: &serde_json::Error) -> Damage {
     let strange = ["NaN", "Infinity"].into_iter().find(|w| near.windows(w.len()).any(|x| x == w.as_bytes()));
     if let Some(word) = strange {
         return Damage::NoNumber { word, line, column };
+    }
+    let before = &row[..column.min(row.len())];
+    let at = [&b"//"[..], b"/*"].iter().find_map(|c| row.windows(2).position(|w| w == *c));
+    if let Some(at) = at.filter(|at| *at < before.len() + 1 && !before[..*at].contains(&b'"')) {
+        return Damage::Comment { line, column: at + 1 };
     }
     let text = e.to_string();
     let what = text.rsplit_once(" at line ").map_or(text.as_str(), |(what, _)| what);

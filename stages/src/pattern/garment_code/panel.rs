@@ -15,6 +15,10 @@ use toile_core::prelude::*;
 const HAIR: f64 = 5e-3;
 /// If it is also no more than this share of both edges.
 const HAIR_SHARE: f64 = 0.25;
+/// A shorter edge has no length, metres.
+const SPECK: f64 = 1e-4;
+/// A control point lies no farther from its edge than so many times the edge's length; in 55 files of GarmentCode 2 is the most.
+const OVERSHOOT: f64 = 10.0;
 /// A panel of less area is none, square metres.
 const LEAST_AREA: f64 = 1e-7;
 
@@ -55,6 +59,7 @@ pub(super) fn made(
     told: &mut Vec<String>,
 ) -> Result<Made, Damage> {
     let links = chained(raw, stitched, scale.unit, told)?;
+    links.iter().try_for_each(|l| drawable(raw, l, scale))?;
     let names = edge_names(raw);
     let corners: Vec<Point2> = links.iter().map(|l| l.start * scale.unit).collect();
     let edges =
@@ -93,7 +98,7 @@ fn chained(
     let mut kept = Vec::new();
     for (i, e) in raw.edges.iter().enumerate() {
         let [a, b] = ends(e);
-        match (b - a).norm() * unit > 1e-9 {
+        match (b - a).norm() * unit > SPECK {
             true => kept.push(i),
             false if stitched.contains(&i) => {
                 return Err(Damage::NoLength { panel: raw.name.clone(), edge: i });
@@ -165,6 +170,29 @@ fn edge_names(raw: &RawPanel) -> Vec<String> {
         names.push(name);
     }
     names
+}
+
+/// A curve that a person may have meant.
+fn drawable(raw: &RawPanel, link: &Link, scale: Scale) -> Result<(), Damage> {
+    let (panel, edge) = (raw.name.clone(), link.edge);
+    let chord = (link.end - link.start).norm();
+    let ends = raw.edges[link.edge].ends.map(|v| raw.vertices[v]);
+    // In lengths of the edge, from the nearer of its ends.
+    let away = |c: &Point2| match scale.absolute {
+        true => ends.iter().map(|e| (c - e).norm()).fold(f64::INFINITY, f64::min) / chord,
+        false => c.coords.norm().min((c - Point2::new(1.0, 0.0)).norm()),
+    };
+    let farthest = |c: &[Point2]| c.iter().map(away).fold(0.0, f64::max);
+    let times = match &raw.edges[link.edge].curve {
+        RawCurve::Line => 0.0,
+        RawCurve::Quadratic(c) => farthest(c),
+        RawCurve::Cubic(c) => farthest(c),
+        RawCurve::Circle { radius, .. } if *radius <= 0.0 => {
+            return Err(Damage::Radius { panel, edge, radius: *radius });
+        }
+        RawCurve::Circle { .. } => 0.0,
+    };
+    if times > OVERSHOOT { Err(Damage::Overshoot { panel, edge, times }) } else { Ok(()) }
 }
 
 /// The curve of a link in the direction of the loop, metres.

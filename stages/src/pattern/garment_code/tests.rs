@@ -224,6 +224,42 @@ fn a_stitch_against_its_mirror_image_or_its_place_is_turned() {
 }
 
 #[test]
+fn stitches_of_which_the_wrong_one_is_not_certain_are_refused() {
+    // The front lies flat: its sides run across those of the back, and nothing tells which of the two is meant.
+    refused(
+        |f| {
+            f["pattern"]["panels"]["front"]["rotation"] = json!([90, 0, 0]);
+            f["pattern"]["stitches"][1].as_array_mut().unwrap().push(json!("right_wrong"));
+        },
+        "stitches 0 and 1 are mirror images of each other and run in opposite ways",
+        "take \"right_wrong\" out of one of them, or give it to both",
+    );
+    // Three sides of one panel run against what they are sewn to.
+    let around = json!({
+        "front": rectangle(50.0, 60.0, [300.0, 0.0, 0.0]),
+        "right": rectangle(50.0, 60.0, [360.0, 0.0, 0.0]),
+        "top": rectangle(50.0, 60.0, [300.0, 70.0, 0.0]),
+        "low": rectangle(50.0, 60.0, [300.0, -70.0, 0.0]),
+    });
+    let sewn = [("right", 1, 3), ("top", 2, 0), ("low", 0, 2)]
+        .map(|(other, a, b)| json!([side("front", a), side(other, b), "right_wrong"]));
+    refused(
+        |f| *f = file(around.clone(), json!(sewn)),
+        "3 stitches of panel \"front\" run against the way in which it is placed",
+        "correct the panel's `rotation`, or the stitches",
+    );
+}
+
+#[test]
+fn a_vertex_far_from_its_panel_is_no_wrong_unit() {
+    refused(
+        |f| f["pattern"]["panels"]["front"]["vertices"][2] = json!([5000, 60]),
+        "panel \"front\" is 50.00 m long, the others at most 0.60 m",
+        "correct its vertices",
+    );
+}
+
+#[test]
 fn small_damage_is_repaired_and_told() {
     let told = |change: &dyn Fn(&mut Value)| {
         let mut f = tube();
@@ -308,9 +344,20 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
     let again = "write the file again with the program that made it".to_owned();
     assert_eq!(
         text(b"{\n \"pattern\": [1,\n}"),
-        ("it is no JSON: expected value at line 3 column 1".into(), again.clone())
+        ("it is no JSON: expected value at line 3 column 1".into(), again)
     );
-    assert_eq!(text(b""), ("it is no JSON: EOF while parsing a value at line 1 column 0".into(), again));
+    assert_eq!(
+        text(b" \n"),
+        ("it is empty".into(), "give the file that GarmentCode wrote, a `_specification.json`".into())
+    );
+    let wide: Vec<u8> = "{\"pattern\": {}}".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    let wide = (text(&wide), text(&[&[0xff, 0xfe], &wide[..]].concat()));
+    let saved = ("it is text of 16 bits a letter (UTF-16)".to_owned(), "save it as UTF-8".to_owned());
+    assert_eq!(wide, (saved.clone(), saved));
+    assert_eq!(
+        text(b"{\n // front and back\n \"pattern\": {}}"),
+        ("a comment stands at line 2 column 2".into(), "JSON has no comments: take it out".into())
+    );
     assert_eq!(
         text(b"{\"pattern\": {\n\"x\": NaN}}"),
         (
@@ -320,7 +367,8 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
     );
     let form = "GarmentCode writes `pattern` with `panels` and `stitches`, and `properties`; is it a `_specification.json`?";
     assert_eq!(text(b"{}"), ("the file has no `pattern`".into(), form.to_owned()));
-    assert_eq!(text(b"[]"), ("the file is a list, an object is wanted".into(), form.to_owned()));
+    let write = |what: &str| format!("write {what} there, as GarmentCode does");
+    assert_eq!(text(b"[]"), ("the file is a list, an object is wanted".into(), write("an object")));
     refused(
         |f| f["pattern"]["panels"] = json!({}),
         "there are no panels",
@@ -329,7 +377,7 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
     refused(
         |f| f["pattern"]["panels"] = json!([]),
         "`panels` of `pattern` is a list, an object is wanted",
-        form,
+        &write("an object"),
     );
     refused(
         |f| drop(f["pattern"]["panels"]["back"].as_object_mut().unwrap().remove("rotation")),
@@ -339,7 +387,7 @@ fn damage_of_the_files_form_is_refused_with_its_place() {
     refused(
         |f| f["pattern"]["panels"]["back"]["vertices"][2] = json!([1, "2"]),
         "vertex 2 of panel \"back\" is a text, a number is wanted",
-        form,
+        &write("a number"),
     );
     refused(
         |f| f["pattern"]["panels"]["back"]["vertices"][2] = json!([1, 2, 3]),
@@ -401,7 +449,7 @@ fn what_stands_twice_is_refused() {
     refused(
         |f| f["pattern"]["stitches"].as_array_mut().unwrap().push(stitch(("back", 1), ("front", 1))),
         "edge 1 of panel \"front\" is sewn by stitch 0 and by stitch 2",
-        "keep the stitch that is meant; three panels in one seam are not sewn",
+        "keep the stitch that is meant",
     );
     let once = serde_json::to_string(&tube()).unwrap();
     let twice = once.replacen("\"stitches\":", "\"stitches\":[],\"stitches\":", 1);
@@ -460,6 +508,20 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
         "panel \"front\" crosses itself: edge 1 meets edge 3 near (50.0, 60.0) in the file's units",
         corners,
     );
+    let away = "correct the control point; where it is meant in the panel's coordinates, write \"absolute\" as `curvature_coords`";
+    refused(
+        |f| f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!([0.5, 30.0]),
+        "a control point of edge 0 of panel \"front\" lies 30 times the edge's length away from it",
+        away,
+    );
+    refused(
+        |f| {
+            f["pattern"]["panels"]["front"]["edges"][0]["curvature"] =
+                json!({ "type": "circle", "params": [-40, 0, 1] })
+        },
+        "the radius of edge 0 of panel \"front\" is -40",
+        "give a radius above 0; the flags say to which side the arc turns",
+    );
     let mut f = tube();
     f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!([0.5, 3.0]);
     let e = read(&f).unwrap_err().error("a.json");
@@ -472,7 +534,7 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
 
 #[test]
 fn damage_of_stitches_is_refused_with_its_number() {
-    let sides = "a stitch names two edges; three panels in one seam are not sewn";
+    let sides = "a stitch names two edges";
     let push = |f: &mut Value, s: Value| f["pattern"]["stitches"].as_array_mut().unwrap().push(s);
     refused(|f| push(f, json!([side("front", 0)])), "stitch 2 has 1 sides, 2 are wanted", sides);
     refused(
@@ -488,7 +550,7 @@ fn damage_of_stitches_is_refused_with_its_number() {
     refused(
         |f| push(f, stitch(("front", 0), ("bakc", 1))),
         "stitch 2 sews panel \"bakc\", which the file does not have",
-        "did you mean \"back\"?",
+        "add the panel, or take the stitch out; or did you mean \"back\"?",
     );
     refused(
         |f| push(f, stitch(("front", 9), ("back", 1))),

@@ -10,6 +10,8 @@ use toile_core::artifact::Point2;
 
 /// The size of the largest panel, metres.
 const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
+/// And where the unit is guessed.
+const LIKELY: (f64, f64) = (0.25, 2.5);
 /// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's templates, millimetres,
 /// inches, metres.
 const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
@@ -27,7 +29,9 @@ pub(super) fn metres(file: &RawFile, told: &mut Vec<String>) -> Result<f64, Dama
     if fits(said) {
         return Ok(1.0 / said);
     }
-    match USUAL.into_iter().find(|u| fits(*u)) {
+    stray(file, said)?;
+    let likely = |units: &f64| (LIKELY.0..=LIKELY.1).contains(&(size / units));
+    match USUAL.into_iter().find(likely) {
         Some(units) => {
             told.push(format!(
                 "with {said} units in a metre the largest panel is {:.3} m long: read with {units:.4} units in a metre, {:.3} m",
@@ -41,6 +45,21 @@ pub(super) fn metres(file: &RawFile, told: &mut Vec<String>) -> Result<f64, Dama
             remedy: "write 100 as `units_in_meter` for centimetres",
         }),
     }
+}
+
+/// One panel alone is far too long: a vertex of it stands wrong, not the unit.
+fn stray(file: &RawFile, units: f64) -> Result<(), Damage> {
+    let mut sizes: Vec<(f64, &str)> =
+        file.panels.iter().map(|p| (extent(&p.vertices) / units, p.name.as_str())).collect();
+    sizes.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let [(largest, panel), (next, _), ..] = sizes[..] else { return Ok(()) };
+    if largest > PLAUSIBLE.1 && (LIKELY.0..=LIKELY.1).contains(&next) {
+        return Err(Damage::Unsewable {
+            what: format!("panel \"{panel}\" is {largest:.2} m long, the others at most {next:.2} m"),
+            remedy: "correct its vertices",
+        });
+    }
+    Ok(())
 }
 
 /// The longer side of the box around the points.
