@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 12] = [
+pub const PIPELINES: [&str; 16] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -71,4 +71,8 @@ pub const PIPELINES: [&str; 12] = [
     "dress.ron",
     "onepiece.ron",
     "pleats.ron",
+    "photo_longsleeve.ron",
+    "photo_skirt.ron",
+    "photo_dress.ron",
+    "photo_trousers.ron",
 ];

@@ -1,6 +1,6 @@
 //! The sample garments as exact curves, millimetres.
 //!
-//! Both are drafted for a figure of height 172 cm, bust 88, waist 70 and hip 96 cm. The frame is that
+//! All are drafted for a figure of height 172 cm, bust 88, waist 70 and hip 96 cm. The frame is that
 //! of the pattern: x to the right as seen from outside, y up, the origin below the middle of the
 //! garment at its lowest point. Front and back share shoulders, sides (and sleeves), so that what is
 //! sewn together has the same length; necks and armholes differ as a tailor cuts them.
@@ -89,6 +89,58 @@ pub(crate) fn tshirt(side: Side) -> Outline {
     ];
     let depth = if side == Side::Front { 98.0 } else { 28.0 };
     close(&half, &[neck_curve(neck, depth)], &[hem_curve(hem)], side)
+}
+
+/// A knitted top whose sleeves reach the wrists, 118 cm from cuff to cuff, 68 cm long.
+pub(crate) fn longsleeve() -> Outline {
+    let (neck, armpit, hem) = ([88.0, 676.0], [255.0, 345.0], [266.0, 7.0]);
+    let (cuff_top, cuff_low) = ([590.0, 180.0], [515.5, 120.9]);
+    let top = vec![
+        [cuff_top, [468.0, 334.0], [320.0, 536.0], [232.0, 622.0]],
+        [[232.0, 622.0], [190.0, 650.0], [136.0, 662.0], neck],
+    ];
+    let half: Half = vec![
+        ("side", "hem", vec![[hem, [258.0, 110.0], [247.0, 230.0], armpit]]),
+        ("underarm", "armpit", vec![[armpit, [300.0, 314.0], [430.0, 196.0], cuff_low]]),
+        ("cuff", "cuff_low", vec![line(cuff_low, cuff_top)]),
+        ("shoulder", "cuff_top", top),
+    ];
+    close(&half, &[neck_curve(neck, 92.0)], &[hem_curve(hem)], Side::Front)
+}
+
+/// A skirt that flares from the hip, 73 cm around the waist, 102 around the hip, 55 cm long.
+pub(crate) fn skirt() -> Outline {
+    let (waist, hip, hem) = ([183.0, 552.0], [255.0, 362.0], [312.0, 9.0]);
+    let half: Half = vec![
+        ("side", "hem", vec![[hem, [292.0, 130.0], [270.0, 250.0], hip]]),
+        ("hip", "hip", vec![[hip, [244.0, 430.0], [214.0, 500.0], waist]]),
+    ];
+    close(&half, &[[waist, [120.0, 547.0], [60.0, 544.0], [0.0, 544.0]]], &[hem_curve(hem)], Side::Front)
+}
+
+/// A dress without sleeves, 95 cm around the chest, 76 around the waist, 96 cm long.
+pub(crate) fn dress() -> Outline {
+    let (neck, shoulder, armpit) = ([92.0, 962.0], [160.0, 938.0], [237.0, 718.0]);
+    let (waist, hem) = ([190.0, 540.0], [345.0, 12.0]);
+    let half: Half = vec![
+        ("skirt", "hem", vec![[hem, [300.0, 190.0], [236.0, 430.0], waist]]),
+        ("side", "waist", vec![[waist, [204.0, 600.0], [226.0, 660.0], armpit]]),
+        ("armhole", "armpit", vec![[armpit, [178.0, 722.0], [140.0, 830.0], shoulder]]),
+        ("shoulder", "shoulder", vec![line(shoulder, neck)]),
+    ];
+    close(&half, &[neck_curve(neck, 108.0)], &[hem_curve(hem)], Side::Front)
+}
+
+/// Trousers of legs that taper, 76 cm around the waist, 104 around the hip, 101 cm long.
+pub(crate) fn trousers() -> Outline {
+    let (waist, hip, outer, inner) = ([190.0, 1010.0], [260.0, 800.0], [196.0, 8.0], [48.0, 0.0]);
+    let fork = [0.0, 738.0];
+    let side =
+        vec![[outer, [214.0, 260.0], [254.0, 560.0], hip], [hip, [262.0, 880.0], [212.0, 960.0], waist]];
+    let half: Half = vec![("outseam", "hem", side)];
+    let flip = |p: P| [-p[0], p[1]];
+    let bottom = [line(flip(outer), flip(inner)), [flip(inner), [-40.0, 260.0], [-8.0, 560.0], fork]];
+    close(&half, &[[waist, [120.0, 1006.0], [60.0, 1004.0], [0.0, 1004.0]]], &bottom, Side::Front)
 }
 
 fn line(a: P, b: P) -> Cubic {
@@ -198,7 +250,8 @@ mod tests {
 
     #[test]
     fn outlines_are_closed_symmetric_and_counter_clockwise() {
-        for o in [vest(Side::Front), vest(Side::Back), tshirt(Side::Front), tshirt(Side::Back)] {
+        let tops = [vest(Side::Front), vest(Side::Back), tshirt(Side::Front), tshirt(Side::Back)];
+        for o in tops.into_iter().chain([longsleeve(), skirt(), dress(), trousers()]) {
             let n = o.points.len();
             let step = (0..n).map(|i| distance(o.points[i], o.points[(i + 1) % n])).fold(0.0, f64::max);
             let area: f64 = (0..n)
@@ -209,7 +262,9 @@ mod tests {
                 .sum();
             assert!(step < 2.0 * STEP, "a gap of {step} mm");
             assert!(area > 2e5, "{area}");
-            assert!((length(&o, "side_left") - length(&o, "side_right")).abs() < 1e-9);
+            let side = if o.edges[0].name.starts_with("outseam") { "outseam" } else { "side" };
+            let [left, right] = ["left", "right"].map(|s| length(&o, &format!("{side}_{s}")));
+            assert!((left - right).abs() < 1e-9);
             assert_eq!(o.edges.last().map(|e| e.end), Some(0));
         }
     }

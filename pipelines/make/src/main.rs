@@ -36,6 +36,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         write(&folder.join("vest"), side, &enlarged(vest_shot(side), factor), &garment::vest(side))?;
         write(&folder.join("tshirt"), side, &enlarged(tshirt_shot(side), factor), &garment::tshirt(side))?;
     }
+    for (name, shot, outline) in single() {
+        write(&folder.join(name), Side::Front, &enlarged(shot, factor), &outline)?;
+    }
     pattern::write(&folder.join("pattern"))?;
     scene::write(&folder.join("scene"))
 }
@@ -48,6 +51,80 @@ fn enlarged(shot: Shot, factor: f64) -> Shot {
         origin: shot.origin.map(|x| (x + 0.5) * factor - 0.5),
         ..shot
     }
+}
+
+/// The garments of one photo.
+fn single() -> [(&'static str, Shot, Outline); 4] {
+    let knit = Shot {
+        seed: 31,
+        size: [1900, 1130],
+        px_per_mm: 1.5,
+        origin: [948.7, 1071.8],
+        ground: Ground::Linen,
+        structure: Structure::Knit,
+        base: srgb(116, 50, 58),
+        thread: srgb(150, 92, 98),
+        print: print::plain,
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(22.0),
+            "cuff_left" | "cuff_right" => Finish::Bound(38.0, srgb(96, 40, 48)),
+            "neck" => Finish::Bound(18.0, srgb(98, 42, 50)),
+            _ => Finish::Seam,
+        },
+    };
+    let skirt = Shot {
+        seed: 41,
+        size: [1420, 1260],
+        px_per_mm: 2.0,
+        origin: [709.3, 1180.4],
+        ground: Ground::Oak,
+        structure: Structure::Woven,
+        base: srgb(38, 66, 92),
+        thread: srgb(92, 118, 140),
+        print: print::border,
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(24.0),
+            "neck" => Finish::Hemmed(34.0),
+            _ => Finish::Seam,
+        },
+    };
+    let dress = Shot {
+        seed: 51,
+        size: [1240, 1630],
+        px_per_mm: 1.55,
+        origin: [622.1, 1560.2],
+        ground: Ground::Linen,
+        structure: Structure::Woven,
+        base: srgb(34, 72, 70),
+        thread: srgb(88, 124, 120),
+        print: print::dots,
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(18.0),
+            "neck" | "armhole_left" | "armhole_right" => Finish::Bound(8.0, srgb(26, 56, 54)),
+            _ => Finish::Seam,
+        },
+    };
+    let trousers = Shot {
+        seed: 61,
+        size: [1060, 1660],
+        px_per_mm: 1.5,
+        origin: [528.6, 1590.7],
+        ground: Ground::Oak,
+        structure: Structure::Woven,
+        base: srgb(52, 56, 66),
+        thread: srgb(98, 102, 112),
+        print: print::plain,
+        finish: |edge| match edge {
+            "neck" => Finish::Hemmed(38.0),
+            _ => Finish::Seam,
+        },
+    };
+    [
+        ("longsleeve", knit, garment::longsleeve()),
+        ("skirt", skirt, garment::skirt()),
+        ("dress", dress, garment::dress()),
+        ("trousers", trousers, garment::trousers()),
+    ]
 }
 
 fn vest_shot(side: Side) -> Shot {

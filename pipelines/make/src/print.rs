@@ -12,6 +12,27 @@ fn paint(under: Rgb, ink: Rgb, d: f64) -> Rgb {
     blend(ink, under, smoothstep(-RIM, RIM, d))
 }
 
+/// Nothing.
+pub(crate) fn plain(base: Rgb, _: P) -> Rgb {
+    base
+}
+
+/// Two bands above a skirt's hem, which is 9 mm lower in the middle.
+pub(crate) fn border(base: Rgb, p: P) -> Rgb {
+    let high = p[1] - 9.0 * (p[0] / 312.0).powi(2);
+    let cloth = paint(base, srgb(196, 168, 112), (high - 78.0).abs() - 14.0);
+    paint(cloth, srgb(150, 70, 52), (high - 108.0).abs() - 4.0)
+}
+
+/// Dots in rows.
+pub(crate) fn dots(base: Rgb, p: P) -> Rgb {
+    let row = (p[1] / 34.0).round();
+    let shift = if row.rem_euclid(2.0) < 0.5 { 0.0 } else { 20.0 };
+    let x = (p[0] - shift) / 40.0;
+    let c = [(x - x.round()) * 40.0, p[1] - row * 34.0];
+    paint(base, srgb(214, 196, 150), c[0].hypot(c[1]) - 6.5)
+}
+
 /// Navy with bands that run on from front to back at the side seams, and a star in a ring.
 pub(crate) fn vest_front(base: Rgb, p: P) -> Rgb {
     let cloth = vest_bands(base, p);

@@ -88,6 +88,12 @@ impl Mannequin {
         Mannequin { height, bust, waist, hip, edge, ..Mannequin::default() }
     }
 
+    /// A mannequin of that height with bust, waist and hip and the arms at that angle in degrees, meshed at an edge length, all in metres.
+    pub(crate) fn made(height: f64, [bust, waist, hip]: [f64; 3], arm_angle: f64, edge: f64) -> Self {
+        let [height, bust, waist, hip, edge] = [height, bust, waist, hip, edge].map(Length::m);
+        Mannequin { height, bust, waist, hip, arm_angle, edge, ..Mannequin::default() }
+    }
+
     fn size(&self) -> Size {
         let [height, bust, waist, hip] = [self.height, self.bust, self.waist, self.hip].map(Length::metres);
         let given = |l: Option<Length>, or: f64| l.map_or(or, Length::metres);
@@ -116,7 +122,8 @@ fn check(size: &Size) -> Result<(), StageError> {
         ("hip", size.hip, "a waist", size.waist, (0.85, 1.75)),
         ("shoulder_width", size.shoulder_width, "a bust", size.bust, (0.34, 0.56)),
         ("neck", size.neck, "a bust", size.bust, (0.30, 0.52)),
-        ("arm_angle", size.arm_angle.to_degrees(), "", 1.0, (30.0, 75.0)),
+        // From radians, 30 degrees come back with the last digits of a rounding.
+        ("arm_angle", (size.arm_angle.to_degrees() * 1e9).round() / 1e9, "", 1.0, (30.0, 75.0)),
     ];
     rules.into_iter().try_for_each(|(name, value, to, base, (lo, hi))| {
         let share = value / base;

@@ -16,7 +16,7 @@ mod tests;
 mod tshirt;
 mod vest;
 
-pub use block::{Block, BlockStyle};
+pub use block::{Block, BlockStyle, Fitting};
 pub use neckline::Neckline;
 pub use seams::{SeamEntry, Seams};
 pub use tshirt::TShirt;
@@ -38,6 +38,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Vest>();
     registry.add::<TShirt>();
     registry.add::<Block>();
+    registry.add::<Fitting>();
     registry.add::<Neckline>();
     registry.add::<Seams>();
 }

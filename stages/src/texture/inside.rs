@@ -51,6 +51,31 @@ pub(super) fn covered(points: &[Point2], triangles: &[[u32; 3]], area: PixelBox)
     picture
 }
 
+/// A panel of which the mask shows less than this share is not the one that it was made from.
+const LEAST_SHOWN: f64 = 0.5;
+
+/// Takes out what the mask of the photo does not show as garment. A mask of a photo that was brought down has larger pixels.
+pub(super) fn keep_shown(inside: &mut GrayImage, mask: &GrayImage, photo_width: u32, area: PixelBox) {
+    let join = (f64::from(photo_width) / f64::from(mask.width().max(1))).round().max(1.0) as i64;
+    let shown = |x: u32, y: u32| {
+        let at = [i64::from(x) + area.left, i64::from(y) + area.top].map(|v| v.div_euclid(join));
+        match at.map(u32::try_from) {
+            [Ok(x), Ok(y)] if x < mask.width() && y < mask.height() => mask.get_pixel(x, y).0[0] != 0,
+            _ => false,
+        }
+    };
+    let is_kept = |(x, y, p): (u32, u32, &image::Luma<u8>)| p.0[0] != 0 && shown(x, y);
+    let covered = inside.as_raw().iter().filter(|v| **v != 0).count() as f64;
+    let kept = inside.enumerate_pixels().filter(|p| is_kept(*p)).count() as f64;
+    if kept >= LEAST_SHOWN * covered {
+        for (x, y, p) in inside.enumerate_pixels_mut() {
+            if p.0[0] != 0 && !shown(x, y) {
+                p.0[0] = 0;
+            }
+        }
+    }
+}
+
 fn fill(picture: &mut GrayImage, corners: [Point2; 3]) {
     let (width, height) = picture.dimensions();
     let ys = corners.map(|p| p.y);

@@ -4,7 +4,7 @@
 //! coordinates are the photo coordinates that the mesher kept for every vertex.
 //! Cost: a few passes over the photo's pixels. Limit: light and shadow in the photo stay in the texture.
 
-use super::inside::{PixelBox, covered};
+use super::inside::{PixelBox, covered, keep_shown};
 use super::texture_size::{self, LARGEST};
 use super::{bleed, crop, of_panel, parts};
 use rayon::prelude::*;
@@ -37,9 +37,10 @@ pub enum BodyShown {
 /// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
 /// and carried past it, so that no background shows at a seam or when the texture is seen from afar. A panel
 /// takes the photo of its own name, or of the last word of its name: `left_sleeve_front` that of `front`. One without a photo gets a plain
-/// cloth.
+/// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
+    version = 2,
     source = "garment modelling thesis, 2012: replace and modulate",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -68,6 +69,7 @@ impl PhotoTexturer {
         &self,
         garment: &Garment,
         #[original] photos: Option<Set<Photo>>,
+        masks: Option<Set<Mask>>,
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Model, StageError> {
@@ -82,7 +84,8 @@ impl PhotoTexturer {
                 Some(photo) => {
                     let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
                         .ok_or_else(|| off_photo(panel, photo))?;
-                    pictures.push((panel, photo, area));
+                    let mask = masks.as_ref().and_then(|m| of_panel(m, &panel.name));
+                    pictures.push((panel, photo, mask, area));
                     mesh.uv = panel.photo_px.iter().map(|px| area.uv(px)).collect();
                     material.colour = [1.0; 3];
                     material.texture = Some(pictures.len() - 1);
@@ -94,9 +97,9 @@ impl PhotoTexturer {
             model.materials.push(material);
         }
         cx.progress(0.5, format!("textures of {} panels", pictures.len()));
-        let texture = |(panel, photo, area): (&GarmentPanel, &Photo, PixelBox)| {
+        let texture = |(panel, photo, mask, area): (&GarmentPanel, &Photo, Option<&Mask>, PixelBox)| {
             cx.check()?;
-            self.texture(garment, panel, photo, area)
+            self.texture(garment, panel, photo, mask, area)
         };
         let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
         model.textures = textures.into_iter().collect::<Result<_, _>>()?;
@@ -123,12 +126,16 @@ impl PhotoTexturer {
         garment: &Garment,
         panel: &GarmentPanel,
         photo: &Photo,
+        mask: Option<&Mask>,
         area: PixelBox,
     ) -> Result<Texture, StageError> {
         let first = panel.vertices.start as u32;
         let triangles: Vec<[u32; 3]> =
             garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
-        let inside = covered(&panel.photo_px, &triangles, area);
+        let mut inside = covered(&panel.photo_px, &triangles, area);
+        if let Some(mask) = mask {
+            keep_shown(&mut inside, &mask.pixels, photo.pixels.width(), area);
+        }
         let size = crop::scaled_size(area, self.size);
         let mut crop = crop::crop(&photo.pixels, area, &inside, size);
         let scale = f64::from(size[0]) / f64::from(area.width);

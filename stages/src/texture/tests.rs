@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::bleed::{bleed, eroded, nearest};
-use super::inside::{PixelBox, covered};
+use super::inside::{PixelBox, covered, keep_shown};
 use super::{PhotoTexturer, crop, fixture};
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
@@ -17,7 +17,7 @@ fn texturer(params: &str) -> PhotoTexturer {
 fn model(params: &str) -> Model {
     let body = fixture::body();
     texturer(params)
-        .run(&fixture::garment(8), Some(fixture::photos()), Some(&body), &Context::quiet())
+        .run(&fixture::garment(8), Some(fixture::photos()), None, Some(&body), &Context::quiet())
         .unwrap()
 }
 
@@ -137,7 +137,8 @@ fn a_vertex_that_is_not_finite_is_refused() {
 fn a_panel_beside_its_photo_is_refused() {
     let mut garment = fixture::garment(4);
     garment.panels[0].photo_px.iter_mut().for_each(|p| p.x += 1e9);
-    let error = texturer("()").run(&garment, Some(fixture::photos()), None, &Context::quiet()).unwrap_err();
+    let error =
+        texturer("()").run(&garment, Some(fixture::photos()), None, None, &Context::quiet()).unwrap_err();
     assert_eq!(error.to_string(), "panel \"front\" covers no pixel of its photo \"photo.png\"");
 }
 
@@ -237,7 +238,7 @@ proptest! {
             let k = i % px.len();
             px[k] += Vector2::new(dx, dy);
         }
-        let result = texturer("(size: 64)").run(&garment, Some(fixture::photos()), None, &Context::quiet());
+        let result = texturer("(size: 64)").run(&garment, Some(fixture::photos()), None, None, &Context::quiet());
         if let Ok(model) = result {
             prop_assert!(model.meshes[0].uv.iter().flatten().all(|c| c.is_finite()));
         }
@@ -252,4 +253,19 @@ fn one_and_two_threads_give_the_same_bits() {
         model.textures.iter().map(|t| t.pixels.clone()).collect::<Vec<_>>()
     };
     assert_eq!(with(1), with(2));
+}
+
+#[test]
+fn what_the_mask_does_not_show_has_no_colour_of_its_own() {
+    // A box of 8 by 4 pixels that begins one pixel left of the photo; the mask has pixels of two, of which the middle column is ground.
+    let area = PixelBox { left: -1, top: 0, width: 8, height: 4 };
+    let mask = |ground: u32| GrayImage::from_fn(3, 2, |x, _| Luma([if x == ground { 0 } else { 255 }]));
+    let mut inside = GrayImage::from_pixel(8, 4, Luma([255]));
+    keep_shown(&mut inside, &mask(1), 6, area);
+    let row: Vec<bool> = (0..8).map(|x| inside.get_pixel(x, 0).0[0] != 0).collect();
+    assert_eq!(row, [false, true, true, false, false, true, true, false]);
+    // A mask that shows less than half of the panel is that of another garment.
+    let mut inside = GrayImage::from_pixel(8, 4, Luma([255]));
+    keep_shown(&mut inside, &GrayImage::new(3, 2), 6, area);
+    assert!(inside.pixels().all(|p| p.0[0] == 255));
 }

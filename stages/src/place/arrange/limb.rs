@@ -41,7 +41,12 @@ impl Limb {
         let upward = Vector3::y();
         let level = upward - axis * axis.dot(&upward);
         let up = (level - front * front.dot(&level)).try_normalize(1e-6)?;
+        // The flank of the trunk lies within reach of an arm that hangs steeply.
+        let side = at("armpit")?.x;
         let near = |p: &Point3| {
+            if p.x * side.signum() < side.abs() {
+                return None;
+            }
             let along = (p - root).dot(&axis);
             let off = (p - root - axis * along).norm();
             (along > 0.0 && off < REACH).then_some((along, off))

@@ -94,6 +94,25 @@ pub(super) const DRESS: Form = Form {
     ],
 };
 
+/// A dress with sleeves, whose skirt flares from the waist.
+pub(super) const SLEEVED: Form = Form {
+    word: "a dress with sleeves",
+    marks: &[
+        Mark::Dent(2, 12.0, "its sides run up without a waist"),
+        Mark::Dent(3, 25.0, NO_ARMPIT),
+        Mark::Below(3, 65.0, NO_ARMPIT),
+    ],
+    edges: &[
+        HEM,
+        edge("skirt", [100.0, 10.0], [0.0, 0.06], [0.4, 1.6]),
+        edge("side", [80.0, 12.0], [0.0, 0.05], [0.15, 0.7]),
+        own("underarm", [-35.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
+        own("cuff", [55.0, 30.0], [0.0, 0.06], [0.05, 0.45]),
+        edge("top", [150.0, 20.0], [0.0, 0.08], [0.2, 1.6]),
+        NECK,
+    ],
+};
+
 /// Sleeves that end above the elbow.
 pub(super) const TEE: Form = Form {
     word: "a T-shirt",
@@ -141,11 +160,12 @@ pub(super) const SKIRT: Form = Form {
 /// Two legs.
 pub(super) const TROUSERS: Form = Form {
     word: "a pair of trousers",
-    marks: &[Mark::Below(0, -50.0, "it has no legs"), Mark::Corner(3, 40.0, "it has no waist")],
+    marks: &[Mark::Below(0, -50.0, "it has no legs"), Mark::Corner(4, 40.0, "it has no waist")],
     edges: &[
         own("inseam", [-86.0, 12.0], [0.0, 0.05], [0.1, 2.5]),
         own("hem", [5.0, 12.0], [0.0, 0.06], [0.08, 0.6]),
-        edge("outseam", [95.0, 10.0], [0.0, 0.06], [0.4, 3.5]),
+        edge("outseam", [95.0, 10.0], [0.0, 0.06], [0.2, 3.5]),
+        edge("hip", [103.0, 15.0], [0.0, 0.08], [0.06, 0.8]),
         edge("waist", [180.0, 8.0], [0.0, 0.06], [0.12, 0.7]),
     ],
 };

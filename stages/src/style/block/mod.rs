@@ -1,11 +1,12 @@
 //! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
 //!
 //! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
-//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]). Cost: a tenth of a second a form.
+//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
 mod bow;
 mod curve;
 mod fit;
+mod fitting;
 mod form;
 mod halves;
 mod lay;
@@ -21,6 +22,7 @@ mod tests;
 mod wearable;
 
 use fit::{Fit, fit};
+pub use fitting::Fitting;
 use form::Form;
 use halves::Upright;
 use lay::{Fitted, mirrored, pattern};
@@ -44,6 +46,8 @@ pub enum BlockStyle {
     LongSleeve,
     /// No sleeves, and a skirt from the waist.
     Dress,
+    /// A dress with sleeves.
+    SleevedDress,
     /// From waist to hem.
     Skirt,
     /// Two legs, long or short.
@@ -52,11 +56,12 @@ pub enum BlockStyle {
 
 impl BlockStyle {
     /// All that can be named, with their forms.
-    const NAMED: [(BlockStyle, &'static str, &'static Form); 6] = [
+    const NAMED: [(BlockStyle, &'static str, &'static Form); 7] = [
         (BlockStyle::Vest, "Vest", &form::VEST),
         (BlockStyle::TShirt, "TShirt", &form::TEE),
         (BlockStyle::LongSleeve, "LongSleeve", &form::LONG),
         (BlockStyle::Dress, "Dress", &form::DRESS),
+        (BlockStyle::SleevedDress, "SleevedDress", &form::SLEEVED),
         (BlockStyle::Skirt, "Skirt", &form::SKIRT),
         (BlockStyle::Trousers, "Trousers", &form::TROUSERS),
     ];
@@ -76,7 +81,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 2,
+    version = 3,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)

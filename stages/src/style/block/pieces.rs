@@ -227,7 +227,15 @@ fn sleeve(side: &Side, curves: &[Curve; 4], layer: Layer) -> Option<Flat> {
 fn leg(side: &Side, layer: Layer) -> Flat {
     let edge = |name: &str| side.edges.iter().find(|e| e.0 == name).map(|e| e.1);
     let (low, high) = (side.edges[0].1.0[0], side.edges[side.edges.len() - 1].1.0[3]);
-    let width = |share: f64| edge("outseam").map_or(0.0, |c| at_height(&c, low.y + share * (high.y - low.y)));
+    let width = |share: f64| {
+        let y = low.y + share * (high.y - low.y);
+        let sides = ["outseam", "hip"].into_iter().filter_map(edge);
+        // The one that passes there; at the corner between them both do.
+        let passes = |c: &Curve| (c.0[0].y - y) * (c.0[3].y - y) <= 0.0;
+        let mut all: Vec<Curve> = sides.collect();
+        all.sort_by_key(|c| !passes(c));
+        all.first().map_or(0.0, |c| at_height(c, y))
+    };
     let (seat, fork) = (width(SEAT) - low.x, width(0.0) - low.x);
     let hidden = (FORK * 4.0 * seat - 2.0 * (fork - seat).max(0.0)).max(0.0);
     let point = match layer {

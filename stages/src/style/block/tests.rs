@@ -222,7 +222,7 @@ fn trousers_are_closed_in_their_middle() {
     let (pattern, _, plan) = cut(&of(BlockStyle::Trousers), garment(TROUSERS)).unwrap();
     let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["left_leg_front", "right_leg_front", "right_leg_back", "left_leg_back"]);
-    assert_eq!(plan.seams.len(), 6);
+    assert_eq!(plan.seams.len(), 8);
     // The points of the fork, which lie folded: 15 % of 4 x 228 mm around the seat, less what the fork is wider than the seat, twice 11 mm.
     for (name, point) in names.into_iter().zip([38.0, 38.0, 76.0, 76.0]) {
         let corners = &pattern.piece(name).unwrap().outer.corners;
@@ -335,4 +335,82 @@ proptest! {
             prop_assert!((is - want).abs() < 4.0, "{edge}: {is:.1} for {want:.1}");
         }
     }
+}
+
+/// The mannequin that a garment is fitted to: its height and bust in cm, and what is told.
+fn fitted_to(points: Vec<Point2>, style: BlockStyle) -> ([f64; 2], Vec<String>) {
+    let cx = Context::quiet();
+    let front = [("front".to_owned(), outline(points))].into_iter().collect();
+    let body = Fitting { style, ..Fitting::default() }.run(front, &cx).unwrap();
+    let of = |name: &str| (body.measurements[name] * 100.0).round();
+    ([of("height"), of("bust")], cx.take_notes().1)
+}
+
+fn scaled(points: Vec<Point2>, by: f64) -> Vec<Point2> {
+    points.into_iter().map(|p| Point2::from(p.coords * by)).collect()
+}
+
+#[test]
+fn a_garment_is_worn_by_whom_it_fits() {
+    // 100 cm around the chest, 66 cm long: an adult's.
+    let ([height, bust], told) = fitted_to(garment(TEE), BlockStyle::TShirt);
+    assert_eq!([height, bust], [168.0, 92.0]);
+    assert_eq!(
+        told,
+        [
+            "worn by a mannequin of 168 cm, bust 92, waist 76, hip 100 cm: a garment of 100 cm around the chest, 68 cm long fits it"
+        ]
+    );
+    // The same at two thirds: a child's.
+    let ([height, bust], _) = fitted_to(scaled(garment(TEE), 0.66), BlockStyle::TShirt);
+    assert!((104.0..=122.0).contains(&height) && bust < 66.0, "{height} {bust}");
+    let ([height, _], _) = fitted_to(garment(TROUSERS), BlockStyle::Trousers);
+    assert!(height > 150.0, "{height}");
+    // As wide as a tent.
+    let (_, told) = fitted_to(scaled(garment(TEE), 2.5), BlockStyle::TShirt);
+    assert_eq!(
+        told[1],
+        "no size wears it as such a garment is worn: look at the photo's `width`, which gives the scale"
+    );
+}
+
+#[test]
+fn arms_are_spread_as_the_sleeves_lie() {
+    let at = |points: Vec<Point2>| {
+        let front = [("front".to_owned(), outline(points))].into_iter().collect();
+        let body = Fitting { style: BlockStyle::TShirt, ..Fitting::default() }
+            .run(front, &Context::quiet())
+            .unwrap();
+        let arm = body.landmarks["wrist_left"] - body.landmarks["shoulder_left"];
+        arm.x.atan2(-arm.y).to_degrees()
+    };
+    let mut level: Vec<[f64; 2]> = TEE.to_vec();
+    (level[3], level[4]) = ([400.0, 420.0], [420.0, 580.0]);
+    assert!(at(garment(&level)) > at(garment(TEE)) + 10.0, "{} {}", at(garment(&level)), at(garment(TEE)));
+}
+
+const SLEEVED: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [330.0, 20.0],
+    [190.0, 560.0],
+    [225.0, 760.0],
+    [330.0, 700.0],
+    [410.0, 830.0],
+    [215.0, 960.0],
+    [85.0, 990.0],
+    [0.0, 960.0],
+];
+
+#[test]
+fn a_dress_with_sleeves_is_cut_to_a_trunk_and_sleeves() {
+    let (p, _, plan) = cut(&of(BlockStyle::Auto), garment(SLEEVED)).unwrap();
+    let names: Vec<&str> = p.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names.len(), 6, "{names:?}");
+    let trunk = p.piece("front").unwrap();
+    for edge in ["skirt_left", "side_right", "armhole_left", "shoulder_right", "neck", "hem"] {
+        assert!(trunk.path(edge).is_some(), "{edge}");
+    }
+    assert!(plan.seams.len() >= 14, "{}", plan.seams.len());
+    let named = fitted_to(garment(SLEEVED), BlockStyle::Auto).1;
+    assert!(named[0].contains("around the waist"), "{named:?}");
 }

@@ -55,11 +55,15 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
         let most = |s: &[Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
         2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
     };
-    let hip = at("hip").or_else(|| at("outseam"));
     let found = [
         tape("chest", "the body's", "bust", armpit.map(across)),
         tape("waist", "the body's", "waist", at("waist").map(across)),
-        tape("hip", "the body's", "hip", hip.map(widest)),
+        tape(
+            "hip",
+            "the body's",
+            "hip",
+            ["hip", "outseam"].into_iter().filter_map(at).map(widest).reduce(f64::max),
+        ),
     ];
     found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
 }

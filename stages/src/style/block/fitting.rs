@@ -1,0 +1,196 @@
+//! `Fitting`: a mannequin that the photographed garment fits.
+//!
+//! Method: a block is fitted to the outline ([`super::fit`]) and measured as a tailor measures a garment that lies flat. Of the sizes of a
+//! table, from a child of 80 cm to an adult, the one is taken whose girths, with the usual ease, and whose height, with the usual length of such a garment,
+//! lie nearest. The arms are spread as the sleeves are. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
+//! shorts and vests tell little, so that a short garment with few girths may fit several sizes; the body is a woman's or a child's.
+
+use super::fit::Fit;
+use super::form::Form;
+use super::{Block, BlockStyle, Fitted, refusal};
+use crate::body::Mannequin;
+use toile_core::prelude::*;
+
+/// Height, bust, waist and hip, cm: children by EN 13402-3, adults in its steps of 4 to 6 cm of bust.
+const SIZES: [[f64; 4]; 26] = [
+    [80.0, 49.0, 47.0, 49.0],
+    [86.0, 51.0, 48.5, 51.0],
+    [92.0, 53.0, 50.0, 53.0],
+    [98.0, 55.0, 51.5, 55.5],
+    [104.0, 57.0, 53.0, 58.0],
+    [110.0, 59.0, 54.0, 61.0],
+    [116.0, 61.0, 55.5, 64.0],
+    [122.0, 63.0, 57.0, 67.0],
+    [128.0, 66.0, 58.5, 70.0],
+    [134.0, 69.0, 60.0, 73.0],
+    [140.0, 72.0, 61.5, 77.0],
+    [146.0, 76.0, 63.5, 81.0],
+    [152.0, 80.0, 65.5, 85.0],
+    [158.0, 83.0, 67.5, 89.0],
+    [164.0, 80.0, 64.0, 88.0],
+    [166.0, 84.0, 68.0, 92.0],
+    [168.0, 88.0, 72.0, 96.0],
+    [168.0, 92.0, 76.0, 100.0],
+    [168.0, 96.0, 80.0, 104.0],
+    [168.0, 100.0, 84.0, 108.0],
+    [168.0, 104.0, 88.0, 112.0],
+    [168.0, 110.0, 94.0, 117.0],
+    [168.0, 116.0, 100.0, 122.0],
+    [168.0, 122.0, 106.0, 127.0],
+    [168.0, 128.0, 112.0, 132.0],
+    [170.0, 134.0, 118.0, 137.0],
+];
+
+/// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest, waist and hip.
+const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.07, 0.06]];
+/// Usual length of a garment from neck or waist to hem as a share of the body's height, and its spread.
+const TOP: [f64; 2] = [0.39, 0.05];
+const DRESS: [f64; 2] = [0.56, 0.1];
+const LEGS: [f64; 2] = [0.60, 0.04];
+/// Legs whose inseam is shorter than this share of their outseam are shorts, whose length tells little.
+const SHORTS: f64 = 0.55;
+/// A sleeve's length along its top from the neck, as a share of the height, where it reaches the wrist.
+const SLEEVE: [f64; 2] = [0.44, 0.04];
+/// What a single figure adds at most.
+const MOST: f64 = 9.0;
+/// A mean square beyond this is told: no body of the table wears it as usual.
+const ODD: f64 = 4.0;
+/// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the vertical.
+const ARMS: f64 = 45.0;
+const REACH: (f64, f64) = (35.0, 75.0);
+/// Arms that touch the trunk are spread by so much more, degrees.
+const SPREAD: f64 = 10.0;
+
+/// A mannequin that the photographed garment fits: child or adult, its arms spread as the sleeves lie.
+///
+/// Takes the outline of the photo `front` and its scale. The size that is taken is told, with what it was taken for. State a body of your own where you
+/// know the wearer.
+#[stage(
+    role = Body,
+    source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
+    example = "Fitting()",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct Fitting {
+    /// What the garment is.
+    #[param(default = BlockStyle::Auto)]
+    pub(super) style: BlockStyle,
+    /// Length of the mesh's edges; small bodies get shorter ones.
+    #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
+    pub(super) edge: Length,
+}
+
+#[stage]
+impl Fitting {
+    pub(crate) fn run(&self, outlines: Set<Outline>, cx: &Context) -> Result<Body, StageError> {
+        let front = outlines.get("front").ok_or_else(refusal::no_front)?;
+        let block = Block { style: self.style, ..Block::default() };
+        let (_, form, Fitted { fit, .. }) =
+            block.fitted("front", front, self.style.forms(), &cx.for_entry("front"))?;
+        let tape = Tape::of(form, &fit);
+        let cost = |s: &[f64; 4]| tape.cost(s);
+        let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
+        let [height, bust, waist, hip] = *best;
+        cx.warn(format!(
+            "worn by a mannequin of {height:.0} cm, bust {bust:.0}, waist {waist:.0}, hip {hip:.0} cm: {} fits it",
+            tape.words()
+        ));
+        if cost(best) > ODD {
+            cx.warn("no size wears it as such a garment is worn: look at the photo's `width`, which gives the scale");
+        }
+        let girths = [bust, waist, hip].map(|g| g / 100.0);
+        let arms = arms(form, &fit).clamp(REACH.0, REACH.1);
+        let at = |angle: f64| Mannequin::made(height / 100.0, girths, angle, self.edge.metres()).run(cx);
+        // Arms that hang near a wide trunk touch it: they are spread further.
+        let mut made = at(arms);
+        for k in 1.. {
+            let angle = (arms + SPREAD * f64::from(k)).min(REACH.1);
+            if made.is_ok() {
+                break;
+            }
+            cx.check()?;
+            made = at(angle);
+            if angle >= REACH.1 {
+                break;
+            }
+        }
+        made
+    }
+}
+
+/// A garment's measures, metres.
+#[derive(Debug, Default)]
+struct Tape {
+    /// Around chest, waist and hip.
+    girths: [Option<f64>; 3],
+    /// Its length, and what is usual of it.
+    length: Option<(f64, [f64; 2])>,
+    /// From the neck to the wrist.
+    sleeve: Option<f64>,
+}
+
+impl Tape {
+    fn of(form: &Form, fit: &Fit) -> Self {
+        let at = |name: &str| form.edges.iter().position(|e| e.name == name);
+        let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
+        let widest = |k: usize| {
+            let most = |s: &[super::bow::Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
+            2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
+        };
+        let mean =
+            |of: &dyn Fn(&[super::bow::Bow]) -> f64| 0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>();
+        let high = mean(&|s| s[s.len() - 1].a.y);
+        let low = mean(&|s| s[0].a.y);
+        let chest = at("underarm").or_else(|| at("armhole")).map(across);
+        // Skirts and legs begin at the waist; of a dress it is where the skirt ends.
+        let waist = at("waist").map(across).or_else(|| at("skirt").map(|k| across(k + 1)));
+        let hip = ["hip", "outseam"].into_iter().filter_map(at).map(widest).reduce(f64::max);
+        let length = match (at("neck"), at("skirt"), at("inseam"), at("outseam")) {
+            (Some(_), Some(_), ..) => Some((high - low, DRESS)),
+            (Some(_), None, ..) => Some((high - low, TOP)),
+            (None, _, Some(inseam), Some(outseam)) => {
+                let upper = at("hip").map_or(0.0, |k| mean(&|s| s[k].length()));
+                let [inner, outer] = [inseam, outseam].map(|k| mean(&|s| s[k].length()));
+                let outer = outer + upper;
+                (inner > SHORTS * outer).then_some((outer, LEGS))
+            }
+            _ => None,
+        };
+        let is_long = form.underarm().is_some_and(|k| form.edges[k].chord[0] > 0.4);
+        let sleeve = at("top").filter(|_| is_long).map(|k| mean(&|s| s[k].length() + s[k].b.x));
+        Tape { girths: [chest, waist, hip], length, sleeve }
+    }
+
+    /// How far a size is from wearing it as usual: the mean square of what is measured, in spreads.
+    fn cost(&self, [height, bust, waist, hip]: &[f64; 4]) -> f64 {
+        let body = [bust, waist, hip];
+        let girth = |k: usize| Some((self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0]) / EASE[k][1]);
+        let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
+        let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
+        let all: Vec<f64> =
+            (0..3).filter_map(girth).chain(long).chain(sleeve).map(|x| (x * x).min(MOST)).collect();
+        all.iter().sum::<f64>() / all.len().max(1) as f64
+    }
+
+    /// What was measured.
+    fn words(&self) -> String {
+        let cm = |m: f64| format!("{:.0} cm", m * 100.0);
+        let girth = |(k, what): (usize, &str)| self.girths[k].map(|g| format!("{} around the {what}", cm(g)));
+        let girths = ["chest", "waist", "hip"].into_iter().enumerate().filter_map(girth);
+        let length = self.length.map(|(l, _)| format!("{} long", cm(l)));
+        let all: Vec<String> = girths.chain(length).collect();
+        format!("a garment of {}", all.join(", "))
+    }
+}
+
+/// The angle of the arms from the vertical at which the sleeves lie: the mean of both, from cap to cuff; degrees.
+fn arms(form: &Form, fit: &Fit) -> f64 {
+    let Some(k) = form.underarm() else { return ARMS };
+    let angle = |s: &Vec<super::bow::Bow>| {
+        let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
+        let cap = nalgebra::center(&s[k].a, &s[k + 2].at(0.7));
+        let way = cuff - cap;
+        way.x.atan2(-way.y).to_degrees()
+    };
+    0.5 * fit.sides.iter().map(angle).sum::<f64>()
+}
