@@ -119,7 +119,7 @@ fn joined_vertices_share_their_normal() {
 #[test]
 fn a_panel_without_a_photo_is_plain_and_says_so() {
     let cx = Context::quiet();
-    let model = texturer("()").run(&fixture::garment(4), None, None, &cx).unwrap();
+    let model = texturer("()").run(&fixture::garment(4), None, None, None, &cx).unwrap();
     assert!(model.textures.is_empty() && model.meshes.iter().all(|m| m.uv.is_empty()));
     assert_eq!(cx.take_notes().1[0], "panel \"front\" has no photo and gets a plain cloth");
 }
@@ -128,7 +128,7 @@ fn a_panel_without_a_photo_is_plain_and_says_so() {
 fn a_vertex_that_is_not_finite_is_refused() {
     let mut garment = fixture::garment(4);
     garment.positions[3].y = f64::NAN;
-    let error = texturer("()").run(&garment, None, None, &Context::quiet()).unwrap_err();
+    let error = texturer("()").run(&garment, None, None, None, &Context::quiet()).unwrap_err();
     assert_eq!(error.to_string(), "the garment has a vertex that is not finite");
     assert!(error.hint.is_some());
 }
@@ -152,7 +152,7 @@ fn a_panel_thinner_than_the_inset_keeps_its_colours() {
 fn a_stopped_run_stops() {
     let cx = Context::quiet();
     cx.cancel().cancel();
-    let error = texturer("()").run(&fixture::garment(4), None, None, &cx).unwrap_err();
+    let error = texturer("()").run(&fixture::garment(4), None, None, None, &cx).unwrap_err();
     assert_eq!(error.code, ErrorCode::Cancelled);
 }
 

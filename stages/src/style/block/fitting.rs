@@ -41,8 +41,12 @@ const SIZES: [[f64; 4]; 26] = [
     [170.0, 134.0, 118.0, 137.0],
 ];
 
-/// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest, waist and hip.
-const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.07, 0.06]];
+/// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest, waist and hip. Skirts and trousers may be as wide
+/// at the hip as they like: there only what is narrower counts.
+const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
+const HIP: usize = 2;
+/// A height that is likely, cm, and its spread: it decides where a garment fits a child and an adult.
+const LIKELY: [f64; 2] = [165.0, 60.0];
 /// Usual length of a garment from neck or waist to hem as a share of the body's height, and its spread.
 const TOP: [f64; 2] = [0.39, 0.05];
 const DRESS: [f64; 2] = [0.56, 0.1];
@@ -54,7 +58,7 @@ const SLEEVE: [f64; 2] = [0.44, 0.04];
 /// What a single figure adds at most.
 const MOST: f64 = 9.0;
 /// A mean square beyond this is told: no body of the table wears it as usual.
-const ODD: f64 = 4.0;
+const ODD: f64 = 5.0;
 /// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the vertical.
 const ARMS: f64 = 45.0;
 const REACH: (f64, f64) = (35.0, 75.0);
@@ -164,12 +168,15 @@ impl Tape {
     /// How far a size is from wearing it as usual: the mean square of what is measured, in spreads.
     fn cost(&self, [height, bust, waist, hip]: &[f64; 4]) -> f64 {
         let body = [bust, waist, hip];
-        let girth = |k: usize| Some((self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0]) / EASE[k][1]);
+        let girth = |k: usize| {
+            let off = (self.girths[k]? * 100.0 / body[k] - 1.0 - EASE[k][0]) / EASE[k][1];
+            Some(if k == HIP { off.min(0.0) } else { off })
+        };
         let long = self.length.map(|(l, [usual, spread])| (l * 100.0 / height - usual) / spread);
         let sleeve = self.sleeve.map(|l| (l * 100.0 / height - SLEEVE[0]) / SLEEVE[1]);
         let all: Vec<f64> =
             (0..3).filter_map(girth).chain(long).chain(sleeve).map(|x| (x * x).min(MOST)).collect();
-        all.iter().sum::<f64>() / all.len().max(1) as f64
+        all.iter().sum::<f64>() / all.len().max(1) as f64 + ((height - LIKELY[0]) / LIKELY[1]).powi(2)
     }
 
     /// What was measured.

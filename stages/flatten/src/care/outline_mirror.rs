@@ -1,0 +1,276 @@
+//! Left and right pieces whose meshes differ: their outlines become mirror images.
+//!
+//! Two pieces are a pair if the mirrored boundary of one lies near that of the other in space, about the plane
+//! half-way between their centres (one plane for the whole garment), and their flat outlines lie near each
+//! other, too. The first is solved for near the mean outline, the second with the first one's outline held.
+//! Cost O(n^2) for n boundary vertices of each pair, and one solution a piece.
+
+use super::chains::corner_vertices;
+use super::outline::{Correspondence, Motion, Outline, align, fit};
+use crate::error::FlattenError;
+use crate::flatteners::Flattening;
+use crate::islands::Pieces;
+use crate::newton::Term;
+use crate::surface::Surface;
+use nalgebra::{Point2, Point3, Vector3};
+
+/// Two pieces whose outlines are mirror images, nearly before and exactly after.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OutlinePair {
+    /// The piece of lower number.
+    pub a: usize,
+    /// The other piece.
+    pub b: usize,
+    /// The largest distance of vertices of one outline from the mirrored other, before.
+    pub before: f64,
+    /// The same, after.
+    pub after: f64,
+}
+
+/// The mirror plane of a garment: a point and the normal.
+type Plane = (Point3<f64>, Vector3<f64>);
+
+/// How far the planes of two pairs may differ: the sine of the angle, and the distance as a share of a piece's
+/// diagonal.
+const SAME_PLANE: f64 = 0.1;
+
+/// Most boundary points of a piece that are compared in space.
+const MOST_POINTS: usize = 400;
+
+/// Areas and outline lengths of a pair differ by less than this share.
+const LIKE: f64 = 0.05;
+
+/// How often the motion that lays two outlines over each other is fitted.
+const FITS: usize = 4;
+
+/// Weight that draws a vertex to a place: as stiff as a triangle, so that the piece gives way for its seams.
+const DRAW_WEIGHT: f64 = 1.0;
+
+/// Weight that holds an outline: a thousand times the stiffness of a triangle; only seam lengths still move it.
+const HOLD_WEIGHT: f64 = 1e3;
+
+/// Pairs of pieces that are not in `taken`; `tolerance` is a share of a piece's diagonal.
+pub(super) fn outline_pairs(pieces: &Pieces, taken: &[bool], tolerance: f64) -> Vec<[usize; 2]> {
+    let mut candidates = Vec::new();
+    for a in 0..pieces.pieces.len() {
+        for b in a + 1..pieces.pieces.len() {
+            let (s, t) = (&pieces.pieces[a].surface, &pieces.pieces[b].surface);
+            if taken[a] || taken[b] || !alike(s, t) {
+                continue;
+            }
+            if let Some((distance, plane)) = mirrored_distance(s, t).filter(|(d, _)| *d <= tolerance) {
+                candidates.push((distance, [a, b], plane, diagonal(s)));
+            }
+        }
+    }
+    candidates.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(&y.1)));
+    let Some(&(_, _, first, _)) = candidates.first() else { return Vec::new() };
+    let mut taken = taken.to_vec();
+    let mut pairs = Vec::new();
+    for (_, [a, b], plane, size) in candidates {
+        if !taken[a] && !taken[b] && same_plane(&first, &plane, size) {
+            (taken[a], taken[b]) = (true, true);
+            pairs.push([a, b]);
+        }
+    }
+    pairs
+}
+
+fn alike(s: &Surface, t: &Surface) -> bool {
+    let near = |x: f64, y: f64| (x - y).abs() <= LIKE * x.max(y);
+    s.loops().len() == 1 && t.loops().len() == 1 && near(s.area(), t.area())
+}
+
+fn same_plane(first: &Plane, other: &Plane, size: f64) -> bool {
+    first.1.cross(&other.1).norm() <= SAME_PLANE
+        && (other.0 - first.0).dot(&first.1).abs() <= SAME_PLANE * size
+}
+
+/// The mean distance of the mirrored boundary of `s` from that of `t`, as a share of the diagonal, and the plane.
+fn mirrored_distance(s: &Surface, t: &Surface) -> Option<(f64, Plane)> {
+    let (a, b) = (boundary(s), boundary(t));
+    let centre = |p: &[Point3<f64>]| p.iter().fold(Vector3::zeros(), |m, p| m + p.coords) / p.len() as f64;
+    let (from, to) = (centre(&a), centre(&b));
+    let size = diagonal(s);
+    let normal = (to - from).try_normalize(1e-6 * size)?;
+    let middle = Point3::from((from + to) / 2.0);
+    let nearest = |p: &Point3<f64>| {
+        let image = p - normal * (2.0 * (p - middle).dot(&normal));
+        b.iter().map(|q| (q - image).norm()).fold(f64::INFINITY, f64::min)
+    };
+    let mean = a.iter().map(nearest).sum::<f64>() / a.len() as f64;
+    Some((mean / size, (middle, normal)))
+}
+
+fn boundary(s: &Surface) -> Vec<Point3<f64>> {
+    let outline = &s.loops()[0];
+    let step = outline.len().div_ceil(MOST_POINTS);
+    outline.iter().step_by(step).map(|&v| s.positions()[v as usize]).collect()
+}
+
+fn diagonal(s: &Surface) -> f64 {
+    let first = s.positions()[0];
+    let (low, high) = s.positions().iter().fold((first, first), |(l, h), p| (l.inf(p), h.sup(p)));
+    (high - low).norm()
+}
+
+/// The outlines of a pair, laid over each other.
+struct Laid {
+    a: Outline,
+    /// The mirrored second outline in the plane of the first.
+    b: Outline,
+    motion: Motion,
+    map: Correspondence,
+}
+
+/// What a pair is made equal with.
+pub(super) struct OutlineMirror<'a> {
+    pub(super) pieces: &'a Pieces,
+    /// An angle (radians) that makes a corner.
+    pub(super) corner: f64,
+    /// Farthest that outlines may lie apart, a share of the piece's diagonal.
+    pub(super) tolerance: f64,
+}
+
+impl OutlineMirror<'_> {
+    /// Makes both outlines mirror images; none if the flat ones are too far apart.
+    ///
+    /// `solve` moves a piece near places, with a weight, whatever else it must fulfil: the first near the mean
+    /// outline, then the second to the first one's.
+    pub(super) fn equalise(
+        &self,
+        [a, b]: [usize; 2],
+        flats: &mut [Flattening],
+        solve: impl Fn(usize, &[Term], &mut Flattening) -> Result<(), FlattenError>,
+    ) -> Result<Option<OutlinePair>, FlattenError> {
+        let laid = self.lay([a, b], flats);
+        let before = laid.distance();
+        if before > self.reach(a) {
+            return Ok(None);
+        }
+        let outline = &self.pieces.pieces[a].surface.loops()[0];
+        solve(a, &drawn(outline, &laid.mean(), DRAW_WEIGHT), &mut flats[a])?;
+        let solved = Outline::new(outline.iter().map(|&v| flats[a].points[v as usize]).collect());
+        let outline = &self.pieces.pieces[b].surface.loops()[0];
+        solve(b, &drawn(outline, &laid.back_to_second(&solved), HOLD_WEIGHT), &mut flats[b])?;
+        let laid = self.lay([a, b], flats);
+        let after = laid.distance();
+        // Both turn by half of what keeps them from standing like mirror images.
+        let half = laid.motion.half_turned_back();
+        [a, b].into_iter().for_each(|i| flats[i].points.iter_mut().for_each(|p| *p = half * *p));
+        Ok(Some(OutlinePair { a, b, before, after }))
+    }
+
+    /// Seams of the one piece with the seams of the other that are their mirror images.
+    pub(super) fn seam_partners(&self, [a, b]: [usize; 2], flats: &[Flattening]) -> Vec<[usize; 2]> {
+        let laid = self.lay([a, b], flats);
+        let outline_b = &self.pieces.pieces[b].surface.loops()[0];
+        let of_a = |v: u32| Some(flats[a].points[v as usize]);
+        let of_b = |v: u32| {
+            let k = outline_b.iter().position(|&u| u == v)?;
+            Some(laid.b.places()[outline_b.len() - 1 - k])
+        };
+        let (sides_a, sides_b) = (self.chain_ends(a, of_a), self.chain_ends(b, of_b));
+        let mut partners = Vec::new();
+        for (i, [p, q]) in sides_a {
+            let distance = |r: &[Point2<f64>; 2]| {
+                let same = (p - r[0]).norm().max((q - r[1]).norm());
+                same.min((p - r[1]).norm().max((q - r[0]).norm()))
+            };
+            let nearest = sides_b.iter().min_by(|x, y| distance(&x.1).total_cmp(&distance(&y.1)));
+            partners.extend(nearest.filter(|x| distance(&x.1) <= self.reach(a)).map(|x| [i, x.0]));
+        }
+        partners
+    }
+
+    /// Seams of a piece with the places of the ends of its chain.
+    fn chain_ends(
+        &self,
+        piece: usize,
+        place: impl Fn(u32) -> Option<Point2<f64>>,
+    ) -> Vec<(usize, [Point2<f64>; 2])> {
+        let mut ends = Vec::new();
+        for (i, seam) in self.pieces.seams.iter().enumerate() {
+            for chain in [&seam.a, &seam.b].into_iter().filter(|c| c.piece == piece) {
+                let (first, last) = (chain.vertices[0], chain.vertices[chain.vertices.len() - 1]);
+                if let (Some(p), Some(q)) = (place(first), place(last)) {
+                    ends.push((i, [p, q]));
+                }
+            }
+        }
+        ends
+    }
+
+    fn reach(&self, piece: usize) -> f64 {
+        self.tolerance * diagonal(&self.pieces.pieces[piece].surface)
+    }
+
+    fn lay(&self, [a, b]: [usize; 2], flats: &[Flattening]) -> Laid {
+        let outline = &self.pieces.pieces[a].surface.loops()[0];
+        let first = Outline::new(outline.iter().map(|&v| flats[a].points[v as usize]).collect());
+        let reversed = self.pieces.pieces[b].surface.loops()[0].iter().rev();
+        let mirror = |&v: &u32| Point2::new(-flats[b].points[v as usize].x, flats[b].points[v as usize].y);
+        let second = Outline::new(reversed.map(mirror).collect());
+        let (mut motion, shift) = align(&first, &second);
+        let (points_a, mut points_b) = (self.knots(a, flats), self.knots(b, flats));
+        let count = self.pieces.pieces[b].surface.loops()[0].len();
+        points_b.iter_mut().for_each(|k| *k = count - 1 - *k);
+        let mut round = 0;
+        loop {
+            let moved = second.moved(&motion);
+            let map = Correspondence::new(&first, &moved, [&points_a, &points_b], shift, self.reach(a));
+            if round == FITS {
+                return Laid { a: first, b: moved, motion, map };
+            }
+            // Each fit of the motion improves the knots, and they the fit (Besl and McKay 1992).
+            let images: Vec<_> =
+                (0..first.places().len()).map(|i| second.at(map.forward(first.arc(i)))).collect();
+            motion = fit(first.places(), &images);
+            round += 1;
+        }
+    }
+
+    /// Places in the outline of corners and seam ends.
+    fn knots(&self, piece: usize, flats: &[Flattening]) -> Vec<usize> {
+        let surface = &self.pieces.pieces[piece].surface;
+        let mut is_knot = corner_vertices(surface, &flats[piece].points, self.corner);
+        for chain in self.pieces.seams.iter().flat_map(|s| [&s.a, &s.b]).filter(|c| c.piece == piece) {
+            is_knot[chain.vertices[0] as usize] = true;
+            is_knot[chain.vertices[chain.vertices.len() - 1] as usize] = true;
+        }
+        let outline = surface.loops()[0].iter().enumerate();
+        outline.filter(|(_, v)| is_knot[**v as usize]).map(|(k, _)| k).collect()
+    }
+}
+
+/// Terms that draw vertices to places.
+fn drawn(vertices: &[u32], places: &[Point2<f64>], weight: f64) -> Vec<Term> {
+    vertices.iter().zip(places).map(|(&v, &p)| Term::at(v, p, weight)).collect()
+}
+
+impl Laid {
+    /// The largest distance of a vertex of either outline from the other.
+    fn distance(&self) -> f64 {
+        let farthest =
+            |x: &Outline, y: &Outline| x.places().iter().map(|p| y.distance(p)).fold(0.0, f64::max);
+        farthest(&self.a, &self.b).max(farthest(&self.b, &self.a))
+    }
+
+    /// The mean of both, at the vertices of the first.
+    fn mean(&self) -> Vec<Point2<f64>> {
+        let mean =
+            |(i, p): (usize, &Point2<f64>)| nalgebra::center(p, &self.b.at(self.map.forward(self.a.arc(i))));
+        self.a.places().iter().enumerate().map(mean).collect()
+    }
+
+    /// The vertices of the second outline on the line `solved` that the first has become, in the second piece's
+    /// own plane and order.
+    fn back_to_second(&self, solved: &Outline) -> Vec<Point2<f64>> {
+        let place = |j: usize| {
+            let on_first = self.map.back(self.b.arc(j)).rem_euclid(self.a.length());
+            let p = self.motion.undone(&solved.at(solved.same_share(&self.a, on_first)));
+            Point2::new(-p.x, p.y)
+        };
+        (0..self.b.places().len()).rev().map(place).collect()
+    }
+}

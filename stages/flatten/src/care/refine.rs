@@ -1,0 +1,178 @@
+//! The pieces of a garment solved again so that seams fit, straight edges are straight and mirror images agree.
+//!
+//! In this order: pieces whose vertices are mirror images become so; each seam gets one length for both sides
+//! (and for its mirror image); each piece is solved again with those lengths and its straight edges, so that
+//! every correction is the gentlest that the cloth allows; then outlines of left and right pieces with
+//! different meshes become mirror images. Cost: some ten Newton iterations a piece.
+
+use super::Objective;
+use super::mirror::{MirrorPair, mean, mirror_distance, mirror_pairs};
+use super::outline_mirror::{OutlineMirror, OutlinePair, outline_pairs};
+use super::piece_care::PieceCare;
+use super::seam_lengths::{SeamLengths, seam_targets, side_lengths, sides_of};
+use crate::error::FlattenError;
+use crate::flatteners::{Flattening, Placement};
+use crate::frames::flipped;
+use crate::islands::Pieces;
+use crate::newton::{NewtonOptions, Term};
+use nalgebra::Point2;
+
+/// What is taken care of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CareOptions {
+    /// Make the two sides of seams equal.
+    pub seams: bool,
+    /// A chain of boundary that leaves its line by at most this share of its length becomes straight; 0 for
+    /// none. Below 0.2.
+    pub straight: f64,
+    /// Angle between an edge's direction before and after a vertex that makes it a corner, degrees, above 0.
+    pub corner: f64,
+    /// How exactly pieces must be mirror images in space, a share of their diagonal; 0 leaves left and right
+    /// alone. Below 0.1.
+    pub mirror: f64,
+    /// How near pieces with different meshes must be to mirror images, in space (mean) and in the plane
+    /// (largest), a share of their diagonal, for their outlines to be made so; 0 leaves them alone. Below 0.2.
+    pub mirror_outline: f64,
+    /// When the solver stops.
+    pub newton: NewtonOptions,
+}
+
+impl Default for CareOptions {
+    fn default() -> Self {
+        Self {
+            seams: true,
+            straight: 0.005,
+            corner: 30.0,
+            mirror: 1e-4,
+            mirror_outline: 0.05,
+            newton: NewtonOptions::default(),
+        }
+    }
+}
+
+impl CareOptions {
+    fn check(&self) -> Result<(), FlattenError> {
+        let bad = |name, value, range| Err(FlattenError::InvalidParameter { name, value, range });
+        if !(self.straight >= 0.0 && self.straight < 0.2) {
+            return bad("straight", self.straight, "a share from 0 to below 0.2");
+        }
+        if !(self.corner > 0.0 && self.corner < 180.0) {
+            return bad("corner", self.corner, "an angle above 0 and below 180 degrees");
+        }
+        if !(self.mirror >= 0.0 && self.mirror < 0.1) {
+            return bad("mirror", self.mirror, "a share from 0 to below 0.1");
+        }
+        if !(self.mirror_outline >= 0.0 && self.mirror_outline < 0.2) {
+            return bad("mirror_outline", self.mirror_outline, "a share from 0 to below 0.2");
+        }
+        Ok(())
+    }
+}
+
+impl CareOptions {
+    fn outline_pairs(&self, pieces: &Pieces, exact: &[MirrorPair]) -> Vec<[usize; 2]> {
+        if self.mirror_outline == 0.0 {
+            return Vec::new();
+        }
+        let mut taken = vec![false; pieces.pieces.len()];
+        exact.iter().for_each(|p| (taken[p.a], taken[p.b]) = (true, true));
+        outline_pairs(pieces, &taken, self.mirror_outline)
+    }
+}
+
+/// What was done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CareReport {
+    /// Lengths of the sides of each seam.
+    pub seams: Vec<SeamLengths>,
+    /// How many chains of each piece were made straight.
+    pub straight: Vec<usize>,
+    /// Mirror pairs, each with the largest distance of the one from the image of the other before the care.
+    pub mirrors: Vec<(MirrorPair, f64)>,
+    /// Pairs whose outlines were made mirror images.
+    pub outlines: Vec<OutlinePair>,
+}
+
+/// The share of a corner's angle that is enough to lay outlines over each other by.
+const KNOT: f64 = 0.25;
+
+/// Corrects the flat pieces in place; `flats` and `placements` have one entry a piece.
+///
+/// # Errors
+/// [`FlattenError::InvalidParameter`], lists of other lengths than that of the pieces,
+/// [`FlattenError::NoStart`] for flat pieces with flipped triangles, and the errors of the solver.
+pub fn refine(
+    pieces: &Pieces,
+    flats: &mut [Flattening],
+    objective: &Objective,
+    placements: &[Placement],
+    options: CareOptions,
+) -> Result<CareReport, FlattenError> {
+    options.check()?;
+    check_flats(pieces, flats, placements)?;
+    let before: Vec<_> = pieces.seams.iter().map(|s| side_lengths(s, flats)).collect();
+    let pairs = if options.mirror > 0.0 { mirror_pairs(&pieces.pieces, options.mirror) } else { Vec::new() };
+    let apart: Vec<f64> =
+        pairs.iter().map(|p| mirror_distance(p, &flats[p.a].points, &flats[p.b].points)).collect();
+    make_mirrors(pieces, &pairs, flats);
+    let near_pairs = options.outline_pairs(pieces, &pairs);
+    let corner = options.corner.to_radians() * KNOT;
+    let equal = OutlineMirror { pieces, corner, tolerance: options.mirror_outline };
+    let alike: Vec<_> = near_pairs.iter().flat_map(|&pair| equal.seam_partners(pair, flats)).collect();
+    let targets = seam_targets(&pieces.seams, flats, &alike);
+    let care = |i: usize| {
+        let sides = if options.seams { sides_of(i, &pieces.seams, &targets) } else { Vec::new() };
+        PieceCare { surface: &pieces.pieces[i].surface, objective, placement: &placements[i], options, sides }
+    };
+    let solved = flats.iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
+    let straight = solved.collect::<Result<Vec<_>, _>>()?;
+    // Where only the vertices are mirror images, the mean of two solutions would undo their seam lengths.
+    let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
+    make_mirrors(pieces, &exact, flats);
+    let solve = |i: usize, near: &[Term], flat: &mut Flattening| care(i).solve(flat, near).map(|_| ());
+    let mut outlines = Vec::new();
+    for &pair in &near_pairs {
+        outlines.extend(equal.equalise(pair, flats, solve)?);
+    }
+    let seams = pieces.seams.iter().zip(before);
+    let seams = seams.map(|(s, before)| SeamLengths { before, after: side_lengths(s, flats) }).collect();
+    Ok(CareReport { seams, straight, mirrors: pairs.into_iter().zip(apart).collect(), outlines })
+}
+
+fn check_flats(pieces: &Pieces, flats: &[Flattening], placements: &[Placement]) -> Result<(), FlattenError> {
+    let mismatch =
+        |what, found, wanted| Err(crate::SurfaceError::LengthMismatch { what, found, wanted }.into());
+    if flats.len() != pieces.pieces.len() {
+        return mismatch("flat pieces", flats.len(), pieces.pieces.len());
+    }
+    if placements.len() != pieces.pieces.len() {
+        return mismatch("placements", placements.len(), pieces.pieces.len());
+    }
+    for (placement, piece) in placements.iter().zip(&pieces.pieces) {
+        placement.check(&piece.surface)?;
+    }
+    for (flat, piece) in flats.iter().zip(&pieces.pieces) {
+        if flat.points.len() != piece.surface.positions().len() {
+            return mismatch("flat places", flat.points.len(), piece.surface.positions().len());
+        }
+        let flips = flat.flipped(&piece.surface);
+        if let Some(&triangle) = flips.first() {
+            return Err(FlattenError::NoStart { flips: flips.len(), triangle });
+        }
+    }
+    Ok(())
+}
+
+/// Replaces the pieces of each pair by their mean, unless that flips a triangle.
+fn make_mirrors(pieces: &Pieces, pairs: &[MirrorPair], flats: &mut [Flattening]) {
+    for pair in pairs {
+        let [first, second] = mean(pair, &flats[pair.a].points, &flats[pair.b].points);
+        let sound = |i: usize, q: &[Point2<f64>]| flipped(pieces.pieces[i].surface.triangles(), q).is_empty();
+        if sound(pair.a, &first) && sound(pair.b, &second) {
+            flats[pair.a].points = first;
+            if pair.a != pair.b {
+                flats[pair.b].points = second;
+            }
+        }
+    }
+}

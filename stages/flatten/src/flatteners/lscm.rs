@@ -1,0 +1,19 @@
+//! Least squares conformal maps as a flattener (Lévy and others 2002): angles kept, size fitted to the true area.
+
+use super::{Flattening, NOTHING_MINIMISED, Placement};
+use crate::error::FlattenError;
+use crate::frames::Frames;
+use crate::start::conformal_start;
+use crate::surface::Surface;
+use crate::system::System;
+
+/// Flattens with the least angle errors; where that flips triangles, gives Tutte's embedding instead, and says so.
+///
+/// # Errors
+/// Parameters of the placement, [`FlattenError::NoStart`], [`FlattenError::Factorization`].
+pub fn lscm(surface: &Surface, placement: &Placement) -> Result<Flattening, FlattenError> {
+    placement.check(surface)?;
+    let (system, frames) = (System::new(surface, &[]), Frames::new(surface));
+    let (flat, start) = conformal_start(surface, &system, &frames)?;
+    placement.finish(surface, &frames, flat, (start, NOTHING_MINIMISED))
+}

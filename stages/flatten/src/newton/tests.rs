@@ -1,0 +1,68 @@
+use super::*;
+use crate::energy::{Arap, SymmetricDirichlet};
+use crate::shapes::{bump, surface};
+use crate::start::start;
+
+fn solve(
+    energy: &dyn Energy,
+    terms: &[Term],
+    constraints: &[Constraint],
+    options: NewtonOptions,
+) -> Result<(Vec<Point2<f64>>, NewtonReport), FlattenError> {
+    let s = surface(bump(12, 12, 0.8));
+    let pairs: Vec<_> = terms.iter().flat_map(Term::pairs).collect();
+    let (system, frames) = (System::new(&s, &pairs), Frames::new(&s));
+    let (mut q, _) = start(&s, &system, &frames)?;
+    let problem = Problem { system: &system, frames: &frames, energy, terms, constraints };
+    let report = problem.minimise(&mut q, options)?;
+    Ok((q, report))
+}
+
+#[test]
+fn the_end_is_a_minimum() {
+    for energy in [&SymmetricDirichlet as &dyn Energy, &Arap] {
+        let tight = NewtonOptions { tolerance: 1e-18, ..NewtonOptions::default() };
+        let Ok((_, report)) = solve(energy, &[], &[], tight) else { unreachable!() };
+        let Ok((_, loose)) = solve(energy, &[], &[], NewtonOptions::default()) else { unreachable!() };
+        assert!(report.converged && loose.converged);
+        assert!(report.remaining <= 1e-18);
+        assert!((report.energy - loose.energy).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_constraint_is_met_and_a_held_vertex_stays() {
+    let chain: Vec<u32> = (0..13).collect();
+    let length =
+        Constraint::ChainLength { vertices: chain.clone(), target: 1.1, scale: Vector2::new(1.0, 1.0) };
+    let place = Point2::new(3.0, 4.0);
+    let Ok((q, report)) = solve(&Arap, &[Term::at(80, place, 1e4)], &[length], NewtonOptions::default())
+    else {
+        unreachable!()
+    };
+    assert!(report.converged);
+    assert!((chain_length(&chain, &q) - 1.1).abs() < 1e-7);
+    assert!((q[80] - place).norm() < 1e-7);
+}
+
+#[test]
+fn a_constraint_that_is_said_twice_is_met() {
+    let length =
+        Constraint::ChainLength { vertices: (0..13).collect(), target: 1.05, scale: Vector2::new(1.0, 1.0) };
+    let solved = solve(&Arap, &[], &[length.clone(), length], NewtonOptions::default());
+    assert!(solved.is_ok_and(|(_, report)| report.converged));
+}
+
+#[test]
+fn no_iterations_leave_the_start_and_say_so() {
+    let none = NewtonOptions { iterations: 0, ..NewtonOptions::default() };
+    let solved = solve(&Arap, &[], &[], none).map(|(_, r)| (r.iterations, r.converged));
+    assert_eq!(solved, Ok((0, false)));
+}
+
+#[test]
+fn a_tolerance_of_zero_is_refused() {
+    let zero = NewtonOptions { tolerance: 0.0, ..NewtonOptions::default() };
+    let text = solve(&Arap, &[], &[], zero).map_err(|e| e.to_string()).err();
+    assert_eq!(text.as_deref(), Some("tolerance = 0 is out of range: a finite number above 0"));
+}

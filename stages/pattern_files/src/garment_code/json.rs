@@ -1,0 +1,166 @@
+//! The fields of the file, in the order in which GarmentCode writes them.
+
+use super::curves::Curve;
+use serde::{Serialize, Serializer};
+use toile_core::artifact::{EdgeCurve, Point2, Vector2};
+
+/// Units in a metre: centimetres.
+pub(super) const UNITS: f64 = 100.0;
+/// Neighbouring numbers that are tried for a radius, on either side.
+const TRIED: i64 = 16;
+
+/// An object with its fields in the order of the list.
+pub(super) struct InOrder<'a, T>(pub Vec<(&'a str, T)>);
+
+impl<T: Serialize> Serialize for InOrder<'_, T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(k, v)| (k, v)))
+    }
+}
+
+/// A whole file.
+#[derive(Serialize)]
+pub(super) struct File<'a> {
+    pattern: Body<'a>,
+    properties: Properties,
+}
+
+#[derive(Serialize)]
+struct Body<'a> {
+    panels: InOrder<'a, Panel<'a>>,
+    stitches: Vec<Sewn<'a>>,
+    panel_order: Vec<&'a str>,
+}
+
+#[derive(Serialize)]
+struct Properties {
+    curvature_coords: &'static str,
+    normalize_panel_translation: bool,
+    normalized_edge_loops: bool,
+    units_in_meter: f64,
+}
+
+/// A piece.
+#[derive(Serialize)]
+pub(super) struct Panel<'a> {
+    pub translation: [f64; 3],
+    /// Euler angles, degrees.
+    pub rotation: [f64; 3],
+    pub vertices: Vec<[f64; 2]>,
+    pub edges: Vec<Edge>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub label: Option<&'a str>,
+}
+
+/// An edge of a panel.
+#[derive(Serialize)]
+pub(super) struct Edge {
+    endpoints: [usize; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    curvature: Option<Curvature>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    label: Option<String>,
+}
+
+#[derive(Serialize)]
+struct Curvature {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    params: Params,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Params {
+    Points(Vec<[f64; 2]>),
+    Circle(f64, u8, u8),
+}
+
+/// A side of a stitch.
+#[derive(Serialize)]
+pub(super) struct Side<'a> {
+    pub panel: &'a str,
+    pub edge: usize,
+}
+
+/// A stitch, with the word that says that start meets start.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub(super) enum Sewn<'a> {
+    Plain([Side<'a>; 2]),
+    RightWrong(Side<'a>, Side<'a>, &'static str),
+}
+
+impl<'a> Sewn<'a> {
+    pub(super) fn new([a, b]: [Side<'a>; 2], right_wrong: bool) -> Self {
+        if right_wrong { Sewn::RightWrong(a, b, "right_wrong") } else { Sewn::Plain([a, b]) }
+    }
+}
+
+impl<'a> File<'a> {
+    pub(super) fn new(
+        panels: InOrder<'a, Panel<'a>>,
+        stitches: Vec<Sewn<'a>>,
+        panel_order: Vec<&'a str>,
+    ) -> Self {
+        let properties = Properties {
+            curvature_coords: "relative",
+            normalize_panel_translation: false,
+            normalized_edge_loops: true,
+            units_in_meter: UNITS,
+        };
+        File { pattern: Body { panels, stitches, panel_order }, properties }
+    }
+
+    pub(super) fn text(&self) -> String {
+        // Nothing of it can fail: keys are texts and numbers finite.
+        serde_json::to_string_pretty(self).map_or_else(|_| String::new(), |text| text + "\n")
+    }
+}
+
+impl Edge {
+    pub(super) fn new(endpoints: [usize; 2], curve: &Curve, label: Option<String>) -> Self {
+        Edge { endpoints, curvature: curvature(curve), label }
+    }
+}
+
+fn curvature(curve: &Curve) -> Option<Curvature> {
+    let points = |kind, controls: &[Point2]| {
+        let params = Params::Points(controls.iter().map(|c| relative(curve, *c)).collect());
+        Some(Curvature { kind, params })
+    };
+    match &curve.shape {
+        EdgeCurve::Line | EdgeCurve::Polyline { .. } => None,
+        EdgeCurve::Quadratic { control } => points("quadratic", &[*control]),
+        EdgeCurve::Cubic { controls } => points("cubic", controls),
+        EdgeCurve::Arc { bulge } => {
+            let params =
+                Params::Circle(radius(curve, *bulge), u8::from(bulge.abs() > 1.0), u8::from(*bulge > 0.0));
+            Some(Curvature { kind: "circle", params })
+        }
+    }
+}
+
+/// A control point along the chord and to its left, both as shares of the chord.
+fn relative(curve: &Curve, c: Point2) -> [f64; 2] {
+    let chord = curve.end - curve.start;
+    let (to, square) = (c - curve.start, chord.norm_squared());
+    [to.dot(&chord) / square, chord.perp(&to) / square]
+}
+
+/// The radius of an arc in the file's units. Near a half circle the last bits of it decide: of its neighbours the number is
+/// taken from which a reader finds the bulge again.
+fn radius(curve: &Curve, bulge: f64) -> f64 {
+    let at = |p: Point2| p * UNITS;
+    let chord: Vector2 = at(curve.end) - at(curve.start);
+    let chord = chord.norm();
+    let exact = chord * (1.0 + bulge * bulge) / (4.0 * bulge.abs());
+    let unit = 1.0 / UNITS;
+    let off = |radius: &f64| {
+        let found = EdgeCurve::bulge(chord * unit, radius * unit, bulge.abs() > 1.0, bulge > 0.0);
+        (found - bulge).abs()
+    };
+    let beside = |k: i64| f64::from_bits(exact.to_bits().saturating_add_signed(k));
+    let tried = std::iter::once(0).chain((1..=TRIED).flat_map(|k| [k, -k])).map(beside);
+    tried.fold(exact, |best, one| if off(&one) < off(&best) { one } else { best })
+}

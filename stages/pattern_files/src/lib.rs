@@ -1,0 +1,27 @@
+//! Sewing patterns as files: GarmentCode JSON, SVG, DXF and PDF.
+//!
+//! Every writer is a function of a pattern, and of options, to the bytes of a file. The same pattern gives the same bytes each time.
+//! What a file cannot hold is told in sentences; seams stand in a file beside it, by the names that the file's reader will give.
+
+pub mod allowance;
+pub mod dxf;
+mod error;
+mod flatten;
+mod font;
+pub mod garment_code;
+mod inside;
+mod label;
+mod marks;
+mod names;
+mod options;
+mod parts;
+pub mod pdf;
+mod shelf;
+mod sidecar;
+pub mod svg;
+mod written;
+
+pub use error::{FARTHEST, WriteError};
+pub use options::Options;
+pub use sidecar::sidecar;
+pub use written::Written;

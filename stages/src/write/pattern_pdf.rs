@@ -1,0 +1,58 @@
+//! `PatternPdf`: the sewing pattern to print.
+
+use super::names::check_name;
+use super::pattern_file::{WIDEST, files, options};
+use toile_core::prelude::*;
+use toile_pattern_files::pdf::{Paper, to_pdf};
+
+/// What a pattern is printed on.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum PatternPaper {
+    /// Pages of 210 by 297 mm.
+    A4,
+    /// Pages of 8.5 by 11 inches.
+    Letter,
+    /// One sheet, as large as it must be.
+    OneSheet,
+}
+
+/// Draws the pieces at true scale on pages to print and join, or on one sheet: cut line, sew line, notches, grain, names, the numbers of seams on both
+/// sides, a test square, and a page with the order of cutting and sewing.
+#[stage(
+    role = Writer,
+    source = "PDF 1.7",
+    example = "PatternPdf(paper: Letter, seam_allowance: \"15 mm\")",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct PatternPdf {
+    /// The file's name without extension.
+    #[param(default = "pattern".to_owned())]
+    name: String,
+    /// What it is printed on.
+    #[param(default = PatternPaper::A4)]
+    paper: PatternPaper,
+    /// Seam allowance of edges that are sewn.
+    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
+    seam_allowance: Length,
+    /// Allowance of edges that are not sewn, such as hems.
+    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
+    hem_allowance: Length,
+}
+
+#[stage]
+impl PatternPdf {
+    pub(super) fn run(&self, pattern: &Pattern, cx: &Context) -> Result<OutputFiles, StageError> {
+        let options = options(self.seam_allowance, self.hem_allowance, "");
+        let paper = match self.paper {
+            PatternPaper::A4 => Paper::A4,
+            PatternPaper::Letter => Paper::Letter,
+            PatternPaper::OneSheet => Paper::OnePiece,
+        };
+        files(&self.name, ".pdf", to_pdf(pattern, paper, &options), cx)
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        check_name(&self.name).err().into_iter().collect()
+    }
+}

@@ -1,0 +1,39 @@
+//! `PatternSvg`: the sewing pattern as a drawing.
+
+use super::names::check_name;
+use super::pattern_file::{WIDEST, files, options};
+use toile_core::prelude::*;
+use toile_pattern_files::svg;
+
+/// Draws the pieces of the pattern at true scale, with grain, notches, inner lines and the numbers of seams on both sides.
+///
+/// `SvgPattern()` reads it, with the `.seams.ron` that is written beside it.
+#[stage(
+    role = Writer,
+    source = "SVG 1.1",
+    example = "PatternSvg(name: \"mine\")",
+    contracts(Deterministic, ThreadInvariant)
+)]
+pub struct PatternSvg {
+    /// The file's name without extension.
+    #[param(default = "pattern".to_owned())]
+    name: String,
+    /// Seam allowance of edges that are sewn.
+    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
+    seam_allowance: Length,
+    /// Allowance of edges that are not sewn, such as hems.
+    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
+    hem_allowance: Length,
+}
+
+#[stage]
+impl PatternSvg {
+    pub(super) fn run(&self, pattern: &Pattern, cx: &Context) -> Result<OutputFiles, StageError> {
+        let options = options(self.seam_allowance, self.hem_allowance, "");
+        files(&self.name, ".svg", svg::to_svg(pattern, &options), cx)
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        check_name(&self.name).err().into_iter().collect()
+    }
+}
