@@ -102,7 +102,7 @@ fn damaged_meshes_never_panic() {
 
 /// A hundred thousand: `cargo test --release -- --ignored`.
 #[test]
-#[ignore = "slow: a minute or more"]
+#[ignore = "slow: .ci/wide"]
 fn a_hundred_thousand_damaged_meshes_never_panic() {
     let mut dice = Dice(94);
     for _ in 0..100_000 {

@@ -88,9 +88,11 @@ pub struct Fitting {
 impl Fitting {
     pub(crate) fn run(&self, outlines: Set<Outline>, cx: &Context) -> Result<Body, StageError> {
         let front = outlines.get("front").ok_or_else(refusal::no_front)?;
-        let block = Block { style: self.style, ..Block::default() };
-        let (_, form, Fitted { fit, .. }) =
-            block.fitted("front", front, self.style.forms(), &cx.for_entry("front"))?;
+        // Whether the garment is what it is taken for is the style's affair.
+        let block = Block { style: self.style, stray: f64::INFINITY };
+        let (_, form, Fitted { fit, .. }) = block
+            .fitted("front", front, self.style.forms(), &cx.for_entry("front"))
+            .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
         let tape = Tape::of(form, &fit);
         let cost = |s: &[f64; 4]| tape.cost(s);
         let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
@@ -120,6 +122,12 @@ impl Fitting {
         }
         made
     }
+}
+
+/// The refusal, with how to say what the garment is.
+fn say(e: StageError) -> StageError {
+    let lay = e.hint.clone().unwrap_or_default();
+    e.hint(format!("{lay}; or say what it is: `style: Block(style: Vest)` and `body: Fitting(style: Vest)`"))
 }
 
 /// A garment's measures, metres.

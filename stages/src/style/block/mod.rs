@@ -32,6 +32,9 @@ use rayon::prelude::*;
 use tell::at_95;
 use toile_core::prelude::*;
 
+/// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves lie against it looks a little like a skirt.
+const UNSAID: f64 = 0.5;
+
 /// What the garment is.
 #[choice]
 #[derive(Copy, Eq)]
@@ -91,6 +94,7 @@ pub struct Block {
     #[param(default = BlockStyle::Auto)]
     style: BlockStyle,
     /// How far the outline may stray from the template, as a share of the garment's size (the root of its area); 19 of 20 of its points lie nearer.
+    /// Half of it where the outline alone tells what the garment is.
     #[param(default = 0.05, min = 0.001, max = 0.5)]
     stray: f64,
 }
@@ -146,7 +150,8 @@ impl Block {
         let Some((name, form, fit)) = best else { return Err(refusal::none(panel, &reasons)) };
         let all: Vec<f64> = fit.misses.iter().flatten().copied().collect();
         let stray = at_95(&all);
-        if stray > self.stray * upright.size {
+        let share = if auto { self.stray * UNSAID } else { self.stray };
+        if stray > share * upright.size {
             return Err(refusal::strays(panel, form, &fit, stray, auto));
         }
         tell::figures(panel, form, &fit, cx);

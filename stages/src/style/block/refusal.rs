@@ -43,5 +43,9 @@ pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool
         stray * 1e3,
         most * 1e3
     ))
-    .hint(LAY)
+    .hint(if auto {
+        format!("{LAY}; or say what it is: `style: Block(style: Vest)`")
+    } else {
+        LAY.to_owned()
+    })
 }
