@@ -28,6 +28,9 @@ pub(super) struct Folded {
     pub(super) told: String,
 }
 
+/// How a pleat is laid, and the ends of its two lines.
+type Lines = (PleatFold, [Point2; 2], [Point2; 2]);
+
 /// A straight line as a point and a unit direction.
 #[derive(Clone, Copy)]
 struct Line {
@@ -133,7 +136,7 @@ impl Pleat {
 ///
 /// Errors: a pleat whose sides are not two lines of one piece.
 pub(super) fn fold(pattern: &Pattern, offsets: &Offsets) -> Result<BTreeMap<String, Folded>, StageError> {
-    let mut of_piece: BTreeMap<&str, Vec<(PleatFold, [Point2; 2], [Point2; 2])>> = BTreeMap::new();
+    let mut of_piece: BTreeMap<&str, Vec<Lines>> = BTreeMap::new();
     for s in &pattern.seams {
         let SeamKind::Pleat(kind) = s.kind else { continue };
         let [[a], [b]] = [&s.sides[0][..], &s.sides[s.sides.len() - 1][..]] else { return Err(lines(s)) };
@@ -160,7 +163,7 @@ fn ends(pattern: &Pattern, u: &EdgeUse) -> Option<[Point2; 2]> {
     Some(if u.reversed { [ends[1], ends[0]] } else { ends })
 }
 
-fn folded(panel: &Panel, all: &[(PleatFold, [Point2; 2], [Point2; 2])]) -> Folded {
+fn folded(panel: &Panel, all: &[Lines]) -> Folded {
     let across = Line::between(all[0].1[0], all[0].1[1]).way;
     // At right angles to the first line, to the right.
     let across = Vector2::new(across.y.abs(), -across.x * across.y.signum());
