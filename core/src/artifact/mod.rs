@@ -51,7 +51,7 @@ pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{
     BodyPart, EdgeCurve, EdgePath, EdgeUse, LinePurpose, Lowered, LoweringError, Notch, Pattern, PatternLoop,
-    PatternSeam, Piece, PieceEdge, PieceLine, Pose,
+    PatternSeam, Piece, PieceEdge, PieceLine, Pose, lacking_stops,
 };
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;

@@ -23,5 +23,5 @@ mod written;
 
 pub use error::{FARTHEST, WriteError};
 pub use options::Options;
-pub use sidecar::sidecar;
+pub use sidecar::{kind_word, sidecar};
 pub use written::Written;

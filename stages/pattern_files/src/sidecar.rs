@@ -28,7 +28,7 @@ pub(crate) fn along(pattern: &Pattern, names: &FileNames) -> (String, Vec<String
     for seam in &pattern.seams {
         match sides(seam, names) {
             Ok(sides) => {
-                let kind = word(seam.kind);
+                let kind = kind_word(seam.kind);
                 let _ = writeln!(out, "        (name: {:?}, kind: {kind}, sides: [{sides}]),", seam.name);
             }
             Err(why) => {
@@ -73,8 +73,8 @@ fn link(part: &EdgeRef, reversed: bool) -> Result<String, String> {
     Ok(format!("{:?}", format!("{}{part}", if reversed { "-" } else { "" })))
 }
 
-/// A kind of seam as the file writes it.
-fn word(kind: SeamKind) -> String {
+/// A kind of seam as the file writes it, such as `Folded(angle: 90.0)`.
+pub fn kind_word(kind: SeamKind) -> String {
     match kind {
         SeamKind::Matched => "Matched".into(),
         SeamKind::Gathered => "Gathered".into(),

@@ -16,6 +16,7 @@ use serde::Deserialize;
 use std::fmt::Write;
 use toile_core::pipeline::nearest;
 use toile_core::prelude::*;
+use toile_pattern_files::kind_word;
 
 /// Names of edges in a message.
 const MOST_NAMES: usize = 12;
@@ -153,25 +154,10 @@ pub(super) fn write(seams: &[(PatternSeam, String)]) -> String {
             out,
             "        // {reason}\n        (name: {:?}, kind: {}, sides: [{sides}]),",
             seam.name,
-            word(seam.kind)
+            kind_word(seam.kind)
         );
     }
     out + "    ],\n)\n"
-}
-
-fn word(kind: SeamKind) -> String {
-    match kind {
-        SeamKind::Matched => "Matched".into(),
-        SeamKind::Gathered => "Gathered".into(),
-        SeamKind::Dart => "Dart".into(),
-        SeamKind::Pleat(PleatFold::Knife) => "KnifePleat".into(),
-        SeamKind::Pleat(PleatFold::Box) => "BoxPleat".into(),
-        SeamKind::Elastic { ratio, stiffness } => {
-            format!("Elastic(ratio: {ratio:?}, stiffness: {stiffness:?})")
-        }
-        SeamKind::Patch => "Patch".into(),
-        SeamKind::Folded { angle } => format!("Folded(angle: {:?})", angle.to_degrees()),
-    }
 }
 
 #[cfg(test)]

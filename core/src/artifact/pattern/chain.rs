@@ -94,7 +94,7 @@ impl<'a> Cuts<'a> {
     fn agree(&mut self, a: &[EdgeUse], b: &[EdgeUse]) {
         let [(sa, la), (sb, lb)] = [self.stops(a), self.stops(b)];
         let near = (NEAR / la.min(lb)).max(NEAR_SHARE);
-        let (in_b, in_a) = missing(&sa, &sb, near);
+        let (in_b, in_a) = lacking_stops(&sa, &sb, near);
         in_a.into_iter().for_each(|share| self.cut(a, share * la));
         in_b.into_iter().for_each(|share| self.cut(b, share * lb));
     }
@@ -139,8 +139,9 @@ impl<'a> Cuts<'a> {
     }
 }
 
-/// Where the second list of shares lacks a stop of the first, and the first one of the second.
-fn missing(a: &[f64], b: &[f64], near: f64) -> (Vec<f64>, Vec<f64>) {
+/// The stops that two sides of a seam lack of each other: where the second lacks one of the first, and the first one of the second. Both lists are
+/// shares of a side's length, ascending; stops nearer than `near` are one, and the others are carried over in proportion between those.
+pub fn lacking_stops(a: &[f64], b: &[f64], near: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut i, mut j) = (0, 0);
     let (mut alone_a, mut alone_b, mut pairs) = (Vec::new(), Vec::new(), vec![(0.0, 0.0)]);
     while i < a.len() || j < b.len() {

@@ -13,6 +13,7 @@ mod svg;
 #[cfg(test)]
 pub(in crate::artifact) mod tests;
 
+pub use chain::lacking_stops;
 pub use curve::{EdgeCurve, EdgePath};
 pub use lower::{Lowered, LoweringError};
 pub use piece::{BodyPart, LinePurpose, Notch, PatternLoop, Piece, PieceEdge, PieceLine, Pose};

@@ -7,7 +7,7 @@
 
 use super::curves::Curve;
 use std::collections::BTreeSet;
-use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind};
+use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind, lacking_stops};
 
 /// Ends of curves on both sides of a seam that are this near to each other belong together, metres.
 const NEAR: f64 = 2e-3;
@@ -87,7 +87,7 @@ fn kinds(kept: &[(&PatternSeam, [Vec<Link>; 2])], told: &mut Vec<String>) {
 fn agree(curves: &mut Curves, a: &[Link], b: &[Link]) {
     let [(sa, la), (sb, lb)] = [stops(curves, a), stops(curves, b)];
     let near = (NEAR / la.min(lb)).max(NEAR_SHARE);
-    let (in_b, in_a) = missing(&sa, &sb, near);
+    let (in_b, in_a) = lacking_stops(&sa, &sb, near);
     in_a.into_iter().for_each(|share| cut(curves, a, share * la));
     in_b.into_iter().for_each(|share| cut(curves, b, share * lb));
 }
@@ -146,40 +146,6 @@ fn cut(curves: &mut Curves, side: &[Link], at: f64) {
         }
         before += length;
     }
-}
-
-/// Where the second list of shares lacks a stop of the first, and the first one of the second, both ascending.
-fn missing(a: &[f64], b: &[f64], near: f64) -> (Vec<f64>, Vec<f64>) {
-    let (mut i, mut j) = (0, 0);
-    let (mut alone_a, mut alone_b, mut pairs) = (Vec::new(), Vec::new(), vec![(0.0, 0.0)]);
-    while i < a.len() || j < b.len() {
-        match (a.get(i), b.get(j)) {
-            (Some(s), Some(t)) if (s - t).abs() <= near => {
-                pairs.push((*s, *t));
-                (i, j) = (i + 1, j + 1);
-            }
-            (Some(s), t) if t.is_none_or(|t| s < t) => {
-                alone_a.push(*s);
-                i += 1;
-            }
-            (_, Some(t)) => {
-                alone_b.push(*t);
-                j += 1;
-            }
-            (_, None) => break,
-        }
-    }
-    pairs.push((1.0, 1.0));
-    let carried = |s: &f64, from: fn(&(f64, f64)) -> f64, to: fn(&(f64, f64)) -> f64| {
-        let k = pairs.partition_point(|p| from(p) < *s).clamp(1, pairs.len() - 1);
-        let (p, q) = (&pairs[k - 1], &pairs[k]);
-        let width = from(q) - from(p);
-        let share = if width > 0.0 { (s - from(p)) / width } else { 0.5 };
-        to(p) + (to(q) - to(p)) * share
-    };
-    let in_b = alone_a.iter().map(|s| carried(s, |p| p.0, |p| p.1)).collect();
-    let in_a = alone_b.iter().map(|t| carried(t, |p| p.1, |p| p.0)).collect();
-    (in_b, in_a)
 }
 
 /// The curves of both sides, one to one.

@@ -9,6 +9,7 @@
 
 mod names;
 mod text;
+pub mod words;
 
 use crate::allowance::{CutLines, cut_lines};
 use crate::error::{WriteError, writable};

@@ -4,72 +4,17 @@
 //! change what the line is. A label has at most 80 characters there, and no point, which would end the name of a piece where seams name an
 //! edge.
 
+use super::words::tells;
 use crate::names::{PieceNames, one_line, sewable, unique};
 use std::collections::BTreeSet;
 
 /// Characters of a name; the reader takes 80, and numbers may be put behind.
 const MOST: usize = 70;
-/// Words that say what a line is for.
-const WORDS: [&str; 46] = [
-    "sa",
-    "allowance",
-    "seamallowance",
-    "cutline",
-    "cuttingline",
-    "cutting",
-    "fold",
-    "foldline",
-    "mirror",
-    "mirrorline",
-    "notch",
-    "notches",
-    "bnotch",
-    "drill",
-    "drillhole",
-    "drills",
-    "hole",
-    "holes",
-    "cutout",
-    "mark",
-    "marks",
-    "help",
-    "contrast",
-    "internal",
-    "inner",
-    "placement",
-    "dart",
-    "hidden",
-    "logo",
-    "scalebox",
-    "note",
-    "notes",
-    "dimension",
-    "dimensions",
-    "guide",
-    "background",
-    "fabric",
-    "seam",
-    "seamline",
-    "sewline",
-    "stitchline",
-    "outline",
-    "pattern",
-    "grainline",
-    "cutonfold",
-    "grain",
-];
-
 /// The words of a name in small letters, and whether one of them says what a line is for.
 fn words(name: &str) -> (usize, bool) {
     let parts = name.split(|c: char| !c.is_alphabetic()).filter(|w| !w.is_empty()).map(str::to_lowercase);
     let parts: Vec<String> = parts.collect();
-    let says = |w: &String| {
-        WORDS.contains(&w.as_str())
-            || w.starts_with("grain")
-            || w.ends_with("grainline")
-            || w.starts_with("cutonfold")
-    };
-    (parts.len(), parts.iter().any(says))
+    (parts.len(), parts.iter().any(|w| tells(w)))
 }
 
 /// The label of a piece's group, unlike those that are taken.

@@ -1,5 +1,7 @@
 //! What an element is for, by the words of its class, id, label and title.
 
+use toile_pattern_files::svg::words::{ALLOWANCE, DRILL, FOLD, HOLE, MARK, NOTCH, NOTHING, OUTLINE};
+
 /// What a drawn line is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Role {
@@ -23,16 +25,6 @@ pub(super) enum Role {
     /// What is no part of the pattern.
     Nothing,
 }
-
-const ALLOWANCE: [&str; 6] = ["sa", "allowance", "seamallowance", "cutline", "cuttingline", "cutting"];
-const FOLD: [&str; 4] = ["fold", "foldline", "mirror", "mirrorline"];
-const NOTCH: [&str; 3] = ["notch", "notches", "bnotch"];
-const DRILL: [&str; 3] = ["drill", "drillhole", "drills"];
-const HOLE: [&str; 3] = ["hole", "holes", "cutout"];
-const MARK: [&str; 8] = ["mark", "marks", "help", "contrast", "internal", "inner", "placement", "dart"];
-const NOTHING: [&str; 9] =
-    ["hidden", "logo", "scalebox", "note", "notes", "dimension", "dimensions", "guide", "background"];
-const OUTLINE: [&str; 7] = ["fabric", "seam", "seamline", "sewline", "stitchline", "outline", "pattern"];
 
 /// The words of a name, small; ends of words are told by what is no letter.
 fn words(name: &str) -> Vec<String> {

@@ -12,7 +12,7 @@ use crate::body::Mannequin;
 use toile_core::prelude::*;
 
 /// Height, bust, waist and hip, cm: children by EN 13402-3, adults in its steps of 4 to 6 cm of bust.
-const SIZES: [[f64; 4]; 26] = [
+pub(super) const SIZES: [[f64; 4]; 26] = [
     [80.0, 49.0, 47.0, 49.0],
     [86.0, 51.0, 48.5, 51.0],
     [92.0, 53.0, 50.0, 53.0],
@@ -106,21 +106,25 @@ impl Fitting {
         }
         let girths = [bust, waist, hip].map(|g| g / 100.0);
         let arms = arms(form, &fit).clamp(REACH.0, REACH.1);
-        let at = |angle: f64| Mannequin::made(height / 100.0, girths, angle, self.edge.metres()).run(cx);
-        // Arms that hang near a wide trunk touch it: they are spread further.
-        let mut made = at(arms);
-        for k in 1.. {
-            let angle = (arms + SPREAD * f64::from(k)).min(REACH.1);
-            if made.is_ok() {
-                break;
-            }
+        mannequin(height / 100.0, girths, arms, self.edge.metres(), cx)
+    }
+}
+
+/// A mannequin of that height and girths, metres. Arms that hang near a wide trunk touch it: then they are spread further than `arms`, degrees.
+pub(super) fn mannequin(
+    height: f64,
+    girths: [f64; 3],
+    arms: f64,
+    edge: f64,
+    cx: &Context,
+) -> Result<Body, StageError> {
+    let made = Mannequin::made(height, girths, arms, edge).run(cx);
+    match made {
+        Err(_) if arms < REACH.1 => {
             cx.check()?;
-            made = at(angle);
-            if angle >= REACH.1 {
-                break;
-            }
+            mannequin(height, girths, (arms + SPREAD).min(REACH.1), edge, cx)
         }
-        made
+        done => done,
     }
 }
 

@@ -414,3 +414,13 @@ fn a_dress_with_sleeves_is_cut_to_a_trunk_and_sleeves() {
     let named = fitted_to(garment(SLEEVED), BlockStyle::Auto).1;
     assert!(named[0].contains("around the waist"), "{named:?}");
 }
+
+#[test]
+fn every_size_of_the_table_can_be_made() {
+    for [height, bust, waist, hip] in fitting::SIZES {
+        let girths = [bust, waist, hip].map(|g| g / 100.0);
+        let body = fitting::mannequin(height / 100.0, girths, 45.0, 0.022, &Context::quiet());
+        let body = body.map_err(|e| format!("{height} {bust}: {}", e.message)).unwrap();
+        assert!((body.measurements["bust"] - girths[0]).abs() < 0.005 * girths[0], "{height} {bust}");
+    }
+}
