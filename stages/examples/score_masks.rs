@@ -16,7 +16,7 @@ use std::time::Instant;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
 use toile_core::{Inputs, PortValue};
-use toile_stages::binarise::{Background, GraphCut, Local, Otsu};
+use toile_stages::binarise::{Auto, Background, GraphCut, Local, Otsu};
 use toile_stages::denoise::NeighbourhoodMean;
 use toile_stages::photo::decode;
 
@@ -29,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut args = std::env::args().skip(1);
     let out = args.next().map(PathBuf::from);
     let given: Vec<String> = args.collect();
-    let all = ["Otsu()", "Local()", "Background()", "GraphCut()"].map(str::to_owned);
+    let all = ["Otsu()", "Local()", "Background()", "GraphCut()", "Auto()"].map(str::to_owned);
     let texts = if given.is_empty() { all.to_vec() } else { given };
     let stages = texts.into_iter().map(|t| stage(&t).map(|s| (t, s))).collect::<Result<Vec<_>, _>>()?;
     score(&photos, &stages, out.as_deref())
@@ -43,6 +43,7 @@ fn stage(text: &str) -> Result<Box<dyn Stage>, Box<dyn Error>> {
         "Local" => parse::<Local>(params),
         "Background" => parse::<Background>(params),
         "GraphCut" => parse::<GraphCut>(params),
+        "Auto" => parse::<Auto>(params),
         _ => Err("no such stage".into()),
     }
 }

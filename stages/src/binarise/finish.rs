@@ -109,11 +109,7 @@ fn one_garment(regions: &Regions, photo: &Photo, settings: Finish, stage: &str) 
     let (w, h) = photo.pixels.dimensions();
     let touch = garment.frame as f64 / f64::from(w.min(h));
     if touch > settings.touch {
-        return Err(StageError::invalid(format!(
-            "the garment in \"{}\" is cut by the frame: it touches it over {} px",
-            photo.file, garment.frame
-        ))
-        .hint(cut_hint(stage, touch, settings.next)));
+        return Err(cut_by_frame(photo, garment.frame as f64, stage, settings.next));
     }
     let second = order.get(1).map_or(0, |&i| regions.pieces[i].area);
     if second as f64 >= SECOND_GARMENT * garment.area as f64 {
@@ -124,6 +120,16 @@ fn one_garment(regions: &Regions, photo: &Photo, settings: Finish, stage: &str) 
         .hint(format!("photograph one garment at a time; where there is only one, try {}", settings.next)));
     }
     Ok(largest)
+}
+
+/// The error for a garment that touches the frame over so many pixels, with the binariser to try.
+pub(super) fn cut_by_frame(photo: &Photo, pixels: f64, stage: &str, next: &str) -> StageError {
+    let (w, h) = photo.pixels.dimensions();
+    StageError::invalid(format!(
+        "the garment in \"{}\" is cut by the frame: it touches it over {pixels:.0} px",
+        photo.file
+    ))
+    .hint(cut_hint(stage, pixels / f64::from(w.min(h)), next))
 }
 
 /// What may help a garment that touches the frame over a share of the photo's shorter side.

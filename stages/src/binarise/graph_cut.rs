@@ -77,33 +77,56 @@ impl GraphCut {
     fn coarse(&self, photo: &Photo, cx: &Context) -> Result<Coarse, StageError> {
         let small = Small::of(photo, self.size / 2);
         cx.check()?;
+        let start = start(&small, self.modes as usize, self.rim);
+        self.settle(small, start, cx)?.ok_or_else(|| one_colour(photo))
+    }
+
+    /// Rounds of fitting and cutting from what is taken for garment and for ground at first, until nothing changes;
+    /// `None` where one side of the cut is empty.
+    pub(super) fn settle(
+        &self,
+        small: Small,
+        (inside, outside): (Vec<bool>, Vec<bool>),
+        cx: &Context,
+    ) -> Result<Option<Coarse>, StageError> {
         let links = Links::of(&small, self.gamma);
-        let (inside, outside) = start(&small, self.modes as usize, self.rim);
-        let mut models = self.models(&small, &inside, &outside);
+        let Some(mut models) = self.models(&small, &inside, &outside) else { return Ok(None) };
         let mut mask = inside;
         for round in 0..=self.rounds {
             let share = f64::from(round) / f64::from(self.rounds + 2);
             cx.progress(share, format!("cut {} of {}", round + 1, self.rounds + 2));
-            let Some(m) = &models else { return Err(one_colour(photo)) };
-            let next = cut(&small, m, &links, rim_width(&small, self.rim), None, cx)?;
-            let next = clean(&small, &next).ok_or_else(|| one_colour(photo))?;
+            let next = cut(&small, &models, &links, rim_width(&small, self.rim), None, cx)?;
+            let Some(next) = clean(&small, &next) else { return Ok(None) };
             let settled = next == mask;
             mask = next;
             if settled {
                 break;
             }
             let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
-            models = self.models(&small, &mask, &outside);
+            let Some(fitted) = self.models(&small, &mask, &outside) else { return Ok(None) };
+            models = fitted;
         }
-        let models = models.ok_or_else(|| one_colour(photo))?;
-        Ok(Coarse { small, mask, models })
+        Ok(Some(Coarse { small, mask, models }))
     }
 
     /// The last cut, at the full size, in a band along the boundary that the coarse rounds found.
-    fn fine(&self, small: &Small, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
+    pub(super) fn fine(&self, small: &Small, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
         let mask = coarse.at_size(small);
         let links = Links::of(small, self.gamma);
         cut(small, &coarse.models, &links, rim_width(small, self.rim), Some(&mask), cx)
+    }
+
+    /// The cut under the models of the coarse rounds, as it is: with its holes, hairs and specks.
+    pub(super) fn raw(&self, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
+        let links = Links::of(&coarse.small, self.gamma);
+        cut(&coarse.small, &coarse.models, &links, rim_width(&coarse.small, self.rim), None, cx)
+    }
+
+    /// The state before the last cut of a mask that another method found; `None` where one side is empty.
+    pub(super) fn of_mask(&self, small: Small, mask: Vec<bool>) -> Option<Coarse> {
+        let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
+        let models = self.models(&small, &mask, &outside)?;
+        Some(Coarse { small, mask, models })
     }
 
     fn models(&self, small: &Small, inside: &[bool], outside: &[bool]) -> Option<Models> {
@@ -117,21 +140,23 @@ fn one_colour(photo: &Photo) -> StageError {
 }
 
 /// Colour models of both sides.
-struct Models {
-    garment: Mixture,
-    ground: Mixture,
+#[derive(Debug)]
+pub(super) struct Models {
+    pub(super) garment: Mixture,
+    pub(super) ground: Mixture,
 }
 
 /// What the coarse rounds found.
-struct Coarse {
-    small: Small,
-    mask: Vec<bool>,
-    models: Models,
+#[derive(Debug)]
+pub(super) struct Coarse {
+    pub(super) small: Small,
+    pub(super) mask: Vec<bool>,
+    pub(super) models: Models,
 }
 
 impl Coarse {
     /// The mask at another size of the same photo.
-    fn at_size(&self, to: &Small) -> Vec<bool> {
+    pub(super) fn at_size(&self, to: &Small) -> Vec<bool> {
         let (w, h) = (self.small.w, self.small.h);
         let at = |i: usize| (i / to.w * h / to.h) * w + i % to.w * w / to.w;
         (0..to.w * to.h).map(|i| self.mask[at(i)]).collect()
@@ -190,7 +215,7 @@ fn units(cost: f64) -> i32 {
 const COVERED: f64 = 0.8;
 
 /// What is taken for garment and for ground at first.
-fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
+pub(super) fn start(small: &Small, modes: usize, rim: f64) -> (Vec<bool>, Vec<bool>) {
     let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
     let covers = |mask: &Vec<bool>| {
         let both = mask.iter().zip(&middle).filter(|(a, b)| **a && **b).count();

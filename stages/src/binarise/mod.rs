@@ -12,6 +12,7 @@
 //! garment, two garments, and a garment cut by the frame. All take transparent pixels as ground; a
 //! picture whose ground was cut away has its mask already (`cut_out`).
 
+mod auto;
 mod background;
 mod cut;
 mod cut_out;
@@ -30,6 +31,7 @@ mod small;
 mod tests;
 mod tone;
 
+pub use auto::{Auto, candidates};
 pub use background::Background;
 pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
@@ -45,5 +47,5 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>();
+    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>().add::<Auto>();
 }

@@ -1,0 +1,85 @@
+//! The best of the methods' masks.
+
+use super::super::graph_cut::{Coarse, GraphCut};
+use super::super::small::Small;
+use super::evidence::{Evidence, overlap};
+use super::larger::larger;
+use super::methods::Found;
+use super::thin::{with_pairs, without_lone_parts};
+use super::wedge::with_wedges;
+use toile_core::prelude::*;
+
+/// A larger mask has this share of the best one's confidence.
+const ALSO: f64 = 0.6;
+/// It holds this share of the best one.
+const HELD: f64 = 0.97;
+/// It is so many times as large.
+const MORE: f64 = 1.15;
+
+/// The mask that is taken, with what speaks for it.
+#[derive(Debug)]
+pub(super) struct Choice {
+    /// The mask at the small size, with the colours of both sides.
+    pub coarse: Coarse,
+    /// What speaks for it.
+    pub evidence: Evidence,
+    /// The area of what lies around it, as a multiple of its own, where it may be a print.
+    pub larger: Option<f64>,
+}
+
+/// The mask with the most confidence, then the most agreement; the first of equals. `None` where no method found anything.
+pub(super) fn choose(
+    small: &Small,
+    large: &Small,
+    found: &[Found],
+    cx: &Context,
+) -> Result<Option<Choice>, StageError> {
+    let evidence = |i: usize| {
+        let others: Vec<&[bool]> =
+            found.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, f)| &f.mask[..]).collect();
+        // Contours are looked at where pixels are smaller.
+        Evidence {
+            agreement: Evidence::of(small, &found[i].mask, &others).agreement,
+            ..at_large(small, large, &found[i].mask)
+        }
+    };
+    let all: Vec<Evidence> = (0..found.len()).map(evidence).collect();
+    let better = |a: &Evidence, b: &Evidence| {
+        let by = a.confidence().total_cmp(&b.confidence());
+        by.then(a.agreement.total_cmp(&b.agreement)).is_gt()
+    };
+    let best = (0..found.len()).reduce(|a, b| if better(&all[b], &all[a]) { b } else { a });
+    let Some(best) = best else { return Ok(None) };
+    let best = whole(found, &all, best);
+    let cut = GraphCut::default();
+    let Some(first) = cut.of_mask(small.clone(), found[best].mask.clone()) else { return Ok(None) };
+    let raw = cut.raw(&first, cx)?;
+    let mask = with_pairs(&without_lone_parts(&found[best].mask, &raw, small.w), &raw, small.w);
+    let mask = with_wedges(&mask, &raw, small.w);
+    let Some(coarse) = cut.of_mask(small.clone(), mask) else { return Ok(None) };
+    if overlap(&coarse.mask, &found[best].mask) < 1.0 {
+        let away = found[best].mask.iter().zip(&coarse.mask).filter(|(a, b)| a != b).count() as f64;
+        cx.figure("taken off", 100.0 * away / small.lab.len() as f64, "% of the photo");
+    }
+    let larger = larger(small, &coarse.mask, cut.rim, cx)?;
+    Ok(Some(Choice { coarse, evidence: all[best], larger }))
+}
+
+/// The mask that holds the best one and much more, where evidence speaks for it too: methods agree about one part of a garment
+/// of two colours as well as about all of it.
+fn whole(found: &[Found], all: &[Evidence], best: usize) -> usize {
+    let count = |i: usize| found[i].mask.iter().filter(|on| **on).count() as f64;
+    let held = |i: usize| found[i].mask.iter().zip(&found[best].mask).filter(|(a, b)| **a && **b).count() as f64;
+    let own = count(best);
+    let holds = |i: &usize| {
+        all[*i].confidence() >= ALSO * all[best].confidence() && held(*i) >= HELD * own && count(*i) >= MORE * own
+    };
+    (0..found.len()).filter(holds).max_by(|a, b| all[*a].confidence().total_cmp(&all[*b].confidence())).unwrap_or(best)
+}
+
+/// The evidence of a mask at a larger size of its photo, without that of other methods.
+fn at_large(small: &Small, large: &Small, mask: &[bool]) -> Evidence {
+    let at = |i: usize| (i / large.w * small.h / large.h) * small.w + i % large.w * small.w / large.w;
+    let mask: Vec<bool> = (0..large.w * large.h).map(|i| mask[at(i)]).collect();
+    Evidence::of(large, &mask, &[])
+}

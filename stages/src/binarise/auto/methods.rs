@@ -1,0 +1,44 @@
+//! The independent methods, all on one grid of small pixels.
+
+use super::super::background::{SHADOW, background, clean, in_middle};
+use super::super::graph_cut::{GraphCut, start};
+use super::super::small::Small;
+use super::colour_split::colour_split;
+use super::ground_distance::ground_distance;
+use super::walker::walk;
+use toile_core::prelude::*;
+
+/// A method's mask.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    /// The method, as a user would name it.
+    pub name: &'static str,
+    /// The mask, a small pixel a value.
+    pub mask: Vec<bool>,
+}
+
+/// What each method finds; a method that finds nothing is left out.
+/// `given` is the mask of an earlier stage, brought to the small size.
+pub(super) fn methods(small: &Small, given: Option<Vec<bool>>, cx: &Context) -> Result<Vec<Found>, StageError> {
+    let cut = GraphCut::default();
+    let modes = cut.modes as usize;
+    let mut found = Vec::new();
+    let mut add = |name, mask: Option<Vec<bool>>| found.extend(mask.map(|mask| Found { name, mask }));
+    let first = cut.settle(small.clone(), start(small, modes, cut.rim), cx)?;
+    add("graph cut", first.map(|c| c.mask));
+    add("background", background(small, modes, cut.rim, SHADOW));
+    add("colour split", colour_split(small, cut.rim).and_then(|raw| clean(small, &raw)));
+    add("ground distance", ground_distance(small, modes, cut.rim).and_then(|raw| clean(small, &raw)));
+    let middle: Vec<bool> = (0..small.lab.len()).map(|i| in_middle(small, i)).collect();
+    let chance = walk(small, &middle, cut.rim, cx)?;
+    let walked: Vec<bool> = chance.iter().map(|c| *c > 0.5).collect();
+    let walked = clean(small, &walked);
+    add("random walk", walked.clone());
+    if let Some(walked) = walked {
+        let outside: Vec<bool> = walked.iter().map(|on| !on).collect();
+        let again = cut.settle(small.clone(), (walked, outside), cx)?;
+        add("graph cut from edges", again.map(|c| c.mask));
+    }
+    add("mask given", given.and_then(|raw| clean(small, &raw)));
+    Ok(found)
+}
