@@ -5,7 +5,7 @@
 //! inside and one to those outside, and cut the grid of pixels where
 //! `sum over pixels of -ln p(colour | its side) + gamma sum over parted neighbours of exp(-beta |dI|^2) / distance`
 //! is least (Boykov and Jolly, Interactive graph cuts, ICCV 2001; Rother, Kolmogorov and Blake, GrabCut,
-//! SIGGRAPH 2004). No user draws a box: the frame's rim is ground, and a pixel is the likelier garment the
+//! SIGGRAPH 2004). No user need draw a box: the frame's rim is ground, and a pixel is the likelier garment the
 //! further it lies from the frame.
 //!
 //! The rounds are made at half the size; a last cut at the full size may move the boundary within a
@@ -18,17 +18,19 @@
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, mask_of, no_garment};
+use super::marks::{self, Marks, of_photo};
 use super::mixture::Mixture;
 use super::morphology::{dilate, erode};
 use super::refine::refine;
 use super::small::Small;
 use image::GrayImage;
+use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// Finds the boundary that parts two colour models at the least cost.
 ///
-/// The most robust of the binarisers on real photos: patterned grounds, prints, soft shadows. The
-/// frame's rim must show ground, its middle the garment. Transparent pixels are ground.
+/// Robust on real photos: patterned grounds, prints, soft shadows. The frame's rim must show ground, its middle the garment.
+/// Transparent pixels are ground. Where it errs, mark some places, a rectangle, or paint strokes: what is marked is kept, and its colours are learned.
 #[stage(
     role = Binariser,
     version = 2,
@@ -58,6 +60,18 @@ pub struct GraphCut {
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
     pub touch: f64,
+    /// Places on the garment, by photo, as shares of width and height from the left upper corner.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub garment: BTreeMap<String, Vec<(f64, f64)>>,
+    /// Places on the ground, likewise.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub ground: BTreeMap<String, Vec<(f64, f64)>>,
+    /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub rect: BTreeMap<String, ((f64, f64), (f64, f64))>,
+    /// Files, by photo: copies of the photo with green strokes on the garment and red strokes on the ground.
+    #[param(default = BTreeMap::new())]
+    pub strokes: BTreeMap<String, String>,
 }
 
 #[stage]
@@ -66,16 +80,19 @@ impl GraphCut {
         let settings =
             Finish { open: 0, close: 0, holes: self.holes, touch: self.touch, next: "`Background()`" };
         mask_of(photo, settings, cx, || {
-            let mask = self.coarse(photo, cx)?;
-            let small = Small::of(photo, self.size);
+            let marks = self.marks(photo, cx)?;
+            let mask = self.coarse(photo, &marks, cx)?;
+            let mut small = Small::of(photo, self.size);
+            marks.mark(&mut small);
             let mask = self.fine(&small, &mask, cx)?;
             refine(photo, &small, &mask, cx)
         })
     }
 
     /// Rounds of fitting and cutting at half the size, until nothing changes.
-    fn coarse(&self, photo: &Photo, cx: &Context) -> Result<Coarse, StageError> {
-        let small = Small::of(photo, self.size / 2);
+    fn coarse(&self, photo: &Photo, marks: &Marks<'_>, cx: &Context) -> Result<Coarse, StageError> {
+        let mut small = Small::of(photo, self.size / 2);
+        marks.mark(&mut small);
         cx.check()?;
         let start = start(&small, self.modes as usize, self.rim);
         self.settle(small, start, cx)?.ok_or_else(|| one_colour(photo))
@@ -86,10 +103,13 @@ impl GraphCut {
     pub(super) fn settle(
         &self,
         small: Small,
-        (inside, outside): (Vec<bool>, Vec<bool>),
+        (mut inside, mut outside): (Vec<bool>, Vec<bool>),
         cx: &Context,
     ) -> Result<Option<Coarse>, StageError> {
         let links = Links::of(&small, self.gamma);
+        for (i, known) in small.known.iter().enumerate().filter_map(|(i, k)| Some((i, (*k)?))) {
+            (inside[i], outside[i]) = (known, !known);
+        }
         let Some(mut models) = self.models(&small, &inside, &outside) else { return Ok(None) };
         let mut mask = inside;
         for round in 0..=self.rounds {
@@ -107,6 +127,27 @@ impl GraphCut {
             models = fitted;
         }
         Ok(Some(Coarse { small, mask, models }))
+    }
+
+    fn marks(&self, photo: &Photo, cx: &Context) -> Result<Marks<'_>, StageError> {
+        let strokes = of_photo(&self.strokes, photo, cx).map(|file| marks::strokes(file, photo, cx));
+        Ok(Marks {
+            garment: of_photo(&self.garment, photo, cx).map_or(&[], |all| all),
+            ground: of_photo(&self.ground, photo, cx).map_or(&[], |all| all),
+            rect: of_photo(&self.rect, photo, cx).copied(),
+            strokes: strokes.transpose()?,
+        })
+    }
+
+    /// Marks for photos that are not there.
+    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let photos = crate::photo::sides(&placed.sources());
+        let photos = photos.as_deref();
+        let mut all = marks::check("garment", self.garment.keys(), photos);
+        all.extend(marks::check("ground", self.ground.keys(), photos));
+        all.extend(marks::check("rect", self.rect.keys(), photos));
+        all.extend(marks::check("strokes", self.strokes.keys(), photos));
+        all
     }
 
     /// The last cut, at the full size, in a band along the boundary that the coarse rounds found.
@@ -182,6 +223,8 @@ fn cut(
     let mut grid = Grid::new(small.w, small.h);
     for (i, colour) in small.lab.iter().enumerate() {
         let capacity = match &band {
+            _ if small.known[i] == Some(true) => FIXED,
+            _ if small.known[i] == Some(false) => -FIXED,
             Some((inside, _)) if inside[i] != 0 => FIXED,
             Some((_, reach)) if reach[i] == 0 => -FIXED,
             _ => {

@@ -21,6 +21,7 @@ mod global;
 mod graph_cut;
 mod local;
 mod marked;
+mod marks;
 mod mixture;
 mod morphology;
 mod otsu;
@@ -40,6 +41,7 @@ pub use local::{Local, LocalMethod, local};
 pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
 pub use otsu::{Otsu, Split, otsu};
 pub use regions::{Piece, Regions};
+pub(crate) use small::lab;
 pub(crate) use tone::OPAQUE;
 pub use tone::{Polarity, histogram, luma};
 

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use toile_core::prelude::*;
 
 /// A colour in CIE Lab.
-pub(super) type Lab = Vector3<f64>;
+pub(crate) type Lab = Vector3<f64>;
 
 /// A photo at a reduced size.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ pub(super) struct Small {
     pub lab: Vec<Lab>,
     /// False where most of the block is transparent.
     pub seen: Vec<bool>,
+    /// What a user has marked: true for garment, false for ground.
+    pub known: Vec<Option<bool>>,
     /// Pixels of the photo to a pixel of this picture, across and down.
     pub scale: (f64, f64),
 }
@@ -40,7 +42,8 @@ impl Small {
             .into_par_iter()
             .flat_map_iter(|y| (0..w).map(move |x| block(photo, cut(x, w, pw), cut(y, h, ph))));
         let (lab, seen) = rows.unzip();
-        Small { w, h, lab, seen, scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64) }
+        let known = vec![None; w * h];
+        Small { w, h, lab, seen, known, scale: (f64::from(pw) / w as f64, f64::from(ph) / h as f64) }
     }
 
     /// The colours of the marked pixels that are not transparent.
@@ -81,7 +84,7 @@ fn block(photo: &Photo, (x0, x1): (u32, u32), (y0, y1): (u32, u32)) -> (Lab, boo
 }
 
 /// sRGB (0 to 255) to CIE Lab.
-pub(super) fn lab(rgb: [f64; 3]) -> Lab {
+pub(crate) fn lab(rgb: [f64; 3]) -> Lab {
     let [r, g, b] = rgb.map(|v| {
         let v = v / 255.0;
         if v <= 0.04045 { v / 12.92 } else { ((v + 0.055) / 1.055).powf(2.4) }

@@ -60,7 +60,7 @@ pub(crate) fn detect(
     mask: &Mask,
     cx: &Context,
 ) -> Result<Outline, StageError> {
-    check_frame(photo, mask)?;
+    check_frame(photo, mask, cx)?;
     let mut found = loops(&mask.pixels);
     cx.check()?;
     let outer = take_outer(&mut found)?;
@@ -92,7 +92,7 @@ pub(crate) fn detect(
     Ok(outline)
 }
 
-fn check_frame(photo: &Photo, mask: &Mask) -> Result<(), StageError> {
+fn check_frame(photo: &Photo, mask: &Mask, cx: &Context) -> Result<(), StageError> {
     let (p, m) = (photo.pixels.dimensions(), mask.pixels.dimensions());
     if p != m {
         let text = format!("the mask has {} x {} pixels, its photo {} x {}", m.0, m.1, p.0, p.1);
@@ -104,16 +104,11 @@ fn check_frame(photo: &Photo, mask: &Mask) -> Result<(), StageError> {
     };
     let touched =
         [(left == 0, "left"), (top == 0, "upper"), (right + 1 == m.0, "right"), (bottom + 1 == m.1, "lower")];
-    match touched.iter().find(|t| t.0) {
-        None => Ok(()),
-        Some(_) if is_opacity(photo, mask) => Ok(()),
-        Some((_, side)) => Err(StageError::invalid(format!(
-            "the garment is cut off by the photo's {side} border"
-        ))
-        .hint(
-            "the photo must show ground on all four sides; if it does, the binariser took ground for garment",
-        )),
+    // How far a garment may touch the frame is the binariser's affair.
+    for (_, side) in touched.iter().filter(|t| t.0 && !is_opacity(photo, mask)) {
+        cx.warn(format!("the garment in \"{}\" touches the photo's {side} border, and ends there", photo.file));
     }
+    Ok(())
 }
 
 /// Whether a mask is the photo's opacity: a garment whose ground was cut away ends where it is seen to end, at the frame too.

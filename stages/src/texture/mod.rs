@@ -8,13 +8,14 @@ pub(crate) mod fixture;
 mod inside;
 pub(crate) mod parts;
 mod photo_texturer;
+mod plain;
 #[cfg(test)]
 mod tests;
 mod texture_size;
 mod weave;
 
 pub use fabric_texturer::{FabricTexture, FabricTexturer};
-pub use photo_texturer::{BodyShown, Light, PhotoTexturer};
+pub use photo_texturer::{BodyShown, Light, PhotoTexturer, Unseen};
 
 use toile_core::Registry;
 use toile_core::prelude::*;

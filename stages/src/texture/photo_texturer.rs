@@ -6,7 +6,7 @@
 
 use super::inside::{PixelBox, covered, keep_shown};
 use super::texture_size::{self, LARGEST};
-use super::{bleed, crop, of_panel, parts};
+use super::{bleed, crop, of_panel, parts, plain};
 use rayon::prelude::*;
 use toile_core::cost::Size;
 use toile_core::decide::{Decision, Known};
@@ -32,6 +32,16 @@ pub enum BodyShown {
     Hide,
 }
 
+/// What a side shows of which there is no photo, but the other side's mirror image.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Unseen {
+    /// That mirror image.
+    Mirrored,
+    /// The cloth alone: without print and label. A pattern all over the garment stays.
+    Plain,
+}
+
 /// Dresses each panel in its own photo.
 ///
 /// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
@@ -40,7 +50,7 @@ pub enum BodyShown {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 2,
+    version = 3,
     source = "garment modelling thesis, 2012: replace and modulate",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -55,6 +65,9 @@ pub struct PhotoTexturer {
     /// How far inside the outline colours are taken: past the garment's own rim and shadow.
     #[param(default = Length::mm(2.0), min = 0.0, max = 0.05)]
     inset: Length,
+    /// What a side shows of which there is no photo (`MirrorOf`).
+    #[param(default = Unseen::Mirrored)]
+    unseen: Unseen,
     /// Room around the panel in its texture, filled with its colours.
     #[param(default = 8, min = 0, max = 256, unit = "px")]
     margin: u32,
@@ -85,7 +98,7 @@ impl PhotoTexturer {
                     let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
                         .ok_or_else(|| off_photo(panel, photo))?;
                     let mask = masks.as_ref().and_then(|m| of_panel(m, &panel.name));
-                    pictures.push((panel, photo, mask, area));
+                    pictures.push((panel, photo, mask, self.hides(photo, photos.as_ref()), area));
                     mesh.uv = panel.photo_px.iter().map(|px| area.uv(px)).collect();
                     material.colour = [1.0; 3];
                     material.texture = Some(pictures.len() - 1);
@@ -97,9 +110,9 @@ impl PhotoTexturer {
             model.materials.push(material);
         }
         cx.progress(0.5, format!("textures of {} panels", pictures.len()));
-        let texture = |(panel, photo, mask, area): (&GarmentPanel, &Photo, Option<&Mask>, PixelBox)| {
+        let texture = |(panel, photo, mask, plain, area): (&GarmentPanel, &Photo, Option<&Mask>, bool, PixelBox)| {
             cx.check()?;
-            self.texture(garment, panel, photo, mask, area)
+            self.texture(garment, panel, (photo, mask, plain), area)
         };
         let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
         model.textures = textures.into_iter().collect::<Result<_, _>>()?;
@@ -121,12 +134,17 @@ impl PhotoTexturer {
 }
 
 impl PhotoTexturer {
+    /// Whether print is to be taken off a photo: it is the mirror image of another side's.
+    fn hides(&self, photo: &Photo, photos: Option<&Set<Photo>>) -> bool {
+        let other = |(_, p): (&str, &Photo)| p.file == photo.file && p.mirrored != photo.mirrored;
+        self.unseen == Unseen::Plain && photo.mirrored && photos.is_some_and(|all| all.iter().any(other))
+    }
+
     fn texture(
         &self,
         garment: &Garment,
         panel: &GarmentPanel,
-        photo: &Photo,
-        mask: Option<&Mask>,
+        (photo, mask, plain): (&Photo, Option<&Mask>, bool),
         area: PixelBox,
     ) -> Result<Texture, StageError> {
         let first = panel.vertices.start as u32;
@@ -141,6 +159,9 @@ impl PhotoTexturer {
         let scale = f64::from(size[0]) / f64::from(area.width);
         let depth = self.inset.metres() * px_per_metre(garment, panel) * scale;
         let sure = bleed::eroded(&crop.inside, depth);
+        if plain {
+            plain::plain(&mut crop.pixels, &sure);
+        }
         // A panel thinner than twice the inset has no inner part: then its whole inside must do.
         if !bleed::bleed(&mut crop.pixels, &sure) && !bleed::bleed(&mut crop.pixels, &crop.inside) {
             return Err(off_photo(panel, photo));

@@ -55,6 +55,34 @@ pub(super) struct Fit {
     pub score: f64,
 }
 
+impl Fit {
+    /// How far the outline strays from the sleeves or legs of each side: the mean distance of their points, metres.
+    pub(super) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
+        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let mut sums = [(0.0, 0.0); 2];
+        for p in &upright.points {
+            let (side, edge, _, off) = nearest(&m, *p);
+            if own(form.edges, edge) {
+                sums[side].0 += off.norm();
+                sums[side].1 += 1.0;
+            }
+        }
+        sums.map(|(sum, count)| sum / f64::max(count, 1.0))
+    }
+
+    /// Around the garment at the armpits, as it lies: where sleeves are cut in one with it, where its sides are narrowest. `None` for what hangs
+    /// from the waist.
+    pub(super) fn chest(&self, form: &Form) -> Option<f64> {
+        let sides = || self.sides.iter();
+        if let Some(k) = form.armpit() {
+            return Some(2.0 * sides().map(|s| s[k].a.x).sum::<f64>());
+        }
+        let k = form.edges.iter().position(|e| e.name == "cuff")?;
+        let narrowest = |s: &Vec<Bow>| s[k - 1].points().iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+        Some(2.0 * sides().map(narrowest).sum::<f64>())
+    }
+}
+
 /// The best fit of a form; `None` where its edges cannot be laid over the outline at all.
 pub(super) fn fit(upright: &Upright, form: &Form) -> Option<Fit> {
     let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
@@ -62,7 +90,7 @@ pub(super) fn fit(upright: &Upright, form: &Form) -> Option<Fit> {
     let unusual = (a.cost + b.cost) / (2.0 * upright.halves[0].len() as f64);
     let mut best = Problem::new(upright, form, [&a, &b]).solve();
     // Halves that differ: what only one of them shows is looked for from that one alone.
-    if best.score > WELL {
+    if best.score > WELL || upright.unseen.contains(&true) {
         for alone in [&a, &b] {
             let other = Problem::new(upright, form, [alone, alone]).solve();
             best = if other.score < best.score { other } else { best };
@@ -146,11 +174,12 @@ impl<'a> Problem<'a> {
     fn pairs(&self, m: &Model, far: f64) -> Vec<Pair> {
         let trust = |r: f64| 1.0 / (1.0 + (r / (far * self.spread)).powi(2));
         let mut pairs = Vec::new();
-        for p in &self.upright.points {
+        for (p, unseen) in self.upright.points.iter().zip(&self.upright.unseen) {
             let (side, edge, t, off) = nearest(m, *p);
             let on = &m.sides[side][edge];
             let along = unit(off, on.direction(t));
-            pairs.push(Pair { side, edge, t, point: *p, along, weight: trust(off.norm()) });
+            let weight = if *unseen { 0.0 } else { trust(off.norm()) };
+            pairs.push(Pair { side, edge, t, point: *p, along, weight });
         }
         for (side, edges) in m.sides.iter().enumerate() {
             let outline: Vec<Point2> = self.upright.points.iter().map(|p| m.seen(*p, side)).collect();
@@ -162,11 +191,19 @@ impl<'a> Problem<'a> {
                     let on = |q: &[Point2]| q[i] + (q[(i + 1) % q.len()] - q[i]) * share;
                     let off = on(&outline) - place;
                     let (point, along) = (on(&self.upright.points), unit(off, bow.direction(t)));
-                    pairs.push(Pair { side, edge, t, point, along, weight: PULL * trust(off.norm()) });
+                    let unseen = self.unseen(i);
+                    let weight = if unseen { 0.0 } else { PULL * trust(off.norm()) };
+                    pairs.push(Pair { side, edge, t, point, along, weight });
                 }
             }
         }
         pairs
+    }
+
+    /// Whether a segment of the outline lies where the frame cut the garment off.
+    fn unseen(&self, i: usize) -> bool {
+        let all = &self.upright.unseen;
+        all[i] || all[(i + 1) % all.len()]
     }
 
     /// What is left over, weighted.
@@ -177,14 +214,16 @@ impl<'a> Problem<'a> {
             p.weight * off.dot(&p.along) / self.spread
         };
         let mut all: Vec<f64> = pairs.iter().map(of).collect();
+        // What one half does not show is taken from the other, sleeves and legs too.
+        let completes = self.upright.unseen.contains(&true);
         for (k, e) in self.form.edges.iter().enumerate() {
             let [one, other] = [0, 1].map(|s: usize| m.sides[s][k]);
             for bow in [one.bow, other.bow] {
                 all.extend(bow.map(|b| BELIEF * (b - e.bow[0]) / e.bow[1]));
             }
-            let corner = if e.own_end { Vector2::zeros() } else { one.b - other.b };
+            let corner = if e.own_end && !completes { Vector2::zeros() } else { one.b - other.b };
             let bows =
-                if own(self.form.edges, k) { [0.0; 2] } else { [0, 1].map(|i| one.bow[i] - other.bow[i]) };
+                if own(self.form.edges, k) && !completes { [0.0; 2] } else { [0, 1].map(|i| one.bow[i] - other.bow[i]) };
             all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
             all.extend(bows.map(|b| b / ALIKE[1]));
         }
@@ -205,21 +244,22 @@ impl<'a> Problem<'a> {
         let m = model(self.form, &self.at);
         let mut misses = vec![Vec::new(); self.form.edges.len()];
         let mut sum = 0.0;
-        for p in &self.upright.points {
+        let seen = || self.upright.points.iter().zip(&self.upright.unseen).filter(|(_, unseen)| !**unseen);
+        for (p, _) in seen() {
             let (_, edge, _, off) = nearest(&m, *p);
             misses[edge].push(off.norm());
             sum += (off.norm() / self.spread).powi(2).min(MOST);
         }
-        let count = self.upright.points.len() as f64;
+        let count = seen().count().max(1) as f64;
         let places = self.pairs(&m, FAR[1]).into_iter().skip(self.upright.points.len());
         let (mut pull, mut n) = (0.0, 0.0);
-        for p in places {
+        for p in places.filter(|p| p.weight > 0.0) {
             let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
             pull += (off.norm() / self.spread).powi(2).min(MOST);
             n += 1.0;
         }
         let Model { sides, turn, shift } = m;
-        Fit { sides, turn, shift, misses, score: sum / count + pull / n }
+        Fit { sides, turn, shift, misses, score: sum / count + pull / f64::max(n, 1.0) }
     }
 }
 

@@ -5,9 +5,10 @@
 //! lie nearest. The arms are spread as the sleeves are. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
 //! shorts and vests tell little, so that a short garment with few girths may fit several sizes; the body is a woman's or a child's.
 
+use super::complete::Complete;
 use super::fit::Fit;
 use super::form::Form;
-use super::{Block, BlockStyle, Fitted, refusal};
+use super::{Block, BlockStyle, Fitted, Sides, refusal};
 use crate::body::Mannequin;
 use toile_core::prelude::*;
 
@@ -71,6 +72,7 @@ const SPREAD: f64 = 10.0;
 /// know the wearer.
 #[stage(
     role = Body,
+    version = 2,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -86,14 +88,25 @@ pub struct Fitting {
 
 #[stage]
 impl Fitting {
-    pub(crate) fn run(&self, outlines: Set<Outline>, cx: &Context) -> Result<Body, StageError> {
+    pub(crate) fn run(
+        &self,
+        outlines: Set<Outline>,
+        #[original] photos: Option<Set<Photo>>,
+        cx: &Context,
+    ) -> Result<Body, StageError> {
         let front = outlines.get("front").ok_or_else(refusal::no_front)?;
-        // Whether the garment is what it is taken for is the style's affair.
-        let block = Block { style: self.style, stray: f64::INFINITY };
-        let (_, form, Fitted { fit, .. }) = block
-            .fitted("front", front, self.style.forms(), &cx.for_entry("front"))
+        let photo = photos.as_ref().and_then(|all| all.get("front"));
+        let fitted = |complete| {
+            // Whether the garment is what it is taken for is the style's affair.
+            let block = Block { style: self.style, stray: f64::INFINITY, complete, sides: Sides::Alike };
+            block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
+        };
+        // What the frame cuts off is measured by the other half, where that is whole.
+        let (_, form, Fitted { fit, .. }) = fitted(Complete::Mirror)
+            .or_else(|_| fitted(Complete::Nothing))
             .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
         let tape = Tape::of(form, &fit);
+        tape.tell(cx);
         let cost = |s: &[f64; 4]| tape.cost(s);
         let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
         let [height, bust, waist, hip] = *best;
@@ -157,7 +170,7 @@ impl Tape {
             |of: &dyn Fn(&[super::bow::Bow]) -> f64| 0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>();
         let high = mean(&|s| s[s.len() - 1].a.y);
         let low = mean(&|s| s[0].a.y);
-        let chest = at("underarm").or_else(|| at("armhole")).map(across);
+        let chest = fit.chest(form);
         // Skirts and legs begin at the waist; of a dress it is where the skirt ends.
         let waist = at("waist").map(across).or_else(|| at("skirt").map(|k| across(k + 1)));
         let hip = ["hip", "outseam"].into_iter().filter_map(at).map(widest).reduce(f64::max);
@@ -191,6 +204,15 @@ impl Tape {
         all.iter().sum::<f64>() / all.len().max(1) as f64 + ((height - LIKELY[0]) / LIKELY[1]).powi(2)
     }
 
+    /// The garment's measures as figures, cm: around chest, waist and hip, its length, and from the neck to the wrist.
+    fn tell(&self, cx: &Context) {
+        let girths = ["chest", "waist", "hip"].into_iter().zip(self.girths);
+        let lengths = [("length", self.length.map(|(l, _)| l)), ("sleeve", self.sleeve)];
+        for (name, metres) in girths.chain(lengths).filter_map(|(name, m)| Some((name, m?))) {
+            cx.figure(name, metres * 100.0, "cm");
+        }
+    }
+
     /// What was measured.
     fn words(&self) -> String {
         let cm = |m: f64| format!("{:.0} cm", m * 100.0);
@@ -202,9 +224,18 @@ impl Tape {
     }
 }
 
+/// The angle from the vertical at which arms leave cuffs of grown-on sleeves: square to them; degrees.
+fn out(fit: &Fit, cuff: usize) -> f64 {
+    let angle = |s: &Vec<super::bow::Bow>| {
+        let along = s[cuff].b - s[cuff].a;
+        along.y.atan2(along.x).to_degrees()
+    };
+    0.5 * fit.sides.iter().map(angle).sum::<f64>()
+}
+
 /// The angle of the arms from the vertical at which the sleeves lie: the mean of both, from cap to cuff; degrees.
 fn arms(form: &Form, fit: &Fit) -> f64 {
-    let Some(k) = form.underarm() else { return ARMS };
+    let Some(k) = form.underarm() else { return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k)) };
     let angle = |s: &Vec<super::bow::Bow>| {
         let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
         let cap = nalgebra::center(&s[k].a, &s[k + 2].at(0.7));

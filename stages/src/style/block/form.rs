@@ -32,6 +32,8 @@ pub(super) enum Mark {
     Level(usize, f64, &'static str),
     /// The first edge reaches from side to side by no more than so much of the second.
     Narrower(usize, usize, f64, &'static str),
+    /// An edge ends as far from the axis as the one before it comes near to it, times this number, or further.
+    Beyond(usize, f64, &'static str),
     /// An edge rises by no more than so many degrees from across.
     Below(usize, f64, &'static str),
 }
@@ -141,6 +143,23 @@ pub(super) const LONG: Form = Form {
     ],
 };
 
+/// Sleeves cut in one with front and back, without an armpit: batwing, and cap sleeves so short that the outline hardly shows them.
+pub(super) const GROWN: Form = Form {
+    word: "a top with grown-on sleeves",
+    marks: &[
+        Mark::Beyond(2, 0.98, "its shoulders do not reach to its sides"),
+        Mark::Corner(3, 30.0, NO_SHOULDER),
+        Mark::Level(2, 0.12, "its cuffs are not even"),
+    ],
+    edges: &[
+        HEM,
+        edge("side", [82.0, 14.0], [0.08, 0.1], [0.3, 1.6]),
+        edge("cuff", [80.0, 25.0], [0.0, 0.05], [0.1, 0.5]),
+        edge("shoulder", [155.0, 14.0], [0.0, 0.06], [0.25, 0.9]),
+        NECK,
+    ],
+};
+
 /// Waist to hem.
 pub(super) const SKIRT: Form = Form {
     word: "a skirt",
@@ -176,7 +195,12 @@ impl Form {
         self.edges.iter().any(|e| e.name == "inseam")
     }
 
-    /// The number of its underarm edge: it has sleeves.
+    /// The number of the edge that starts at the armpit; none where nothing tells where that is.
+    pub(super) fn armpit(&self) -> Option<usize> {
+        self.edges.iter().position(|e| e.name == "underarm" || e.name == "armhole")
+    }
+
+    /// The number of its underarm edge: it has set-in sleeves.
     pub(super) fn underarm(&self) -> Option<usize> {
         self.edges.iter().position(|e| e.name == "underarm")
     }

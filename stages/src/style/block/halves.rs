@@ -1,6 +1,7 @@
 //! An outline stood upright, and its two halves.
 
 use super::super::shape::Shape;
+use nalgebra::Rotation2;
 use toile_core::artifact::{Outline, Point2};
 
 /// Points of a half.
@@ -19,6 +20,8 @@ pub(super) struct Upright {
     pub tilt: f64,
     /// Where the upright origin lies in the outline.
     pub centre: Point2,
+    /// Which points lie where the frame cut the garment off; none where that is not asked for.
+    pub unseen: Vec<bool>,
 }
 
 impl Upright {
@@ -28,13 +31,14 @@ impl Upright {
         let points: Vec<Point2> = (0..outline.outer.points.len()).map(|i| shape.at(i)).collect();
         let mirrored: Vec<Point2> = points.iter().rev().map(|p| Point2::new(-p.x, p.y)).collect();
         let halves = [half(&points)?, half(&mirrored)?];
-        Some(Upright {
-            points: joined(&halves),
-            halves,
-            size: shape.size,
-            tilt: shape.tilt,
-            centre: shape.centre,
-        })
+        let points = joined(&halves);
+        let unseen = vec![false; points.len()];
+        Some(Upright { points, halves, size: shape.size, tilt: shape.tilt, centre: shape.centre, unseen })
+    }
+
+    /// A place of the upright outline in the outline as it was given.
+    pub(super) fn given(&self, p: Point2) -> Point2 {
+        self.centre + (Rotation2::new(self.tilt.to_radians()) * p).coords
     }
 }
 

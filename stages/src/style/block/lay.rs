@@ -10,10 +10,14 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::prelude::*;
 
-/// A fit with the upright outline that it belongs to.
+/// A fit with the upright outline that it belongs to, and where that lies in its photo.
 pub(super) struct Fitted {
     pub upright: Upright,
+    /// The template that is cut.
     pub fit: Fit,
+    /// The template as the garment lies.
+    pub lying: Fit,
+    pub frame: Option<PhotoFrame>,
 }
 
 /// The outline seen from the other side: what its photo's mirror image shows.
@@ -31,19 +35,20 @@ pub(super) fn mirrored(outline: &Outline) -> Outline {
 /// The pattern of both layers, its outlines with their places in the photos, and its sewing plan.
 pub(super) fn pattern(
     form: &Form,
-    layers: &[(Layer, &Outline, Fitted)],
+    layers: &[(Layer, Fitted)],
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
     let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
     let (mut flats, mut pieces, mut frames) = (Vec::new(), Vec::new(), BTreeMap::new());
-    for (layer, outline, fitted) in layers {
+    for (layer, fitted) in layers {
         let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
         let stand = stand::Stand::of(body, hung, top)?;
-        for flat in pieces::layer(&fitted.fit, form, *layer) {
+        let lying = pieces::layer(&fitted.lying, form, *layer);
+        for (flat, lying) in pieces::layer(&fitted.fit, form, *layer).into_iter().zip(lying) {
             let pose = Some(stand.pose(&flat, *layer));
             pieces.push(Piece { pose, ..flat.piece() });
-            frames.insert(flat.name.clone(), outline.frame.map(|f| frame(f, fitted, &flat)));
+            frames.insert(flat.name.clone(), fitted.frame.map(|f| frame(f, fitted, &lying)));
             flats.push(flat);
         }
     }

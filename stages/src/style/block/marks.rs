@@ -13,6 +13,7 @@ pub(super) fn missing(fit: &Fit, mark: &Mark) -> Option<&'static str> {
         Mark::Hollow(k, least, reason) => (all(&|s| 0.5 * (s[k].bow[0] + s[k].bow[1]) >= least), reason),
         Mark::Level(k, most, reason) => (all(&|s| 0.5 * (s[k].bow[0] + s[k].bow[1]).abs() <= most), reason),
         Mark::Narrower(k, than, most, reason) => (width(fit, k) <= most * width(fit, than), reason),
+        Mark::Beyond(k, least, reason) => (all(&|s| s[k].b.x >= least * nearest(&s[k - 1])), reason),
         Mark::Below(k, most, reason) => (all(&|s| way(&s[k]) <= most), reason),
     };
     (!shown).then_some(reason)
@@ -22,6 +23,11 @@ pub(super) fn missing(fit: &Fit, mark: &Mark) -> Option<&'static str> {
 fn turn(side: &[Bow], k: usize) -> f64 {
     let (a, b) = (side[k - 1].b - side[k - 1].a, side[k].b - side[k].a);
     a.perp(&b).atan2(a.dot(&b)).to_degrees()
+}
+
+/// How near an edge comes to the axis.
+fn nearest(bow: &Bow) -> f64 {
+    bow.points().iter().map(|p| p.x).fold(f64::INFINITY, f64::min)
 }
 
 /// How far an edge reaches from side to side, both halves together.

@@ -3,7 +3,9 @@
 //! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
 //! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
+mod alike;
 mod bow;
+mod complete;
 mod curve;
 mod fit;
 mod fitting;
@@ -21,6 +23,8 @@ mod tell;
 mod tests;
 mod wearable;
 
+pub use alike::Sides;
+pub use complete::Complete;
 use fit::{Fit, fit};
 pub use fitting::Fitting;
 use form::Form;
@@ -51,6 +55,8 @@ pub enum BlockStyle {
     Dress,
     /// A dress with sleeves.
     SleevedDress,
+    /// Sleeves cut in one with front and back: batwing, cap sleeves.
+    GrownSleeve,
     /// From waist to hem.
     Skirt,
     /// Two legs, long or short.
@@ -59,12 +65,13 @@ pub enum BlockStyle {
 
 impl BlockStyle {
     /// All that can be named, with their forms.
-    const NAMED: [(BlockStyle, &'static str, &'static Form); 7] = [
+    const NAMED: [(BlockStyle, &'static str, &'static Form); 8] = [
         (BlockStyle::Vest, "Vest", &form::VEST),
         (BlockStyle::TShirt, "TShirt", &form::TEE),
         (BlockStyle::LongSleeve, "LongSleeve", &form::LONG),
         (BlockStyle::Dress, "Dress", &form::DRESS),
         (BlockStyle::SleevedDress, "SleevedDress", &form::SLEEVED),
+        (BlockStyle::GrownSleeve, "GrownSleeve", &form::GROWN),
         (BlockStyle::Skirt, "Skirt", &form::SKIRT),
         (BlockStyle::Trousers, "Trousers", &form::TROUSERS),
     ];
@@ -84,7 +91,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 3,
+    version = 4,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -97,6 +104,12 @@ pub struct Block {
     /// Half of it where the outline alone tells what the garment is.
     #[param(default = 0.05, min = 0.001, max = 0.5)]
     stray: f64,
+    /// Whether the half that the frame cuts is completed by the mirror image of the other. The binariser must let the garment touch the frame for it.
+    #[param(default = Complete::Nothing)]
+    complete: Complete,
+    /// Whether both halves are cut as each other's mirror image, sleeves and legs as the one that lies better, or each as it lies.
+    #[param(default = Sides::Alike)]
+    sides: Sides,
 }
 
 #[stage]
@@ -105,37 +118,66 @@ impl Block {
         &self,
         outlines: Set<Outline>,
         body: &Body,
+        #[original] photos: Option<Set<Photo>>,
         cx: &Context,
     ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
         let front = outlines.get("front").ok_or_else(refusal::no_front)?;
         for (name, _) in outlines.iter().filter(|(n, _)| *n != "front" && *n != "back") {
             cx.warn(format!("a block is cut from \"front\" and \"back\"; the photo \"{name}\" is not used"));
         }
-        let (name, form, before) = self.fitted("front", front, self.style.forms(), cx)?;
+        let photo = |name: &str| photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get("front")));
+        let (name, form, before) = self.fitted("front", front, photo("front"), self.style.forms(), cx)?;
         if self.style == BlockStyle::Auto {
             cx.warn(format!("\"front\" is taken for {}; `Block(style: {name})` settles it", form.word));
         }
         wearable::check(form, &before.fit, body)?;
         let mirrored = mirrored(front);
         let back = outlines.get("back").unwrap_or(&mirrored);
-        let (.., behind) = self.fitted("back", back, vec![(name, form)], cx)?;
+        let (.., behind) = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
         cx.check()?;
-        let layers = [(Layer::Front, front, before), (Layer::Back, back, behind)];
+        let layers = [(Layer::Front, before), (Layer::Back, behind)];
         pattern(form, &layers, body, cx)
     }
 }
 
 impl Block {
-    /// The best of the forms, fitted.
+    /// The best of the forms, fitted; to the outline at another scale where the frame cut its width.
     fn fitted(
         &self,
         panel: &str,
         outline: &Outline,
+        photo: Option<&Photo>,
+        forms: Vec<(&'static str, &'static Form)>,
+        cx: &Context,
+    ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
+        let found = self.best(panel, outline, photo, forms, cx)?;
+        let (name, form, Fitted { upright, fit, .. }) = &found;
+        let times = match upright.unseen.contains(&true) && photo.is_some_and(|p| p.garment_width.is_some()) {
+            true => complete::widened(fit, upright, outline),
+            false => 1.0,
+        };
+        let found = match times == 1.0 {
+            true => found,
+            false => self.best(panel, &complete::scaled(outline, times), photo, vec![(*name, *form)], cx)?,
+        };
+        self.tell(panel, outline, &found, cx);
+        Ok(found)
+    }
+
+    /// The best of the forms, fitted.
+    fn best(
+        &self,
+        panel: &str,
+        outline: &Outline,
+        photo: Option<&Photo>,
         forms: Vec<(&'static str, &'static Form)>,
         cx: &Context,
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
         let auto = forms.len() > 1;
-        let upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
+        let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
+        if let (Complete::Mirror, Some(photo)) = (self.complete, photo) {
+            complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
+        }
         cx.check()?;
         let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(&upright, form)).collect();
         let mut found: Vec<_> = Vec::new();
@@ -154,13 +196,25 @@ impl Block {
         if stray > share * upright.size {
             return Err(refusal::strays(panel, form, &fit, stray, auto));
         }
-        tell::figures(panel, form, &fit, cx);
+        let mut cut = fit.clone();
+        if self.sides == Sides::Alike {
+            alike::alike(&mut cut, form, fit.astray(&upright, form));
+        }
+        Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame }))
+    }
+
+    /// Tells how the fit lies.
+    fn tell(&self, panel: &str, outline: &Outline, (_, form, fitted): &(&str, &Form, Fitted), cx: &Context) {
+        let Fitted { upright, lying: fit, .. } = fitted;
+        tell::figures(panel, form, fit, cx);
         // What is seen in a mirror is told once.
         if panel == "front" || !outline.frame.is_some_and(|f| f.mirrored) {
-            tell::astray(panel, form, &fit, upright.size, cx);
-            tell::uneven(panel, form, &fit, upright.size, cx);
+            tell::astray(panel, form, fit, upright.size, cx);
+            tell::uneven(panel, form, fit, upright.size, self.sides, cx);
+            if upright.unseen.contains(&true) {
+                cx.warn(format!("what the frame cuts off \"{panel}\" is the mirror image of its other half"));
+            }
         }
-        Ok((name, form, Fitted { upright, fit }))
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is told of a fit: how far the outline strays from the template, and how unevenly the garment lies.
 
+use super::Sides;
 use super::fit::Fit;
 use super::form::Form;
 use toile_core::prelude::*;
@@ -37,12 +38,16 @@ pub(super) fn astray(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Contex
 }
 
 /// Tells edges that are longer on one side: the garment lies uneven.
-pub(super) fn uneven(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
+pub(super) fn uneven(panel: &str, form: &Form, fit: &Fit, size: f64, sides: Sides, cx: &Context) {
+    let cut = match sides {
+        Sides::Alike => "both sides are cut alike (`Block(sides: AsTheyLie)` keeps them apart)",
+        Sides::AsTheyLie => "it is cut as it lies",
+    };
     for (k, e) in form.edges.iter().enumerate() {
         let [a, b] = [0, 1].map(|s: usize| fit.sides[s][k].length());
         if (a - b).abs() > TOLD * size {
             cx.warn(format!(
-                "\"{panel}\" lies uneven: its {} measures {:.0} mm on one side and {:.0} mm on the other; it is cut as it lies",
+                "\"{panel}\" lies uneven: its {} measures {:.0} mm on one side and {:.0} mm on the other; {cut}",
                 e.name,
                 a * 1e3,
                 b * 1e3

@@ -82,7 +82,7 @@ fn body() -> Body {
 
 fn cut(stage: &Block, points: Vec<Point2>) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
     let front = [("front".to_owned(), outline(points))].into_iter().collect();
-    stage.run(front, &body(), &Context::quiet())
+    stage.run(front, &body(), None, &Context::quiet())
 }
 
 fn of(style: BlockStyle) -> Block {
@@ -211,7 +211,7 @@ fn auto_names_what_it_sees() {
     for (half, word) in [(TEE, "TShirt"), (VEST, "Vest"), (SKIRT, "Skirt"), (TROUSERS, "Trousers")] {
         let cx = Context::quiet();
         let front = [("front".to_owned(), outline(garment(half)))].into_iter().collect();
-        Block::default().run(front, &body(), &cx).unwrap();
+        Block::default().run(front, &body(), None, &cx).unwrap();
         let told = cx.take_notes().1.remove(0);
         assert!(told.ends_with(&format!("`Block(style: {word})` settles it")), "{told}");
     }
@@ -249,7 +249,7 @@ fn a_block_says_why_it_does_not_fit() {
         refusal(&of(BlockStyle::Trousers), garment(SKIRT)),
         "\"front\" does not look like a pair of trousers: it has no legs"
     );
-    let empty = Block::default().run(Set([].into()), &body(), &Context::quiet()).unwrap_err();
+    let empty = Block::default().run(Set([].into()), &body(), None, &Context::quiet()).unwrap_err();
     assert_eq!(empty.message, "there is no photo \"front\" to cut the garment from");
     assert_eq!(
         refusal(&Block::default(), vec![Point2::origin(); 30]),
@@ -265,8 +265,8 @@ fn a_garment_that_the_body_cannot_wear_is_refused_before_it_is_sewn() {
     let front: Set<Outline> = [("front".to_owned(), outline(garment(TEE)))].into_iter().collect();
     let wearer = |bust: f64| Body { measurements: [("bust".to_owned(), bust)].into(), ..body() };
     let stage = of(BlockStyle::TShirt);
-    assert!(stage.run(front.clone(), &wearer(1.1), &Context::quiet()).is_ok());
-    let e = stage.run(front, &wearer(1.4), &Context::quiet()).unwrap_err();
+    assert!(stage.run(front.clone(), &wearer(1.1), None, &Context::quiet()).is_ok());
+    let e = stage.run(front, &wearer(1.4), None, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "the garment is too small: its chest measures 100 cm around, the body's 140 cm");
     assert_eq!(e.hint.unwrap(), "check the photo's `width`, which gives the scale; else take a smaller body");
 }
@@ -341,7 +341,7 @@ proptest! {
 fn fitted_to(points: Vec<Point2>, style: BlockStyle) -> ([f64; 2], Vec<String>) {
     let cx = Context::quiet();
     let front = [("front".to_owned(), outline(points))].into_iter().collect();
-    let body = Fitting { style, ..Fitting::default() }.run(front, &cx).unwrap();
+    let body = Fitting { style, ..Fitting::default() }.run(front, None, &cx).unwrap();
     let of = |name: &str| (body.measurements[name] * 100.0).round();
     ([of("height"), of("bust")], cx.take_notes().1)
 }
@@ -379,7 +379,7 @@ fn arms_are_spread_as_the_sleeves_lie() {
     let at = |points: Vec<Point2>| {
         let front = [("front".to_owned(), outline(points))].into_iter().collect();
         let body = Fitting { style: BlockStyle::TShirt, ..Fitting::default() }
-            .run(front, &Context::quiet())
+            .run(front, None, &Context::quiet())
             .unwrap();
         let arm = body.landmarks["wrist_left"] - body.landmarks["shoulder_left"];
         arm.x.atan2(-arm.y).to_degrees()
@@ -423,4 +423,86 @@ fn every_size_of_the_table_can_be_made() {
         let body = body.map_err(|e| format!("{height} {bust}: {}", e.message)).unwrap();
         assert!((body.measurements["bust"] - girths[0]).abs() < 0.005 * girths[0], "{height} {bust}");
     }
+}
+
+/// A photo of 1,000 pixels a metre whose garment is stated to be so wide.
+fn photo(size: (u32, u32), width: Option<f64>) -> Set<Photo> {
+    let pixels = Shared::new(image::RgbImage::new(size.0, size.1));
+    let photo = Photo { pixels, garment_width: width, ..toile_core::testkit::shapes::photo() };
+    [("front".to_owned(), photo)].into_iter().collect()
+}
+
+/// The points of a shirt of which the frame shows nothing to the right of 300 mm from its middle.
+fn cut_shirt() -> Vec<Point2> {
+    garment(TEE).into_iter().map(|p| Point2::new(p.x.min(0.3), p.y)).collect()
+}
+
+#[test]
+fn a_sleeve_that_the_frame_cuts_is_the_other_ones_mirror_image() {
+    let front: Set<Outline> = [("front".to_owned(), outline(cut_shirt()))].into_iter().collect();
+    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
+    // The outline's origin lies at 500 px, so that the frame ends at 800.
+    let photos = photo((800, 1000), None);
+    let (pattern, ..) = stage.run(front, &body(), Some(photos), &Context::quiet()).unwrap();
+    for side in ["left", "right"] {
+        let cuff = length(&pattern, &format!("{side}_sleeve_front"), "cuff");
+        assert!((cuff - between(TEE, 3)).abs() < 8.0, "{side}: {cuff:.1}");
+    }
+}
+
+#[test]
+fn a_stated_width_is_that_of_the_whole_garment() {
+    let front: Set<Outline> = [("front".to_owned(), outline(cut_shirt()))].into_iter().collect();
+    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
+    // What is shown is 740 mm wide by the scale of its outline, and stated to be the whole: the shirt is smaller by 740 / 880.
+    let photos = photo((800, 1000), Some(0.74));
+    let (pattern, ..) = stage.run(front, &body(), Some(photos), &Context::quiet()).unwrap();
+    let hem = length(&pattern, "front", "hem");
+    assert!((hem - 520.0 * 740.0 / 880.0).abs() < 8.0, "{hem:.1}");
+}
+
+#[test]
+fn both_sleeves_cut_are_refused() {
+    let points = cut_shirt().into_iter().map(|p| Point2::new(p.x.max(-0.3), p.y)).collect();
+    let mut outline = outline(points);
+    outline.frame = outline.frame.map(|f| PhotoFrame { origin_px: Point2::new(300.0, 900.0), ..f });
+    let front: Set<Outline> = [("front".to_owned(), outline)].into_iter().collect();
+    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
+    let e = stage.run(front, &body(), Some(photo((600, 1000), None)), &Context::quiet()).unwrap_err();
+    assert_eq!(e.to_string(), "the frame cuts both halves of \"front\" at the same place");
+}
+
+/// A shirt whose left cuff is folded to half its width.
+fn folded() -> Vec<Point2> {
+    let fold = |p: Point2| match p.x < -0.37 {
+        true => Point2::new(p.x, 0.43 + 0.5 * (p.y - 0.43)),
+        false => p,
+    };
+    garment(TEE).into_iter().map(fold).collect()
+}
+
+#[test]
+fn a_folded_cuff_is_cut_as_the_other_one() {
+    let cuffs = |sides| {
+        let (pattern, ..) = cut(&Block { sides, ..of(BlockStyle::TShirt) }, folded()).unwrap();
+        ["left", "right"].map(|side| length(&pattern, &format!("{side}_sleeve_front"), "cuff"))
+    };
+    let [left, right] = cuffs(Sides::AsTheyLie);
+    assert!((left - right).abs() > 20.0, "{left:.1} {right:.1}");
+    let alike = cuffs(Sides::Alike);
+    assert!(alike.iter().all(|c| (c - between(TEE, 3)).abs() < 8.0), "{alike:?}");
+    assert!((alike[0] - alike[1]).abs() < 1e-6);
+}
+
+/// A batwing top: its sides sweep out to the cuffs without an armpit.
+const BATWING: &[[f64; 2]] =
+    &[[0.0, 0.0], [230.0, 0.0], [235.0, 150.0], [290.0, 270.0], [400.0, 340.0], [440.0, 500.0], [110.0, 620.0], [0.0, 590.0]];
+
+#[test]
+fn sleeves_without_an_armpit_are_cut_in_one_with_the_top() {
+    let (pattern, ..) = cut(&Block::default(), garment(BATWING)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["front", "back"]);
+    let cuff = length(&pattern, "front", "cuff_left");
+    assert!((cuff - between(BATWING, 4)).abs() < 12.0, "{cuff:.1}");
 }

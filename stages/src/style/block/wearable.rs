@@ -50,13 +50,12 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
     let tape = |what, of_body, level: &str, garment: Option<f64>| {
         Some(Girth { what, garment: garment?, of_body, body: *body.measurements.get(level)? })
     };
-    let armpit = at("underarm").or_else(|| at("armhole"));
     let widest = |k: usize| {
         let most = |s: &[Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
         2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
     };
     let found = [
-        tape("chest", "the body's", "bust", armpit.map(across)),
+        tape("chest", "the body's", "bust", fit.chest(form)),
         tape("waist", "the body's", "waist", at("waist").map(across)),
         tape(
             "hip",
@@ -70,7 +69,7 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
 
 /// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is long.
 fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
-    let cuff = form.edges.iter().position(|e| e.name == "cuff")?;
+    let cuff = form.underarm()? + 1;
     let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();
     let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
     let (upper, fore) = ((elbow - shoulder).norm(), (wrist - elbow).norm());

@@ -1,0 +1,61 @@
+//! Both halves of a fitted template made alike: a garment is its own mirror image, however its sleeves and legs lie in the photo.
+//!
+//! Corners of trunk and waist become the mean of both sides. Sleeves and legs, which lie as they fall and may lie folded, are taken from one side:
+//! the one that the template fits better, and where both fit alike, the one with the wider cuff or hem, since a fold only narrows it. One that is nearly
+//! twice as wide is none: there a side of the sleeve was taken for its cuff, and the other one is right.
+
+use super::bow::Bow;
+use super::fit::Fit;
+use super::form::Form;
+use toile_core::prelude::*;
+
+/// A side fits better where its misses are smaller by so many times.
+const BETTER: f64 = 1.5;
+
+/// A cuff is not so many times as wide as the other.
+const TWICE: f64 = 1.7;
+
+/// How the halves of a garment are cut.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Sides {
+    /// As each other's mirror image.
+    Alike,
+    /// Each as it lies in the photo.
+    AsTheyLie,
+}
+
+/// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves or legs of each side.
+pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
+    let own: Vec<usize> = (0..form.edges.len()).filter(|&k| form.edges[k].own_end).collect();
+    let chosen = chosen(fit, &own, misses);
+    let means: Vec<Bow> = (0..form.edges.len()).map(|k| mean(&fit.sides[0][k], &fit.sides[1][k])).collect();
+    let mut edges = means.clone();
+    if let (Some(&first), Some(&last)) = (own.first(), own.last()) {
+        let side = &fit.sides[chosen];
+        let shift = means[first].a - side[first].a;
+        for k in first..=last {
+            edges[k] = Bow { a: side[k].a + shift, b: side[k].b + shift, ..side[k] };
+        }
+        edges[last + 1] = Bow { a: edges[last].b, bow: side[last + 1].bow, ..means[last + 1] };
+    }
+    fit.sides = [edges.clone(), edges];
+}
+
+/// The side whose sleeve or leg is taken.
+fn chosen(fit: &Fit, own: &[usize], [right, left]: [f64; 2]) -> usize {
+    let width = |side: usize| own.last().map_or(0.0, |&k| fit.sides[side][k].length());
+    let wider = usize::from(width(1) > width(0));
+    match (right > BETTER * left, left > BETTER * right) {
+        (true, _) => 1,
+        (_, true) => 0,
+        _ if width(wider) > TWICE * width(1 - wider) => 1 - wider,
+        _ => wider,
+    }
+}
+
+fn mean(one: &Bow, other: &Bow) -> Bow {
+    let between = |p: Point2, q: Point2| nalgebra::center(&p, &q);
+    let bow = [0, 1].map(|i| 0.5 * (one.bow[i] + other.bow[i]));
+    Bow { a: between(one.a, other.a), b: between(one.b, other.b), bow }
+}

@@ -1,0 +1,305 @@
+//! A side that no photo shows: the other side's picture without print and label.
+//!
+//! The cloth's colour is the commonest one along the outline, where prints are rare. What differs from it in hue, or in lightness
+//! from the cloth around it, is print. Its place takes the cloth's light and colour from around (a pyramid of averages: Gortler,
+//! Grzeszczuk, Szeliski and Cohen, The lumigraph, 1996), and the weave of the largest square of plain cloth. A pattern all over the
+//! garment is the cloth's own and stays.
+//!
+//! Cost: a few looks at every pixel. Limits: a print in shades of the cloth's colour stays; a garment of two colours keeps both only where each has much
+//! of the outline.
+
+use super::bleed::eroded;
+use crate::binarise::{close, dilate, lab, open};
+use image::imageops::{FilterType, resize};
+use image::{GrayImage, Luma, RgbImage};
+use nalgebra::Vector3;
+
+/// The longer side at which print is looked for, px.
+const SMALL: u32 = 256;
+/// Width of the band along the outline, as a share of the root of the garment's area.
+const BAND: f64 = 0.12;
+/// Width of a bin of hues, Lab units.
+const BIN: f64 = 4.0;
+/// Cloth lies within this distance of its colour in hue.
+const HUE: f64 = 12.0;
+/// And of its lightness: that of the whole cloth, and that of the cloth around.
+const LIGHT: [f64; 2] = [30.0, 14.0];
+/// Beyond this share of the band, or of all, what differs is a pattern of the cloth.
+const PATTERN: [f64; 2] = [0.2, 0.6];
+/// Below this share nothing is print.
+const LEAST: f64 = 0.002;
+/// How far print reaches beyond what is surely print, small pixels.
+const AROUND: u32 = 3;
+/// The longest side of the square of weave, px.
+const SQUARE: usize = 256;
+
+/// Takes print and label off a picture of cloth; false where there are none, or where a pattern covers all of it. `sure` marks the cloth.
+pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
+    let Some(print) = print(pixels, sure) else { return false };
+    let keep = |x: u32, y: u32| sure.get_pixel(x, y).0[0] != 0 && print.get_pixel(x, y).0[0] == 0;
+    let kept = GrayImage::from_fn(pixels.width(), pixels.height(), |x, y| Luma([u8::from(keep(x, y)) * 255]));
+    let Some(light) = Light::of(pixels, &kept) else { return false };
+    let weave = Weave::of(pixels, &kept);
+    for (x, y, p) in pixels.enumerate_pixels_mut().filter(|(x, y, _)| print.get_pixel(*x, *y).0[0] != 0) {
+        let colour = light.at(x, y);
+        let thread = weave.as_ref().map_or([0.0; 3], |w| w.at(x as usize, y as usize));
+        p.0 = [0, 1, 2].map(|c| (colour[c] + thread[c]).round().clamp(0.0, 255.0) as u8);
+    }
+    true
+}
+
+/// Where the picture shows print, at its own size.
+fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
+    let (w, h) = pixels.dimensions();
+    let scale = (f64::from(SMALL) / f64::from(w.max(h))).min(1.0);
+    let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
+    let small = resize(pixels, size(w), size(h), FilterType::Triangle);
+    let inside = resize(sure, size(w), size(h), FilterType::Triangle);
+    let inside = GrayImage::from_fn(size(w), size(h), |x, y| Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255]));
+    let found = print_of(&small, &inside)?;
+    let large = resize(&found, w, h, FilterType::Triangle);
+    Some(GrayImage::from_fn(w, h, |x, y| Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])))
+}
+
+fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
+    let on: Vec<bool> = inside.as_raw().iter().map(|v| *v != 0).collect();
+    let area = on.iter().filter(|on| **on).count() as f64;
+    let core = eroded(inside, BAND * area.sqrt());
+    let band: Vec<bool> = on.iter().zip(core.as_raw()).map(|(on, core)| *on && *core == 0).collect();
+    let colours: Vec<Vector3<f64>> = small.pixels().map(|p| lab(p.0.map(f64::from))).collect();
+    let cloth = commonest(&colours, &band)?;
+    let hue = |c: &Vector3<f64>| (c.y - cloth.y).hypot(c.z - cloth.z);
+    let like = |i: usize| on[i] && hue(&colours[i]) < HUE && (colours[i].x - cloth.x).abs() < LIGHT[0];
+    let (w, h) = small.dimensions();
+    let alike = GrayImage::from_fn(w, h, |x, y| Luma([u8::from(like((y * w + x) as usize)) * 255]));
+    // The lightness of the cloth around, as a picture of three equal channels.
+    let grey = RgbImage::from_fn(w, h, |x, y| image::Rgb([(colours[(y * w + x) as usize].x * 2.55) as u8; 3]));
+    let around = Light::blurred(&grey, &alike)?;
+    let differs = |i: usize| {
+        let here = around.at(i as u32 % w, i as u32 / w)[0] / 2.55;
+        on[i] && (!like(i) || (colours[i].x - here).abs() > LIGHT[1])
+    };
+    let found = GrayImage::from_fn(w, h, |x, y| Luma([u8::from(differs((y * w + x) as usize)) * 255]));
+    let found = open(&close(&found, 1), 1);
+    let marked = |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
+    let share = |of: &[bool]| marked(of) / of.iter().filter(|on| **on).count().max(1) as f64;
+    let is_print = share(&on) >= LEAST && share(&on) <= PATTERN[1] && share(&band) <= PATTERN[0];
+    is_print.then(|| dilate(&close(&found, AROUND), AROUND))
+}
+
+/// The commonest hue of the marked pixels, with the mean colour of those that have it.
+fn commonest(colours: &[Vector3<f64>], marked: &[bool]) -> Option<Vector3<f64>> {
+    let bin = |v: f64| ((v / BIN).floor() as i32 + 32).clamp(1, 62) as usize;
+    let mut bins = vec![0_u32; 64 * 64];
+    let seen = || colours.iter().zip(marked).filter(|(_, on)| **on).map(|(c, _)| c);
+    seen().for_each(|c| bins[bin(c.y) * 64 + bin(c.z)] += 1);
+    let around = |i: usize| [0, 1, 63, 64, 65].iter().map(|d| bins[i + d] + bins[i.saturating_sub(*d)]).sum::<u32>();
+    let best = (65..64 * 64 - 65).max_by_key(|&i| (around(i), std::cmp::Reverse(i))).filter(|&i| around(i) > 0)?;
+    let (row, column) = (best / 64, best % 64);
+    let near = |c: &&Vector3<f64>| bin(c.y).abs_diff(row) <= 1 && bin(c.z).abs_diff(column) <= 1;
+    let (sum, count) = seen().filter(near).fold((Vector3::zeros(), 0.0), |(s, n), c| (s + c, n + 1.0));
+    (count > 0.0).then(|| sum / count)
+}
+
+/// Colours known at some pixels, carried on to all others by averages of ever larger squares.
+struct Light {
+    width: usize,
+    colours: Vec<[f64; 3]>,
+}
+
+/// Pixels of a level: the sum of the colours known below it, and how many they are.
+type Level = (usize, usize, Vec<([f64; 3], f64)>);
+
+impl Light {
+    /// `None` where no pixel is known.
+    fn of(pixels: &RgbImage, known: &GrayImage) -> Option<Light> {
+        Self::from_level(pixels, known, 0)
+    }
+
+    /// The colours of the known, as averages of squares of 16 pixels.
+    fn blurred(pixels: &RgbImage, known: &GrayImage) -> Option<Light> {
+        Self::from_level(pixels, known, 4)
+    }
+
+    fn from_level(pixels: &RgbImage, known: &GrayImage, finest: usize) -> Option<Light> {
+        let (w, h) = (pixels.width() as usize, pixels.height() as usize);
+        let first = pixels.pixels().zip(known.as_raw()).map(|(p, on)| match on {
+            0 => ([0.0; 3], 0.0),
+            _ => (p.0.map(f64::from), 1.0),
+        });
+        let mut levels: Vec<Level> = vec![(w, h, first.collect())];
+        while levels[levels.len() - 1].0.max(levels[levels.len() - 1].1) > 1 {
+            levels.push(halved(&levels[levels.len() - 1]));
+        }
+        let top = levels.len() - 1;
+        if levels[top].2.first().is_none_or(|(_, n)| *n <= 0.0) {
+            return None;
+        }
+        let mut colours = vec![mean(&levels[top].2[0])];
+        let mut size = (1, 1);
+        for (index, (w, h, sums)) in levels.iter().enumerate().rev().skip(1) {
+            let finer = |i: usize| {
+                let own = &sums[i];
+                let above = between(&colours, size, (i % w) as f64 / 2.0 - 0.25, (i / w) as f64 / 2.0 - 0.25);
+                match own.1 > 0.0 && index >= finest {
+                    true => {
+                        // A square that is half known is half its own.
+                        let share = (own.1 / 4_f64.powi(index as i32)).min(1.0);
+                        let own = mean(own);
+                        [0, 1, 2].map(|c| share * own[c] + (1.0 - share) * above[c])
+                    }
+                    false => above,
+                }
+            };
+            colours = (0..w * h).map(finer).collect();
+            size = (*w, *h);
+        }
+        Some(Light { width: w, colours })
+    }
+
+    fn at(&self, x: u32, y: u32) -> [f64; 3] {
+        self.colours[y as usize * self.width + x as usize]
+    }
+}
+
+fn mean((sum, count): &([f64; 3], f64)) -> [f64; 3] {
+    sum.map(|s| s / count.max(1.0))
+}
+
+fn halved((w, h, fine): &Level) -> Level {
+    let (cw, ch) = (w.div_ceil(2), h.div_ceil(2));
+    let mut coarse = vec![([0.0; 3], 0.0); cw * ch];
+    for (i, (sum, count)) in fine.iter().enumerate() {
+        let to = &mut coarse[(i / w / 2) * cw + i % w / 2];
+        (0..3).for_each(|c| to.0[c] += sum[c]);
+        to.1 += count;
+    }
+    (cw, ch, coarse)
+}
+
+/// A colour between pixels' centres; beyond the border that of the border.
+fn between(colours: &[[f64; 3]], (w, h): (usize, usize), x: f64, y: f64) -> [f64; 3] {
+    let (x, y) = (x.clamp(0.0, (w - 1) as f64), y.clamp(0.0, (h - 1) as f64));
+    let (x0, y0) = (x.floor() as usize, y.floor() as usize);
+    let (x1, y1) = ((x0 + 1).min(w - 1), (y0 + 1).min(h - 1));
+    let (fx, fy) = (x - x0 as f64, y - y0 as f64);
+    let at = |x: usize, y: usize| colours[y * w + x];
+    [0, 1, 2].map(|c| {
+        let above = at(x0, y0)[c] * (1.0 - fx) + at(x1, y0)[c] * fx;
+        let below = at(x0, y1)[c] * (1.0 - fx) + at(x1, y1)[c] * fx;
+        above * (1.0 - fy) + below * fy
+    })
+}
+
+/// What a square of plain cloth has beyond its own light: its threads and its grain.
+struct Weave {
+    side: usize,
+    threads: Vec<[f64; 3]>,
+}
+
+impl Weave {
+    /// `None` where no square of plain cloth is large enough to show a weave.
+    fn of(pixels: &RgbImage, kept: &GrayImage) -> Option<Weave> {
+        let (left, top, side) = largest_square(kept)?;
+        let cut = image::imageops::crop_imm(pixels, left as u32, top as u32, side as u32, side as u32).to_image();
+        let all = GrayImage::from_pixel(side as u32, side as u32, Luma([255]));
+        let light = Light::blurred(&cut, &all)?;
+        let thread = |(x, y, p): (u32, u32, &image::Rgb<u8>)| {
+            let light = light.at(x, y);
+            [0, 1, 2].map(|c| f64::from(p.0[c]) - light[c])
+        };
+        Some(Weave { side, threads: cut.enumerate_pixels().map(thread).collect() })
+    }
+
+    /// Threads at any place: the square is laid out again and again, each time seen in a mirror, so that its borders meet.
+    fn at(&self, x: usize, y: usize) -> [f64; 3] {
+        let fold = |v: usize| match v % (2 * self.side) {
+            v if v < self.side => v,
+            v => 2 * self.side - 1 - v,
+        };
+        self.threads[fold(y) * self.side + fold(x)]
+    }
+}
+
+/// The largest square of marked pixels, at most [`SQUARE`] wide: left, top, side; the first of equals.
+fn largest_square(kept: &GrayImage) -> Option<(usize, usize, usize)> {
+    let w = kept.width() as usize;
+    let mut above = vec![0_usize; w + 1];
+    let mut best = (0, 0, 0);
+    for (y, row) in kept.as_raw().chunks(w.max(1)).enumerate() {
+        let mut corner = 0;
+        for (x, on) in row.iter().enumerate() {
+            let next = above[x + 1];
+            above[x + 1] = if *on == 0 { 0 } else { 1 + corner.min(next).min(above[x]) };
+            corner = next;
+            let side = above[x + 1].min(SQUARE);
+            if side > best.2 {
+                best = (x + 1 - side, y + 1 - side, side);
+            }
+        }
+    }
+    (best.2 >= 8).then_some(best)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use image::Rgb;
+    use proptest::prelude::*;
+
+    /// Blue cloth in uneven light with a grain of a few levels.
+    fn cloth(x: u32, y: u32) -> [u8; 3] {
+        let grain = (x * 7 + y * 13) % 5;
+        [40 + (x / 8 + grain) as u8, 60 + (x / 8 + grain) as u8, 140 + (x / 8 + grain) as u8]
+    }
+
+    fn is_print(x: u32, y: u32) -> bool {
+        (70..130).contains(&x) && (80..120).contains(&y) && (x / 6) % 2 == 0
+    }
+
+    fn picture(colour: impl Fn(u32, u32) -> [u8; 3]) -> (RgbImage, GrayImage) {
+        let pixels = RgbImage::from_fn(200, 240, |x, y| Rgb(colour(x, y)));
+        (pixels, GrayImage::from_pixel(200, 240, Luma([255])))
+    }
+
+    #[test]
+    fn a_print_becomes_cloth_in_the_light_around_it() {
+        let (mut pixels, sure) = picture(|x, y| if is_print(x, y) { [250, 240, 60] } else { cloth(x, y) });
+        assert!(plain(&mut pixels, &sure));
+        for (x, y, p) in pixels.enumerate_pixels() {
+            let off = [0, 1, 2].map(|c| p.0[c].abs_diff(cloth(x, y)[c]));
+            assert!(off.iter().all(|d| *d <= 8), "{x} {y}: {:?} for {:?}", p.0, cloth(x, y));
+        }
+    }
+
+    #[test]
+    fn stripes_all_over_are_the_cloths_own() {
+        let (mut pixels, sure) = picture(|x, y| if y / 10 % 2 == 0 { [250; 3] } else { cloth(x, y) });
+        let before = pixels.clone();
+        assert!(!plain(&mut pixels, &sure));
+        assert_eq!(pixels, before);
+    }
+
+    #[test]
+    fn plain_cloth_and_no_cloth_stay_as_they_are() {
+        let (mut pixels, sure) = picture(cloth);
+        assert!(!plain(&mut pixels, &sure));
+        assert!(!plain(&mut pixels, &GrayImage::new(200, 240)));
+    }
+
+    proptest! {
+        #[test]
+        fn any_picture_keeps_what_is_not_taken_for_print((w, h) in (1u32..40, 1u32..40), seed in any::<u32>()) {
+            let noise = |x: u32, y: u32, c: u32| {
+                let v = (x ^ seed).wrapping_mul(0x9E37_79B1) ^ (y + c * 77).wrapping_mul(0x85EB_CA77);
+                (v.wrapping_mul(0x2C1B_3C6D) >> 24) as u8
+            };
+            let mut pixels = RgbImage::from_fn(w, h, |x, y| Rgb([0, 1, 2].map(|c| noise(x, y, c))));
+            let sure = GrayImage::from_fn(w, h, |x, y| Luma([noise(x, y, 3) / 128 * 255]));
+            let before = pixels.clone();
+            let changed = plain(&mut pixels, &sure);
+            prop_assert!(changed || pixels == before);
+        }
+    }
+}
