@@ -4,6 +4,7 @@
 //! The two forms are read by the format's own enum and struct readers, so that a fault keeps its
 //! line and column: a reader of tagged or untagged enums would lose them.
 
+use super::scale::ScaleObject;
 use serde::de::{DeserializeSeed, EnumAccess, Error, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toile_core::{Length, ParamType};
@@ -38,6 +39,9 @@ pub struct PhotoFile {
     /// Scale, pixels per metre, where it is known otherwise (a scanner, a ruler in the photo).
     #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "px_per_metre")]
     pub px_per_metre: Option<f64>,
+    /// An object of known size beside the garment, which gives the scale; but for a ruler, the photo is rectified by it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<ScaleObject>,
     /// True where the garment's side is the mirror image of this photo.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub mirror: bool,
@@ -86,7 +90,7 @@ fn px_per_metre<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error
 
 impl ParamType for PhotoEntry {
     fn describe() -> String {
-        "(file: text, width: length) | MirrorOf(text)".into()
+        "(file: text, width: length, scale: BankCard | A4 | Letter | Ruler | Chessboard(square: length)) | MirrorOf(text)".into()
     }
 
     fn numbers(&self) -> Vec<f64> {
@@ -99,7 +103,7 @@ impl ParamType for PhotoEntry {
 
 const NAME: &str = "PhotoEntry";
 const MIRROR_OF: &str = "MirrorOf";
-const FIELDS: [&str; 4] = ["file", "width", "px_per_metre", "mirror"];
+const FIELDS: [&str; 5] = ["file", "width", "px_per_metre", "scale", "mirror"];
 
 impl Serialize for PhotoEntry {
     fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {

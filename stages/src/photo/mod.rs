@@ -6,6 +6,7 @@
 //! | `entry` | how a photo is written in a pipeline file |
 //! | `decode` | bytes to upright 8-bit sRGB pixels, with limits against decompression bombs |
 //! | `expected` | how much the photos are, for what a run will take |
+//! | `scale` | the scale and the plane of the ground from an object of known size |
 //! | `form`, `tiff` | what kind of picture a file is |
 //! | `header` | size and completeness of a picture before anything is decoded |
 
@@ -15,6 +16,7 @@ mod expected;
 mod form;
 mod header;
 mod photos;
+mod scale;
 #[cfg(test)]
 mod tests;
 mod tiff;
@@ -24,6 +26,7 @@ pub use entry::{MAX_PX_PER_METRE, MAX_WIDTH_M, MIN_PX_PER_METRE, MIN_WIDTH_M, Ph
 pub(crate) use expected::frames;
 pub(crate) use photos::sides;
 pub use photos::{Photos, read_photos};
+pub use scale::ScaleObject;
 
 use toile_core::Registry;
 

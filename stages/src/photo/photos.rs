@@ -3,6 +3,7 @@
 use super::decode::check;
 use super::entry::{scale_fault, width_fault};
 use super::expected;
+use super::scale::{self, ScaleObject};
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -16,6 +17,8 @@ use toile_core::prelude::*;
 ///
 /// JPEG, PNG, WebP and TIFF, 8 or 16 bits, grey or colour, turned upright by their EXIF orientation. HEIC, AVIF and
 /// cameras' raw files are not read: export them as JPEG. `width` is the real width of the garment's bounding box; the scale is worked out once its mask is known.
+/// Or an object of known size lies beside the garment and gives the scale (`scale`): a bank card, a sheet of paper, a chessboard, by which the photo is
+/// rectified as well, so that it need not be taken from straight above; or a ruler, which gives the scale alone.
 /// Where only one side was taken, `MirrorOf("front")` stands in: its pattern is the mirror image of
 /// that photo.
 ///
@@ -95,14 +98,17 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
         .keys()
         .map(|name| resolve(entries, name).map(|side| (name, side)))
         .collect::<Result<Vec<_>, _>>()?;
-    let files: BTreeMap<&str, ()> = sides.iter().map(|(_, (file, _))| (file.file.as_str(), ())).collect();
-    let files: Vec<&str> = files.into_keys().collect();
+    // A file is decoded once for each object that is looked for in it.
+    let files: BTreeMap<(&str, Option<ScaleObject>), &str> =
+        sides.iter().rev().map(|(name, (file, _))| ((file.file.as_str(), file.scale), name.as_str())).collect();
     cx.progress(0.0, format!("reading {} file(s)", files.len()));
-    let pictures = files.par_iter().map(|file| read_file(file, cx)).collect::<Result<Vec<_>, _>>()?;
-    let pictures: BTreeMap<&str, Picture> = files.iter().copied().zip(pictures).collect();
+    let files: Vec<_> = files.into_iter().collect();
+    let read = |((file, object), name): &((&str, Option<ScaleObject>), &str)| read_file(file, *object, name, cx);
+    let pictures = files.par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let pictures: BTreeMap<_, Picture> = files.iter().map(|(key, _)| *key).zip(pictures).collect();
     cx.progress(1.0, "photos read");
     let photo = |(name, (file, mirrored)): (&String, (&PhotoFile, bool))| {
-        let picture = pictures.get(file.file.as_str())?;
+        let picture = pictures.get(&(file.file.as_str(), file.scale))?;
         Some((name.clone(), picture.photo(file, mirrored)))
     };
     Ok(sides.into_iter().filter_map(photo).collect())
@@ -136,6 +142,8 @@ fn named(name: &str) -> Result<(), StageError> {
 struct Picture {
     pixels: Shared<image::RgbImage>,
     alpha: Option<Shared<image::GrayImage>>,
+    /// Where an object in it tells.
+    px_per_metre: Option<f64>,
 }
 
 impl Picture {
@@ -143,7 +151,7 @@ impl Picture {
         Photo {
             pixels: self.pixels.clone(),
             alpha: self.alpha.clone(),
-            px_per_metre: file.px_per_metre,
+            px_per_metre: file.px_per_metre.or(self.px_per_metre),
             garment_width: file.width.map(Length::metres),
             mirrored,
             joined: 1,
@@ -152,11 +160,25 @@ impl Picture {
     }
 }
 
-fn read_file(file: &str, cx: &Context) -> Result<Picture, StageError> {
+/// Reads a file for the side `name`, and looks for an object in it.
+fn read_file(
+    file: &str,
+    object: Option<ScaleObject>,
+    name: &str,
+    cx: &Context,
+) -> Result<Picture, StageError> {
     cx.check()?;
     let bytes = cx.read(file).map_err(|e| e.at("photos"))?;
-    let Decoded { pixels, alpha } = decode(&bytes, file).map_err(|e| e.at("photos"))?;
-    Ok(Picture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new) })
+    let decoded = decode(&bytes, file).map_err(|e| e.at("photos"))?;
+    let (Decoded { pixels, alpha }, px_per_metre) = match object {
+        None => (decoded, None),
+        Some(object) => {
+            let (above, scale) = scale::from_above(decoded, object, file, cx)
+                .map_err(|e| e.at("photos").within(name).within("scale"))?;
+            (above, Some(scale))
+        }
+    };
+    Ok(Picture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new), px_per_metre })
 }
 
 /// Follows mirrors to a file; true where the pattern is that file's mirror image.
@@ -193,8 +215,14 @@ fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &st
 /// Values set from code have not passed the pipeline reader.
 fn checked<'a>(name: &str, file: &'a PhotoFile) -> Result<&'a PhotoFile, StageError> {
     let fault = file.width.and_then(width_fault).or(file.px_per_metre.and_then(scale_fault));
-    let fault = fault.or((file.width.is_some() && file.px_per_metre.is_some())
-        .then(|| "both width and px_per_metre are given; one of them fixes the scale".to_owned()));
+    let given = [
+        ("width", file.width.is_some()),
+        ("px_per_metre", file.px_per_metre.is_some()),
+        ("scale", file.scale.is_some()),
+    ];
+    let given: Vec<&str> = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
+    let twice = || format!("both {} are given; one of them fixes the scale", given.join(" and "));
+    let fault = fault.or_else(|| (given.len() > 1).then(twice));
     match fault {
         Some(fault) => {
             let text = format!("photo \"{name}\": {fault}");

@@ -379,3 +379,59 @@ proptest! {
         let _ = ron_options().from_str::<PhotoEntry>(&text);
     }
 }
+
+/// White paper of A4 on a dark floor, 1,000 pixels a metre, photographed from straight above.
+fn sheet() -> RgbImage {
+    RgbImage::from_fn(900, 700, |x, y| {
+        Rgb(if (500..797).contains(&x) && (150..360).contains(&y) { [235, 235, 230] } else { [70, 60, 50] })
+    })
+}
+
+#[test]
+fn a_sheet_of_paper_gives_the_scale_of_both_sides() {
+    let folder = Folder::new("sheet", &[("a.png", encode(sheet(), ImageFormat::Png))]);
+    let photos = folder.read(r#"{"front": (file: "a.png", scale: A4), "back": MirrorOf("front")}"#).unwrap();
+    for side in ["front", "back"] {
+        let photo = photos.get(side).unwrap();
+        let scale = photo.px_per_metre.unwrap();
+        let sheet = |p: &image::Rgb<u8>| p.0[0] > 150;
+        let area = photo.pixels.pixels().filter(|p| sheet(p)).count() as f64 / (scale * scale);
+        assert!((area / (0.21 * 0.297) - 1.0).abs() < 0.01, "{side}: {scale} {area}");
+    }
+}
+
+#[test]
+fn an_object_that_is_not_there_is_told_with_what_to_do() {
+    let folder = Folder::new("no-card", &[("a.png", encode(red_blue(300, 200), ImageFormat::Png))]);
+    let error = folder.read(r#"{"front": (file: "a.png", scale: BankCard)}"#).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "\"a.png\": no bank card was found; lay it flat beside the garment, whole in the frame, on a ground of another colour, and photograph from above"
+    );
+    assert_eq!(error.path, ["front", "scale"]);
+    let twice = folder.read(r#"{"front": (file: "a.png", width: "52 cm", scale: A4)}"#).unwrap_err();
+    assert_eq!(
+        twice.to_string(),
+        "photo \"front\": both width and scale are given; one of them fixes the scale"
+    );
+}
+
+#[test]
+fn a_photo_without_ground_shows_no_object() {
+    let cut = RgbaImage::from_pixel(60, 60, Rgba([9, 9, 9, 0]));
+    let folder = Folder::new("cut-scale", &[("a.png", encode(cut, ImageFormat::Png))]);
+    let error = folder.read(r#"{"front": (file: "a.png", scale: Chessboard(square: "25 mm"))}"#).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "\"a.png\" has transparent pixels, and no ground on which an object lies"
+    );
+    assert_eq!(error.hint.as_deref(), Some("give the photo as it was taken, or the garment's `width`"));
+}
+
+#[test]
+fn a_scale_is_written_as_it_is_read() {
+    let text = r#"{"front": (file: "a.png", scale: Chessboard(square: "25 mm"))}"#;
+    let read = entries(text);
+    let written = ron_options().to_string(&read).unwrap();
+    assert_eq!(entries(&written), read, "{written}");
+}

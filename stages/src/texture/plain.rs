@@ -9,7 +9,7 @@
 //! of the outline.
 
 use super::bleed::eroded;
-use crate::binarise::{close, dilate, lab, open};
+use crate::binarise::{Regions, close, dilate, lab};
 use image::imageops::{FilterType, resize};
 use image::{GrayImage, Luma, RgbImage};
 use nalgebra::Vector3;
@@ -23,11 +23,13 @@ const BIN: f64 = 4.0;
 /// Cloth lies within this distance of its colour in hue.
 const HUE: f64 = 12.0;
 /// And of its lightness: that of the whole cloth, and that of the cloth around.
-const LIGHT: [f64; 2] = [30.0, 14.0];
+const LIGHT: [f64; 2] = [30.0, 10.0];
 /// Beyond this share of the band, or of all, what differs is a pattern of the cloth.
 const PATTERN: [f64; 2] = [0.2, 0.6];
 /// Below this share nothing is print.
 const LEAST: f64 = 0.002;
+/// Pieces of fewer small pixels are no print.
+const SPECK: u64 = 5;
 /// How far print reaches beyond what is surely print, small pixels.
 const AROUND: u32 = 3;
 /// The longest side of the square of weave, px.
@@ -80,11 +82,16 @@ fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
         on[i] && (!like(i) || (colours[i].x - here).abs() > LIGHT[1])
     };
     let found = GrayImage::from_fn(w, h, |x, y| Luma([u8::from(differs((y * w + x) as usize)) * 255]));
-    let found = open(&close(&found, 1), 1);
+    let found = without_specks(close(&found, 1));
     let marked = |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
     let share = |of: &[bool]| marked(of) / of.iter().filter(|on| **on).count().max(1) as f64;
     let is_print = share(&on) >= LEAST && share(&on) <= PATTERN[1] && share(&band) <= PATTERN[0];
     is_print.then(|| dilate(&close(&found, AROUND), AROUND))
+}
+
+/// The mask without pieces too small for a letter: the weave's own.
+fn without_specks(mask: GrayImage) -> GrayImage {
+    Regions::of(&mask).paint(|_, piece| piece.on && piece.area >= SPECK)
 }
 
 /// The commonest hue of the marked pixels, with the mean colour of those that have it.

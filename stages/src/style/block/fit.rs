@@ -56,6 +56,17 @@ pub(super) struct Fit {
 }
 
 impl Fit {
+    /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since legs may flare. `None` for what has no hip.
+    pub(super) fn hip(&self, form: &Form) -> Option<f64> {
+        let edges = || form.edges.iter().enumerate().filter(|(_, e)| e.name == "hip" || e.name == "outseam");
+        edges().next()?;
+        let widest = |s: &Vec<Bow>| {
+            let points = edges().flat_map(|(k, _)| s[k].points());
+            points.filter(|p| !form.has_legs() || p.y >= s[0].a.y).map(|p| p.x).fold(0.0, f64::max)
+        };
+        Some(2.0 * self.sides.iter().map(widest).sum::<f64>())
+    }
+
     /// How far the outline strays from the sleeves or legs of each side: the mean distance of their points, metres.
     pub(super) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
         let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };

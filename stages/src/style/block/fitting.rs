@@ -162,10 +162,6 @@ impl Tape {
     fn of(form: &Form, fit: &Fit) -> Self {
         let at = |name: &str| form.edges.iter().position(|e| e.name == name);
         let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
-        let widest = |k: usize| {
-            let most = |s: &[super::bow::Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
-            2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
-        };
         let mean =
             |of: &dyn Fn(&[super::bow::Bow]) -> f64| 0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>();
         let high = mean(&|s| s[s.len() - 1].a.y);
@@ -173,7 +169,7 @@ impl Tape {
         let chest = fit.chest(form);
         // Skirts and legs begin at the waist; of a dress it is where the skirt ends.
         let waist = at("waist").map(across).or_else(|| at("skirt").map(|k| across(k + 1)));
-        let hip = ["hip", "outseam"].into_iter().filter_map(at).map(widest).reduce(f64::max);
+        let hip = fit.hip(form);
         let length = match (at("neck"), at("skirt"), at("inseam"), at("outseam")) {
             (Some(_), Some(_), ..) => Some((high - low, DRESS)),
             (Some(_), None, ..) => Some((high - low, TOP)),

@@ -5,7 +5,7 @@ use super::pieces::Flat;
 use toile_core::prelude::*;
 
 /// Edges that front and back pieces do not share a seam at: they stay open, or meet another piece.
-const NOT_SHARED: [&str; 6] = ["hem", "neck", "waist", "cuff", "cap", "rise"];
+const NOT_SHARED: [&str; 7] = ["hem", "neck", "waist", "cuff", "cap", "rise", "armhole"];
 
 /// The seams of a block with these pieces.
 pub(super) fn seams(pieces: &[Flat], form: &Form) -> Vec<PatternSeam> {
@@ -24,7 +24,10 @@ pub(super) fn seams(pieces: &[Flat], form: &Form) -> Vec<PatternSeam> {
 /// The seams of a front piece with the piece behind it.
 fn shared(front: &Flat) -> Vec<PatternSeam> {
     let back = front.name.replace("front", "back");
-    let is_shared = |name: &&String| !NOT_SHARED.contains(&name.as_str()) && !name.starts_with("armhole");
+    let is_shared = |name: &&String| {
+        let word = name.trim_end_matches("_left").trim_end_matches("_right");
+        !NOT_SHARED.contains(&word)
+    };
     let names = front.edges.iter().map(|(name, _)| name).filter(is_shared);
     names.map(|edge| seam(edge, [&front.name, edge], [&back, edge])).collect()
 }

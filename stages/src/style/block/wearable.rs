@@ -3,7 +3,6 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at its armpits, its waist and hip, and its
 //! cuffs; what a closure would open is not known.
 
-use super::bow::Bow;
 use super::fit::Fit;
 use super::form::Form;
 use crate::body::convex_hull;
@@ -50,19 +49,10 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
     let tape = |what, of_body, level: &str, garment: Option<f64>| {
         Some(Girth { what, garment: garment?, of_body, body: *body.measurements.get(level)? })
     };
-    let widest = |k: usize| {
-        let most = |s: &[Bow]| s[k].points().iter().map(|p| p.x).fold(0.0, f64::max);
-        2.0 * fit.sides.iter().map(|s| most(s)).sum::<f64>()
-    };
     let found = [
         tape("chest", "the body's", "bust", fit.chest(form)),
         tape("waist", "the body's", "waist", at("waist").map(across)),
-        tape(
-            "hip",
-            "the body's",
-            "hip",
-            ["hip", "outseam"].into_iter().filter_map(at).map(widest).reduce(f64::max),
-        ),
+        tape("hip", "the body's", "hip", fit.hip(form)),
     ];
     found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
 }

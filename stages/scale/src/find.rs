@@ -1,0 +1,63 @@
+//! The way in: checks what was given and hands it to the finder of the object's kind.
+
+use crate::{Found, Object, ScaleError, chessboard, rectangle, ruler};
+use image::RgbImage;
+
+/// What is known besides the photo.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Options {
+    /// Focal length on 35 mm film, mm, 8 to 400 (EXIF `FocalLengthIn35mmFilm`); `None` for a phone's main lens.
+    pub focal_35mm: Option<f64>,
+}
+
+/// Sides of a photo that is looked at, pixels, and its most pixels.
+pub(crate) const SIDES: std::ops::RangeInclusive<u32> = 32..=30_000;
+pub(crate) const MOST_PIXELS: u64 = 200_000_000;
+
+/// Finds an object of known size in a photo.
+///
+/// # Errors
+/// See [`ScaleError`].
+pub fn find(photo: &RgbImage, object: Object) -> Result<Found, ScaleError> {
+    find_with(photo, object, &Options::default())
+}
+
+/// Finds an object of known size in a photo of which more is known.
+///
+/// # Errors
+/// See [`ScaleError`].
+pub fn find_with(photo: &RgbImage, object: Object, options: &Options) -> Result<Found, ScaleError> {
+    check(photo, options)?;
+    object.check()?;
+    match object.rectangle() {
+        Some(shape) => rectangle::find(photo, object, &shape, options),
+        None => marked(photo, object, options),
+    }
+}
+
+/// Finds an object that is told by its marks.
+fn marked(photo: &RgbImage, object: Object, options: &Options) -> Result<Found, ScaleError> {
+    match object {
+        Object::Chessboard { square_um, corners } => {
+            chessboard::find(photo, object, f64::from(square_um) * 1e-6, corners, options)
+        }
+        _ => ruler::find(photo, object),
+    }
+}
+
+/// Refuses photos and options that are out of range.
+fn check(photo: &RgbImage, options: &Options) -> Result<(), ScaleError> {
+    check_size(photo)?;
+    match options.focal_35mm {
+        Some(focal) if !(8.0..=400.0).contains(&focal) => Err(ScaleError::Focal { focal }),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses photos that are too small or too large.
+pub(crate) fn check_size(photo: &RgbImage) -> Result<(), ScaleError> {
+    let (width, height) = photo.dimensions();
+    let pixels = u64::from(width) * u64::from(height);
+    let good = SIDES.contains(&width) && SIDES.contains(&height) && pixels <= MOST_PIXELS;
+    if good { Ok(()) } else { Err(ScaleError::Size { width, height }) }
+}

@@ -1,0 +1,304 @@
+//! Judges a quadrilateral as the picture of a rectangle of known size.
+
+use crate::object::Rectangle;
+use crate::pixels::{colour, inside};
+use crate::pose::{self, Camera, Pin, Pose, through};
+use crate::quads::{Quad, area};
+use crate::side::{Look, Side, across, continues, median, side};
+use image::RgbImage;
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
+
+/// A quadrilateral that passed.
+#[derive(Debug, Clone)]
+pub(crate) struct Judged {
+    /// Clockwise; the first side is a long one.
+    pub(crate) corners: [Point2<f64>; 4],
+    pub(crate) pose: Pose,
+    /// Mean share of the sides that is seen, 0 to 1.
+    pub(crate) coverage: f64,
+    /// Scatter of the edges about the fitted rectangle, pixels.
+    pub(crate) residual: f64,
+    /// The shorter side, pixels.
+    pub(crate) short: f64,
+    /// The better, the larger.
+    pub(crate) merit: f64,
+}
+
+/// The least share of any side that must be seen, and of all.
+const SEEN: f64 = 0.6;
+const SEEN_MEAN: f64 = 0.78;
+/// The largest distance of the fitted rectangle from the measured lines: pixels, and share of the shorter side.
+const OFF: f64 = 0.4;
+const OFF_SHARE: f64 = 0.006;
+/// The most unusual camera (sum of squares over standard deviations).
+const UNUSUAL: f64 = 14.0;
+/// Of the eight continuations of the sides beyond the corners, so many may show an edge.
+const CONTINUED: usize = 2;
+
+/// Whether the aspect may be the object's, with errors of about `pixel` at each corner: by the two columns of
+/// the homography with the expected focal length, which must be alike in length and at right angles.
+pub(crate) fn may_be(corners: &[Point2<f64>; 4], shape: &Rectangle, camera: &Camera, pixel: f64) -> bool {
+    let Some((a, b)) = columns(corners, camera) else { return false };
+    let short = (corners[2] - corners[1]).norm().min((corners[3] - corners[0]).norm());
+    let doubt = 0.08 + 8.0 * pixel / short.max(1.0);
+    let aspect = (a.norm() / shape.long) / (b.norm() / shape.short);
+    let cosine = a.dot(&b) / (a.norm() * b.norm());
+    aspect.ln().abs() < doubt && cosine.abs() < doubt
+}
+
+/// The pictures of the rectangle's two directions as vectors in space, for the unit square onto the corners
+/// (Heckbert, Fundamentals of texture mapping, 1989).
+fn columns(c: &[Point2<f64>; 4], camera: &Camera) -> Option<(Vector3<f64>, Vector3<f64>)> {
+    let p = c.map(|p| (p - camera.middle) / camera.focal);
+    let (d1, d2, d3) = (p[1] - p[2], p[3] - p[2], p[0] - p[1] + p[2] - p[3]);
+    let determinant = d1.perp(&d2);
+    let (g, h) = (d3.perp(&d2) / determinant, d1.perp(&d3) / determinant);
+    let a = p[1] - p[0] + p[1] * g;
+    let b = p[3] - p[0] + p[3] * h;
+    let (a, b) = (Vector3::new(a.x, a.y, g), Vector3::new(b.x, b.y, h));
+    let good = a.norm() > 0.0 && b.norm() > 0.0 && a.iter().chain(b.iter()).all(|v| v.is_finite());
+    good.then_some((a, b))
+}
+
+/// Measures a candidate in the photo, roughly and then finely, and judges it.
+pub(crate) fn judge(
+    photo: &RgbImage,
+    quad: &Quad,
+    k: usize,
+    shape: &Rectangle,
+    camera: &Camera,
+) -> Option<Judged> {
+    let inset = 1.3 * shape.radius / shape.short + 0.04;
+    let k = k as f64;
+    let step = (k / 2.0).max(1.0);
+    let rough = Look { step, reach: 4, inset, most: 60 };
+    let sides = sides(photo, &quad.corners, &rough)?;
+    if !distinct(&sides, 0.8) {
+        return None;
+    }
+    let mut corners = crossings(&sides)?;
+    let near = Camera { ..*camera };
+    let dull = continued(photo, &corners, &sides, &Look { step, reach: 2, inset: 0.0, most: 12 });
+    if dull > CONTINUED + 1 || !may_be(&corners, shape, &near, 0.3 * k) {
+        return None;
+    }
+    let mut sides = sides;
+    let mut step = step;
+    while step > 1.0 {
+        step = (step / 2.0).max(1.0);
+        let fine = Look { step, reach: 4, inset, most: if step > 1.0 { 80 } else { 300 } };
+        sides = self::sides(photo, &corners, &fine)?;
+        corners = crossings(&sides)?;
+    }
+    let fine = Look { step: 1.0, reach: 3, inset, most: 400 };
+    sides = self::sides(photo, &corners, &fine)?;
+    corners = crossings(&sides)?;
+    measured(photo, corners, &sides, shape, camera)
+}
+
+/// Judges measured sides.
+fn measured(
+    photo: &RgbImage,
+    corners: [Point2<f64>; 4],
+    sides: &[Side; 4],
+    shape: &Rectangle,
+    camera: &Camera,
+) -> Option<Judged> {
+    if !distinct(sides, 1.0) || area(&corners) <= 0.0 {
+        return None;
+    }
+    let pose = posed(&corners, sides, shape, camera)?;
+    let h = pose.homography(camera);
+    let short = shortest(&corners);
+    let off = offs(&h, &pins(&corners, sides, shape));
+    if off > OFF + OFF_SHARE * short || pose.unusual(camera) > UNUSUAL {
+        return None;
+    }
+    let run_on = continued(photo, &corners, sides, &BEYOND);
+    let sure = run_on == 0 && pose.slant() < 35.0 && sides.iter().all(|s| s.coverage > 0.9);
+    let few = short < FEW && shape.radius == 0.0;
+    if run_on > CONTINUED
+        || (few && !sure)
+        || !right_corners(photo, &h, shape, sure)
+        || !even(photo, &h, shape)
+    {
+        return None;
+    }
+    let coverage = sides.iter().map(|s| s.coverage).sum::<f64>() / 4.0;
+    let least = sides.iter().map(|s| s.coverage).fold(1.0, f64::min);
+    let squares = sides.iter().map(|s| s.spread * s.spread).sum::<f64>() / 4.0;
+    let residual = (squares + off * off).sqrt();
+    let merit = coverage + 0.5 * least - 0.1 * run_on as f64 - 0.3 * off / (OFF + OFF_SHARE * short);
+    let fitted = shape.corners().map(|p| through(&h, p));
+    Some(Judged { corners: fitted, pose, coverage, residual, short, merit })
+}
+
+fn sides(photo: &RgbImage, corners: &[Point2<f64>; 4], look: &Look) -> Option<[Side; 4]> {
+    let measure = |i: usize| side(photo, corners[i], corners[(i + 1) % 4], look);
+    Some([measure(0)?, measure(1)?, measure(2)?, measure(3)?])
+}
+
+fn distinct(sides: &[Side; 4], share: f64) -> bool {
+    let mean = sides.iter().map(|s| s.coverage).sum::<f64>() / 4.0;
+    sides.iter().all(|s| s.coverage >= share * SEEN) && mean >= share * SEEN_MEAN
+}
+
+/// Where the sides' lines cross: corner i lies on sides i - 1 and i.
+fn crossings(sides: &[Side; 4]) -> Option<[Point2<f64>; 4]> {
+    let cross = |i: usize| crossing(&sides[(i + 3) % 4], &sides[i]);
+    Some([cross(0)?, cross(1)?, cross(2)?, cross(3)?])
+}
+
+fn crossing(one: &Side, two: &Side) -> Option<Point2<f64>> {
+    let (u, v) = (one.b - one.a, two.b - two.a);
+    let t = (two.a - one.a).perp(&v) / u.perp(&v);
+    let at = one.a + u * t;
+    at.iter().all(|x| x.is_finite() && x.abs() < 1e6).then_some(at)
+}
+
+pub(crate) fn shortest(corners: &[Point2<f64>; 4]) -> f64 {
+    (0..4).map(|i| (corners[(i + 1) % 4] - corners[i]).norm()).fold(f64::INFINITY, f64::min)
+}
+
+fn posed(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle, camera: &Camera) -> Option<Pose> {
+    let start = pose::homography(&shape.corners(), corners)?;
+    pose::fit(&start, &pins(corners, sides, shape), camera)
+}
+
+/// Two pins a side, where the errors of a line that is seen evenly along its length do not depend on each other.
+fn pins(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle) -> Vec<Pin> {
+    let model = shape.corners();
+    let mut pins = Vec::with_capacity(8);
+    for (i, s) in sides.iter().enumerate() {
+        let (a, b) = (model[i], model[(i + 1) % 4]);
+        let Some(normal) = across(corners[i], corners[(i + 1) % 4]) else { continue };
+        for t in [0.5 - APART, 0.5 + APART] {
+            pins.push(Pin {
+                model: a + (b - a) * t,
+                at: s.a,
+                normal,
+                error: 2f64.sqrt() * s.error.hypot(BIAS),
+            });
+        }
+    }
+    pins
+}
+
+/// Error of an edge's place that more profiles do not lessen: shadows under the rim, print near it, pixels.
+const BIAS: f64 = 0.08;
+/// Half the root of a third: where the two ends of a fitted line err independently.
+const APART: f64 = 0.288_675;
+
+/// Root mean square distance of the fitted rectangle from the measured lines, pixels.
+fn offs(h: &Matrix3<f64>, pins: &[Pin]) -> f64 {
+    let squares: f64 = pins.iter().map(|p| p.normal.dot(&(through(h, p.model) - p.at)).powi(2)).sum();
+    (squares / pins.len().max(1) as f64).sqrt()
+}
+
+/// How the sides' continuations are looked at.
+const BEYOND: Look = Look { step: 1.0, reach: 2, inset: 0.0, most: 40 };
+
+/// How many sides run on beyond their corners, of eight.
+fn continued(photo: &RgbImage, corners: &[Point2<f64>; 4], sides: &[Side; 4], look: &Look) -> usize {
+    let mut count = 0;
+    for (i, s) in sides.iter().enumerate() {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        let length = (b - a).norm();
+        let (near, far) = (3.0 * look.step / length + 0.02, (0.25f64).max(12.0 * look.step / length));
+        for (from, to) in [(a, b), (b, a)] {
+            let beyond = |t: f64| from + (from - to) * t;
+            let seen = inside(photo, beyond(far));
+            count += usize::from(seen && continues(photo, beyond(near), beyond(far), look, s.slope) > 0.7);
+        }
+    }
+    count
+}
+
+/// How the corners look.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Corners {
+    /// There are too few pixels to tell.
+    Small,
+    /// The object has the ground's colour at its corners.
+    Unseen,
+    /// 0 for corners as round as a card's, 1 for sharp ones.
+    Seen(f64),
+}
+
+/// Whether the corners are as round or as sharp as the object's, as far as the photo shows it. Where it does
+/// not, all else must be sure.
+fn right_corners(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle, sure: bool) -> bool {
+    match sharpness(photo, h, shape) {
+        Corners::Small | Corners::Unseen => sure,
+        Corners::Seen(s) => (shape.radius > 0.0 && s < 0.5) || (shape.radius == 0.0 && s > 0.45),
+    }
+}
+
+/// Sheets of fewer pixels on their shorter side are taken where all is sure alone, as tiles and prints are like them.
+const FEW: f64 = 80.0;
+
+/// Whether a sheet is of one hue, as paper is whatever the ink and shadow; cards may have any print.
+fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
+    if shape.radius > 0.0 {
+        return true;
+    }
+    let place = |n: i32, side: f64| (f64::from(n) / 15.0 - 0.5) * 0.94 * side;
+    let hue = |i: i32, j: i32| {
+        let p = through(h, Point2::new(place(i, shape.long), place(j, shape.short)));
+        let c = colour(photo, p.x, p.y).map(|v| f64::from(v) + 8.0);
+        let sum: f64 = c.iter().sum();
+        [c[0] / sum, c[1] / sum]
+    };
+    let hues: Vec<[f64; 2]> = (0..=15).flat_map(|i| (0..=15).map(move |j| hue(i, j))).collect();
+    let [Some(r), Some(g)] = [0, 1].map(|c| median(hues.iter().map(|h| h[c]).collect())) else {
+        return false;
+    };
+    let like = hues.iter().filter(|h| (h[0] - r).abs() < HUE && (h[1] - g).abs() < HUE).count();
+    like as f64 >= 0.8 * hues.len() as f64
+}
+
+/// How much the share of red or green of a paper's colour may differ from the median.
+const HUE: f64 = 0.035;
+
+/// Radius of a card's corners as a share of its shorter side.
+const ROUND: f64 = 0.0589;
+
+/// Where the edge lies on rays from the centres of a card's corners.
+fn sharpness(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> Corners {
+    let radius = ROUND * shape.short;
+    let mut values = Vec::new();
+    for corner in shape.corners() {
+        let centre = corner - Vector2::new(corner.x.signum(), corner.y.signum()) * radius;
+        let pixels = (through(h, corner) - through(h, centre)).norm() / 2f64.sqrt();
+        if pixels < 2.6 {
+            return Corners::Small;
+        }
+        for degrees in [35.0f64, 40.0, 45.0, 50.0, 55.0] {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let ray = Vector2::new(corner.x.signum() * cos, corner.y.signum() * sin) * radius;
+            let sharp = 1.0 / sin.max(cos);
+            let edge = half_way(photo, h, centre, ray);
+            values.extend(edge.map(|d| (d - 1.0) / (sharp - 1.0)));
+        }
+    }
+    let seen = values.len() >= 8;
+    median(values).filter(|_| seen).map_or(Corners::Unseen, Corners::Seen)
+}
+
+/// Where along a ray from a corner's centre the colour is half that of outside; in radii.
+fn half_way(photo: &RgbImage, h: &Matrix3<f64>, centre: Point2<f64>, ray: Vector2<f64>) -> Option<f64> {
+    let at = |d: f64| {
+        let p = through(h, centre + ray * d);
+        colour(photo, p.x, p.y).map(f64::from)
+    };
+    let mean = |ds: [f64; 3]| ds.map(at).iter().fold(Vector3::zeros(), |s, c| s + Vector3::from(*c) / 3.0);
+    let (within, beyond) = (mean([0.3, 0.5, 0.65]), mean([1.75, 1.95, 2.2]));
+    let d = beyond - within;
+    if d.norm() < 9.0 {
+        return None;
+    }
+    let share = |t: f64| (Vector3::from(at(t)) - within).dot(&d) / d.norm_squared();
+    let steps = (0..=40).map(|i| 0.6 + 1.2 * f64::from(i) / 40.0);
+    let values: Vec<(f64, f64)> = steps.map(|t| (t, share(t))).collect();
+    values.windows(2).find(|w| w[0].1 < 0.5 && w[1].1 >= 0.5).map(|w| w[0].0)
+}
