@@ -18,6 +18,9 @@ pub struct GarmentObj {
     /// The file's name without its extension.
     #[param(default = "result".to_owned())]
     pub name: String,
+    /// Name the panels as groups.
+    #[param(default = false)]
+    pub groups: bool,
 }
 
 #[stage]
@@ -28,7 +31,11 @@ impl GarmentObj {
         for p in &garment.positions {
             let _ = writeln!(text, "v {:.9} {:.9} {:.9}", p.x, p.y, p.z);
         }
-        for t in &garment.triangles {
+        for (k, t) in garment.triangles.iter().enumerate() {
+            let begins = |p: &&GarmentPanel| self.groups && p.triangles.start == k && !p.triangles.is_empty();
+            if let Some(panel) = garment.panels.iter().find(begins) {
+                let _ = writeln!(text, "g {}", panel.name);
+            }
             let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
         }
         Ok(OutputFiles::one(&format!("{}.obj", self.name), text.into_bytes()))
