@@ -56,7 +56,7 @@ fn sections(registry: &mut Registry) {
     registry.section(Section::table("seams", "Seams", "seams"));
     registry.section(Section::stage("scene", Role::Reader));
     registry.section(Section::stage("pattern", Role::Reader));
-    registry.section(Section::stage("garment", Role::Reader));
     registry.section(Section::stage("body", Role::Body));
     registry.section(Section::stage("fabric", Role::Fabric));
+    registry.section(Section::stage("garment", Role::Reader));
 }

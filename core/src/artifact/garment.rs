@@ -180,6 +180,12 @@ impl Garment {
         sides.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
     }
 
+    /// The flat corners of every triangle, metres, those along gathered seams drawn together as a solver has them; nothing where no seam
+    /// gathers, for all are then as they are cut.
+    pub fn gathered_corners(&self) -> Option<Vec<[Point2; 3]>> {
+        gathers::corners(self)
+    }
+
     /// The length of an edge as it is cut, metres.
     fn cut_length(&self, [a, b]: [u32; 2]) -> f64 {
         (self.rest[a as usize] - self.rest[b as usize]).norm()

@@ -190,7 +190,7 @@ impl Drawing<'_> {
             return SeamKind::Dart;
         }
         match known.and_then(|k| self.garment.seams.get(k)).map(|s| s.kind) {
-            Some(kind @ (SeamKind::Elastic { .. } | SeamKind::Folded { .. })) => kind,
+            Some(kind @ (SeamKind::Gathered | SeamKind::Elastic { .. } | SeamKind::Folded { .. })) => kind,
             _ => SeamKind::Matched,
         }
     }

@@ -7,7 +7,8 @@ use super::sheet::{Labelled, Sheet};
 use nalgebra::{Matrix2, Matrix3x2};
 use toile_core::prelude::*;
 use toile_flatten::FlattenError;
-use toile_flatten::care::{CareOptions, CareReport, Objective, SeamLengths, refine};
+use toile_flatten::care::{CareOptions, CareReport, Objective, SeamLengths, mirror_distance, refine};
+use toile_flatten::distortion::distortion;
 use toile_flatten::flatteners::{Flattening, Placement, Tension};
 use toile_flatten::grain::Grain;
 use toile_flatten::surface::Surface;
@@ -53,11 +54,13 @@ impl Request<'_> {
         let mut flats = self.flat(&sheet, &placements, cx)?;
         if let Some((objective, options)) = &self.care {
             cx.progress(0.8, "pattern care");
-            let report = refine(&sheet.pieces, &mut flats, objective, &placements, *options)
+            let even = sheet.without_gathers(garment);
+            let report = refine(&even, &mut flats, objective, &placements, *options)
                 .map_err(|e| flatten_fault(&e, ""))?;
-            tell(&report, cx);
+            tell(&report, &flats, cx);
         }
         unsettled(&sheet, &flats, cx);
+        crossed(&sheet, &flats, cx);
         let flat: Vec<Vec<Point2>> = flats.into_iter().map(|f| centred(f.points)).collect();
         let name = sewn.map_or_else(|| "flat".to_owned(), |p| p.name.clone());
         let drawing = Drawing { sheet: &sheet, flat: &flat, garment, sewn, proposed: &proposed, name };
@@ -121,11 +124,11 @@ fn grain(surface: &Surface, rest: &[Point2]) -> Grain {
         mean += warp * (q - p).cross(&(r - p)).norm() / 2.0;
     }
     mean /= surface.area();
-    if mean.norm() > LEAST_GRAIN && mean.iter().all(|x| x.is_finite()) {
-        Grain::Direction(mean)
-    } else {
-        Grain::up()
+    if !(mean.norm() > LEAST_GRAIN && mean.iter().all(|x| x.is_finite())) {
+        return Grain::up();
     }
+    // A grain has no arrow: pieces that were drawn upside down stand upright.
+    Grain::Direction(if mean.y < 0.0 { -mean } else { mean })
 }
 
 /// The middle of the piece's box in the origin.
@@ -138,13 +141,17 @@ fn centred(mut flat: Vec<Point2>) -> Vec<Point2> {
 }
 
 /// What pattern care did, in figures.
-fn tell(report: &CareReport, cx: &Context) {
+fn tell(report: &CareReport, flats: &[Flattening], cx: &Context) {
     let worst = |of: fn(&SeamLengths) -> [f64; 2]| {
         report.seams.iter().map(|s| SeamLengths::mismatch(of(s))).fold(0.0, f64::max)
     };
     cx.figure("seam_mismatch_before", worst(|s| s.before) * 1e2, "%");
     cx.figure("seam_mismatch", worst(|s| s.after) * 1e2, "%");
     cx.figure("straight_edges", report.straight.iter().sum::<usize>() as f64, "");
+    let exact =
+        report.mirrors.iter().map(|(p, _)| mirror_distance(p, &flats[p.a].points, &flats[p.b].points));
+    let apart = exact.chain(report.outlines.iter().map(|p| p.after)).fold(0.0, f64::max);
+    cx.figure("left_and_right_apart", apart * 1e3, "mm");
     cx.figure("mirror_images", (report.mirrors.len() + report.outlines.len()) as f64, "");
 }
 
@@ -153,6 +160,20 @@ fn unsettled(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
     for (name, flat) in sheet.names.iter().zip(flats).filter(|(_, f)| !f.report.converged) {
         let n = flat.report.iterations;
         cx.warn(format!("piece \"{name}\" had not settled after {n} steps; raise `iterations`"));
+    }
+}
+
+/// Pieces whose outline crosses itself in the plane.
+fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
+    for (i, flat) in flats.iter().enumerate() {
+        let table = distortion(&sheet.pieces.pieces[i].surface, &flat.points);
+        let n = table.map_or(0, |t| t.crossings);
+        if n > 0 {
+            let name = &sheet.names[i];
+            cx.warn(format!(
+                "the outline of piece \"{name}\" crosses itself at {n} places: it cannot be cut as one piece"
+            ));
+        }
     }
 }
 

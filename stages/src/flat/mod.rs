@@ -25,6 +25,8 @@ mod spring_flatten;
 mod strain_svg;
 mod symmetric_dirichlet;
 mod table;
+#[cfg(test)]
+mod tests;
 mod woven;
 
 pub use arap::Arap;

@@ -5,6 +5,7 @@
 
 use super::fault::surface_fault;
 use super::labels::of_corners;
+use nalgebra::Matrix2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::prelude::*;
@@ -82,11 +83,42 @@ impl Labelled {
             of
         });
         let vertices = vertices.collect();
-        Ok(Sheet { pieces, names, panels, vertices })
+        let mut sheet = Sheet { pieces, names, panels, vertices };
+        sheet.let_gathers_out(garment);
+        Ok(sheet)
     }
 }
 
 impl Sheet {
+    /// Triangles along gathered seams get the shape in which they were cut, strained as the gathered ones are.
+    fn let_gathers_out(&mut self, garment: &Garment) {
+        let Some(gathered) = garment.gathered_corners() else { return };
+        for (piece, of) in self.pieces.pieces.iter_mut().zip(&self.vertices) {
+            let mut shapes = Vec::new();
+            for (j, (&t, corners)) in piece.triangles.iter().zip(piece.surface.triangles()).enumerate() {
+                let own = garment.triangles[t as usize];
+                let place = |v: u32| own.iter().position(|u| *u == of[v as usize]).unwrap_or(0);
+                let drawn = corners.map(|v| gathered[t as usize][place(v)]);
+                let cut = corners.map(|v| garment.rest[of[v as usize] as usize]);
+                if drawn != cut {
+                    let places = corners.map(|v| piece.surface.positions()[v as usize]);
+                    shapes.extend(let_out(places, drawn, cut).map(|edges| (j as u32, edges)));
+                }
+            }
+            if let Ok(surface) = piece.surface.clone().with_cut_shapes(shapes) {
+                piece.surface = surface;
+            }
+        }
+    }
+
+    /// The pieces without the seams whose sides were cut to unlike lengths.
+    pub(super) fn without_gathers(&self, garment: &Garment) -> Pieces {
+        let known = self.known_seams(garment);
+        let is_even = |k: &Option<usize>| k.is_none_or(|k| garment.seams[k].kind != SeamKind::Gathered);
+        let even = self.pieces.seams.iter().zip(&known).filter(|(_, k)| is_even(k));
+        Pieces { pieces: self.pieces.pieces.clone(), seams: even.map(|(s, _)| s.clone()).collect() }
+    }
+
     /// The sheet of a garment as it was cut.
     pub(super) fn of(garment: &Garment) -> Result<Self, StageError> {
         Labelled::of(garment)?.sheet(garment)
@@ -159,6 +191,16 @@ impl Known {
         }
         counts.into_iter().max_by_key(|(k, n)| (*n, std::cmp::Reverse(*k))).map(|(k, _)| k)
     }
+}
+
+/// The edges of a triangle in its plane, with the strain between its drawn corners and its places put on its cut ones.
+fn let_out([p, q, r]: [Point3; 3], drawn: [Point2; 3], cut: [Point2; 3]) -> Option<[Vector2; 2]> {
+    let x = (q - p).try_normalize(0.0)?;
+    let y = (q - p).cross(&(r - p)).try_normalize(0.0)?.cross(&x);
+    let now = Matrix2::new((q - p).norm(), (r - p).dot(&x), 0.0, (r - p).dot(&y));
+    let sides = |c: [Point2; 3]| Matrix2::from_columns(&[c[1] - c[0], c[2] - c[0]]);
+    let out = now * sides(drawn).try_inverse()? * sides(cut);
+    Some([out.column(0).into(), out.column(1).into()])
 }
 
 fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
@@ -245,4 +287,30 @@ fn pairs(seam: &PieceSeam, starts: &[u32]) -> Vec<[u32; 2]> {
     let at = |c: &Chain, v: u32| v + starts[c.piece];
     let both = seam.a.vertices.iter().zip(&seam.b.vertices);
     both.map(|(&a, &b)| [at(&seam.a, a), at(&seam.b, b)]).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gathered_triangle_is_let_out_with_its_strain() {
+        let flat = |p: [[f64; 2]; 3]| p.map(Point2::from);
+        let (cut, drawn) =
+            (flat([[0.0, 0.0], [2.0, 0.0], [1.0, 1.0]]), flat([[0.5, 0.0], [1.5, 0.0], [1.0, 1.0]]));
+        // On the garment the drawn triangle stands upright, 10 % larger than it was drawn.
+        let places = drawn.map(|p| Point3::new(0.0, 1.1 * p.y, -1.1 * p.x));
+        let [a, b] = let_out(places, drawn, cut).unwrap();
+        assert!(
+            (a - Vector2::new(2.2, 0.0)).norm() < 1e-12 && (b - Vector2::new(1.1, 1.1)).norm() < 1e-12,
+            "{a} {b}"
+        );
+        assert_eq!(let_out([places[0]; 3], drawn, cut), None);
+    }
+
+    #[test]
+    fn names_become_unlike() {
+        assert_eq!(unlike(["a", "b", "a", "a_2", "a"].into_iter()), ["a", "b", "a_3", "a_2", "a_4"]);
+    }
 }

@@ -179,7 +179,8 @@ impl Table {
         cx.figure("outline_error", worst(|p| p.outline_error_3d_to_2d), "%");
         cx.figure("warp_strain_p99", worst(|p| p.strain.warp.p99), "%");
         cx.figure("weft_strain_p99", worst(|p| p.strain.weft.p99), "%");
-        cx.figure("seam_mismatch", self.seams.iter().map(|s| s.mismatch).fold(0.0, f64::max) * 1e2, "%");
+        let even = self.seams.iter().filter(|s| s.kind != SeamKind::Gathered.word());
+        cx.figure("seam_mismatch", even.map(|s| s.mismatch).fold(0.0, f64::max) * 1e2, "%");
         let far = self.pieces.iter().filter_map(|p| p.true_piece.as_ref()?.outline_distance_max_mm);
         if let Some(far) = far.reduce(f64::max) {
             cx.figure("outline_from_true", far, "mm");
