@@ -4,6 +4,7 @@ use super::overlay::outline_distance;
 use super::sheet::Sheet;
 use super::strain_svg;
 use crate::write::check_name;
+use rayon::prelude::*;
 use serde::Serialize;
 use toile_core::prelude::*;
 use toile_flatten::distortion::{Distortion, Spread, distortion};
@@ -223,7 +224,7 @@ fn pieces(
         true_piece: truth.row(&sheet.names[i], sheet, i, &flat[i], d),
         proposed_darts: pattern.and_then(|p| p.piece(&sheet.names[i])).map_or_else(Vec::new, darts),
     };
-    judged.iter().enumerate().map(row).collect()
+    judged.par_iter().enumerate().map(row).collect()
 }
 
 fn darts(piece: &Piece) -> Vec<DartRow> {
