@@ -25,6 +25,7 @@ fn template(role: Role) -> (&'static str, &'static str) {
         Role::Collider => (include_str!("new_stage/collider.txt"), ""),
         Role::Stitcher => (include_str!("new_stage/stitcher.txt"), ""),
         Role::Draper => (include_str!("new_stage/draper.txt"), ""),
+        Role::Flattener => (include_str!("new_stage/flattener.txt"), ""),
         Role::Texturer => (include_str!("new_stage/texturer.txt"), ""),
         Role::Writer => (include_str!("new_stage/writer.txt"), ""),
     }

@@ -9,6 +9,7 @@ pub mod drape;
 pub mod edges;
 pub mod engine;
 pub mod fabric;
+pub mod flat;
 pub mod measure;
 pub mod mesh;
 pub mod pattern;
@@ -41,6 +42,7 @@ pub fn register(registry: &mut Registry) {
     collide::register(registry);
     stitch::register(registry);
     drape::register(registry);
+    flat::register(registry);
     measure::register(registry);
     texture::register(registry);
     write::register(registry);
@@ -56,4 +58,5 @@ fn sections(registry: &mut Registry) {
     registry.section(Section::stage("pattern", Role::Reader));
     registry.section(Section::stage("body", Role::Body));
     registry.section(Section::stage("fabric", Role::Fabric));
+    registry.section(Section::stage("garment", Role::Reader));
 }

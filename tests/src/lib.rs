@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 16] = [
+pub const PIPELINES: [&str; 17] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -75,4 +75,5 @@ pub const PIPELINES: [&str; 16] = [
     "photo_skirt.ron",
     "photo_dress.ron",
     "photo_trousers.ron",
+    "flatten.ron",
 ];

@@ -16,6 +16,7 @@ mod decisions;
 mod doctor;
 mod error_codes;
 mod falls;
+mod flat;
 mod goldens;
 mod lock;
 mod migrate;

@@ -161,7 +161,7 @@ fn what_cannot_be_is_refused_by_name() {
     assert_eq!(refused("Photo", "binariser"), needed("Photo"));
     assert_eq!(refused("outline", "mesher"), needed("Outline"));
     let there = "reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider, \
-                 stitcher, draper, texturer, writer";
+                 stitcher, draper, flattener, texturer, writer";
     assert_eq!(refused("Fine", "meshr"), "error: there is no role \"meshr\"; did you mean mesher?\n");
     assert_eq!(refused("Fine", "xyz"), format!("error: there is no role \"xyz\"; there are {there}\n"));
     std::fs::create_dir(dir.path().join("fine")).unwrap();

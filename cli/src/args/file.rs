@@ -67,7 +67,7 @@ pub(crate) struct NewStageArgs {
     /// The stage's name, like FineMesher or fine_mesher
     pub(crate) name: String,
     /// What it is for: reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider,
-    /// stitcher, draper, texturer or writer [default: what NAME ends with, else binariser]
+    /// stitcher, draper, flattener, texturer or writer [default: what NAME ends with, else binariser]
     #[arg(long)]
     pub(crate) role: Option<String>,
     /// The folder in which the crate's own folder is made [default: the current one]

@@ -74,7 +74,8 @@ pub struct Garment {
     pub positions: Vec<Point3>,
     /// Velocities, m/s.
     pub velocities: Vec<Vector3>,
-    /// Flat rest positions, metres, each in its panel's own plane; warp along y, weft along x.
+    /// Flat rest positions, metres, each in its panel's own plane; warp along y, weft along x. All zero where the flat shape is not
+    /// known: a garment from a 3D file.
     pub rest: Vec<Point2>,
     /// Triangles, counter-clockwise in `rest` and from outside the wearer.
     pub triangles: Vec<[u32; 3]>,
@@ -179,17 +180,23 @@ impl Garment {
         sides.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
     }
 
+    /// The flat corners of every triangle, metres, those along gathered seams drawn together as a solver has them; nothing where no seam
+    /// gathers, for all are then as they are cut.
+    pub fn gathered_corners(&self) -> Option<Vec<[Point2; 3]>> {
+        gathers::corners(self)
+    }
+
     /// The length of an edge as it is cut, metres.
     fn cut_length(&self, [a, b]: [u32; 2]) -> f64 {
         (self.rest[a as usize] - self.rest[b as usize]).norm()
     }
 
-    /// Absolute strain of every mesh edge, ascending.
+    /// Absolute strain of every mesh edge, ascending; 0 of an edge without flat length.
     pub fn edge_strains(&self) -> Vec<f64> {
         let flat = self.flat_lengths();
         let strain = |([a, b], flat): &([u32; 2], f64)| {
             let now = (self.positions[*a as usize] - self.positions[*b as usize]).norm();
-            (now / flat - 1.0).abs()
+            if *flat > 0.0 { (now / flat - 1.0).abs() } else { 0.0 }
         };
         let mut strains: Vec<f64> = flat.iter().map(strain).collect();
         strains.sort_by(f64::total_cmp);

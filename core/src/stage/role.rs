@@ -29,6 +29,8 @@ pub enum Role {
     Stitcher,
     /// Drapes.
     Draper,
+    /// Garment to flat pattern.
+    Flattener,
     /// Garment and photos to model.
     Texturer,
     /// Writes files.
@@ -37,7 +39,7 @@ pub enum Role {
 
 impl Role {
     /// Every role, in the order of a pipeline.
-    pub const ALL: [Role; 15] = [
+    pub const ALL: [Role; 16] = [
         Role::Reader,
         Role::Denoiser,
         Role::Binariser,
@@ -51,6 +53,7 @@ impl Role {
         Role::Collider,
         Role::Stitcher,
         Role::Draper,
+        Role::Flattener,
         Role::Texturer,
         Role::Writer,
     ];
@@ -76,6 +79,7 @@ impl Role {
             Role::Collider => "collider",
             Role::Stitcher => "stitcher",
             Role::Draper => "draper",
+            Role::Flattener => "flattener",
             Role::Texturer => "texturer",
             Role::Writer => "writer",
         }

@@ -47,7 +47,7 @@ fn pieces() -> String {
     out + "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n  0\nTEXT\n  8\n1\n  1\nUnits: METRIC\n  0\nENDSEC\n  0\nEOF\n"
 }
 
-/// Lays the files that an example names into a folder: pictures, a body as OBJ, a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
+/// Lays the files that an example names into a folder: pictures, a body as OBJ (a garment where its name says so), a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
 /// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
@@ -62,6 +62,7 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
             Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
             Some("dxf") => lay(name, pieces().as_bytes())?,
             Some("svg") => lay(name, DRAWING.as_bytes())?,
+            Some("obj") if name.contains("garment") => lay(name, &garment_file())?,
             Some("obj") => lay(name, &body_file(registry, example.contains("up: Z")))?,
             Some(extension) if extension.chars().all(char::is_alphabetic) => {
                 let ending = format!(".{extension}");
@@ -89,6 +90,11 @@ fn picture(format: image::ImageFormat) -> Vec<u8> {
     // Writing into memory cannot fail; a stage that is given nothing says so.
     let _ = shapes::photo().pixels.write_to(&mut bytes, format);
     bytes.into_inner()
+}
+
+/// The suite's sewn garment as an OBJ file, each panel with vertices of its own.
+fn garment_file() -> Vec<u8> {
+    dress::sewn_garment().export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
 }
 
 /// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without

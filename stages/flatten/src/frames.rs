@@ -84,9 +84,12 @@ impl Frames {
     }
 }
 
-/// Two edges from corner 0 of a triangle, in its plane: the first along x, the second above it.
+/// Two edges from corner 0 of a triangle, in its plane: the first along x, the second above it; as it was cut where that is known.
 #[must_use]
 pub(crate) fn local_edges(surface: &Surface, triangle: usize) -> [Vector2<f64>; 2] {
+    if let Some(edges) = surface.cut_shape(triangle) {
+        return edges;
+    }
     let [x, y] = local_axes(surface, triangle);
     let [a, b, c] = surface.triangles()[triangle].map(|v| surface.positions()[v as usize]);
     [Vector2::new((b - a).norm(), 0.0), Vector2::new((c - a).dot(&x), (c - a).dot(&y))]

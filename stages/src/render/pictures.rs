@@ -10,7 +10,8 @@ use std::any::Any;
 use std::fmt::Write;
 use std::io::Cursor;
 use toile_core::artifact::{
-    Artifact, Body, Garment, Mask, Material, Mesh, Model, Outline, Panel, Photo, Point2, SeamState,
+    Artifact, Body, Garment, Mask, Material, Mesh, Model, Outline, OutputFile, OutputFiles, Panel, Photo,
+    Point2, SeamState,
 };
 
 /// The form of a finished picture.
@@ -42,6 +43,8 @@ const SEAM_COLOUR: [u8; 3] = [200, 30, 40];
 const LANDMARK_COLOUR: [u8; 3] = [30, 110, 200];
 /// JPEG quality of thumbnails: the least at which weave shows no blocks.
 const JPEG_QUALITY: u8 = 82;
+/// A larger drawing of a file is not shown, bytes.
+const LARGEST_DRAWING: usize = 1_500_000;
 /// Triangles beyond which a panel's mesh is drawn by its outline alone: a finer mesh is a grey blot.
 const MOST_TRIANGLES_DRAWN: usize = 12_000;
 
@@ -66,9 +69,21 @@ pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) ->
         garment_pictures(garment, body, height)
     } else if let Some(model) = any.downcast_ref::<Model>() {
         shots(&Scene::draft(model), &[], height)
+    } else if let Some(files) = any.downcast_ref::<OutputFiles>() {
+        drawings(files)
     } else {
         Vec::new()
     }
+}
+
+/// The drawings among files.
+fn drawings(files: &OutputFiles) -> Vec<Picture> {
+    let small = files.0.iter().filter(|f| f.path.ends_with(".svg") && f.bytes.len() <= LARGEST_DRAWING);
+    let drawing = |f: &OutputFile| {
+        let text = String::from_utf8(f.bytes.clone()).ok()?;
+        Some(Picture { caption: f.path.clone(), form: Form::Svg(text) })
+    };
+    small.filter_map(drawing).collect()
 }
 
 /// A picture as JPEG; `None` for one without pixels.

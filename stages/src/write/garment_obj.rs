@@ -18,6 +18,12 @@ pub struct GarmentObj {
     /// The file's name without its extension.
     #[param(default = "result".to_owned())]
     pub name: String,
+    /// Name the panels as groups.
+    #[param(default = false)]
+    pub groups: bool,
+    /// Write the flat places as texture points, metres; each panel's lie where they are in its own plane.
+    #[param(default = false)]
+    pub flat: bool,
 }
 
 #[stage]
@@ -28,8 +34,21 @@ impl GarmentObj {
         for p in &garment.positions {
             let _ = writeln!(text, "v {:.9} {:.9} {:.9}", p.x, p.y, p.z);
         }
-        for t in &garment.triangles {
-            let _ = writeln!(text, "f {} {} {}", t[0] + 1, t[1] + 1, t[2] + 1);
+        if self.flat {
+            for p in &garment.rest {
+                let _ = writeln!(text, "vt {:.9} {:.9}", p.x, p.y);
+            }
+        }
+        for (k, t) in garment.triangles.iter().enumerate() {
+            let begins = |p: &&GarmentPanel| self.groups && p.triangles.start == k && !p.triangles.is_empty();
+            if let Some(panel) = garment.panels.iter().find(begins) {
+                let _ = writeln!(text, "g {}", panel.name);
+            }
+            let [a, b, c] = t.map(|v| v + 1);
+            let _ = match self.flat {
+                true => writeln!(text, "f {a}/{a} {b}/{b} {c}/{c}"),
+                false => writeln!(text, "f {a} {b} {c}"),
+            };
         }
         Ok(OutputFiles::one(&format!("{}.obj", self.name), text.into_bytes()))
     }

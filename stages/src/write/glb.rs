@@ -34,7 +34,7 @@ pub struct Glb {
 
 #[stage]
 impl Glb {
-    pub(super) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(crate) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         check_model(model)?;
         let images = self.textures.encode_all(model, self.quality)?;

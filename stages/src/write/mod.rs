@@ -25,6 +25,7 @@ mod texture_file;
 
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
+pub(crate) use names::check_name;
 pub use obj::Obj;
 pub use pattern_dxf::{DxfStandard, PatternDxf};
 pub use pattern_json::PatternJson;

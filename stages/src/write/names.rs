@@ -6,7 +6,7 @@ use toile_core::StageError;
 const LONGEST_NAME: usize = 100;
 
 /// Refuses a file stem that would leave the output folder or not exist on some system.
-pub(super) fn check_name(name: &str) -> Result<(), StageError> {
+pub(crate) fn check_name(name: &str) -> Result<(), StageError> {
     let plain = |c: char| c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ');
     let fault = match () {
         () if name.is_empty() => "is empty",

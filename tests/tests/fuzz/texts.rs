@@ -1,4 +1,4 @@
-//! Pipelines, scenes, bodies, goldens and locks.
+//! Pipelines, scenes, bodies, garments, goldens and locks.
 
 use crate::{fuzz, spoil};
 use std::path::Path;
@@ -163,6 +163,21 @@ fn bodies() {
     };
     assert_eq!(body(&seeds[0]), Ok(true));
     fuzz("body", 60, |dice| spoil::text(&seeds, dice), |bytes| body(bytes).map(drop));
+}
+
+#[test]
+fn garments() {
+    let dir = tempfile::tempdir().unwrap();
+    let parts = testkit::dress::sewn_garment().export().swap_remove(0).1;
+    let marked = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 1 1 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+        g front\nusemtl red\nf 1/1 2/2 3/3 4/4\ng back\nf 2/1 5/2 6/3 3/4\nl 2 3\n";
+    let seeds = [parts, marked.as_bytes().to_vec()];
+    let garment = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.obj"), bytes).unwrap();
+        reads("Garment3d", "fuzz.obj", dir.path())
+    };
+    assert_eq!([&seeds[0], &seeds[1]].map(|seed| garment(seed)), [Ok(true), Ok(true)]);
+    fuzz("garment", 300, |dice| spoil::text(&seeds, dice), |bytes| garment(bytes).map(drop));
 }
 
 #[test]

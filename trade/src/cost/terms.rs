@@ -51,6 +51,7 @@ pub(super) fn terms(role: &str) -> &'static [Term] {
         Some(Role::Mesher | Role::Smoother | Role::Placement) => &[Of(Triangles), Of(Points), Constant],
         Some(Role::Collider) => &[Of(BodyTriangles), Constant],
         Some(Role::Stitcher | Role::Draper) => &[Steps(Triangles), Solve(Triangles), Of(Triangles), Constant],
+        Some(Role::Flattener) => &[Solve(Triangles), Of(Triangles), Constant],
         Some(Role::Texturer) => &[Of(Texels), Of(Pixels), Of(Triangles), Constant],
         Some(Role::Writer) => &[Of(Texels), Of(Triangles), Of(BodyTriangles), Constant],
         Some(Role::Body | Role::Fabric) | None => &[Constant],

@@ -1,9 +1,11 @@
 //! Wavefront OBJ: bodies are read from it and results are written to it.
 //!
-//! Method: `text` makes lines of bytes in any encoding, [`parse`] takes the `v` and `f` lines (all else is passed over), `polygon` cuts
+//! Method: `text` makes lines of bytes in any encoding, [`parse`] takes the `v` and `f` lines (all else is passed over), [`parse_marked`]
+//! also what says where a garment's pieces end, `polygon` cuts
 //! faces into triangles, [`repair`] mends what exporters leave behind, [`outer_surface`] drops what no cloth can touch. What cannot be
 //! mended (holes, edges of three triangles) is left for the check of the body. Cost: linear in the text, and a sort of the edges.
 
+mod marked;
 mod parse;
 mod pieces;
 mod polygon;
@@ -15,6 +17,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use marked::{Marks, parse_marked};
 pub use parse::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES, count_triangles, parse};
 pub use pieces::is_flat;
 pub use repair::{JOIN, Repairs, repair};
@@ -86,6 +89,27 @@ pub enum ObjError {
         /// The index as it is written.
         index: i64,
         /// Vertices of the file; above the line for a negative index.
+        count: usize,
+    },
+    /// A `vt` line without two numbers that are between -1e7 and 1e7.
+    #[error(
+        "line {line} of the OBJ: a texture point needs two numbers between -1e7 and 1e7{}",
+        instead(word)
+    )]
+    Texture {
+        /// Counted from 1.
+        line: usize,
+        /// The word that is no such number; empty where words are missing.
+        word: String,
+    },
+    /// A corner that names no texture point.
+    #[error("line {line} of the OBJ: there is no texture point {index}, the file has {count}")]
+    NoTexture {
+        /// Counted from 1.
+        line: usize,
+        /// The index as it is written.
+        index: i64,
+        /// Texture points of the file; above the line for a negative index.
         count: usize,
     },
     /// A face that is not convex, of very many corners.

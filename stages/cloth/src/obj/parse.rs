@@ -30,10 +30,14 @@ struct Face {
 /// # Errors
 /// [`ObjError`] with the line.
 pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
-    let text = decode(bytes);
+    parse_faces(&decode(bytes)).map(|(mesh, _)| mesh)
+}
+
+/// The mesh of a decoded text, and for each triangle the number of its face, counted from 0.
+pub(super) fn parse_faces(text: &[u8]) -> Result<(Mesh, Vec<u32>), ObjError> {
     let mut mesh = Mesh::default();
     let (mut corners, mut faces): (Vec<i64>, Vec<Face>) = (Vec::new(), Vec::new());
-    for (line, content) in Lines::new(&text) {
+    for (line, content) in Lines::new(text) {
         let mut words = words(&content);
         match words.next() {
             Some(b"v") => mesh.vertices.push(vertex(words, line)?),
@@ -56,7 +60,8 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
     // A face that is listed again, from another corner on or the other way round, is cut as the first time, so that its triangles
     // are found to be the same. Only looked up, never walked through.
     let mut known: HashMap<Vec<u32>, (Vec<u32>, std::ops::Range<usize>)> = HashMap::new();
-    for face in faces {
+    let mut faces_of = Vec::new();
+    for (number, face) in faces.into_iter().enumerate() {
         let count = mesh.vertices.len();
         let own = &corners[face.corners];
         if let Some(&index) = own.iter().find(|i| **i as usize >= count) {
@@ -85,8 +90,9 @@ pub fn parse(bytes: &[u8]) -> Result<Mesh, ObjError> {
                 }
             }
         }
+        faces_of.resize(mesh.triangles.len(), number as u32);
     }
-    if mesh.triangles.is_empty() { Err(ObjError::NoFaces) } else { Ok(mesh) }
+    if mesh.triangles.is_empty() { Err(ObjError::NoFaces) } else { Ok((mesh, faces_of)) }
 }
 
 /// The corner behind another one of a face.
@@ -119,7 +125,7 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<
 
 /// The vertex of `7`, `7/1`, `7/1/3` or `7//3`, counted from 0; a negative one counts from the last vertex above it. A positive one
 /// may come later in the file.
-fn corner(word: &[u8], count: usize, line: usize) -> Result<i64, ObjError> {
+pub(super) fn corner(word: &[u8], count: usize, line: usize) -> Result<i64, ObjError> {
     let first = word.split(|b| *b == b'/').next().unwrap_or_default();
     let index = std::str::from_utf8(first).ok().and_then(|w| w.parse::<i64>().ok());
     let index = index.ok_or_else(|| ObjError::Corner { line, word: clip(word) })?;
@@ -131,6 +137,6 @@ fn corner(word: &[u8], count: usize, line: usize) -> Result<i64, ObjError> {
 }
 
 /// The start of a word, fit for a message.
-fn clip(word: &[u8]) -> String {
+pub(super) fn clip(word: &[u8]) -> String {
     String::from_utf8_lossy(word).chars().take(20).collect()
 }

@@ -36,6 +36,8 @@ pub struct Distortion {
     pub outline_2d: f64,
     /// `(L3 - L2) / L3`.
     pub outline_error: f64,
+    /// The corners of the boundary, by their vertices.
+    pub corners: Vec<CornerAngles>,
     /// The largest change of an inner angle at a corner of the boundary, degrees; 0 without corners.
     pub corner_change: f64,
     /// Strain along the warp.
@@ -50,6 +52,17 @@ pub struct Distortion {
     pub crossings: usize,
     /// Strain of each triangle, for colouring.
     pub triangles: Vec<TriangleStrain>,
+}
+
+/// The inner angle at a corner of the boundary.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CornerAngles {
+    /// The vertex of the surface.
+    pub vertex: u32,
+    /// On the garment, degrees.
+    pub space: f64,
+    /// In the plane, degrees.
+    pub plane: f64,
 }
 
 /// A boundary vertex is a corner if its angle differs by more than this from a straight line, degrees.
@@ -75,6 +88,7 @@ pub fn distortion(surface: &Surface, flat: &[Point2<f64>]) -> Result<Distortion,
     let (area_3d, area_2d) = (surface.area(), flat_area(surface.triangles(), flat));
     let local = triangles.iter().enumerate().map(|(t, s)| frames.share(t) * (s.area_ratio - 1.0).abs()).sum();
     let (outline_3d, outline_2d) = outlines(surface, flat);
+    let corners = corners_of(surface, flat);
     Ok(Distortion {
         area_3d,
         area_2d,
@@ -83,7 +97,8 @@ pub fn distortion(surface: &Surface, flat: &[Point2<f64>]) -> Result<Distortion,
         outline_3d,
         outline_2d,
         outline_error: (outline_3d - outline_2d) / outline_3d,
-        corner_change: corner_change(surface, flat),
+        corner_change: corners.iter().map(|c| (c.plane - c.space).abs()).fold(0.0, f64::max),
+        corners,
         warp: spread(|s| s.warp),
         weft: spread(|s| s.weft),
         principal: spread(|s| s.principal),
@@ -106,8 +121,8 @@ fn outlines(surface: &Surface, flat: &[Point2<f64>]) -> (f64, f64) {
     (space, plane)
 }
 
-/// The largest change of angle, in degrees, of vertices that are corners on the garment.
-fn corner_change(surface: &Surface, flat: &[Point2<f64>]) -> f64 {
+/// The angles of vertices that are corners on the garment.
+fn corners_of(surface: &Surface, flat: &[Point2<f64>]) -> Vec<CornerAngles> {
     let n = surface.positions().len();
     let (mut space, mut plane, mut on_boundary) = (vec![0.0; n], vec![0.0; n], vec![false; n]);
     for (t, corners) in surface.triangles().iter().enumerate() {
@@ -122,7 +137,12 @@ fn corner_change(surface: &Surface, flat: &[Point2<f64>]) -> f64 {
         }
     }
     let corner = |v: &usize| on_boundary[*v] && (space[*v] - PI).abs() > CORNER.to_radians();
-    (0..n).filter(corner).map(|v| (plane[v] - space[v]).abs().to_degrees()).fold(0.0, f64::max)
+    let angles = |v: usize| CornerAngles {
+        vertex: v as u32,
+        space: space[v].to_degrees(),
+        plane: plane[v].to_degrees(),
+    };
+    (0..n).filter(corner).map(angles).collect()
 }
 
 fn angle3(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {

@@ -53,6 +53,21 @@ pub fn islands_by_group(
     gather(positions, triangles, &joined(triangles, |h| [groups[h as usize / 3], 0])?)
 }
 
+/// Cuts where the two sides of an edge have different labels; `labels` has one a half-edge, `3 t + k` from corner k of triangle t
+/// to the next.
+///
+/// # Errors
+/// As [`islands_by_uv`]; [`SurfaceError::NonManifoldEdge`] where three sides of one edge have the same label.
+pub fn islands_by_labels(
+    positions: &[Point3<f64>],
+    triangles: &[[u32; 3]],
+    labels: &[[u32; 2]],
+) -> Result<Pieces, SurfaceError> {
+    same_length("labels", labels.len(), 3 * triangles.len())?;
+    check(positions, triangles)?;
+    gather(positions, triangles, &joined(triangles, |h| labels[h as usize])?)
+}
+
 /// Cuts along marked edges, each given by its two vertices; an edge of three triangles or more must be marked.
 ///
 /// # Errors

@@ -12,7 +12,7 @@ mod seams;
 mod tests;
 mod weld;
 
-pub use cut::{islands_by_group, islands_by_seams, islands_by_uv, split_components};
+pub use cut::{islands_by_group, islands_by_labels, islands_by_seams, islands_by_uv, split_components};
 pub use seams::{Chain, Seam};
 pub use weld::{weld_places, weld_uv};
 

@@ -25,7 +25,7 @@ use orientation::orient;
 pub(crate) use orientation::{orient_all, turn_marked};
 
 use crate::error::SurfaceError;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Point3, Vector2, Vector3};
 
 /// Most vertices or triangles: three corners each must have a 32-bit number.
 pub const MOST: usize = 1 << 30;
@@ -45,6 +45,8 @@ pub struct Surface {
     opposite: Vec<u32>,
     loops: Vec<Vec<u32>>,
     repairs: Repairs,
+    /// Triangles, ascending, that were cut otherwise than they lie, with two edges from their first corner as cut.
+    cut: Vec<(u32, [Vector2<f64>; 2])>,
 }
 
 /// What was mended on the way in.
@@ -94,6 +96,7 @@ impl Surface {
             opposite,
             loops,
             repairs,
+            cut: Vec::new(),
         })
     }
 
@@ -150,6 +153,37 @@ impl Surface {
     #[must_use]
     pub fn area(&self) -> f64 {
         (0..self.triangles.len()).map(|t| self.area_vector(t).norm()).sum()
+    }
+
+    /// The surface with triangles that were cut otherwise than they lie, such as those that a gather draws together: for each the edges from
+    /// corner 0 to 1 and from 0 to 2 as they were cut, in the plane of the triangle (x along its first edge in space, y to the left of that).
+    /// Flatteners and strains take these for its true shape; area and outline in space stay those of the places.
+    ///
+    /// # Errors
+    /// [`SurfaceError::Degenerate`] for edges that span no area or are turned over, and for triangles that there are none of.
+    pub fn with_cut_shapes(
+        mut self,
+        mut shapes: Vec<(u32, [Vector2<f64>; 2])>,
+    ) -> Result<Self, SurfaceError> {
+        shapes.sort_by_key(|s| s.0);
+        shapes.dedup_by_key(|s| s.0);
+        for (triangle, [a, b]) in &shapes {
+            let longest = a.norm_squared().max(b.norm_squared()).max((b - a).norm_squared());
+            let quality = a.perp(b) / longest.max(f64::MIN_POSITIVE);
+            let sound =
+                quality > LEAST_QUALITY && longest < FARTHEST && (*triangle as usize) < self.triangles.len();
+            if !sound {
+                return Err(SurfaceError::Degenerate { triangle: *triangle as usize, quality });
+            }
+        }
+        self.cut = shapes;
+        Ok(self)
+    }
+
+    /// The edges of a triangle as it was cut, if that is not as it lies.
+    pub(crate) fn cut_shape(&self, triangle: usize) -> Option<[Vector2<f64>; 2]> {
+        let found = self.cut.binary_search_by_key(&(triangle as u32), |s| s.0).ok()?;
+        Some(self.cut[found].1)
     }
 
     /// The surface with its vertices elsewhere, one place for each; its triangles are the same.

@@ -1,0 +1,144 @@
+//! A garment from a binary glTF file (GLB).
+//!
+//! Every triangle primitive of every node of the scene is read where the node puts it; a node's mesh is a group, line primitives mark seams.
+//! Limits: everything must stand in the one file; of animated or skinned meshes the shape at rest is read.
+
+use super::raw::{NO_POINT, RawMesh};
+use gltf::mesh::{Mode, Primitive};
+use nalgebra::Matrix4;
+use toile_core::prelude::*;
+
+/// Nodes may be nested so deep.
+const DEEPEST: usize = 64;
+/// Most vertices, all meshes together.
+const MOST: usize = 4_000_000;
+/// Coordinates reach this far, in the file's unit.
+const FARTHEST: f64 = 1e7;
+
+/// The mesh of a file's bytes, in its own unit and axes.
+pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> {
+    let damaged = |what: String| {
+        StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}"))
+            .hint("write it again as one .glb file with its buffers in it, or as OBJ")
+            .at("file")
+    };
+    let gltf = gltf::Gltf::from_slice(bytes).map_err(|e| damaged(format!("it is no sound GLB ({e})")))?;
+    let blob = gltf.blob.as_deref();
+    let mut reader = Reader { blob, raw: RawMesh::default() };
+    reader.raw.material_names =
+        gltf.materials().map(|m| m.name().unwrap_or_default().to_owned()).chain([String::new()]).collect();
+    let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
+    let nodes = scene.ok_or_else(|| damaged("it holds no scene".to_owned()))?;
+    for node in nodes.nodes() {
+        reader.node(&node, &Matrix4::identity(), 0).map_err(damaged)?;
+    }
+    if reader.raw.triangles.is_empty() {
+        return Err(damaged("it holds no triangles".to_owned()));
+    }
+    Ok(reader.raw)
+}
+
+struct Reader<'a> {
+    blob: Option<&'a [u8]>,
+    raw: RawMesh,
+}
+
+impl Reader<'_> {
+    fn node(&mut self, node: &gltf::Node<'_>, above: &Matrix4<f64>, depth: usize) -> Result<(), String> {
+        if depth > DEEPEST {
+            return Err(format!("its nodes are nested deeper than {DEEPEST}"));
+        }
+        let local = node.transform().matrix();
+        let here = above * Matrix4::from_fn(|r, c| f64::from(local[c][r]));
+        if let Some(mesh) = node.mesh() {
+            let group = self.raw.group_names.len() as u32;
+            self.raw.group_names.push(node.name().or(mesh.name()).unwrap_or_default().to_owned());
+            for primitive in mesh.primitives() {
+                self.primitive(&primitive, &here, group)?;
+            }
+        }
+        node.children().try_for_each(|child| self.node(&child, &here, depth + 1))
+    }
+
+    fn primitive(
+        &mut self,
+        primitive: &Primitive<'_>,
+        here: &Matrix4<f64>,
+        group: u32,
+    ) -> Result<(), String> {
+        let blob = self.blob;
+        let reader = primitive.reader(|buffer| match buffer.source() {
+            gltf::buffer::Source::Bin => blob,
+            gltf::buffer::Source::Uri(_) => None,
+        });
+        let places = reader.read_positions().ok_or("a mesh has no positions in the file")?;
+        let first = self.raw.positions.len();
+        for p in places {
+            let p = here.transform_point(&Point3::from(p.map(f64::from)));
+            if !p.iter().all(|x| x.abs() <= FARTHEST) {
+                return Err(format!(
+                    "vertex {} is not between -1e7 and 1e7",
+                    self.raw.positions.len() - first
+                ));
+            }
+            self.raw.positions.push(p);
+        }
+        let count = self.raw.positions.len() - first;
+        if self.raw.positions.len() > MOST {
+            return Err(format!("it has more than {MOST} vertices; make the mesh coarser"));
+        }
+        let indices: Vec<u32> =
+            reader.read_indices().map_or_else(|| (0..count as u32).collect(), |i| i.into_u32().collect());
+        if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
+            return Err(format!("a triangle names vertex {i}, the mesh has {count}"));
+        }
+        let first_uv = self.raw.uv.len() as u32;
+        let uv: Vec<Point2> = reader.read_tex_coords(0).map_or_else(Vec::new, |t| {
+            t.into_f32().map(|[u, v]| Point2::new(f64::from(u), -f64::from(v))).collect()
+        });
+        let has_uv = uv.len() == count && uv.iter().all(|p| p.x.is_finite() && p.y.is_finite());
+        if has_uv {
+            self.raw.uv.extend(uv);
+        }
+        let material = primitive.material().index().unwrap_or(self.raw.material_names.len() - 1);
+        let global = |i: u32| i + first as u32;
+        for t in triangles(primitive.mode(), &indices) {
+            self.raw.triangles.push(t.map(global));
+            self.raw.corners.push(if has_uv { t.map(|i| i + first_uv) } else { [NO_POINT; 3] });
+            self.raw.groups.push(group);
+            self.raw.materials.push(material as u32);
+        }
+        self.raw.lines.extend(lines(primitive.mode(), &indices).into_iter().map(|l| l.map(global)));
+        Ok(())
+    }
+}
+
+/// The triangles of a primitive's indices.
+fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Triangles => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
+        Mode::TriangleStrip => {
+            let turned =
+                |(k, w): (usize, &[u32])| if k % 2 == 0 { [w[0], w[1], w[2]] } else { [w[1], w[0], w[2]] };
+            indices.windows(3).enumerate().map(turned).collect()
+        }
+        Mode::TriangleFan => {
+            let Some((&hub, rim)) = indices.split_first() else { return Vec::new() };
+            rim.windows(2).map(|w| [hub, w[0], w[1]]).collect()
+        }
+        Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip => Vec::new(),
+    }
+}
+
+/// The marked edges of a primitive's indices.
+fn lines(mode: Mode, indices: &[u32]) -> Vec<[u32; 2]> {
+    match mode {
+        Mode::Lines => indices.chunks_exact(2).map(|l| [l[0], l[1]]).collect(),
+        Mode::LineStrip => indices.windows(2).map(|l| [l[0], l[1]]).collect(),
+        Mode::LineLoop => {
+            let closing = indices.first().zip(indices.last()).map(|(a, b)| [*b, *a]);
+            indices.windows(2).map(|l| [l[0], l[1]]).chain(closing).collect()
+        }
+        Mode::Points | Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan => Vec::new(),
+    }
+}

@@ -1,0 +1,88 @@
+//! `Woven`: threads keep their lengths, shear gives way.
+
+use super::dart::Darts;
+use super::flattened::{Request, care};
+use toile_core::prelude::*;
+use toile_flatten::care::Objective;
+use toile_flatten::energy::WovenStiffness;
+use toile_flatten::flatteners::woven;
+use toile_flatten::newton::NewtonOptions;
+
+/// Lays each piece flat as its fabric would: warp and weft keep their lengths by the fabric's own curves, shear gives way.
+///
+/// The stiffness of warp and weft is the force of the fabric's curve at `strain` over that strain, that of shear the same at `angle`. The grain is held upright.
+#[stage(
+    role = Flattener,
+    source = "Fan, Zhou, Wang, Yuen 1999; membrane energy of warp, weft and shear",
+    example = "Woven(strain: 0.02)",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty)
+)]
+pub struct Woven {
+    /// Make the two sides of each seam equally long.
+    #[param(default = true)]
+    pub seams: bool,
+    /// Make left and right pieces mirror images, and pieces that are their own mirror image so.
+    #[param(default = true)]
+    pub mirror: bool,
+    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for none.
+    #[param(default = 0.005, min = 0.0, max = 0.19)]
+    pub straight: f64,
+    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a knit that is worn 10 % longer and 20 % wider.
+    #[param(default = (0.0, 0.0), min = -0.8, max = 9.0)]
+    pub tension: (f64, f64),
+    /// What becomes of cloth that cannot lie flat.
+    #[param(default = Darts::None)]
+    pub darts: Darts,
+    /// The strain at which the curves of warp and weft are read.
+    #[param(default = 0.01, min = 1e-4, max = 1.0)]
+    pub strain: f64,
+    /// The angle at which the curve of shear is read.
+    #[param(default = 5.0, min = 0.01, max = 60.0, unit = "degrees")]
+    pub angle: f64,
+    /// Most steps of Newton's method a piece.
+    #[param(default = 100, min = 1, max = 10_000, trades)]
+    pub iterations: u32,
+}
+
+#[stage]
+impl Woven {
+    /// Runs the stage.
+    pub fn run(
+        &self,
+        garment: &Garment,
+        pattern: Option<&Pattern>,
+        cx: &Context,
+    ) -> Result<(Pattern, Garment), StageError> {
+        let newton = NewtonOptions { iterations: self.iterations as usize, ..NewtonOptions::default() };
+        let stiffness: Vec<WovenStiffness> =
+            garment.panels.iter().map(|p| self.stiffness(&p.fabric)).collect();
+        let first = stiffness.first().copied().unwrap_or(WovenStiffness::COTTON);
+        if let Some(k) = stiffness.iter().position(|s| *s != first) {
+            let [a, b] = [0, k].map(|k| garment.panels[k].fabric.name.as_str());
+            cx.warn(format!("panels are of \"{a}\" and of \"{b}\": seams and straight edges are settled with the curves of \"{a}\""));
+        }
+        let of = |panel: usize| stiffness.get(panel).copied().unwrap_or(first);
+        let request = Request {
+            method: &|surface, placement, panel| woven(surface, of(panel), newton, placement),
+            care: Some((Objective::Woven(first), care(self.seams, self.straight, self.mirror, newton))),
+            darts: self.darts,
+            tension: self.tension,
+        };
+        request.run(garment, pattern, cx)
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.darts.checked().err().into_iter().collect()
+    }
+}
+
+impl Woven {
+    fn stiffness(&self, fabric: &Fabric) -> WovenStiffness {
+        let secant = |curve: &Curve, at: f64| curve.at(at).0 / at;
+        WovenStiffness {
+            warp: secant(&fabric.warp, self.strain),
+            weft: secant(&fabric.weft, self.strain),
+            shear: secant(&fabric.shear, self.angle.to_radians()),
+        }
+    }
+}
