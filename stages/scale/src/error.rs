@@ -50,7 +50,7 @@ pub enum ScaleError {
     },
     /// The camera looks too flat over the ground.
     #[error(
-        "the {object} at ({:.0}, {:.0}) is seen at {degrees:.0} degrees from straight above, at most 60 are allowed; photograph from above",
+        "the {object} at ({:.0}, {:.0}) is seen at {degrees:.0} degrees from straight above, at most 60 are allowed, and 35 without the lens's focal length; photograph from above",
         .place[0], .place[1]
     )]
     Tilted {
@@ -71,6 +71,19 @@ pub enum ScaleError {
         place: [f64; 2],
         /// Growth of the spacing from one end to the other, percent.
         percent: f64,
+    },
+    /// The marks of a ruler have too few pixels to be told.
+    #[error(
+        "the marks of the ruler at ({:.0}, {:.0}) are {apart:.1} px apart, {least:.0} are needed; go nearer or use a photo of more pixels",
+        .place[0], .place[1]
+    )]
+    RulerFine {
+        /// The middle of its marks.
+        place: [f64; 2],
+        /// From a mark to the next, pixels.
+        apart: f64,
+        /// What is needed, pixels.
+        least: f64,
     },
     /// A photo too small or too large to be looked at.
     #[error(

@@ -29,11 +29,15 @@ const SEEN: f64 = 0.6;
 const SEEN_MEAN: f64 = 0.78;
 /// The largest distance of the fitted rectangle from the measured lines: pixels, and share of the shorter side.
 const OFF: f64 = 0.4;
-const OFF_SHARE: f64 = 0.006;
+const OFF_SHARE: f64 = 0.003;
 /// The most unusual camera (sum of squares over standard deviations).
-const UNUSUAL: f64 = 14.0;
+const UNUSUAL: f64 = 8.0;
+/// The most cost of the pose of a card, and of a sheet, whose sides are longer and tell more.
+const COST: f64 = 4.0;
+const SHEET_COST: f64 = 1.6;
 /// Of the eight continuations of the sides beyond the corners, so many may show an edge.
 const CONTINUED: usize = 2;
+const SHEET_CONTINUED: usize = 1;
 
 /// Whether the aspect may be the object's, with errors of about `pixel` at each corner: by the two columns of
 /// the homography with the expected focal length, which must be alike in length and at right angles.
@@ -68,32 +72,35 @@ pub(crate) fn judge(
     shape: &Rectangle,
     camera: &Camera,
 ) -> Option<Judged> {
+    // Sheets are larger, and a corner may be further off.
+    let (step, reach) = if shape.radius > 0.0 { ((k as f64 / 2.0).max(1.0), 4) } else { (k as f64, 5) };
     let inset = 1.3 * shape.radius / shape.short + 0.04;
-    let k = k as f64;
-    let step = (k / 2.0).max(1.0);
-    let rough = Look { step, reach: 4, inset, most: 60 };
-    let sides = sides(photo, &quad.corners, &rough)?;
-    if !distinct(&sides, 0.8) {
+    let rough = Look { step, reach, inset, most: 60 };
+    let sides = sides(photo, &quad.corners, &rough).filter(|s| distinct(s, 0.8))?;
+    let corners = crossings(&sides)?;
+    let beyond = Look { step, reach: 2, inset: 0.0, most: 12 };
+    let run_on = continued(photo, &corners, &sides, &beyond);
+    if run_on > CONTINUED + 1 || !may_be(&corners, shape, camera, 0.3 * k as f64) {
         return None;
     }
-    let mut corners = crossings(&sides)?;
-    let near = Camera { ..*camera };
-    let dull = continued(photo, &corners, &sides, &Look { step, reach: 2, inset: 0.0, most: 12 });
-    if dull > CONTINUED + 1 || !may_be(&corners, shape, &near, 0.3 * k) {
-        return None;
-    }
-    let mut sides = sides;
-    let mut step = step;
+    let (corners, sides) = finely(photo, corners, &rough)?;
+    measured(photo, corners, &sides, shape, camera)
+}
+
+/// The sides in ever finer steps, down to a pixel.
+fn finely(
+    photo: &RgbImage,
+    mut corners: [Point2<f64>; 4],
+    rough: &Look,
+) -> Option<([Point2<f64>; 4], [Side; 4])> {
+    let mut step = rough.step;
     while step > 1.0 {
         step = (step / 2.0).max(1.0);
-        let fine = Look { step, reach: 4, inset, most: if step > 1.0 { 80 } else { 300 } };
-        sides = self::sides(photo, &corners, &fine)?;
-        corners = crossings(&sides)?;
+        let most = if step > 1.0 { 80 } else { 300 };
+        corners = crossings(&sides(photo, &corners, &Look { step, reach: 4, most, ..*rough })?)?;
     }
-    let fine = Look { step: 1.0, reach: 3, inset, most: 400 };
-    sides = self::sides(photo, &corners, &fine)?;
-    corners = crossings(&sides)?;
-    measured(photo, corners, &sides, shape, camera)
+    let sides = sides(photo, &corners, &Look { step: 1.0, reach: 3, most: 400, ..*rough })?;
+    Some((crossings(&sides)?, sides))
 }
 
 /// Judges measured sides.
@@ -111,16 +118,20 @@ fn measured(
     let h = pose.homography(camera);
     let short = shortest(&corners);
     let off = offs(&h, &pins(&corners, sides, shape));
-    if off > OFF + OFF_SHARE * short || pose.unusual(camera) > UNUSUAL {
+    let most = if shape.radius > 0.0 { COST } else { SHEET_COST };
+    let usual = pose.unusual(camera) <= UNUSUAL && pose.cost <= most && pose.plausible(camera);
+    if off > OFF + OFF_SHARE * short || !usual {
         return None;
     }
     let run_on = continued(photo, &corners, sides, &BEYOND);
     let sure = run_on == 0 && pose.slant() < 35.0 && sides.iter().all(|s| s.coverage > 0.9);
     let few = short < FEW && shape.radius == 0.0;
-    if run_on > CONTINUED
+    if run_on > if shape.radius > 0.0 { CONTINUED } else { SHEET_CONTINUED }
         || (few && !sure)
+        || (shape.radius > 0.0 && within(photo, &h, shape))
         || !right_corners(photo, &h, shape, sure)
         || !even(photo, &h, shape)
+        || (shape.radius == 0.0 && one_sided(photo, &h, shape) < ONE_SIDED)
     {
         return None;
     }
@@ -234,6 +245,35 @@ fn right_corners(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle, sure: bo
     }
 }
 
+/// How far beyond a side another edge is looked for, as shares of the shorter side.
+const JUST_BEYOND: [f64; 2] = [0.06, 0.3];
+/// It is one from this share of the side's own step of colour on, and this many levels.
+const ANOTHER: [f64; 2] = [0.25, 10.0];
+/// Steps in which the way beyond is walked.
+const WALKED: usize = 24;
+
+/// Whether another edge runs along a side just beyond it: then that side is a stripe printed on a card, and the card is larger.
+fn within(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
+    let corners = shape.corners();
+    (0..4).any(|i| {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        let Some(out) = nalgebra::center(&a, &b).coords.try_normalize(1e-9) else { return false };
+        // The mean colour along the side, so far beyond it.
+        let at = |share: f64| {
+            let along = (0..WALKED).map(|n| a + (b - a) * (0.15 + 0.7 * n as f64 / (WALKED - 1) as f64));
+            let seen = along.map(|p| through(h, p + out * (share * shape.short)));
+            let sum =
+                seen.map(|p| Vector3::from(colour(photo, p.x, p.y).map(f64::from))).sum::<Vector3<f64>>();
+            sum / WALKED as f64
+        };
+        let own = (at(JUST_BEYOND[0]) - at(-JUST_BEYOND[0])).norm();
+        let step = (JUST_BEYOND[1] - JUST_BEYOND[0]) / WALKED as f64;
+        let beyond: Vec<Vector3<f64>> = (0..=WALKED).map(|n| at(JUST_BEYOND[0] + step * n as f64)).collect();
+        let most = beyond.windows(4).map(|w| (w[3] - w[0]).norm()).fold(0.0, f64::max);
+        most > (ANOTHER[0] * own).max(ANOTHER[1])
+    })
+}
+
 /// Sheets of fewer pixels on their shorter side are taken where all is sure alone, as tiles and prints are like them.
 const FEW: f64 = 80.0;
 
@@ -255,6 +295,26 @@ fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
     };
     let like = hues.iter().filter(|h| (h[0] - r).abs() < HUE && (h[1] - g).abs() < HUE).count();
     like as f64 >= 0.8 * hues.len() as f64
+}
+
+/// The least of [`one_sided`] of a sheet's outline.
+const ONE_SIDED: f64 = 0.6;
+
+/// How far a sheet is lighter all along its outline than what it lies on, or darker: 1 all along, 0 as often the
+/// one as the other, as is the outline of some tiles of a floor.
+fn one_sided(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> f64 {
+    let corners = shape.corners();
+    let (mut sum, mut sizes) = (0.0, 1e-9);
+    for (i, n) in (0..4).flat_map(|i| (0..40).map(move |n| (i, n))) {
+        let at = corners[i] + (corners[(i + 1) % 4] - corners[i]) * (0.04 + 0.023 * f64::from(n));
+        let p = through(h, at);
+        let Some(out) = (p - through(h, at * 0.98)).try_normalize(1e-9) else { continue };
+        let [inner, outer] = [-3.5, 3.5].map(|d| colour(photo, p.x + d * out.x, p.y + d * out.y));
+        let step = f64::from(inner.iter().sum::<f32>() - outer.iter().sum::<f32>());
+        sum += step;
+        sizes += step.abs();
+    }
+    (sum / sizes).abs()
 }
 
 /// How much the share of red or green of a paper's colour may differ from the median.

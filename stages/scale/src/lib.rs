@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Cards, sheets and chessboards give the ground's plane, so that lengths hold all over it under any tilt up to
-//! 60 degrees. A ruler gives a scale along itself alone. What is not sure is refused with a [`ScaleError`].
+//! 35 degrees (60 for chessboards, and where the focal length is given). A ruler gives a scale along itself alone. What is not sure is refused with a [`ScaleError`].
 //!
 //! ```
 //! use image::{Rgb, RgbImage};

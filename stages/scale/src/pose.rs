@@ -31,6 +31,10 @@ pub(crate) struct Camera {
     pub(crate) focal: f64,
     /// Standard deviation of the focal length's logarithm.
     pub(crate) doubt: f64,
+    /// The least and the most logarithm of the focal length over the expected one.
+    pub(crate) bounds: [f64; 2],
+    /// The most tilt of the ground, degrees.
+    pub(crate) most_tilt: f64,
 }
 
 /// Standard deviation of the principal point, as a share of the longer side.
@@ -41,13 +45,23 @@ impl Camera {
     pub(crate) fn of(width: u32, height: u32, focal_35mm: Option<f64>) -> Self {
         let (w, h) = (f64::from(width), f64::from(height));
         let focal = focal_35mm.unwrap_or(PHONE) / FILM * w.hypot(h);
-        let doubt = if focal_35mm.is_some() { 0.03 } else { 0.15 };
-        Camera { middle: Point2::new((w - 1.0) / 2.0, (h - 1.0) / 2.0), longer: w.max(h), focal, doubt }
+        let middle = Point2::new((w - 1.0) / 2.0, (h - 1.0) / 2.0);
+        let (doubt, bounds, most_tilt) = match focal_35mm {
+            Some(_) => (0.03, [-0.1, 0.1], MOST_TILT),
+            None => (0.15, PHONES.map(|mm| (mm / PHONE).ln()), UNKNOWN_TILT),
+        };
+        Camera { middle, longer: w.max(h), focal, doubt, bounds, most_tilt }
     }
 }
 
 /// Focal length of a phone's main lens on 35 mm film, mm.
 const PHONE: f64 = 26.5;
+/// Those of phones' main lenses lie between these, mm.
+const PHONES: [f64; 2] = [22.0, 35.0];
+/// The most tilt of the ground where the focal length is known, degrees.
+pub(crate) const MOST_TILT: f64 = 60.0;
+/// And where it is not: beyond, a tilt makes up for a wrong proportion.
+const UNKNOWN_TILT: f64 = 35.0;
 /// Diagonal of 35 mm film, mm.
 const FILM: f64 = 43.267;
 /// Numbers that are fitted.
@@ -80,15 +94,20 @@ impl Pose {
         Matrix3::new(f, 0.0, c.x, 0.0, f, c.y, 0.0, 0.0, 1.0)
     }
 
+    /// Angle between the line of sight to the object and the ground's normal, degrees.
+    pub(crate) fn slant(&self) -> f64 {
+        let normal = self.rotation.matrix().column(2).into_owned();
+        (normal.dot(&self.place).abs() / self.place.norm().max(1e-12)).clamp(0.0, 1.0).acos().to_degrees()
+    }
+
     /// Angle between the camera's axis and the ground's normal, degrees.
     pub(crate) fn tilt(&self) -> f64 {
         self.rotation.matrix()[(2, 2)].abs().clamp(0.0, 1.0).acos().to_degrees()
     }
 
-    /// Angle between the line of sight to the object and the ground's normal, degrees.
-    pub(crate) fn slant(&self) -> f64 {
-        let normal = self.rotation.matrix().column(2).into_owned();
-        (normal.dot(&self.place).abs() / self.place.norm().max(1e-12)).clamp(0.0, 1.0).acos().to_degrees()
+    /// Whether the focal length is within the camera's bounds.
+    pub(crate) fn plausible(&self, camera: &Camera) -> bool {
+        (camera.bounds[0]..=camera.bounds[1]).contains(&self.focal)
     }
 
     /// Sum of squares of the camera's own terms: how unusual a camera the pose needs.

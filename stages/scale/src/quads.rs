@@ -42,6 +42,8 @@ const ON_RIDGES: f64 = 0.5;
 struct Meeting {
     at: Point2<f64>,
     away: Vector2<f64>,
+    /// How far the other segment reaches from there.
+    reach: f64,
     gap: f64,
 }
 
@@ -70,7 +72,14 @@ fn around(segments: &[Segment], ridges: &Ridges, i: usize, least: f64, aspect: f
             let like = first.away.dot(&second.away);
             if u * v > 0.0 && like > 0.8 && on_ridges(ridges, first.at, second.at) >= ON_RIDGES {
                 looked += 1;
-                fourth(ridges, first, second, aspect, least, &mut found);
+                let long = side.norm();
+                let depths = [(0.55 * long / aspect).max(least), 1.2 * long * aspect];
+                fourth(ridges, [first, second], [0.0; 2], depths, least, &mut found);
+                // Where the sides are seen whole, the fourth lies between their ends.
+                let reaches = [first.reach, second.reach];
+                if reaches.iter().all(|r| (depths[0]..=depths[1]).contains(r)) {
+                    fourth(ridges, [first, second], reaches, [-6.0, 6.0], least, &mut found);
+                }
             }
         }
     }
@@ -84,18 +93,17 @@ fn pairs<'a>(firsts: &'a [Meeting], seconds: &'a [Meeting]) -> Vec<(&'a Meeting,
     pairs
 }
 
-/// Depths at which a fourth side lies on ridges, as far as the aspect allows: the side may be a long or short one.
+/// Depths, beyond some of the two sides each, at which a fourth side lies on ridges.
 fn fourth(
     ridges: &Ridges,
-    first: &Meeting,
-    second: &Meeting,
-    aspect: f64,
+    [first, second]: [&Meeting; 2],
+    beyond: [f64; 2],
+    [from, to]: [f64; 2],
     least: f64,
     found: &mut Vec<Quad>,
 ) {
-    let long = (second.at - first.at).norm();
-    let (from, to) = ((0.55 * long / aspect).max(least), 1.2 * long * aspect);
-    let ends = |depth: f64| (first.at + first.away * depth, second.at + second.away * depth);
+    let end = |m: &Meeting, depth: f64| m.at + m.away * depth;
+    let ends = |depth: f64| (end(first, beyond[0] + depth), end(second, beyond[1] + depth));
     let share = |depth: f64| likely(ridges, ends(depth).0, ends(depth).1);
     let steps = (((to - from).max(0.0) / STEP) as usize).min(750);
     let shares: Vec<f64> = (0..=steps).map(|n| share(from + n as f64 * STEP)).collect();
@@ -213,7 +221,8 @@ fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Meeting
     let at = one.a + u * t;
     let outward = |v: Vector2<f64>, end: usize| if end == 0 { -v } else { v };
     let gaps = [gap(at, p, outward(u, end), l1)?, gap(at, q, outward(v, e), l2)?];
-    Some(Meeting { at, away: -outward(v, e), gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
+    let reach = (if e == 0 { two.b } else { two.a } - at).norm();
+    Some(Meeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
 }
 
 /// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a quarter.

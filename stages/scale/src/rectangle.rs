@@ -11,7 +11,7 @@ use crate::found::{Found, Kind, density, inverse, middle};
 use crate::judge::{self, Judged};
 use crate::object::Rectangle;
 use crate::pixels::Small;
-use crate::pose::Camera;
+use crate::pose::{Camera, MOST_TILT};
 use crate::quads::{Quad, quads};
 use crate::ridges::Ridges;
 use crate::segments::segments;
@@ -44,10 +44,11 @@ pub(crate) fn find(
             judged.extend(judge::judge(photo, &candidate, k, shape, &camera));
         }
     }
-    judged.sort_by(|a, b| b.merit.total_cmp(&a.merit));
+    let tilted = |j: &Judged| j.pose.tilt() > camera.most_tilt;
+    judged.sort_by(|a, b| tilted(a).cmp(&tilted(b)).then(b.merit.total_cmp(&a.merit)));
     let best = judged.first().ok_or(ScaleError::NoneFound { object: object.name() })?;
-    alone(best, &judged, object)?;
-    checked(photo, best, object)?;
+    checked(photo, best, object, &camera)?;
+    alone(best, judged.iter().filter(|j| !tilted(j)), object)?;
     found(best, object, &camera)
 }
 
@@ -65,9 +66,8 @@ fn candidates(photo: &RgbImage, k: usize, shape: &Rectangle, camera: &Camera) ->
     let ridges = Ridges::of(&small, LEAST_SLOPE);
     let least = (0.5 * LEAST_SIDE / k as f64).max(6.0);
     let mut kept: Vec<Quad> = Vec::new();
-    let sg = segments(&ridges, least);
-    let qs = quads(&sg, &ridges, least, shape.long / shape.short);
-    for quad in qs {
+    let segments = segments(&ridges, least);
+    for quad in quads(&segments, &ridges, least, shape.long / shape.short) {
         let corners = quad.corners.map(|p| small.to_photo(p));
         for turn in 0..2 {
             let turned = Quad { corners: std::array::from_fn(|i| corners[(i + turn) % 4]), ..quad };
@@ -91,9 +91,13 @@ fn same(a: &Quad, b: &Quad, reach: f64) -> bool {
 }
 
 /// Refuses where another place is as good.
-fn alone(best: &Judged, judged: &[Judged], object: Object) -> Result<(), ScaleError> {
+fn alone<'a>(
+    best: &Judged,
+    judged: impl Iterator<Item = &'a Judged>,
+    object: Object,
+) -> Result<(), ScaleError> {
     let mut places = vec![middle(&best.corners)];
-    for other in judged.iter().filter(|j| j.merit > best.merit - EQUAL) {
+    for other in judged.filter(|j| j.merit > best.merit - EQUAL) {
         let at = middle(&other.corners);
         let apart = |p: &[f64; 2]| (p[0] - at[0]).hypot(p[1] - at[1]) > 0.5 * best.short;
         if places.iter().all(apart) {
@@ -107,7 +111,7 @@ fn alone(best: &Judged, judged: &[Judged], object: Object) -> Result<(), ScaleEr
 }
 
 /// Refuses what is cut, small or seen too flat.
-fn checked(photo: &RgbImage, best: &Judged, object: Object) -> Result<(), ScaleError> {
+fn checked(photo: &RgbImage, best: &Judged, object: Object, camera: &Camera) -> Result<(), ScaleError> {
     let (object, place) = (object.name(), middle(&best.corners));
     if !best.corners.iter().all(|p| in_frame(photo, p)) {
         return Err(ScaleError::Cut { object, place });
@@ -116,7 +120,7 @@ fn checked(photo: &RgbImage, best: &Judged, object: Object) -> Result<(), ScaleE
         return Err(ScaleError::TooSmall { object, place, short: best.short, least: LEAST_SIDE });
     }
     let degrees = best.pose.slant();
-    if degrees > 60.0 {
+    if degrees > MOST_TILT || best.pose.tilt() > camera.most_tilt {
         return Err(ScaleError::Tilted { object, place, degrees });
     }
     Ok(())

@@ -73,27 +73,70 @@ fn seeds(ridges: &Ridges) -> Vec<usize> {
     bins.into_iter().rev().flatten().collect()
 }
 
-/// The ridge pixels near `start` that have its direction.
+/// The ridge pixels near `start` that have its direction and lie on the line of those before.
 fn grow(ridges: &Ridges, taken: &mut [bool], start: usize, region: &mut Vec<usize>) {
     region.clear();
     region.push(start);
     taken[start] = true;
+    let place = |i: usize| Vector2::new((i % ridges.w) as f64, (i / ridges.w) as f64);
     let mut sum = ridges.slopes[start].twice;
+    let mut sums = Sums::of(place(start));
     let mut next = 0;
     while next < region.len() {
-        let i = region[next];
+        let (x, y) = (region[next] % ridges.w, region[next] / ridges.w);
         next += 1;
-        let (x, y) = (i % ridges.w, i / ridges.w);
+        let line = sums.line();
         for v in y.saturating_sub(2)..=(y + 2).min(ridges.h - 1) {
             for u in x.saturating_sub(2)..=(x + 2).min(ridges.w - 1) {
                 let j = v * ridges.w + u;
-                if ridges.on[j] && !taken[j] && alike(sum, ridges.slopes[j].twice) {
+                let like = ridges.on[j] && !taken[j] && alike(sum, ridges.slopes[j].twice);
+                if like && line.is_none_or(|(m, d)| d.perp(&(place(j) - m)).abs() < BESIDE) {
                     taken[j] = true;
                     (0..2).for_each(|c| sum[c] += ridges.slopes[j].twice[c]);
+                    sums.add(place(j));
                     region.push(j);
                 }
             }
         }
+    }
+}
+
+/// Pixels further from the line of a region are not of it: other edges that meet it at a small angle.
+const BESIDE: f64 = 1.7;
+/// Pixels from which on a region has a line.
+const LINE: f64 = 16.0;
+
+/// Sums over places from the first of them.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    first: Vector2<f64>,
+    n: f64,
+    sum: Vector2<f64>,
+    xx: f64,
+    xy: f64,
+    yy: f64,
+}
+
+impl Sums {
+    fn of(first: Vector2<f64>) -> Self {
+        Sums { first, n: 1.0, sum: Vector2::zeros(), xx: 0.0, xy: 0.0, yy: 0.0 }
+    }
+
+    fn add(&mut self, p: Vector2<f64>) {
+        let d = p - self.first;
+        self.n += 1.0;
+        self.sum += d;
+        self.xx += d.x * d.x;
+        self.xy += d.x * d.y;
+        self.yy += d.y * d.y;
+    }
+
+    /// Middle and direction, of enough places.
+    fn line(&self) -> Option<(Vector2<f64>, Vector2<f64>)> {
+        let m = self.sum / self.n;
+        let (xx, yy) = (self.xx - self.n * m.x * m.x, self.yy - self.n * m.y * m.y);
+        let angle = 0.5 * (2.0 * (self.xy - self.n * m.x * m.y)).atan2(xx - yy);
+        (self.n >= LINE).then(|| (self.first + m, Vector2::new(angle.cos(), angle.sin())))
     }
 }
 

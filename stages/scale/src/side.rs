@@ -68,7 +68,7 @@ pub(crate) fn side(photo: &RgbImage, a: Point2<f64>, b: Point2<f64>, look: &Look
         });
     }
     let start = vote(&peaks, look, count)?;
-    fit(&peaks, start, count, look).map(|f| f.side(a, b, normal, look, length))
+    fit(&peaks, start, count, look).map(|f| f.side(a, b, normal, look.step))
 }
 
 /// Unit vector across the side, to its left where y grows downwards.
@@ -185,8 +185,8 @@ struct Fit {
 }
 
 impl Fit {
-    fn side(&self, a: Point2<f64>, b: Point2<f64>, normal: Vector2<f64>, look: &Look, _length: f64) -> Side {
-        let step = look.step;
+    /// The side whose ends the offsets are from; `step` in pixels.
+    fn side(&self, a: Point2<f64>, b: Point2<f64>, normal: Vector2<f64>, step: f64) -> Side {
         let (coverage, slope) = (self.coverage, self.slope);
         let (a, b) = (a + normal * (self.p * step), b + normal * (self.q * step));
         Side { a, b, coverage, slope, spread: self.spread * step, error: self.error * step }

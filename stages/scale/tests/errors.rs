@@ -93,13 +93,17 @@ fn the_other_refusals_read_well() {
         "the A4 sheet at (10, 20) is cut by the photo's frame; lay it whole into the frame"
     );
     let tilted = ScaleError::Tilted { object: "A4 sheet", place, degrees: 63.4 };
-    let text = "the A4 sheet at (10, 20) is seen at 63 degrees from straight above, at most 60 are allowed; \
-                photograph from above";
+    let text = "the A4 sheet at (10, 20) is seen at 63 degrees from straight above, at most 60 are allowed, \
+                and 35 without the lens's focal length; photograph from above";
     assert_eq!(tilted.to_string(), text);
     let ruler = ScaleError::RulerTilted { place, percent: 4.2 };
     let text = "the marks of the ruler at (10, 20) widen by 4.2 % along it, so the camera was tilted and a ruler \
                 gives no tilt; photograph from straight above or use a sheet";
     assert_eq!(ruler.to_string(), text);
+    let fine = ScaleError::RulerFine { place, apart: 3.04, least: 4.0 };
+    let text = "the marks of the ruler at (10, 20) are 3.0 px apart, 4 are needed; go nearer or use a photo of more \
+                pixels";
+    assert_eq!(fine.to_string(), text);
     let several = ScaleError::Several { object: "A4 sheet", places: vec![[1.0, 2.0], [3.0, 4.0]] };
     assert_eq!(several.to_string(), "2 places look like a A4 sheet ((1, 2), (3, 4)); leave one in the frame");
 }

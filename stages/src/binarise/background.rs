@@ -180,14 +180,21 @@ pub(super) fn rim_width(small: &Small, rim: f64) -> usize {
     ((small.w.min(small.h) as f64 * rim).round() as usize).max(1)
 }
 
-/// Closing, opening, the largest piece, all its holes.
+/// Closing, opening, the largest piece, of those that a user has marked if there are any, all its holes.
 pub(super) fn clean(small: &Small, raw: &[bool]) -> Option<Vec<bool>> {
     let radius = (CLEAN * small.w.max(small.h) as f64 / 400.0).round() as u32;
     let bytes = raw.iter().map(|on| if *on { 255 } else { 0 }).collect();
     let mask = GrayImage::from_raw(small.w as u32, small.h as u32, bytes)?;
     let mask = open(&close(&mask, radius), radius);
     let regions = Regions::of(&mask);
-    let largest = *regions.by_size().first()?;
+    let marked = |i: &usize| {
+        let piece = regions.paint(|k, _| k == *i);
+        piece.as_raw().iter().zip(&small.known).any(|(on, known)| *on != 0 && *known == Some(true))
+    };
+    let order = regions.by_size();
+    let meant =
+        small.known.contains(&Some(true)).then(|| order.iter().copied().find(|i| marked(i))).flatten();
+    let largest = meant.or(order.first().copied())?;
     let mask = super::finish::fill_holes(regions.paint(|i, _| i == largest), 1.0);
     Some(mask.as_raw().iter().map(|v| *v != 0).collect())
 }

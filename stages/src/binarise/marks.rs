@@ -155,7 +155,12 @@ mod tests {
 
     #[test]
     fn green_strokes_are_garment_and_red_ones_ground() {
-        let strokes = RgbImage::from_fn(30, 20, |x, _| Rgb([[0, 255, 0], [255, 0, 0], [90, 90, 90]][(x / 10) as usize]));
+        let strokes =
+            RgbImage::from_fn(
+                30,
+                20,
+                |x, _| Rgb([[0, 255, 0], [255, 0, 0], [90, 90, 90]][(x / 10) as usize]),
+            );
         let known = |x: f64| stroke(&strokes, (x, 0.5));
         assert_eq!([known(0.1), known(0.5), known(0.9)], [Some(true), Some(false), None]);
     }

@@ -106,7 +106,10 @@ fn check_frame(photo: &Photo, mask: &Mask, cx: &Context) -> Result<(), StageErro
         [(left == 0, "left"), (top == 0, "upper"), (right + 1 == m.0, "right"), (bottom + 1 == m.1, "lower")];
     // How far a garment may touch the frame is the binariser's affair.
     for (_, side) in touched.iter().filter(|t| t.0 && !is_opacity(photo, mask)) {
-        cx.warn(format!("the garment in \"{}\" touches the photo's {side} border, and ends there", photo.file));
+        cx.warn(format!(
+            "the garment in \"{}\" touches the photo's {side} border, and ends there",
+            photo.file
+        ));
     }
     Ok(())
 }

@@ -99,11 +99,15 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
         .map(|name| resolve(entries, name).map(|side| (name, side)))
         .collect::<Result<Vec<_>, _>>()?;
     // A file is decoded once for each object that is looked for in it.
-    let files: BTreeMap<(&str, Option<ScaleObject>), &str> =
-        sides.iter().rev().map(|(name, (file, _))| ((file.file.as_str(), file.scale), name.as_str())).collect();
+    let files: BTreeMap<(&str, Option<ScaleObject>), &str> = sides
+        .iter()
+        .rev()
+        .map(|(name, (file, _))| ((file.file.as_str(), file.scale), name.as_str()))
+        .collect();
     cx.progress(0.0, format!("reading {} file(s)", files.len()));
     let files: Vec<_> = files.into_iter().collect();
-    let read = |((file, object), name): &((&str, Option<ScaleObject>), &str)| read_file(file, *object, name, cx);
+    let read =
+        |((file, object), name): &((&str, Option<ScaleObject>), &str)| read_file(file, *object, name, cx);
     let pictures = files.par_iter().map(read).collect::<Result<Vec<_>, _>>()?;
     let pictures: BTreeMap<_, Picture> = files.iter().map(|(key, _)| *key).zip(pictures).collect();
     cx.progress(1.0, "photos read");

@@ -42,7 +42,9 @@ mod micrometres {
         let um = (Length::deserialize(d)?.metres() * 1e6).round();
         match (1.0..=f64::from(u32::MAX)).contains(&um) {
             true => Ok(um as u32),
-            false => Err(serde::de::Error::custom("the side of a chessboard's square is not a length above 0")),
+            false => {
+                Err(serde::de::Error::custom("the side of a chessboard's square is not a length above 0"))
+            }
         }
     }
 }
@@ -70,8 +72,10 @@ pub(super) fn from_above(
     cx: &Context,
 ) -> Result<(Decoded, f64), StageError> {
     if decoded.alpha.is_some() {
-        return Err(StageError::invalid(format!("\"{file}\" has transparent pixels, and no ground on which an object lies"))
-            .hint("give the photo as it was taken, or the garment's `width`"));
+        return Err(StageError::invalid(format!(
+            "\"{file}\" has transparent pixels, and no ground on which an object lies"
+        ))
+        .hint("give the photo as it was taken, or the garment's `width`"));
     }
     let named = |e: toile_scale::ScaleError| StageError::invalid(format!("\"{file}\": {e}"));
     let found = find(&decoded.pixels, object.object()).map_err(named)?;

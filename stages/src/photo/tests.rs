@@ -421,10 +421,7 @@ fn a_photo_without_ground_shows_no_object() {
     let cut = RgbaImage::from_pixel(60, 60, Rgba([9, 9, 9, 0]));
     let folder = Folder::new("cut-scale", &[("a.png", encode(cut, ImageFormat::Png))]);
     let error = folder.read(r#"{"front": (file: "a.png", scale: Chessboard(square: "25 mm"))}"#).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "\"a.png\" has transparent pixels, and no ground on which an object lies"
-    );
+    assert_eq!(error.to_string(), "\"a.png\" has transparent pixels, and no ground on which an object lies");
     assert_eq!(error.hint.as_deref(), Some("give the photo as it was taken, or the garment's `width`"));
 }
 

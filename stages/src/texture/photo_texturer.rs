@@ -110,10 +110,11 @@ impl PhotoTexturer {
             model.materials.push(material);
         }
         cx.progress(0.5, format!("textures of {} panels", pictures.len()));
-        let texture = |(panel, photo, mask, plain, area): (&GarmentPanel, &Photo, Option<&Mask>, bool, PixelBox)| {
-            cx.check()?;
-            self.texture(garment, panel, (photo, mask, plain), area)
-        };
+        let texture =
+            |(panel, photo, mask, plain, area): (&GarmentPanel, &Photo, Option<&Mask>, bool, PixelBox)| {
+                cx.check()?;
+                self.texture(garment, panel, (photo, mask, plain), area)
+            };
         let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
         model.textures = textures.into_iter().collect::<Result<_, _>>()?;
         if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {

@@ -57,7 +57,9 @@ fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
     let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
     let small = resize(pixels, size(w), size(h), FilterType::Triangle);
     let inside = resize(sure, size(w), size(h), FilterType::Triangle);
-    let inside = GrayImage::from_fn(size(w), size(h), |x, y| Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255]));
+    let inside = GrayImage::from_fn(size(w), size(h), |x, y| {
+        Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255])
+    });
     let found = print_of(&small, &inside)?;
     let large = resize(&found, w, h, FilterType::Triangle);
     Some(GrayImage::from_fn(w, h, |x, y| Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])))
@@ -75,7 +77,8 @@ fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
     let (w, h) = small.dimensions();
     let alike = GrayImage::from_fn(w, h, |x, y| Luma([u8::from(like((y * w + x) as usize)) * 255]));
     // The lightness of the cloth around, as a picture of three equal channels.
-    let grey = RgbImage::from_fn(w, h, |x, y| image::Rgb([(colours[(y * w + x) as usize].x * 2.55) as u8; 3]));
+    let grey =
+        RgbImage::from_fn(w, h, |x, y| image::Rgb([(colours[(y * w + x) as usize].x * 2.55) as u8; 3]));
     let around = Light::blurred(&grey, &alike)?;
     let differs = |i: usize| {
         let here = around.at(i as u32 % w, i as u32 / w)[0] / 2.55;
@@ -83,7 +86,8 @@ fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
     };
     let found = GrayImage::from_fn(w, h, |x, y| Luma([u8::from(differs((y * w + x) as usize)) * 255]));
     let found = without_specks(close(&found, 1));
-    let marked = |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
+    let marked =
+        |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
     let share = |of: &[bool]| marked(of) / of.iter().filter(|on| **on).count().max(1) as f64;
     let is_print = share(&on) >= LEAST && share(&on) <= PATTERN[1] && share(&band) <= PATTERN[0];
     is_print.then(|| dilate(&close(&found, AROUND), AROUND))
@@ -100,8 +104,10 @@ fn commonest(colours: &[Vector3<f64>], marked: &[bool]) -> Option<Vector3<f64>> 
     let mut bins = vec![0_u32; 64 * 64];
     let seen = || colours.iter().zip(marked).filter(|(_, on)| **on).map(|(c, _)| c);
     seen().for_each(|c| bins[bin(c.y) * 64 + bin(c.z)] += 1);
-    let around = |i: usize| [0, 1, 63, 64, 65].iter().map(|d| bins[i + d] + bins[i.saturating_sub(*d)]).sum::<u32>();
-    let best = (65..64 * 64 - 65).max_by_key(|&i| (around(i), std::cmp::Reverse(i))).filter(|&i| around(i) > 0)?;
+    let around =
+        |i: usize| [0, 1, 63, 64, 65].iter().map(|d| bins[i + d] + bins[i.saturating_sub(*d)]).sum::<u32>();
+    let best =
+        (65..64 * 64 - 65).max_by_key(|&i| (around(i), std::cmp::Reverse(i))).filter(|&i| around(i) > 0)?;
     let (row, column) = (best / 64, best % 64);
     let near = |c: &&Vector3<f64>| bin(c.y).abs_diff(row) <= 1 && bin(c.z).abs_diff(column) <= 1;
     let (sum, count) = seen().filter(near).fold((Vector3::zeros(), 0.0), |(s, n), c| (s + c, n + 1.0));
@@ -208,7 +214,8 @@ impl Weave {
     /// `None` where no square of plain cloth is large enough to show a weave.
     fn of(pixels: &RgbImage, kept: &GrayImage) -> Option<Weave> {
         let (left, top, side) = largest_square(kept)?;
-        let cut = image::imageops::crop_imm(pixels, left as u32, top as u32, side as u32, side as u32).to_image();
+        let cut =
+            image::imageops::crop_imm(pixels, left as u32, top as u32, side as u32, side as u32).to_image();
         let all = GrayImage::from_pixel(side as u32, side as u32, Luma([255]));
         let light = Light::blurred(&cut, &all)?;
         let thread = |(x, y, p): (u32, u32, &image::Rgb<u8>)| {

@@ -6,7 +6,7 @@
 //! (millimetres) or to nothing (centimetres). The spacing is then followed along the edge by its phase, and a
 //! parabola through the phases gives it and its change.
 //!
-//! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 2.5 pixels each. Rulers in
+//! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 4 pixels each. Rulers in
 //! inches are refused where their marks are halved again and again (two, four, eight).
 
 mod period;
@@ -48,16 +48,38 @@ struct Marks {
 
 /// Finds a ruler.
 pub(crate) fn find(photo: &RgbImage, object: Object) -> Result<Found, ScaleError> {
-    let mut all: Vec<Marks> = edges(photo).iter().filter_map(|e| marks(photo, e)).collect();
+    let edges = edges(photo);
+    let mut all: Vec<Marks> = edges.iter().filter_map(|e| marks(photo, e)).collect();
     all.sort_by(|a, b| b.merit.total_cmp(&a.merit));
-    let best = all.first().ok_or(ScaleError::NoneFound { object: object.name() })?;
+    let none = || {
+        edges.iter().find_map(|e| fine(photo, e)).unwrap_or(ScaleError::NoneFound { object: object.name() })
+    };
+    let best = all.first().ok_or_else(none)?;
     let found = found(best, object);
+    if best.phase.change.abs() > CHANGE && best.phase.spacing < LEAST_APART {
+        let (place, apart) = (middle(&found.corners), best.phase.spacing);
+        return Err(ScaleError::RulerFine { place, apart, least: LEAST_APART });
+    }
     if best.phase.change.abs() > CHANGE {
         let percent = 100.0 * best.phase.change.abs();
         return Err(ScaleError::RulerTilted { place: middle(&found.corners), percent });
     }
     alone(&all, &found, object)?;
     Ok(found)
+}
+
+/// The least distance of marks that are told for sure, pixels.
+const LEAST_APART: f64 = 4.0;
+
+/// Marks along an edge that are too fine to be told: their period is there, and gone on both sides.
+fn fine(photo: &RgbImage, edge: &Segment) -> Option<ScaleError> {
+    let strip = Strip::of(edge)?;
+    let (depth, p) = starts(photo, &strip).into_iter().find(|(_, p)| p.lag < LEAST_APART)?;
+    let across = Across::of(photo, &strip, p.lag);
+    let most = across.clear(depth);
+    let [low, high] = [across.end(depth, -1.0, most)?, across.end(depth, 1.0, most)?];
+    let at = strip.place(0.5 * strip.length as f64, 0.5 * (low + high));
+    Some(ScaleError::RulerFine { place: [at.x, at.y], apart: p.lag, least: LEAST_APART })
 }
 
 /// Refuses where another ruler is as good: one whose middle is more than a ruler's width off the line.
@@ -122,52 +144,83 @@ fn marks(photo: &RgbImage, edge: &Segment) -> Option<Marks> {
 
 /// The marks about a depth with a period.
 fn marks_of(photo: &RgbImage, strip: &Strip, (middle, p): (f64, Period)) -> Option<Marks> {
-    let lags = ((11.0 * p.lag) as usize).min(strip.length / 4).clamp(8, 300);
-    let look = |depth: f64| autocorrelation(&strip.profile(photo, depth), lags);
-    let step = (p.lag * 0.3).clamp(1.0, 6.0);
-    let clear = |depth: f64| period::at(&look(depth), p.lag);
-    let most = clear(middle);
+    let across = Across::of(photo, strip, p.lag);
+    let most = across.clear(middle);
     // Marks end on both sides: the period is gone beyond the edge, and deeper inside.
-    let reach = (11.0 * p.lag).min(150.0);
-    let end = |way: f64| {
-        let mut low = 0;
-        for n in 1..(reach / step) as i32 {
-            low = if clear(middle + way * f64::from(n) * step) < 0.5 * most { low + 1 } else { 0 };
-            // A gap of two lines, as between marks and numbers, is no end.
-            if low == 3 {
-                return Some(middle + way * f64::from(n - 2) * step);
-            }
-        }
-        None
-    };
-    let ends = [end(-1.0)?, end(1.0)?];
-    let beyond = |from: f64, way: f64| -> Vec<Vec<f64>> {
-        (0..14).map(|n| look(from + way * f64::from(n) * step)).collect()
-    };
-    let outer = [beyond(ends[0], -1.0), beyond(ends[1], 1.0)];
+    let ends = [across.end(middle, -1.0, most)?, across.end(middle, 1.0, most)?];
+    let outer = [across.beyond(ends[0], -1.0), across.beyond(ends[1], 1.0)];
     let gone = outer.iter().flatten().map(|r| period::at(r, p.lag)).fold(0.0, f64::max);
-    let units = [unit(&outer[0], p.lag), unit(&outer[1], p.lag)];
     if gone > 0.7 * most {
         return None;
     }
-    // Millimetres are told on one side; centimetres where neither side has another period.
-    let unit = match units {
-        [Some(a), Some(b)] => a.min(b),
-        [Some(a), None] | [None, Some(a)] if a < 0.004 => a,
-        _ => return None,
-    };
-    let count = 4.0;
-    let depths: Vec<f64> =
-        (0..4).map(|n| ends[0] + (ends[1] - ends[0]) * (0.5 + f64::from(n)) / count).collect();
-    let phase = Phase::follow(strip, photo, &depths, p.lag)?;
-    if phase.residual > 0.12 * phase.spacing || phase.change.abs() > 0.4 {
-        return None;
-    }
-    if phase.periods < if unit < 0.004 { 25.0 } else { 7.0 } {
-        return None;
-    }
+    let unit = told([unit(&outer[0], p.lag), unit(&outer[1], p.lag)])?;
+    let depths = [0.125, 0.375, 0.625, 0.875].map(|t| ends[0] + (ends[1] - ends[0]) * t);
+    let phase = Phase::follow(strip, photo, &depths, p.lag).filter(|f| regular(f, unit))?;
     let merit = p.clear * phase.periods.sqrt() * if unit < 0.004 { 1.0 } else { 2.0 };
     Some(Marks { strip: strip.clone(), unit, phase, merit, ends })
+}
+
+/// Millimetres are told on one side; centimetres where neither side has another period.
+fn told(units: [Option<f64>; 2]) -> Option<f64> {
+    match units {
+        [Some(a), Some(b)] => Some(a.min(b)),
+        [Some(a), None] | [None, Some(a)] if a < 0.004 => Some(a),
+        _ => None,
+    }
+}
+
+/// Whether there are enough marks and they are evenly apart.
+fn regular(phase: &Phase, unit: f64) -> bool {
+    let least = if unit < 0.004 { 25.0 } else { 7.0 };
+    phase.periods >= least && phase.residual <= 0.12 * phase.spacing && phase.change.abs() <= 0.4
+}
+
+/// A period looked for on lines at depths across a strip.
+#[derive(Debug)]
+struct Across<'a> {
+    photo: &'a RgbImage,
+    strip: &'a Strip,
+    lag: f64,
+    /// The largest lag of the autocorrelations, pixels.
+    lags: usize,
+    /// Distance of the lines, pixels.
+    step: f64,
+}
+
+impl<'a> Across<'a> {
+    fn of(photo: &'a RgbImage, strip: &'a Strip, lag: f64) -> Self {
+        let lags = ((11.0 * lag) as usize).min(strip.length / 4).clamp(8, 300);
+        Across { photo, strip, lag, lags, step: (lag * 0.3).clamp(1.0, 6.0) }
+    }
+
+    fn look(&self, depth: f64) -> Vec<f64> {
+        autocorrelation(&self.strip.profile(self.photo, depth), self.lags)
+    }
+
+    /// How clear the period is at a depth.
+    fn clear(&self, depth: f64) -> f64 {
+        period::at(&self.look(depth), self.lag)
+    }
+
+    /// The depth, one way from the middle, where the period is gone on three lines; a gap of two, as between
+    /// marks and numbers, is no end.
+    fn end(&self, middle: f64, way: f64, most: f64) -> Option<f64> {
+        let lines = ((11.0 * self.lag).min(150.0) / self.step) as i32;
+        let depth = |n: i32| middle + way * f64::from(n) * self.step;
+        let mut low = 0;
+        for n in 1..lines {
+            low = if self.clear(depth(n)) < 0.5 * most { low + 1 } else { 0 };
+            if low == 3 {
+                return Some(depth(n - 2));
+            }
+        }
+        None
+    }
+
+    /// Autocorrelations on lines from an end outwards.
+    fn beyond(&self, from: f64, way: f64) -> Vec<Vec<f64>> {
+        (0..14).map(|n| self.look(from + way * f64::from(n) * self.step)).collect()
+    }
 }
 
 /// Distance of the lines on which a period is first looked for, pixels.

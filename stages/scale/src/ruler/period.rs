@@ -117,41 +117,32 @@ struct Window {
 impl Phase {
     /// Follows marks of about `lag` pixels at the given depths.
     pub(crate) fn follow(strip: &Strip, photo: &RgbImage, depths: &[f64], lag: f64) -> Option<Phase> {
-        let mut sum = vec![0.0; strip.length];
-        for d in depths {
-            strip.profile(photo, *d).iter().zip(&mut sum).for_each(|(v, s)| *s += v / depths.len() as f64);
-        }
-        let windows = windows(&sum, lag);
-        let run = strongest_run(&windows)?;
-        let windows = unwrapped(run);
-        let (fit, middle, half) = parabola(&windows)?;
-        // In cycles: x / lag + phase / tau, with the phase as a parabola of (x - middle) / half.
-        let rate = |t: f64| 1.0 / lag + (fit[1] + 2.0 * fit[2] * t) / (TAU * half);
-        let (low, high) = (middle - half - 2.5 * lag, middle + half + 2.5 * lag);
-        let cycle = |x: f64| {
-            let t = (x - middle) / half;
-            x / lag + (fit[0] + fit[1] * t + fit[2] * t * t) / TAU
-        };
-        let spacing = 1.0 / rate(0.0);
+        let windows = windows(&mean_profile(strip, photo, depths), lag);
+        let windows = unwrapped(strongest_run(&windows)?);
+        let curve = Curve::through(&windows, lag)?;
+        let spacing = 1.0 / curve.rate(0.0);
         let good = spacing.is_finite() && spacing > 0.8 * lag && spacing < 1.25 * lag;
-        let errors: f64 = windows
-            .iter()
-            .map(|w| {
-                let t = (w.x - middle) / half;
-                (w.phase - fit[0] - fit[1] * t - fit[2] * t * t).powi(2)
-            })
-            .sum();
-        let marks = marks(&cycle, low.max(0.0), high.min(strip.length as f64), spacing);
-        let seen = windows.len() as f64 / (2.0 * half / (2.0 * lag) + 1.0);
+        let (low, high) = (curve.middle - curve.half - 2.5 * lag, curve.middle + curve.half + 2.5 * lag);
+        let marks = curve.marks(low.max(0.0), high.min(strip.length as f64));
+        let seen = windows.len() as f64 / (curve.half / lag + 1.0);
         (good && marks.len() > 3).then(|| Phase {
             spacing,
-            change: (rate(-1.0) - rate(1.0)) / rate(0.0),
+            change: (curve.rate(-1.0) - curve.rate(1.0)) / curve.rate(0.0),
             periods: marks.len() as f64,
-            residual: (errors / windows.len() as f64).sqrt() / TAU * spacing,
+            residual: curve.residual(&windows) / TAU * spacing,
             seen: seen.min(1.0),
             marks,
         })
     }
+}
+
+/// The mean of the profiles at some depths.
+fn mean_profile(strip: &Strip, photo: &RgbImage, depths: &[f64]) -> Vec<f64> {
+    let mut sum = vec![0.0; strip.length];
+    for d in depths {
+        strip.profile(photo, *d).iter().zip(&mut sum).for_each(|(v, s)| *s += v / depths.len() as f64);
+    }
+    sum
 }
 
 /// Phases of the period in windows of ten periods, two apart.
@@ -162,11 +153,11 @@ fn windows(s: &[f64], lag: f64) -> Vec<Window> {
     while x + half < s.len() as f64 {
         let (from, to) = ((x - half).ceil() as usize, (x + half) as usize);
         let (mut sum, mut energy) = (Complex::new(0.0, 0.0), 1e-9);
-        for i in from..=to.min(s.len() - 1) {
+        for (i, v) in s.iter().enumerate().take(to + 1).skip(from) {
             let weight = 0.5 + 0.5 * (std::f64::consts::PI * (i as f64 - x) / half).cos();
             let turn = TAU * i as f64 / lag;
-            sum += Complex::new(turn.cos(), -turn.sin()) * (weight * s[i]);
-            energy += weight * s[i] * s[i];
+            sum += Complex::new(turn.cos(), -turn.sin()) * (weight * v);
+            energy += weight * v * v;
         }
         let strength = sum.norm() / (energy * half).sqrt();
         list.push(Window { x, phase: sum.arg(), strength });
@@ -185,10 +176,8 @@ fn strongest_run(windows: &[Window]) -> Option<&[Window]> {
     for n in 0..=windows.len() {
         if on(n) || (on(n + 1) && start.is_some() && n < windows.len()) {
             start = start.or(Some(n));
-        } else if let Some(s) = start.take() {
-            if n - s > best.len() {
-                best = s..n;
-            }
+        } else if let Some(s) = start.take().filter(|s| n - s > best.len()) {
+            best = s..n;
         }
     }
     (best.len() >= 3).then(|| &windows[best])
@@ -204,47 +193,75 @@ fn unwrapped(run: &[Window]) -> Vec<Window> {
     list
 }
 
-/// The parabola through the phases over (x - middle) / half, with weights of Tukey in a few rounds.
-fn parabola(windows: &[Window]) -> Option<(Vector3<f64>, f64, f64)> {
-    let (first, last) = (windows.first()?.x, windows.last()?.x);
-    let (middle, half) = ((first + last) / 2.0, ((last - first) / 2.0).max(1e-6));
-    let row = |w: &Window| {
-        let t = (w.x - middle) / half;
-        Vector3::new(1.0, t, t * t)
-    };
-    let mut fit = Vector3::zeros();
-    let mut scale = f64::INFINITY;
-    for _ in 0..5 {
-        let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
-        for w in windows {
-            let off = (row(w).dot(&fit) - w.phase) / scale;
-            let weight = if scale.is_infinite() { 1.0 } else { (1.0 - off * off).max(0.0).powi(2) };
-            a += row(w) * row(w).transpose() * weight;
-            b += row(w) * (weight * w.phase);
-        }
-        fit = a.try_inverse()? * b;
-        let offs = windows.iter().map(|w| (row(w).dot(&fit) - w.phase).abs()).collect();
-        scale = (4.5 * crate::side::median(offs)?).max(0.3);
-    }
-    fit.iter().all(|v| v.is_finite()).then_some((fit, middle, half))
+/// Phases as a parabola over the place from the middle, in halves of the length.
+#[derive(Debug, Clone, Copy)]
+struct Curve {
+    fit: Vector3<f64>,
+    middle: f64,
+    half: f64,
+    lag: f64,
 }
 
-/// Places between two ends where the cycle is whole: the middles of the marks, or of the gaps if marks are light.
-fn marks(cycle: &impl Fn(f64) -> f64, low: f64, high: f64, spacing: f64) -> Vec<f64> {
-    let mut list = Vec::new();
-    let mut n = cycle(low).ceil();
-    let mut x = low;
-    while list.len() < 5000 {
-        // Two steps of Newton from the last mark.
-        for _ in 0..4 {
-            x += (n - cycle(x)) * spacing;
+impl Curve {
+    /// The parabola through the phases, with weights of Tukey in a few rounds.
+    fn through(windows: &[Window], lag: f64) -> Option<Curve> {
+        let (first, last) = (windows.first()?.x, windows.last()?.x);
+        let (middle, half) = ((first + last) / 2.0, ((last - first) / 2.0).max(1e-6));
+        let mut curve = Curve { fit: Vector3::zeros(), middle, half, lag };
+        let mut scale = f64::INFINITY;
+        for _ in 0..5 {
+            let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
+            for w in windows {
+                let (row, off) = (curve.row(w.x), curve.off(w) / scale);
+                let weight = if scale.is_infinite() { 1.0 } else { (1.0 - off * off).max(0.0).powi(2) };
+                a += row * row.transpose() * weight;
+                b += row * (weight * w.phase);
+            }
+            curve.fit = a.try_inverse()? * b;
+            let offs = windows.iter().map(|w| curve.off(w).abs()).collect();
+            scale = (4.5 * crate::side::median(offs)?).max(0.3);
         }
-        if !(x <= high) {
-            break;
-        }
-        list.push(x);
-        n += 1.0;
-        x += spacing;
+        curve.fit.iter().all(|v| v.is_finite()).then_some(curve)
     }
-    list
+
+    fn row(&self, x: f64) -> Vector3<f64> {
+        let t = (x - self.middle) / self.half;
+        Vector3::new(1.0, t, t * t)
+    }
+
+    fn off(&self, w: &Window) -> f64 {
+        self.row(w.x).dot(&self.fit) - w.phase
+    }
+
+    /// Root mean square of the phases' distances, radians.
+    fn residual(&self, windows: &[Window]) -> f64 {
+        (windows.iter().map(|w| self.off(w).powi(2)).sum::<f64>() / windows.len() as f64).sqrt()
+    }
+
+    /// Marks a pixel, `t` halves of the length from the middle.
+    fn rate(&self, t: f64) -> f64 {
+        1.0 / self.lag + (self.fit[1] + 2.0 * self.fit[2] * t) / (TAU * self.half)
+    }
+
+    /// Marks up to a place.
+    fn cycle(&self, x: f64) -> f64 {
+        x / self.lag + self.row(x).dot(&self.fit) / TAU
+    }
+
+    /// Places between two ends where the cycle is whole: middles of the marks, or of the gaps if marks are light.
+    fn marks(&self, low: f64, high: f64) -> Vec<f64> {
+        let spacing = 1.0 / self.rate(0.0);
+        let (mut list, mut n, mut x) = (Vec::new(), self.cycle(low).ceil(), low);
+        while list.len() < 5000 {
+            // A few steps of Newton from the last mark.
+            (0..4).for_each(|_| x += (n - self.cycle(x)) * spacing);
+            if x > high || x.is_nan() {
+                break;
+            }
+            list.push(x);
+            n += 1.0;
+            x += spacing;
+        }
+        list
+    }
 }

@@ -69,12 +69,18 @@ pub(super) fn choose(
 /// of two colours as well as about all of it.
 fn whole(found: &[Found], all: &[Evidence], best: usize) -> usize {
     let count = |i: usize| found[i].mask.iter().filter(|on| **on).count() as f64;
-    let held = |i: usize| found[i].mask.iter().zip(&found[best].mask).filter(|(a, b)| **a && **b).count() as f64;
+    let held =
+        |i: usize| found[i].mask.iter().zip(&found[best].mask).filter(|(a, b)| **a && **b).count() as f64;
     let own = count(best);
     let holds = |i: &usize| {
-        all[*i].confidence() >= ALSO * all[best].confidence() && held(*i) >= HELD * own && count(*i) >= MORE * own
+        all[*i].confidence() >= ALSO * all[best].confidence()
+            && held(*i) >= HELD * own
+            && count(*i) >= MORE * own
     };
-    (0..found.len()).filter(holds).max_by(|a, b| all[*a].confidence().total_cmp(&all[*b].confidence())).unwrap_or(best)
+    (0..found.len())
+        .filter(holds)
+        .max_by(|a, b| all[*a].confidence().total_cmp(&all[*b].confidence()))
+        .unwrap_or(best)
 }
 
 /// The evidence of a mask at a larger size of its photo, without that of other methods.

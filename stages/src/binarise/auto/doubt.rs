@@ -61,7 +61,10 @@ pub(super) fn doubtful(photo: &Photo, mask: &GrayImage, small: &Small, found: &[
     pixels.par_chunks_mut(3).enumerate().for_each(|(i, pixel)| {
         let (x, y) = (i % w * small.w / w, i / w * small.h / h);
         let cover = COVER * doubt[y * small.w + x];
-        pixel.iter_mut().zip(RED).for_each(|(v, red)| *v = (f64::from(*v) * (1.0 - cover) + red * cover) as u8);
+        pixel
+            .iter_mut()
+            .zip(RED)
+            .for_each(|(v, red)| *v = (f64::from(*v) * (1.0 - cover) + red * cover) as u8);
     });
     Photo { pixels: Shared::new(pixels), ..shown }
 }

@@ -19,7 +19,11 @@ pub(super) struct Found {
 
 /// What each method finds; a method that finds nothing is left out.
 /// `given` is the mask of an earlier stage, brought to the small size.
-pub(super) fn methods(small: &Small, given: Option<Vec<bool>>, cx: &Context) -> Result<Vec<Found>, StageError> {
+pub(super) fn methods(
+    small: &Small,
+    given: Option<Vec<bool>>,
+    cx: &Context,
+) -> Result<Vec<Found>, StageError> {
     let cut = GraphCut::default();
     let modes = cut.modes as usize;
     let mut found = Vec::new();

@@ -43,8 +43,8 @@ use doubt::{doubtful, refuse};
 use grid::{bits, picture};
 use image::GrayImage;
 use methods::methods;
-use wedge::with_wedges;
 use toile_core::prelude::*;
+use wedge::with_wedges;
 
 /// The binariser that takes what a user marks.
 const NEXT: &str = "`GraphCut()`";

@@ -77,7 +77,10 @@ fn slit(mask: &mut [bool], solid: &[bool], mouth: Vec<usize>, reach: usize, w: u
     let h = solid.len() / w.max(1);
     let outside = |k: usize| {
         let (x, y) = (k % w, k / w);
-        let (xs, ys) = (x.saturating_sub(reach)..(x + reach + 1).min(w), y.saturating_sub(reach)..(y + reach + 1).min(h));
+        let (xs, ys) = (
+            x.saturating_sub(reach)..(x + reach + 1).min(w),
+            y.saturating_sub(reach)..(y + reach + 1).min(h),
+        );
         let around = ys.flat_map(|v| xs.clone().map(move |u| (u, v))).filter(|(u, v)| !solid[v * w + u]);
         let square = |(u, v): (usize, usize)| u.abs_diff(x).pow(2) + v.abs_diff(y).pow(2);
         around.map(|p| (square(p), (x, y), p)).min()
@@ -85,7 +88,9 @@ fn slit(mask: &mut [bool], solid: &[bool], mouth: Vec<usize>, reach: usize, w: u
     let Some((_, (ax, ay), (bx, by))) = mouth.into_iter().filter_map(outside).min() else { return };
     let steps = 2 * ax.abs_diff(bx).max(ay.abs_diff(by)).max(1);
     for i in 0..=steps {
-        let along = |a: usize, b: usize| (a as f64 + (b as f64 - a as f64) * i as f64 / steps as f64).round() as usize;
+        let along = |a: usize, b: usize| {
+            (a as f64 + (b as f64 - a as f64) * i as f64 / steps as f64).round() as usize
+        };
         let (x, y) = (along(ax, bx), along(ay, by));
         // Two pixels wide, so that ground meets ground across edges.
         for (u, v) in [(x, y), (x + 1, y), (x, y + 1)].into_iter().filter(|(u, v)| *u < w && *v < h) {

@@ -233,8 +233,11 @@ impl<'a> Problem<'a> {
                 all.extend(bow.map(|b| BELIEF * (b - e.bow[0]) / e.bow[1]));
             }
             let corner = if e.own_end && !completes { Vector2::zeros() } else { one.b - other.b };
-            let bows =
-                if own(self.form.edges, k) && !completes { [0.0; 2] } else { [0, 1].map(|i| one.bow[i] - other.bow[i]) };
+            let bows = if own(self.form.edges, k) && !completes {
+                [0.0; 2]
+            } else {
+                [0, 1].map(|i| one.bow[i] - other.bow[i])
+            };
             all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
             all.extend(bows.map(|b| b / ALIKE[1]));
         }

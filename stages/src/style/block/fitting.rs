@@ -102,9 +102,10 @@ impl Fitting {
             block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
         };
         // What the frame cuts off is measured by the other half, where that is whole.
-        let (_, form, Fitted { fit, .. }) = fitted(Complete::Mirror)
-            .or_else(|_| fitted(Complete::Nothing))
-            .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
+        let (_, form, Fitted { fit, .. }) =
+            fitted(Complete::Mirror)
+                .or_else(|_| fitted(Complete::Nothing))
+                .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
         let tape = Tape::of(form, &fit);
         tape.tell(cx);
         let cost = |s: &[f64; 4]| tape.cost(s);
@@ -231,7 +232,9 @@ fn out(fit: &Fit, cuff: usize) -> f64 {
 
 /// The angle of the arms from the vertical at which the sleeves lie: the mean of both, from cap to cuff; degrees.
 fn arms(form: &Form, fit: &Fit) -> f64 {
-    let Some(k) = form.underarm() else { return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k)) };
+    let Some(k) = form.underarm() else {
+        return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k));
+    };
     let angle = |s: &Vec<super::bow::Bow>| {
         let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
         let cap = nalgebra::center(&s[k].a, &s[k + 2].at(0.7));

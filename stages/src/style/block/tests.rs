@@ -495,8 +495,16 @@ fn a_folded_cuff_is_cut_as_the_other_one() {
 }
 
 /// A batwing top: its sides sweep out to the cuffs without an armpit.
-const BATWING: &[[f64; 2]] =
-    &[[0.0, 0.0], [230.0, 0.0], [235.0, 150.0], [290.0, 270.0], [400.0, 340.0], [440.0, 500.0], [110.0, 620.0], [0.0, 590.0]];
+const BATWING: &[[f64; 2]] = &[
+    [0.0, 0.0],
+    [230.0, 0.0],
+    [235.0, 150.0],
+    [290.0, 270.0],
+    [400.0, 340.0],
+    [440.0, 500.0],
+    [110.0, 620.0],
+    [0.0, 590.0],
+];
 
 #[test]
 fn sleeves_without_an_armpit_are_cut_in_one_with_the_top() {
