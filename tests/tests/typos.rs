@@ -10,7 +10,7 @@ type Slip = (&'static str, &'static str, &'static str, &'static str);
 const SLIPS: [Slip; 32] = [
     // names of stages, parameters, fields and choices
     ("Otsu()", "^Otzu()", "unknown stage `Otzu`", "did you mean `Otsu`?"),
-    ("GraphCut()", "^GrahpCut()", "unknown stage `GrahpCut`", "did you mean `GraphCut`?"),
+    ("Neckline()", "^Nekcline()", "unknown stage `Nekcline`", "did you mean `Neckline`?"),
     ("PlaneSmoother(", "^PlaneSmother(", "unknown stage `PlaneSmother`", "did you mean `PlaneSmoother`?"),
     ("Refine(parts", "^Refien(parts", "unknown stage `Refien`", "did you mean `Refine`?"),
     ("GarmentObj(", "^GarmentOjb(", "unknown stage `GarmentOjb`", "did you mean `GarmentObj`?"),

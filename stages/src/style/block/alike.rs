@@ -1,7 +1,7 @@
 //! Both halves of a fitted template made alike: a garment is its own mirror image, however its sleeves and legs lie in the photo.
 //!
-//! Corners of trunk and waist become the mean of both sides. Sleeves and legs, which lie as they fall and may lie folded, are taken from one side:
-//! the one that the template fits better, and where both fit alike, the one with the wider cuff or hem, since a fold only narrows it. One that is nearly
+//! Corners of trunk, waist and legs become the mean of both sides. Sleeves, which lie as they fall and may lie folded, are taken from one side:
+//! the one that the template fits better, and where both fit alike, the one with the wider cuff, since a fold only narrows it. One that is nearly
 //! twice as wide is none: there a side of the sleeve was taken for its cuff, and the other one is right.
 
 use super::bow::Bow;
@@ -25,9 +25,10 @@ pub enum Sides {
     AsTheyLie,
 }
 
-/// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves or legs of each side.
+/// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves of each side.
 pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
-    let own: Vec<usize> = (0..form.edges.len()).filter(|&k| form.edges[k].own_end).collect();
+    let is_sleeve = |k: &usize| form.edges[*k].own_end && !form.has_legs();
+    let own: Vec<usize> = (0..form.edges.len()).filter(is_sleeve).collect();
     let chosen = chosen(fit, &own, misses);
     let means: Vec<Bow> = (0..form.edges.len()).map(|k| mean(&fit.sides[0][k], &fit.sides[1][k])).collect();
     let mut edges = means.clone();
@@ -42,7 +43,7 @@ pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
     fit.sides = [edges.clone(), edges];
 }
 
-/// The side whose sleeve or leg is taken.
+/// The side whose sleeve is taken.
 fn chosen(fit: &Fit, own: &[usize], [right, left]: [f64; 2]) -> usize {
     let width = |side: usize| own.last().map_or(0.0, |&k| fit.sides[side][k].length());
     let wider = usize::from(width(1) > width(0));

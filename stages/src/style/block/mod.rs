@@ -107,7 +107,7 @@ pub struct Block {
     /// Whether the half that the frame cuts is completed by the mirror image of the other. The binariser must let the garment touch the frame for it.
     #[param(default = Complete::Nothing)]
     complete: Complete,
-    /// Whether both halves are cut as each other's mirror image, sleeves and legs as the one that lies better, or each as it lies.
+    /// Whether both halves are cut as each other's mirror image, sleeves as the one that lies better, or each as it lies.
     #[param(default = Sides::Alike)]
     sides: Sides,
 }
