@@ -18,7 +18,7 @@
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};
 use super::cut::{Grid, STEPS};
 use super::finish::{Finish, mask_of, no_garment};
-use super::marks::{self, Marks, of_photo};
+use super::marks::{self, Marks, Place, of_photo};
 use super::mixture::Mixture;
 use super::morphology::{dilate, erode};
 use super::refine::refine;
@@ -62,13 +62,13 @@ pub struct GraphCut {
     pub touch: f64,
     /// Places on the garment, by photo, as shares of width and height from the left upper corner.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub garment: BTreeMap<String, Vec<(f64, f64)>>,
+    pub garment: BTreeMap<String, Vec<Place>>,
     /// Places on the ground, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub ground: BTreeMap<String, Vec<(f64, f64)>>,
+    pub ground: BTreeMap<String, Vec<Place>>,
     /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
-    pub rect: BTreeMap<String, ((f64, f64), (f64, f64))>,
+    pub rect: BTreeMap<String, (Place, Place)>,
     /// Files, by photo: copies of the photo with green strokes on the garment and red strokes on the ground.
     #[param(default = BTreeMap::new())]
     pub strokes: BTreeMap<String, String>,

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// A place in a photo, as shares of its width and height, from its left upper corner.
-pub(super) type Place = (f64, f64);
+pub type Place = (f64, f64);
 
 /// A point marks a disc of this radius, as a share of the photo's longer side.
 const DISC: f64 = 0.012;

@@ -38,6 +38,7 @@ pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
 pub use graph_cut::GraphCut;
 pub use local::{Local, LocalMethod, local};
+pub use marks::Place;
 pub use morphology::{MAX_RADIUS, close, dilate, erode, open};
 pub use otsu::{Otsu, Split, otsu};
 pub use regions::{Piece, Regions};

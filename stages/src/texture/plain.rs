@@ -269,7 +269,7 @@ mod tests {
     }
 
     fn is_print(x: u32, y: u32) -> bool {
-        (70..130).contains(&x) && (80..120).contains(&y) && (x / 6) % 2 == 0
+        (70..130).contains(&x) && (80..120).contains(&y) && (x / 6).is_multiple_of(2)
     }
 
     fn picture(colour: impl Fn(u32, u32) -> [u8; 3]) -> (RgbImage, GrayImage) {
@@ -289,7 +289,8 @@ mod tests {
 
     #[test]
     fn stripes_all_over_are_the_cloths_own() {
-        let (mut pixels, sure) = picture(|x, y| if y / 10 % 2 == 0 { [250; 3] } else { cloth(x, y) });
+        let (mut pixels, sure) =
+            picture(|x, y| if (y / 10).is_multiple_of(2) { [250; 3] } else { cloth(x, y) });
         let before = pixels.clone();
         assert!(!plain(&mut pixels, &sure));
         assert_eq!(pixels, before);

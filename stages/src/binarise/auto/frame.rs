@@ -42,7 +42,7 @@ fn place((w, h): (u32, u32), side: usize, along: u32, deep: u32) -> (u32, u32) {
 /// Where along a side the mask meets the frame without reaching it, and how many layers of ground lie between.
 fn strip(mask: &GrayImage, photo: &Photo, side: usize) -> Option<(Vec<u32>, u32)> {
     let (w, h) = mask.dimensions();
-    let (length, across) = if side % 2 == 0 { (w, h) } else { (h, w) };
+    let (length, across) = if side.is_multiple_of(2) { (w, h) } else { (h, w) };
     let widest = ((WIDEST * f64::from(w.min(h))) as u32).max(LEAST);
     if across < 4 * widest {
         return None;

@@ -51,7 +51,7 @@ fn score(mask: &Mask, shape: impl Fn(f64, f64) -> bool) -> f64 {
 
 /// A print in the middle of the chest: bars.
 fn print(x: f64, y: f64) -> bool {
-    (0.38..0.62).contains(&x) && (0.4..0.6).contains(&y) && (y * 25.0) as u32 % 2 == 0
+    (0.38..0.62).contains(&x) && (0.4..0.6).contains(&y) && ((y * 25.0) as u32).is_multiple_of(2)
 }
 
 #[test]
