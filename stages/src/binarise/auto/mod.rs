@@ -88,7 +88,8 @@ impl Auto {
         let small = Small::of(photo, self.size / 2);
         let large = Small::of(photo, self.size);
         cx.check()?;
-        let given = given.map(|mask| at_size(&mask.pixels, &small));
+        let given =
+            given.map(|mask| same_size(mask, photo).map(|()| at_size(&mask.pixels, &small))).transpose()?;
         let found = methods(&small, given, cx)?;
         cx.progress(0.6, "methods compared");
         let Some(choice) = choose(&small, &large, &found, cx)? else {
@@ -128,6 +129,17 @@ impl Auto {
     }
 }
 
+fn same_size(mask: &Mask, photo: &Photo) -> Result<(), StageError> {
+    let (m, p) = (mask.pixels.dimensions(), photo.pixels.dimensions());
+    match m == p {
+        true => Ok(()),
+        false => Err(StageError::invalid(format!(
+            "the mask has {} x {} pixels, its photo {} x {}",
+            m.0, m.1, p.0, p.1
+        ))),
+    }
+}
+
 /// A mask of the photo's size at a reduced one.
 fn at_size(mask: &GrayImage, small: &Small) -> Vec<bool> {
     let (w, h) = (mask.width() as usize, mask.height() as usize);
@@ -135,11 +147,13 @@ fn at_size(mask: &GrayImage, small: &Small) -> Vec<bool> {
     (0..small.lab.len()).map(at).collect()
 }
 
-/// The mask with its holes filled but for wedges of ground, which are opened.
-fn opened(mask: GrayImage) -> GrayImage {
-    let (w, h) = (mask.width() as usize, mask.height() as usize);
+/// The mask with wedges of ground opened; its other holes stay as they are.
+fn opened(mut mask: GrayImage) -> GrayImage {
     let solid = bits(&fill_holes(mask.clone(), 1.0));
-    picture(&with_wedges(&solid, &bits(&mask), w), w, h)
+    let open = with_wedges(&solid, &bits(&mask), mask.width() as usize);
+    let cut = solid.iter().zip(&open).map(|(solid, open)| *solid && !open);
+    mask.iter_mut().zip(cut).filter(|(_, cut)| *cut).for_each(|(v, _)| *v = 0);
+    mask
 }
 
 /// What each method finds, at a reduced size, for tools that compare them.

@@ -188,6 +188,14 @@ fn a_print_of_the_grounds_colour_is_no_wedge() {
 }
 
 #[test]
+fn a_mask_of_another_size_is_refused() {
+    let photo = photo(|x, y| if tee(x, y) { [160, 40, 60] } else { [225; 3] });
+    let given = Mask { pixels: image::GrayImage::new(0, 0).into() };
+    let e = Auto::default().run(&photo, Some(&given), &Context::quiet()).unwrap_err();
+    assert_eq!(e.to_string(), "the mask has 0 x 0 pixels, its photo 240 x 320");
+}
+
+#[test]
 fn the_mask_of_an_earlier_stage_is_one_more_voice() {
     // Half of the shirt has the ground's colour: alone the methods leave doubt, and the mask given decides.
     let photo = photo(|x, y| match tee(x, y) {

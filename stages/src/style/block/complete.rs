@@ -28,6 +28,13 @@ const SAME: f64 = 0.04;
 /// The share of the outline that may be cut on both sides at one height: a stray point is no cut.
 const BOTH: f64 = 0.02;
 
+/// The error for an outline of which no photo tells where its frame is.
+pub(super) fn no_frame(panel: &str) -> StageError {
+    StageError::invalid(format!("there is no photo of \"{panel}\" whose frame could cut it"))
+        .hint("`complete: Mirror` needs the photo; take it out for outlines that come from elsewhere")
+        .at("complete")
+}
+
 /// Marks the points where the frame cuts the garment. `size` is the photo's, pixels.
 ///
 /// # Errors

@@ -175,7 +175,8 @@ impl Block {
     ) -> Result<(&'static str, &'static Form, Fitted), StageError> {
         let auto = forms.len() > 1;
         let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
-        if let (Complete::Mirror, Some(photo)) = (self.complete, photo) {
+        if self.complete == Complete::Mirror {
+            let photo = photo.ok_or_else(|| complete::no_frame(panel))?;
             complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
         }
         cx.check()?;

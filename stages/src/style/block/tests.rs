@@ -462,6 +462,13 @@ fn a_stated_width_is_that_of_the_whole_garment() {
 }
 
 #[test]
+fn what_has_no_frame_is_not_completed() {
+    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
+    let e = cut(&stage, cut_shirt()).unwrap_err();
+    assert_eq!(e.to_string(), "there is no photo of \"front\" whose frame could cut it");
+}
+
+#[test]
 fn both_sleeves_cut_are_refused() {
     let points = cut_shirt().into_iter().map(|p| Point2::new(p.x.max(-0.3), p.y)).collect();
     let mut outline = outline(points);
