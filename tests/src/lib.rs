@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 17] = [
+pub const PIPELINES: [&str; 20] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -75,5 +75,8 @@ pub const PIPELINES: [&str; 17] = [
     "photo_skirt.ron",
     "photo_dress.ron",
     "photo_trousers.ron",
+    "photo_shorts.ron",
+    "photo_gathered.ron",
+    "photo_onepiece.ron",
     "flatten.ron",
 ];

@@ -17,6 +17,7 @@ mod gathers;
 mod gauge;
 mod geometry;
 mod locate;
+mod lying;
 mod mask;
 mod measures;
 mod model;

@@ -125,6 +125,9 @@ pub struct Outline {
     pub inner: Vec<InnerLine>,
     /// Where the outline lies in its photo.
     pub frame: Option<PhotoFrame>,
+    /// Where each point of `outer` lies in the coordinates of `frame`, metres, for a piece that was straightened; empty where the photo shows the
+    /// outline as it is.
+    pub lies: Vec<Point2>,
 }
 
 impl Outline {
@@ -230,6 +233,10 @@ impl Artifact for Outline {
             let sound = line.gauge.is_none_or(|g| g.is_sound());
             ensure(sound, || format!("inner line \"{}\" has no length to divide", line.name))?;
         }
+        ensure(self.lies.is_empty() || self.lies.len() == n, || {
+            format!("{} of its {n} points are said to lie somewhere", self.lies.len())
+        })?;
+        finite("place in the photo", self.lies.iter().map(|p| &p.coords))?;
         self.frame.as_ref().map_or(Ok(()), |f| {
             finite("photo origin", [&f.origin_px.coords])?;
             positive("scale", f.px_per_metre)

@@ -67,6 +67,7 @@ mod tests {
             edges: Vec::new(),
             inner: Vec::new(),
             frame: Some(frame),
+            lies: Vec::new(),
         }))
     }
 

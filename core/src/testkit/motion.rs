@@ -119,6 +119,7 @@ fn outline(o: &Outline, motion: Motion) -> Outline {
         holes: o.holes.iter().map(map).collect(),
         inner: o.inner.iter().map(line).collect(),
         frame: None,
+        lies: vec![],
         edges: o.edges.clone(),
     };
     if matches!(motion, Motion::Scale(_)) {

@@ -42,12 +42,26 @@ pub fn named(edges: &[(&str, Vec<Point2>)]) -> Outline {
     }
     let n = points.len();
     named.iter_mut().for_each(|e| e.end %= n);
-    Outline { outer: Loop { points, corners }, holes: vec![], edges: named, inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: named,
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// An outline without names.
 pub fn plain(points: Vec<Point2>, corners: Vec<usize>) -> Outline {
-    Outline { outer: Loop { points, corners }, holes: vec![], edges: vec![], inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: vec![],
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// A sleeveless vest with named edges, 52 by 66 cm.
@@ -105,6 +119,7 @@ pub fn scaled(outline: &Outline, by: f64) -> Outline {
         outer: map(&outline.outer),
         holes: outline.holes.iter().map(map).collect(),
         frame: None,
+        lies: vec![],
         ..outline.clone()
     };
     out.inner.iter_mut().for_each(|l| l.points.iter_mut().for_each(|q| *q *= by));

@@ -143,6 +143,37 @@ pub(crate) fn trousers() -> Outline {
     close(&half, &[[waist, [120.0, 1006.0], [60.0, 1004.0], [0.0, 1004.0]]], &bottom, Side::Front)
 }
 
+/// Shorts, 80 cm around the waist, 103 around the hip, 47 cm long.
+pub(crate) fn shorts() -> Outline {
+    let (waist, hip, outer, inner) = ([200.0, 470.0], [256.0, 280.0], [292.0, 10.0], [26.0, 0.0]);
+    let fork = [0.0, 196.0];
+    let side =
+        vec![[outer, [280.0, 100.0], [263.0, 200.0], hip], [hip, [252.0, 350.0], [226.0, 420.0], waist]];
+    let half: Half = vec![("outseam", "hem", side)];
+    let flip = |p: P| [-p[0], p[1]];
+    let bottom = [line(flip(outer), flip(inner)), [flip(inner), [-20.0, 70.0], [-6.0, 150.0], fork]];
+    close(&half, &[[waist, [120.0, 466.0], [60.0, 464.0], [0.0, 464.0]]], &bottom, Side::Front)
+}
+
+/// A child's one-piece with short sleeves and short legs, 64 cm around the chest, 42 cm from neck to fork.
+pub(crate) fn onepiece() -> Outline {
+    let (neck, armpit, outer, inner) = ([62.0, 540.0], [160.0, 378.0], [172.0, 6.0], [32.0, 0.0]);
+    let (cuff_top, cuff_low, fork) = ([258.0, 442.0], [212.0, 334.0], [0.0, 92.0]);
+    let top = vec![
+        [cuff_top, [226.0, 466.0], [190.0, 496.0], [152.0, 512.0]],
+        [[152.0, 512.0], [122.0, 522.0], [92.0, 532.0], neck],
+    ];
+    let half: Half = vec![
+        ("side", "hem", vec![[outer, [178.0, 110.0], [160.0, 250.0], armpit]]),
+        ("underarm", "armpit", vec![line(armpit, cuff_low)]),
+        ("cuff", "cuff_low", vec![line(cuff_low, cuff_top)]),
+        ("shoulder", "cuff_top", top),
+    ];
+    let flip = |p: P| [-p[0], p[1]];
+    let bottom = [line(flip(outer), flip(inner)), [flip(inner), [-26.0, 40.0], [-10.0, 78.0], fork]];
+    close(&half, &[neck_curve(neck, 62.0)], &bottom, Side::Front)
+}
+
 fn line(a: P, b: P) -> Cubic {
     [a, mix(a, b, 1.0 / 3.0), mix(a, b, 2.0 / 3.0), b]
 }

@@ -54,7 +54,7 @@ fn enlarged(shot: Shot, factor: f64) -> Shot {
 }
 
 /// The garments of one photo.
-fn single() -> [(&'static str, Shot, Outline); 4] {
+fn single() -> [(&'static str, Shot, Outline); 6] {
     let knit = Shot {
         seed: 31,
         size: [1900, 1130],
@@ -119,8 +119,40 @@ fn single() -> [(&'static str, Shot, Outline); 4] {
             _ => Finish::Seam,
         },
     };
+    let shorts = Shot {
+        seed: 71,
+        size: [1380, 1140],
+        px_per_mm: 2.0,
+        origin: [689.3, 1040.6],
+        ground: Ground::Linen,
+        structure: Structure::Woven,
+        base: srgb(84, 92, 62),
+        thread: srgb(128, 134, 104),
+        print: print::plain,
+        finish: |edge| match edge {
+            "neck" => Finish::Hemmed(34.0),
+            _ => Finish::Seam,
+        },
+    };
+    let onepiece = Shot {
+        seed: 81,
+        size: [1440, 1480],
+        px_per_mm: 2.4,
+        origin: [719.6, 1388.3],
+        ground: Ground::Oak,
+        structure: Structure::Knit,
+        base: srgb(66, 108, 118),
+        thread: srgb(112, 146, 152),
+        print: print::dots,
+        finish: |edge| match edge {
+            "neck" | "cuff_left" | "cuff_right" => Finish::Bound(10.0, srgb(48, 82, 92)),
+            _ => Finish::Seam,
+        },
+    };
     [
         ("longsleeve", knit, garment::longsleeve()),
+        ("shorts", shorts, garment::shorts()),
+        ("onepiece", onepiece, garment::onepiece()),
         ("skirt", skirt, garment::skirt()),
         ("dress", dress, garment::dress()),
         ("trousers", trousers, garment::trousers()),

@@ -193,6 +193,7 @@ fn in_metres(photo: &Photo, outer: Loop, holes: Vec<Loop>) -> Result<Outline, St
         edges: Vec::new(),
         inner: Vec::new(),
         frame: Some(frame),
+        lies: Vec::new(),
     })
 }
 

@@ -24,7 +24,7 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// misses a limit is written all the same, with exit code 4.
 #[stage(
     role = Writer,
-    version = 5,
+    version = 6,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"

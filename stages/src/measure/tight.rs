@@ -2,8 +2,8 @@
 //!
 //! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body is there. Such cloth is told of, and not
 //! held against the solver. A triangle is taut where all of it lies on the body and it is stretched in some direction. So is cloth that
-//! spans a hollow of the body: what is stretched by more than its weight could, and hangs together with a triangle on the body through
-//! cloth that is stretched so. What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch (shear,
+//! spans a hollow of the body, and cloth around it in which the pull fades out: what is stretched by more than its weight could, and hangs together
+//! with a triangle on the body through cloth that is stretched so. What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch (shear,
 //! Poisson's ratio), and counts with it. Limit: cloth that friction holds stretched on the body, though the pattern is wide enough, counts
 //! too.
 
@@ -18,6 +18,9 @@ const ON: f64 = 3.0;
 /// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin stretches by 0.03 % under its
 /// weight, of interlock knit by 0.4 % (presets, weft).
 const DRAWN: f64 = 0.02;
+
+/// Strain from which on cloth beside drawn cloth counts as drawn with it: a pull fades out over the cloth around it.
+const FADES: f64 = 0.005;
 
 /// An edge of a garment.
 struct Edge {
@@ -58,9 +61,11 @@ impl Tight {
         Self { edges: garment.flat_lengths().into_iter().map(edge).collect(), taut }
     }
 
-    /// Whether the body stretches a triangle with these vertices, as far as its area tells.
+    /// Whether the body stretches a triangle with these vertices, as far as its area tells: it is stretched in both directions by no more than its
+    /// greatest stretch, or drawn smaller by it.
     pub(super) fn stretches_triangle(&self, vertices: &[u32; 3], flat: f64, now: f64) -> bool {
-        self.taut.get(vertices).is_some_and(|s| (now - flat).abs() <= *s * flat)
+        let within = |s: &f64| now / flat <= (1.0 + s).powi(2) && now / flat >= 1.0 - s;
+        self.taut.get(vertices).is_some_and(within)
     }
 
     /// Whether the body stretches the cloth at an edge.
@@ -114,7 +119,7 @@ fn taut_triangles(garment: &Garment, on: &[bool], strains: &[f64]) -> Vec<bool> 
     let mut open: Vec<usize> = (0..taut.len()).filter(|&t| taut[t] && strains[t] > DRAWN).collect();
     while let Some(t) = open.pop() {
         for &next in &beside[t] {
-            if !taut[next] && strains[next] > DRAWN {
+            if !taut[next] && strains[next] > FADES {
                 taut[next] = true;
                 open.push(next);
             }
@@ -218,6 +223,19 @@ mod tests {
         let tight = Tight::of(&sheet, Some(&both.collider()));
         assert!(tight.rest() < 1e-3, "{}", tight.rest());
         assert!((tight.taut() - 0.08).abs() < 0.01, "{}", tight.taut());
+    }
+
+    #[test]
+    fn cloth_stretched_in_both_directions_by_the_body_counts_as_it_was_cut() {
+        let (mut sheet, collider) = sheet(0.08, 1e-3);
+        for p in &mut sheet.positions {
+            p.z *= 1.1;
+            p.y = (1.0 - p.z * p.z).sqrt() + 1e-3;
+        }
+        let tight = Tight::of(&sheet, Some(&collider));
+        let counted =
+            sheet.panel_areas_but(&sheet.panels[0], |t, flat, now| tight.stretches_triangle(t, flat, now));
+        assert!((counted.1 / counted.0 - 1.0).abs() < 2e-3, "{counted:?}");
     }
 
     #[test]

@@ -103,10 +103,7 @@ fn assemble(
 ) -> Result<Panel, StageError> {
     check_chains(division, &meshed)?;
     let meshed = without_unused(meshed, division.points.len());
-    let photo_px = match &outline.frame {
-        Some(frame) => meshed.points.iter().map(|p| frame.to_px(*p)).collect(),
-        None => Vec::new(),
-    };
+    let photo_px = meshed.points.iter().filter_map(|p| outline.to_px(*p)).collect();
     let panel = Panel {
         positions: meshed.points,
         triangles: meshed.triangles,

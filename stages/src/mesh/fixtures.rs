@@ -44,12 +44,26 @@ pub(crate) fn named(edges: Vec<Named<'_>>) -> Outline {
     }
     let n = points.len();
     out.iter_mut().for_each(|e| e.end %= n);
-    Outline { outer: Loop { points, corners }, holes: vec![], edges: out, inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: out,
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// An outline without named edges.
 pub(crate) fn plain(points: Vec<Point2>, corners: Vec<usize>) -> Outline {
-    Outline { outer: Loop { points, corners }, holes: vec![], edges: vec![], inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: vec![],
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// A mirrored edge, run the other way, so that the outline goes on counter-clockwise.

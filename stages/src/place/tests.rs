@@ -36,7 +36,14 @@ fn outline(garment: &str, side: &str) -> Outline {
     };
     let edges: Vec<Edge> = json["edges"].as_array().unwrap().iter().map(edge).collect();
     let corners = edges.iter().map(|e| e.start).collect();
-    Outline { outer: Loop { points, corners }, holes: vec![], edges, inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges,
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// A style's anchor: between the two ends of the neck.

@@ -16,7 +16,7 @@ mod tests;
 mod tshirt;
 mod vest;
 
-pub use block::{Block, BlockStyle, Complete, Fitting, Sides};
+pub use block::{Block, BlockStyle, Complete, Fitting, Sides, Waist};
 pub use neckline::Neckline;
 pub use seams::{SeamEntry, Seams};
 pub use tshirt::TShirt;

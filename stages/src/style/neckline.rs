@@ -36,6 +36,11 @@ const MARGIN: f64 = 2.5;
 const INSIDE: f64 = 0.7;
 /// Of a front with armholes, the share of the height from armpits to neck points above which its neckline ends: what shows below is a print.
 const ABOVE_ARMPITS: f64 = 0.8;
+/// A neck that is closed is no tighter than this share of the body's: a rib stretches so far.
+const TIGHTEST: f64 = 0.95;
+/// The least power of a neckline that is cut for the body, and the halvings that find its depth.
+const ROUND: f64 = 2.0;
+const HALVINGS: usize = 40;
 /// Least change of colour across the curve, in levels of 0 to 255.
 const LEAST_CHANGE: f64 = 3.0;
 /// Depths that are tried to either side of the curve that was found, and how far they reach, in half
@@ -48,10 +53,11 @@ const SPACING: f64 = 1e-3;
 /// Cuts the front along the neckline that its photo shows.
 ///
 /// Use it where the photo of the front shows the inside of the back above the neckline, as with most shirts laid flat.
-/// The back keeps its outline. A front whose outline dips at the neck already is left as it is.
+/// The back keeps its outline. A front whose outline dips at the neck already is left as it is. Where front and back together would not reach around
+/// the body's neck, the front is cut deeper than its photo shows it, with a warning.
 #[stage(
     role = Style,
-    version = 2,
+    version = 3,
     source = "deformable templates: Yuille, Hallinan, Cohen, 1992",
     example = "Neckline(depth: \"8 cm\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
@@ -71,6 +77,7 @@ impl Neckline {
         &self,
         outlines: Set<Outline>,
         photos: Set<Photo>,
+        body: Option<&Body>,
         cx: &Context,
     ) -> Result<Set<Outline>, StageError> {
         if let Some((name, _)) = outlines.iter().find(|(_, o)| o.outer.points.len() < 3) {
@@ -79,31 +86,44 @@ impl Neckline {
         if let Some((name, _)) = photos.iter().find(|(_, p)| p.pixels.as_raw().is_empty()) {
             return Err(StageError::invalid(format!("the photo of \"{name}\" has no pixels")));
         }
+        let neck_of = |o: &Outline| Some(polyline_length(&o.edge_points(o.edge("neck")?)));
+        let behind = outlines.iter().filter(|(name, _)| is_back(name)).find_map(|(_, o)| neck_of(o));
+        let least =
+            body.and_then(throat).zip(behind).map_or(0.0, |(throat, behind)| TIGHTEST * throat - behind);
         outlines
             .iter()
             .map(|(name, o)| {
                 cx.check()?;
                 let photo = photos.get(name);
-                Ok((name.to_owned(), self.cut(name, o, photo, cx).unwrap_or_else(|| o.clone())))
+                Ok((name.to_owned(), self.cut(name, o, photo, least, cx).unwrap_or_else(|| o.clone())))
             })
             .collect()
     }
 }
 
 impl Neckline {
-    /// The outline with its neck cut, or nothing where it stays as it is.
-    fn cut(&self, name: &str, outline: &Outline, photo: Option<&Photo>, cx: &Context) -> Option<Outline> {
+    /// The outline with its neck cut, no shorter than `least`, or nothing where it stays as it is.
+    fn cut(
+        &self,
+        name: &str,
+        outline: &Outline,
+        photo: Option<&Photo>,
+        least: f64,
+        cx: &Context,
+    ) -> Option<Outline> {
         let neck = outline.edge("neck").filter(|_| !is_back(name))?;
         let chord = Chord::of(outline, neck)?;
         let collar = chord.profile(&outline.edge_points(neck));
         let lowest = collar.iter().copied().fold(0.0, f64::max);
-        if self.depth.is_none() && lowest > DIPS * chord.width {
+        let dips = lowest > DIPS * chord.width;
+        if self.depth.is_none() && dips && polyline_length(&outline.edge_points(neck)) >= least {
             return None;
         }
         let most = if self.depth.is_some() { f64::INFINITY } else { chord.deepest(outline) };
         let usual = (self.usual * chord.width).min(most);
         let found = match self.depth {
             Some(depth) => Some(Curve { depth: depth.metres(), power: 2.0 }),
+            None if dips => Some(Curve { depth: lowest, power: 2.0 }),
             None => photo
                 .zip(outline.frame)
                 .and_then(|(p, frame)| chord.find(p, frame.joined(p.joined), &collar, most)),
@@ -115,10 +135,27 @@ impl Neckline {
             ));
             Curve { depth: usual, power: 2.0 }
         });
-        let curve = Curve { depth: curve.depth.min(most), ..curve };
+        let mut curve = Curve { depth: curve.depth.min(most), ..curve };
+        if self.depth.is_none() && chord.length(&curve) < least {
+            curve = chord.long_enough(curve, least, most.min(DEPTHS.1 * chord.width));
+            cx.warn(format!(
+                "the neck of \"{name}\" would be too tight for the body: its front is cut {:.0} mm deep (`Neckline(depth: ...)` sets it)",
+                curve.depth * 1e3
+            ));
+        }
         cx.figure("depth", curve.depth, "m");
         Some(replaced(outline, neck, &chord.points(&curve)))
     }
+}
+
+/// Around the neck of a body, where a neckline lies: an ellipse through its sides, its front and its back, metres.
+fn throat(body: &Body) -> Option<f64> {
+    let at = |name: &str| body.landmarks.get(name).copied();
+    let (left, right) = (at("neck_left")?, at("neck_right")?);
+    let (front, back) = (at("neck_base_front")?, at("neck_base_back")?);
+    let (a, b) = (0.5 * (left - right).norm(), 0.5 * (front - back).norm());
+    // Ramanujan 1914.
+    Some(std::f64::consts::PI * (3.0 * (a + b) - ((3.0 * a + b) * (a + 3.0 * b)).sqrt()))
 }
 
 /// A neckline: depth below the chord at `s` from -1 to 1 is `depth (1 - |s|^power)`.
@@ -170,6 +207,22 @@ impl Chord {
 
     fn at(&self, curve: &Curve, s: f64) -> Point2 {
         self.middle + self.half * s + self.down * curve.depth_at(s)
+    }
+
+    fn length(&self, curve: &Curve) -> f64 {
+        let points: Vec<Point2> = (0..=200).map(|k| self.at(curve, f64::from(k) / 100.0 - 1.0)).collect();
+        polyline_length(&points)
+    }
+
+    /// The curve made round and so deep that it is as long as `least`; as deep as `most` where that is not enough.
+    fn long_enough(&self, curve: Curve, least: f64, most: f64) -> Curve {
+        let at = |depth: f64| Curve { depth, power: curve.power.max(ROUND) };
+        let (mut low, mut high) = (curve.depth.min(most), most);
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            if self.length(&at(middle)) < least { low = middle } else { high = middle }
+        }
+        at(high)
     }
 
     /// The curve's points without its ends.
@@ -319,6 +372,9 @@ fn replaced(outline: &Outline, edge: &Edge, inner: &[Point2]) -> Outline {
     let mut cut = outline.clone();
     cut.outer.points = (0..kept).map(|k| outline.outer.points[(edge.end + k) % n]).collect();
     cut.outer.points.extend(inner);
+    if !outline.lies.is_empty() {
+        cut.lies = cut.outer.points.iter().map(|p| outline.lying(*p)).collect();
+    }
     cut.outer.corners = outline.outer.corners.iter().map(|&c| moved(c)).filter(|&c| c < kept).collect();
     cut.outer.corners.sort_unstable();
     for e in &mut cut.edges {
@@ -356,6 +412,7 @@ mod tests {
                 mirrored: false,
                 turn: 0.0,
             }),
+            lies: Vec::new(),
         }
     }
 
@@ -382,7 +439,7 @@ mod tests {
     }
 
     fn run(stage: &Neckline, depth: f64) -> Set<Outline> {
-        stage.run(both(&shirt()), both(&photo(depth)), &Context::quiet()).unwrap()
+        stage.run(both(&shirt()), both(&photo(depth)), None, &Context::quiet()).unwrap()
     }
 
     fn lowest(o: &Outline) -> f64 {
@@ -423,7 +480,8 @@ mod tests {
     #[test]
     fn a_neck_that_dips_already_stays() {
         let once = run(&Neckline::default(), 0.08);
-        let again = Neckline::default().run(once.clone(), both(&photo(0.08)), &Context::quiet()).unwrap();
+        let again =
+            Neckline::default().run(once.clone(), both(&photo(0.08)), None, &Context::quiet()).unwrap();
         assert_eq!(once.get("front").unwrap().outer, again.get("front").unwrap().outer);
     }
 
@@ -436,9 +494,45 @@ mod tests {
         // An armhole from 20 cm below the neck points: half of the side.
         armholed.outer.points[0].y = 0.3;
         armholed.outer.points[5].y = 0.3;
-        let cut = Neckline::default().run(both(&armholed), both(&photo(0.18)), &Context::quiet()).unwrap();
+        let cut =
+            Neckline::default().run(both(&armholed), both(&photo(0.18)), None, &Context::quiet()).unwrap();
         assert!(lowest(cut.get("front").unwrap()) < 0.16 + 1e-9);
         assert!((lowest(run(&Neckline::default(), 0.18).get("front").unwrap()) - 0.18).abs() < 0.004);
+    }
+
+    /// A body whose neck is that wide and that deep.
+    fn necked(wide: f64, deep: f64) -> Body {
+        let marks = [
+            ("neck_left", [wide / 2.0, 1.4, 0.0]),
+            ("neck_right", [-wide / 2.0, 1.4, 0.0]),
+            ("neck_base_front", [0.0, 1.4, deep / 2.0]),
+            ("neck_base_back", [0.0, 1.4, -deep / 2.0]),
+        ];
+        Body {
+            positions: vec![],
+            triangles: vec![],
+            landmarks: marks.map(|(n, [x, y, z])| (n.to_owned(), Point3::new(x, y, z))).into(),
+            measurements: [].into(),
+        }
+    }
+
+    #[test]
+    fn a_neck_too_tight_for_the_body_is_cut_deeper_and_told() {
+        let cx = Context::quiet();
+        // A circle of 12 cm: 377 mm around, of which the back spans 160.
+        let body = necked(0.12, 0.12);
+        let cut = Neckline::default().run(both(&shirt()), both(&photo(0.05)), Some(&body), &cx).unwrap();
+        let front = cut.get("front").unwrap();
+        let around = polyline_length(&front.edge_points(front.edge("neck").unwrap())) + 0.16;
+        assert!((around - 0.95 * 0.377).abs() < 2e-3, "{around}");
+        let depth = 1e3 * lowest(front);
+        let told = format!(
+            "the neck of \"front\" would be too tight for the body: its front is cut {depth:.0} mm deep (`Neckline(depth: ...)` sets it)"
+        );
+        assert_eq!(cx.take_notes().1, [told]);
+        let wide = necked(0.08, 0.08);
+        let kept = Neckline::default().run(both(&shirt()), both(&photo(0.05)), Some(&wide), &cx).unwrap();
+        assert!((lowest(kept.get("front").unwrap()) - 0.05).abs() < 0.004);
     }
 
     #[test]

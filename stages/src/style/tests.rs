@@ -23,7 +23,14 @@ fn truth(garment: &str, side: &str) -> (Outline, Vec<(String, f64)>) {
 }
 
 fn outline(points: Vec<Point2>, corners: Vec<usize>) -> Outline {
-    Outline { outer: Loop { points, corners }, holes: vec![], edges: vec![], inner: vec![], frame: None }
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: vec![],
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
 }
 
 /// Front and back of a sample, each changed by `f`.

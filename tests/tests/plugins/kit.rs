@@ -36,7 +36,7 @@ pub(crate) fn photo() -> Photo {
 pub(crate) fn outline() -> Outline {
     let points = vec![Point2::new(0.0, 0.0), Point2::new(0.1, 0.0), Point2::new(0.0, 0.2)];
     let outer = toile_core::artifact::Loop { points, corners: vec![0, 1, 2] };
-    Outline { outer, holes: vec![], edges: vec![], inner: vec![], frame: None }
+    Outline { outer, holes: vec![], edges: vec![], inner: vec![], frame: None, lies: vec![] }
 }
 
 /// Runs a stage on single values.

@@ -254,6 +254,7 @@ fn outline(piece: &Piece, names: &Names, cuts: &Cuts<'_>, sewn: &BTreeSet<&EdgeR
         edges,
         inner: inner.collect(),
         frame: None,
+        lies: Vec::new(),
     }
 }
 

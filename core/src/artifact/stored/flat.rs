@@ -64,6 +64,7 @@ impl Outline {
             .records("edges", self.edges.iter().map(edge_fields))
             .records("inner", self.inner.iter().map(inner_fields))
             .maybe("frame", self.frame.as_ref().map(frame_fields))
+            .list("lies", &self.lies)
     }
 }
 
@@ -76,6 +77,7 @@ impl Stored for Outline {
             edges: r.records("edges")?.map(|e| edge_of(&e)).collect::<Result<_, _>>()?,
             inner: r.records("inner")?.map(|l| inner_of(&l)).collect::<Result<_, _>>()?,
             frame: r.maybe("frame")?.map(|f| frame_of(&f)).transpose()?,
+            lies: r.find("lies").map_or(Ok(Vec::new()), |_| r.list("lies"))?,
         })
     }
 }

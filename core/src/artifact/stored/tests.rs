@@ -38,6 +38,7 @@ fn outline() -> Outline {
             mirrored: false,
             turn: 0.0,
         }),
+        lies: points.iter().map(|p| p * 1.1).collect(),
     }
 }
 

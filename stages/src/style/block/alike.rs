@@ -15,6 +15,9 @@ const BETTER: f64 = 1.5;
 /// A cuff is not so many times as wide as the other.
 const TWICE: f64 = 1.7;
 
+/// Lengths differ much from this share of the garment's size on.
+const APART: f64 = 0.12;
+
 /// How the halves of a garment are cut.
 #[choice]
 #[derive(Copy, Eq)]
@@ -27,9 +30,9 @@ pub enum Sides {
 
 /// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves of each side.
 pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
-    let is_sleeve = |k: &usize| form.edges[*k].own_end && !form.has_legs();
+    let is_sleeve = |k: &usize| form.edges[*k].own_end && form.underarm().is_some_and(|arm| *k >= arm);
     let own: Vec<usize> = (0..form.edges.len()).filter(is_sleeve).collect();
-    let chosen = chosen(fit, &own, misses);
+    let chosen = fit.judged.unwrap_or_else(|| chosen(fit, &own, misses));
     let means: Vec<Bow> = (0..form.edges.len()).map(|k| mean(&fit.sides[0][k], &fit.sides[1][k])).collect();
     let mut edges = means.clone();
     if let (Some(&first), Some(&last)) = (own.first(), own.last()) {
@@ -41,6 +44,13 @@ pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
         edges[last + 1] = Bow { a: edges[last].b, bow: side[last + 1].bow, ..means[last + 1] };
     }
     fit.sides = [edges.clone(), edges];
+}
+
+/// Whether what lies as it falls is so different on both sides that one of them cannot be what it was taken for.
+pub(super) fn differ(fit: &Fit, form: &Form, size: f64) -> bool {
+    let lengths = |k: usize| [0, 1].map(|side: usize| fit.sides[side][k].length());
+    let own = (0..form.edges.len()).filter(|k| form.edges[*k].own_end);
+    own.map(lengths).any(|[a, b]| a.max(b) > TWICE * a.min(b) && (a - b).abs() > APART * size)
 }
 
 /// The side whose sleeve is taken.

@@ -32,6 +32,8 @@ const MOST: f64 = 16.0;
 /// What the sum of squares of the cut adds to the score, for each of its points; and what every corner adds, since more corners fit better.
 const UNUSUAL: f64 = 0.5;
 const CORNER: f64 = 0.1;
+/// What a half that reaches farther from the axis by the garment's size is worth.
+const REACH: f64 = 3.0;
 /// A fit of this score is taken from its first start.
 const WELL: f64 = 1.0;
 /// A step that moves every corner by less than this share of the size is the last, once far points have their last weight.
@@ -40,6 +42,15 @@ const LAST: f64 = 2e-5;
 const SETTLES: f64 = 0.4;
 /// Step of a difference quotient.
 const DIFFERENCE: f64 = 1e-6;
+
+/// Which halves of the outline a template is held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Halves {
+    /// Both; sleeves and legs lie as they fall.
+    Both,
+    /// Both, as each other's mirror image, and judged by the half that it fits better: the other may be folded, or hidden in part.
+    Better,
+}
 
 /// A fitted template.
 #[derive(Debug, Clone)]
@@ -53,9 +64,16 @@ pub(super) struct Fit {
     pub misses: Vec<Vec<f64>>,
     /// What the template leaves over: mean squared spreads of points and places, and how unusual it is.
     pub score: f64,
+    /// The half that it is judged by; none where both count.
+    pub judged: Option<usize>,
 }
 
 impl Fit {
+    /// With what its edges cost: how unusual they are, and how many.
+    fn priced(self, unusual: f64, form: &Form) -> Fit {
+        Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
+    }
+
     /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since legs may flare. `None` for what has no hip.
     pub(super) fn hip(&self, form: &Form) -> Option<f64> {
         let edges = || form.edges.iter().enumerate().filter(|(_, e)| e.name == "hip" || e.name == "outseam");
@@ -81,6 +99,18 @@ impl Fit {
         sums.map(|(sum, count)| sum / f64::max(count, 1.0))
     }
 
+    /// The share of the outline's points on a side that lie nearer to the template than `reach`, metres.
+    pub(super) fn near(&self, upright: &Upright, side: usize, reach: f64) -> f64 {
+        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let (mut near, mut all) = (0.0, 0.0);
+        for off in upright.points.iter().map(|p| nearest(&m, *p)).filter(|n| n.0 == side).map(|n| n.3.norm())
+        {
+            all += 1.0;
+            near += if off < reach { 1.0 } else { 0.0 };
+        }
+        near / f64::max(all, 1.0)
+    }
+
     /// Around the garment at the armpits, as it lies: where sleeves are cut in one with it, where its sides are narrowest. `None` for what hangs
     /// from the waist.
     pub(super) fn chest(&self, form: &Form) -> Option<f64> {
@@ -95,20 +125,41 @@ impl Fit {
 }
 
 /// The best fit of a form; `None` where its edges cannot be laid over the outline at all.
-pub(super) fn fit(upright: &Upright, form: &Form) -> Option<Fit> {
+pub(super) fn fit(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
     let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
+    let points = upright.halves[0].len() as f64;
+    if halves == Halves::Better {
+        return better(upright, form, &cuts, points);
+    }
     let [Some(a), Some(b)] = cuts else { return None };
-    let unusual = (a.cost + b.cost) / (2.0 * upright.halves[0].len() as f64);
-    let mut best = Problem::new(upright, form, [&a, &b]).solve();
+    let unusual = (a.cost + b.cost) / (2.0 * points);
+    let mut best = Problem::new(upright, form, [&a, &b], None).solve();
     // Halves that differ: what only one of them shows is looked for from that one alone.
     if best.score > WELL || upright.unseen.contains(&true) {
         for alone in [&a, &b] {
-            let other = Problem::new(upright, form, [alone, alone]).solve();
+            let other = Problem::new(upright, form, [alone, alone], None).solve();
             best = if other.score < best.score { other } else { best };
         }
     }
-    let score = best.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64;
-    Some(Fit { score, ..best })
+    Some(best.priced(unusual, form))
+}
+
+/// The best fit that is judged by one half, from the cut of that half.
+fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], points: f64) -> Option<Fit> {
+    let solve = |(side, cut): (usize, &Option<Cut>)| {
+        let cut = cut.as_ref()?;
+        let mut fit = Problem::new(upright, form, [cut, cut], Some(side)).solve();
+        fit.sides[1 - side] = fit.sides[side].clone();
+        Some(fit.priced(cut.cost / points, form))
+    };
+    let fits = cuts.iter().enumerate().filter_map(solve);
+    // What is folded or tucked away makes a half narrower.
+    let reach = |fit: &Fit| {
+        let half = upright.halves[fit.judged.unwrap_or(0)].iter();
+        half.map(|p| p.x).fold(0.0, f64::max) / upright.size
+    };
+    let price = |fit: &Fit| fit.score - REACH * reach(fit);
+    fits.min_by(|a, b| price(a).total_cmp(&price(b)))
 }
 
 /// Where a point of the outline, or a place of the template, is drawn to.
@@ -128,6 +179,7 @@ struct Problem<'a> {
     form: &'a Form,
     spread: f64,
     at: DVector<f64>,
+    judged: Option<usize>,
 }
 
 /// The template of a vector of parameters.
@@ -146,9 +198,9 @@ impl Model {
 }
 
 impl<'a> Problem<'a> {
-    fn new(upright: &'a Upright, form: &'a Form, start: [&Cut; 2]) -> Self {
+    fn new(upright: &'a Upright, form: &'a Form, start: [&Cut; 2], judged: Option<usize>) -> Self {
         let at = packed(form, [&start[0].edges, &start[1].edges]);
-        Problem { upright, form, spread: SPREAD * upright.size, at }
+        Problem { upright, form, spread: SPREAD * upright.size, at, judged }
     }
 
     fn solve(mut self) -> Fit {
@@ -226,7 +278,7 @@ impl<'a> Problem<'a> {
         };
         let mut all: Vec<f64> = pairs.iter().map(of).collect();
         // What one half does not show is taken from the other, sleeves and legs too.
-        let completes = self.upright.unseen.contains(&true);
+        let completes = self.judged.is_some() || self.upright.unseen.contains(&true);
         for (k, e) in self.form.edges.iter().enumerate() {
             let [one, other] = [0, 1].map(|s: usize| m.sides[s][k]);
             for bow in [one.bow, other.bow] {
@@ -258,22 +310,27 @@ impl<'a> Problem<'a> {
         let m = model(self.form, &self.at);
         let mut misses = vec![Vec::new(); self.form.edges.len()];
         let mut sum = 0.0;
-        let seen = || self.upright.points.iter().zip(&self.upright.unseen).filter(|(_, unseen)| !**unseen);
-        for (p, _) in seen() {
-            let (_, edge, _, off) = nearest(&m, *p);
-            misses[edge].push(off.norm());
-            sum += (off.norm() / self.spread).powi(2).min(MOST);
+        let mut count = 0.0;
+        let counts = |side: usize| self.judged.is_none_or(|only| only == side);
+        for (p, _) in self.upright.points.iter().zip(&self.upright.unseen).filter(|(_, unseen)| !**unseen) {
+            let (side, edge, _, off) = nearest(&m, *p);
+            if counts(side) {
+                misses[edge].push(off.norm());
+                sum += (off.norm() / self.spread).powi(2).min(MOST);
+                count += 1.0;
+            }
         }
-        let count = seen().count().max(1) as f64;
+        let count = f64::max(count, 1.0);
         let places = self.pairs(&m, FAR[1]).into_iter().skip(self.upright.points.len());
         let (mut pull, mut n) = (0.0, 0.0);
-        for p in places.filter(|p| p.weight > 0.0) {
+        for p in places.filter(|p| p.weight > 0.0 && counts(p.side)) {
             let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
             pull += (off.norm() / self.spread).powi(2).min(MOST);
             n += 1.0;
         }
         let Model { sides, turn, shift } = m;
-        Fit { sides, turn, shift, misses, score: sum / count + pull / f64::max(n, 1.0) }
+        let score = sum / count + pull / f64::max(n, 1.0);
+        Fit { sides, turn, shift, misses, score, judged: self.judged }
     }
 }
 

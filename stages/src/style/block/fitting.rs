@@ -8,7 +8,7 @@
 use super::complete::Complete;
 use super::fit::Fit;
 use super::form::Form;
-use super::{Block, BlockStyle, Fitted, Sides, refusal};
+use super::{Block, BlockStyle, Fitted, Sides, Waist, refusal};
 use crate::body::Mannequin;
 use toile_core::prelude::*;
 
@@ -48,8 +48,9 @@ const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
 /// A height that is likely, cm, and its spread: it decides where a garment fits a child and an adult.
 const LIKELY: [f64; 2] = [165.0, 60.0];
-/// Usual length of a garment from neck or waist to hem as a share of the body's height, and its spread.
+/// Usual length of a garment from neck or waist to hem, of one-pieces from neck to fork, as a share of the body's height, and its spread.
 const TOP: [f64; 2] = [0.39, 0.05];
+const TRUNK: [f64; 2] = [0.47, 0.02];
 const DRESS: [f64; 2] = [0.56, 0.1];
 const LEGS: [f64; 2] = [0.60, 0.04];
 /// Legs whose inseam is shorter than this share of their outseam are shorts, whose length tells little.
@@ -72,7 +73,7 @@ const SPREAD: f64 = 10.0;
 /// know the wearer.
 #[stage(
     role = Body,
-    version = 2,
+    version = 3,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -98,7 +99,13 @@ impl Fitting {
         let photo = photos.as_ref().and_then(|all| all.get("front"));
         let fitted = |complete| {
             // Whether the garment is what it is taken for is the style's affair.
-            let block = Block { style: self.style, stray: f64::INFINITY, complete, sides: Sides::Alike };
+            let block = Block {
+                style: self.style,
+                stray: f64::INFINITY,
+                complete,
+                sides: Sides::Alike,
+                waist: Waist::Plain,
+            };
             block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
         };
         // What the frame cuts off is measured by the other half, where that is whole.
@@ -173,6 +180,7 @@ impl Tape {
         let hip = fit.hip(form);
         let length = match (at("neck"), at("skirt"), at("inseam"), at("outseam")) {
             (Some(_), Some(_), ..) => Some((high - low, DRESS)),
+            (Some(_), None, Some(_), _) => Some((high - low, TRUNK)),
             (Some(_), None, ..) => Some((high - low, TOP)),
             (None, _, Some(inseam), Some(outseam)) => {
                 let upper = at("hip").map_or(0.0, |k| mean(&|s| s[k].length()));
@@ -183,7 +191,8 @@ impl Tape {
             _ => None,
         };
         let is_long = form.underarm().is_some_and(|k| form.edges[k].chord[0] > 0.4);
-        let sleeve = at("top").filter(|_| is_long).map(|k| mean(&|s| s[k].length() + s[k].b.x));
+        let along = |s: &[super::bow::Bow], k: usize| s[k].length() + s[k + 1].length() + s[k + 1].b.x;
+        let sleeve = at("top").filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
         Tape { girths: [chest, waist, hip], length, sleeve }
     }
 
@@ -237,7 +246,7 @@ fn arms(form: &Form, fit: &Fit) -> f64 {
     };
     let angle = |s: &Vec<super::bow::Bow>| {
         let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
-        let cap = nalgebra::center(&s[k].a, &s[k + 2].at(0.7));
+        let cap = nalgebra::center(&s[k].a, &s[k + 2].b);
         let way = cuff - cap;
         way.x.atan2(-way.y).to_degrees()
     };

@@ -63,6 +63,7 @@ const NO_ARMPIT: &str = "its sides run up without an armpit";
 
 const HEM: EdgeForm = edge("hem", [2.0, 10.0], [0.0, 0.06], [0.15, 1.2]);
 const SIDE: EdgeForm = edge("side", [92.0, 10.0], [0.0, 0.05], [0.3, 2.0]);
+const SHOULDER: EdgeForm = edge("shoulder", [158.0, 14.0], [0.0, 0.06], [0.06, 0.5]);
 const NECK: EdgeForm = edge("neck", [200.0, 30.0], [0.1, 0.15], [0.06, 0.6]);
 
 /// No sleeves: vest, strap top, muscle tank.
@@ -110,7 +111,8 @@ pub(super) const SLEEVED: Form = Form {
         edge("side", [80.0, 12.0], [0.0, 0.05], [0.15, 0.7]),
         own("underarm", [-35.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
         own("cuff", [55.0, 30.0], [0.0, 0.06], [0.05, 0.45]),
-        edge("top", [150.0, 20.0], [0.0, 0.08], [0.2, 1.6]),
+        edge("top", [145.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
+        SHOULDER,
         NECK,
     ],
 };
@@ -124,7 +126,8 @@ pub(super) const TEE: Form = Form {
         SIDE,
         own("underarm", [-35.0, 30.0], [0.0, 0.08], [0.02, 0.45]),
         own("cuff", [55.0, 25.0], [0.0, 0.05], [0.12, 0.5]),
-        edge("top", [150.0, 14.0], [0.0, 0.06], [0.25, 0.9]),
+        edge("top", [145.0, 20.0], [0.0, 0.06], [0.1, 0.7]),
+        SHOULDER,
         NECK,
     ],
 };
@@ -138,7 +141,8 @@ pub(super) const LONG: Form = Form {
         SIDE,
         own("underarm", [-40.0, 35.0], [0.0, 0.08], [0.45, 1.6]),
         own("cuff", [50.0, 35.0], [0.0, 0.06], [0.06, 0.35]),
-        edge("top", [145.0, 25.0], [0.0, 0.08], [0.6, 2.0]),
+        edge("top", [135.0, 25.0], [0.0, 0.08], [0.5, 1.8]),
+        SHOULDER,
         NECK,
     ],
 };
@@ -189,10 +193,53 @@ pub(super) const TROUSERS: Form = Form {
     ],
 };
 
+/// Two short or long legs, and a top with sleeves: a child's one-piece.
+pub(super) const ONEPIECE: Form = Form {
+    word: "a one-piece",
+    marks: &[
+        Mark::Below(0, -40.0, "it has no legs"),
+        Mark::Dent(3, 25.0, NO_ARMPIT),
+        Mark::Below(3, 65.0, NO_ARMPIT),
+    ],
+    edges: &[
+        own("inseam", [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
+        own("hem", [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
+        edge("side", [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
+        own("underarm", [-38.0, 35.0], [0.0, 0.08], [0.02, 1.3]),
+        own("cuff", [55.0, 30.0], [0.0, 0.06], [0.05, 0.5]),
+        edge("top", [140.0, 25.0], [0.0, 0.08], [0.1, 1.6]),
+        SHOULDER,
+        NECK,
+    ],
+};
+
+/// Two short or long legs, and a top without sleeves.
+pub(super) const ROMPER: Form = Form {
+    word: "a one-piece without sleeves",
+    marks: &[
+        Mark::Below(0, -40.0, "it has no legs"),
+        Mark::Hollow(3, 0.03, NO_ARMHOLE),
+        Mark::Corner(4, 25.0, NO_SHOULDER),
+    ],
+    edges: &[
+        own("inseam", [-78.0, 20.0], [0.0, 0.06], [0.04, 1.4]),
+        own("hem", [10.0, 20.0], [0.0, 0.06], [0.06, 0.6]),
+        edge("side", [92.0, 10.0], [0.0, 0.06], [0.4, 2.6]),
+        edge("armhole", [97.0, 20.0], [0.12, 0.15], [0.12, 0.6]),
+        edge("shoulder", [160.0, 20.0], [0.0, 0.06], [0.03, 0.4]),
+        NECK,
+    ],
+};
+
 impl Form {
-    /// Whether it has two legs.
+    /// Whether it consists of two legs.
     pub(super) fn has_legs(&self) -> bool {
-        self.edges.iter().any(|e| e.name == "inseam")
+        self.begins_at_fork() && self.edges.iter().any(|e| e.name == "waist")
+    }
+
+    /// Whether its halves meet in a fork below: it has legs, and nothing else or a top.
+    pub(super) fn begins_at_fork(&self) -> bool {
+        self.edges.first().is_some_and(|e| e.name == "inseam")
     }
 
     /// The number of the edge that starts at the armpit; none where nothing tells where that is.

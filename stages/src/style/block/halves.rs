@@ -7,6 +7,9 @@ use toile_core::artifact::{Outline, Point2};
 /// Points of a half.
 pub(super) const POINTS: usize = 100;
 
+/// Rows of which the middles are taken.
+const ROWS: usize = 60;
+
 /// An upright outline with its halves.
 #[derive(Debug, Clone)]
 pub(super) struct Upright {
@@ -36,10 +39,59 @@ impl Upright {
         Some(Upright { points, halves, size: shape.size, tilt: shape.tilt, centre: shape.centre, unseen })
     }
 
+    /// The same outline about the axis through the middles of most of its rows, which a sleeve that is hidden on one side does not move: the median
+    /// of their places and slopes (Theil 1950, Sen 1968). `None` where that axis does not cut it.
+    pub(super) fn about_its_rows(&self) -> Option<Upright> {
+        let middles = middles(&self.points);
+        let slopes = middles.iter().enumerate().flat_map(|(i, p)| {
+            let far = middles[i + 1..].iter().filter(move |q| q.y - p.y > 0.3 * self.size);
+            far.map(move |q| (q.x - p.x) / (q.y - p.y))
+        });
+        let slope = median(slopes.collect())?;
+        let place = median(middles.iter().map(|p| p.x - slope * p.y).collect())?;
+        let turn = -slope.atan();
+        let moved = |p: &Point2| Rotation2::new(-turn) * Point2::new(p.x - place, p.y);
+        let points: Vec<Point2> = self.points.iter().map(moved).collect();
+        let mirrored: Vec<Point2> = points.iter().rev().map(|p| Point2::new(-p.x, p.y)).collect();
+        let halves = [half(&points)?, half(&mirrored)?];
+        let points = joined(&halves);
+        Some(Upright {
+            unseen: vec![false; points.len()],
+            points,
+            halves,
+            tilt: self.tilt + turn.to_degrees(),
+            centre: self.given(Point2::new(place, 0.0)),
+            size: self.size,
+        })
+    }
+
     /// A place of the upright outline in the outline as it was given.
     pub(super) fn given(&self, p: Point2) -> Point2 {
         self.centre + (Rotation2::new(self.tilt.to_radians()) * p).coords
     }
+}
+
+/// The middles of the rows of a closed line, from below to above.
+fn middles(points: &[Point2]) -> Vec<Point2> {
+    let (low, high) =
+        points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), p| (a.min(p.y), b.max(p.y)));
+    let n = points.len();
+    let row = |k: usize| {
+        let y = low + (high - low) * (k as f64 + 0.5) / ROWS as f64;
+        let sides = (0..n).map(|i| (points[i], points[(i + 1) % n]));
+        let crossings = sides
+            .filter(|(a, b)| (a.y > y) != (b.y > y))
+            .map(|(a, b)| a.x + (b.x - a.x) * (y - a.y) / (b.y - a.y));
+        let (left, right) =
+            crossings.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, r), x| (l.min(x), r.max(x)));
+        (left <= right).then(|| Point2::new(0.5 * (left + right), y))
+    };
+    (0..ROWS).filter_map(row).collect()
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
 }
 
 /// The stretch at positive u from the lowest to the highest crossing of the axis, evenly spaced.

@@ -4,11 +4,15 @@ use super::fit::Fit;
 use super::form::Form;
 use super::halves::Upright;
 use super::pieces::{self, Flat, Layer};
+use super::waist::Waist;
 use super::{seams, stand};
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::prelude::*;
+
+/// Points this near to each other are one, metres.
+const SAME: f64 = 1e-4;
 
 /// A fit with the upright outline that it belongs to, and where that lies in its photo.
 pub(super) struct Fitted {
@@ -29,26 +33,31 @@ pub(super) fn mirrored(outline: &Outline) -> Outline {
         points: outline.outer.points.iter().rev().map(flip).collect(),
         corners: outline.outer.corners.iter().rev().map(|c| n - 1 - c).collect(),
     };
-    Outline { outer, holes: Vec::new(), edges: Vec::new(), inner: Vec::new(), frame }
+    Outline { outer, holes: Vec::new(), edges: Vec::new(), inner: Vec::new(), frame, lies: Vec::new() }
 }
 
 /// The pattern of both layers, its outlines with their places in the photos, and its sewing plan.
 pub(super) fn pattern(
     form: &Form,
     layers: &[(Layer, Fitted)],
+    waist: Waist,
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
     let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
-    let (mut flats, mut pieces, mut frames) = (Vec::new(), Vec::new(), BTreeMap::new());
+    for (_, fitted) in layers {
+        let edges = &fitted.fit.sides[0];
+        waist.check(form, edges.last().map_or(0.0, |e| e.a.y) - edges.first().map_or(0.0, |e| e.b.y))?;
+    }
+    let (mut flats, mut pieces, mut photos) = (Vec::new(), Vec::new(), BTreeMap::new());
     for (layer, fitted) in layers {
         let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
         let stand = stand::Stand::of(body, hung, top)?;
-        let lying = pieces::layer(&fitted.lying, form, *layer);
-        for (flat, lying) in pieces::layer(&fitted.fit, form, *layer).into_iter().zip(lying) {
+        let lying = pieces::layer(&fitted.lying, form, waist, *layer, false);
+        for (flat, lying) in pieces::layer(&fitted.fit, form, waist, *layer, true).into_iter().zip(lying) {
             let pose = Some(stand.pose(&flat, *layer));
             pieces.push(Piece { pose, ..flat.piece() });
-            frames.insert(flat.name.clone(), fitted.frame.map(|f| frame(f, fitted, &lying)));
+            photos.insert(flat.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
             flats.push(flat);
         }
     }
@@ -56,10 +65,59 @@ pub(super) fn pattern(
     let lowered = pattern.lower().map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
     lowered.notes.into_iter().for_each(|what| cx.warn(what));
     let framed = |(name, o): (String, Outline)| {
-        let frame = frames.get(&name).copied().flatten();
-        (name, Arc::new(Outline { frame, ..o }))
+        let photo = photos.get(&name).and_then(Option::as_ref);
+        let lies = photo.map_or_else(Vec::new, |lying| lying.lies(&o));
+        (name, Arc::new(Outline { frame: photo.map(|p| p.frame), lies, ..o }))
     };
     Ok((pattern, Set(lowered.outlines.into_iter().map(framed).collect()), lowered.plan))
+}
+
+/// A piece as it lies in its photo.
+struct Lying {
+    frame: PhotoFrame,
+    piece: Piece,
+    /// Where the piece's origin lies and how far it is turned, in the frame of the garment's axis, for a sleeve of the half that the photo does not show
+    /// well: it is seen in the other one, mirrored.
+    mirrored: Option<(Point2, f64)>,
+}
+
+impl Lying {
+    fn of(photo: PhotoFrame, fitted: &Fitted, flat: &Flat) -> Self {
+        let hidden = |judged: usize| (flat.origin.x > 0.0) == (judged == 1);
+        let is_seen = flat.part != BodyPart::Arm || !fitted.fit.judged.is_some_and(hidden);
+        let mirrored = (!is_seen).then_some((flat.origin, flat.turn));
+        Lying { frame: frame(photo, fitted, flat), piece: flat.piece(), mirrored }
+    }
+
+    /// Where the points of the piece's outline lie: on the same edges as it lies, at the same shares of their lengths. Nothing where it lies as it is cut.
+    fn lies(&self, outline: &Outline) -> Vec<Point2> {
+        let n = outline.outer.points.len();
+        let mut found = vec![None; n];
+        for edge in &outline.edges {
+            let Some(path) = self.piece.path(&edge.name) else { return Vec::new() };
+            let points = outline.edge_points(edge);
+            let whole = polyline_length(&points);
+            let mut along = 0.0;
+            for (k, p) in points.iter().enumerate() {
+                along += if k > 0 { (p - points[k - 1]).norm() } else { 0.0 };
+                let share = along / whole.max(f64::MIN_POSITIVE);
+                found[(edge.start + k) % n] = Some(self.seen(path.at(share * path.length())));
+            }
+        }
+        let same = |(p, q): (&Point2, &Option<Point2>)| q.is_some_and(|q| (p - q).norm() < SAME);
+        if outline.outer.points.iter().zip(&found).all(same) {
+            return Vec::new();
+        }
+        found.into_iter().collect::<Option<_>>().unwrap_or_default()
+    }
+
+    /// Where a point of the piece is seen.
+    fn seen(&self, p: Point2) -> Point2 {
+        let Some((origin, turn)) = self.mirrored else { return p };
+        let turn = Rotation2::new(turn);
+        let at = origin + (turn * p).coords;
+        turn.inverse() * Point2::from(Point2::new(-at.x, at.y) - origin)
+    }
 }
 
 /// Where a piece lies in the photo of its layer.

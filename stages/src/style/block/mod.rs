@@ -17,15 +17,17 @@ mod pieces;
 mod refusal;
 mod seams;
 mod segment;
+mod stance;
 mod stand;
 mod tell;
 #[cfg(test)]
 mod tests;
+mod waist;
 mod wearable;
 
 pub use alike::Sides;
 pub use complete::Complete;
-use fit::{Fit, fit};
+use fit::{Fit, Halves, fit};
 pub use fitting::Fitting;
 use form::Form;
 use halves::Upright;
@@ -35,9 +37,16 @@ use pieces::Layer;
 use rayon::prelude::*;
 use tell::at_95;
 use toile_core::prelude::*;
+pub use waist::Waist;
 
 /// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves lie against it looks a little like a skirt.
 const UNSAID: f64 = 0.5;
+
+/// And for a template that is judged by one half: there is less to tell it by.
+const HALF: f64 = 0.7;
+
+/// The share of the points of a half that must lie at the mirror image of the other, where the template is judged by that one.
+const OTHER: f64 = 0.5;
 
 /// What the garment is.
 #[choice]
@@ -61,11 +70,15 @@ pub enum BlockStyle {
     Skirt,
     /// Two legs, long or short.
     Trousers,
+    /// Legs and a top with sleeves in one.
+    Onepiece,
+    /// Legs and a top without sleeves in one.
+    SleevelessOnepiece,
 }
 
 impl BlockStyle {
     /// All that can be named, with their forms.
-    const NAMED: [(BlockStyle, &'static str, &'static Form); 8] = [
+    const NAMED: [(BlockStyle, &'static str, &'static Form); 10] = [
         (BlockStyle::Vest, "Vest", &form::VEST),
         (BlockStyle::TShirt, "TShirt", &form::TEE),
         (BlockStyle::LongSleeve, "LongSleeve", &form::LONG),
@@ -74,6 +87,8 @@ impl BlockStyle {
         (BlockStyle::GrownSleeve, "GrownSleeve", &form::GROWN),
         (BlockStyle::Skirt, "Skirt", &form::SKIRT),
         (BlockStyle::Trousers, "Trousers", &form::TROUSERS),
+        (BlockStyle::Onepiece, "Onepiece", &form::ONEPIECE),
+        (BlockStyle::SleevelessOnepiece, "SleevelessOnepiece", &form::ROMPER),
     ];
 
     /// The forms that come into question, with their names.
@@ -91,7 +106,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 4,
+    version = 5,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -110,6 +125,9 @@ pub struct Block {
     /// Whether both halves are cut as each other's mirror image, sleeves as the one that lies better, or each as it lies.
     #[param(default = Sides::Alike)]
     sides: Sides,
+    /// How a skirt is held at the waist.
+    #[param(default = Waist::Plain)]
+    waist: Waist,
 }
 
 #[stage]
@@ -136,7 +154,7 @@ impl Block {
         let (.., behind) = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
         cx.check()?;
         let layers = [(Layer::Front, before), (Layer::Back, behind)];
-        pattern(form, &layers, body, cx)
+        pattern(form, &layers, self.waist, body, cx)
     }
 }
 
@@ -180,24 +198,31 @@ impl Block {
             complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
         }
         cx.check()?;
-        let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(&upright, form)).collect();
-        let mut found: Vec<_> = Vec::new();
-        let mut reasons = Vec::new();
-        for ((name, form), result) in forms.into_iter().zip(tried) {
-            match result {
-                Ok(fit) => found.push((name, form, fit)),
-                Err(reason) => reasons.push((form, reason)),
-            }
-        }
-        let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
-        let Some((name, form, fit)) = best else { return Err(refusal::none(panel, &reasons)) };
-        let all: Vec<f64> = fit.misses.iter().flatten().copied().collect();
-        let stray = at_95(&all);
         let share = if auto { self.stray * UNSAID } else { self.stray };
-        if stray > share * upright.size {
-            return Err(refusal::strays(panel, form, &fit, stray, auto));
-        }
+        let limit = share * upright.size;
+        let found =
+            tried(&upright, panel, &forms, Halves::Both).and_then(|best| match strays(&best.2) > limit {
+                true => Err(refusal::strays(panel, best.1, &best.2, strays(&best.2), auto)),
+                false => Ok(best),
+            });
+        let doubtful = match &found {
+            Ok((_, form, fit)) => alike::differ(fit, form, upright.size),
+            Err(_) => true,
+        };
+        let one = || {
+            let upright = upright.about_its_rows()?;
+            let best = tried(&upright, panel, &forms, Halves::Better).ok()?;
+            let other = 1 - best.2.judged?;
+            let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
+            is_sound.then_some((best, upright))
+        };
+        let by_half = if doubtful && !upright.unseen.contains(&true) { one() } else { None };
+        let ((name, form, fit), upright) = match by_half {
+            Some(found) => found,
+            None => (found?, upright),
+        };
         let mut cut = fit.clone();
+        stance::stood(&mut cut, form);
         if self.sides == Sides::Alike {
             alike::alike(&mut cut, form, fit.astray(&upright, form));
         }
@@ -211,7 +236,10 @@ impl Block {
         // What is seen in a mirror is told once.
         if panel == "front" || !outline.frame.is_some_and(|f| f.mirrored) {
             tell::astray(panel, form, fit, upright.size, cx);
-            tell::uneven(panel, form, fit, upright.size, self.sides, cx);
+            match fit.judged {
+                Some(side) => tell::one_half(panel, form, side, cx),
+                None => tell::uneven(panel, form, fit, upright.size, self.sides, cx),
+            }
             if upright.unseen.contains(&true) {
                 cx.warn(format!("what the frame cuts off \"{panel}\" is the mirror image of its other half"));
             }
@@ -219,9 +247,33 @@ impl Block {
     }
 }
 
+/// How far 19 of 20 points of the outline lie from a template at most, metres.
+fn strays(fit: &Fit) -> f64 {
+    at_95(&fit.misses.iter().flatten().copied().collect::<Vec<f64>>())
+}
+
+/// The best of the forms, fitted; the reason of each where none can be.
+fn tried<'f>(
+    upright: &Upright,
+    panel: &str,
+    forms: &[(&'static str, &'f Form)],
+    halves: Halves,
+) -> Result<(&'static str, &'f Form, Fit), StageError> {
+    let tried: Vec<_> = forms.par_iter().map(|(_, form)| sound(upright, form, halves)).collect();
+    let (mut found, mut reasons) = (Vec::new(), Vec::new());
+    for ((name, form), result) in forms.iter().zip(tried) {
+        match result {
+            Ok(fit) => found.push((*name, *form, fit)),
+            Err(reason) => reasons.push((*form, reason)),
+        }
+    }
+    let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
+    best.ok_or_else(|| refusal::none(panel, &reasons))
+}
+
 /// A fit that the form allows, or why there is none.
-fn sound(upright: &Upright, form: &Form) -> Result<Fit, &'static str> {
-    let fit = fit(upright, form).ok_or("its edges are not in their usual places")?;
+fn sound(upright: &Upright, form: &Form, halves: Halves) -> Result<Fit, &'static str> {
+    let fit = fit(upright, form, halves).ok_or("its edges are not in their usual places")?;
     match form.marks.iter().find_map(|m| missing(&fit, m)) {
         Some(reason) => Err(reason),
         None => Ok(fit),

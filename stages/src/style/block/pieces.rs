@@ -9,22 +9,31 @@
 use super::curve::Curve;
 use super::fit::Fit;
 use super::form::Form;
+use super::waist::{self, Waist};
 use nalgebra::Rotation2;
 use toile_core::artifact::BodyPart;
 use toile_core::prelude::*;
 
 /// The shoulder point's distance from the axis, as a share of the armpit's.
 const SHOULDER: f64 = 0.88;
-/// And within these shares of the way from neck to cuff.
-const ALONG: [f64; 2] = [0.25, 0.8];
+/// And within these shares of the way from cuff to neck.
+const ALONG: [f64; 2] = [0.2, 0.75];
+/// A sleeve lies folded at the armpit where it is so many times as wide below it.
+const FOLDED: f64 = 1.08;
+/// The template's own corner is the shoulder point where it lies so near to that distance, as a share of it.
+const CORNER: f64 = 0.1;
 /// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up above.
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
 /// The seat's height above the fork, as a share of the rise.
-const SEAT: f64 = 0.35;
+pub(super) const SEAT: f64 = 0.35;
 /// Both points of the fork, as a share of the seat's girth.
 const FORK: f64 = 0.15;
 /// Controls of the rise: how far down it is straight, as a share of it, and how far out it is there, of the point; and of the inseam below the
 /// point.
+/// Legs are long from so many times the length of the point on.
+const LONG: f64 = 6.0;
+/// The point behind lies no lower than this share of the way from hem to fork.
+const LEAST_DROP: f64 = 0.7;
 const STRAIGHT: f64 = 0.7;
 const HOLLOW: f64 = 0.15;
 const INNER: f64 = 0.15;
@@ -47,24 +56,55 @@ pub(super) struct Flat {
 #[derive(Debug, Clone)]
 pub(super) enum Run {
     Cubic(Curve),
-    /// Two curves that meet on the axis.
-    Both([Curve; 2]),
+    /// Curves, each of which starts where the one before ends.
+    Chain(Vec<Curve>),
 }
 
 impl Run {
+    pub(super) fn of(curves: Vec<Curve>) -> Self {
+        match curves[..] {
+            [one] => Run::Cubic(one),
+            _ => Run::Chain(curves),
+        }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        let of = |c: &Curve| polyline_length(&c.points(PARTS));
+        match self {
+            Run::Cubic(c) => of(c),
+            Run::Chain(all) => all.iter().map(of).sum(),
+        }
+    }
+
     fn start(&self) -> Point2 {
         match self {
-            Run::Cubic(c) | Run::Both([c, _]) => c.0[0],
+            Run::Cubic(c) => c.0[0],
+            Run::Chain(all) => all.first().map_or_else(Point2::origin, |c| c.0[0]),
+        }
+    }
+
+    /// Each curve changed, and the last first where they are `turned`.
+    fn changed(&self, turned: bool, to: impl Fn(Curve) -> Curve) -> Self {
+        match self {
+            Run::Cubic(c) => Run::Cubic(to(*c)),
+            Run::Chain(all) => {
+                let mut all: Vec<Curve> = all.iter().map(|c| to(*c)).collect();
+                if turned {
+                    all.reverse();
+                }
+                Run::Chain(all)
+            }
         }
     }
 
     fn moved(&self, to: impl Fn(Point2) -> Point2) -> EdgeCurve {
         match self {
             Run::Cubic(Curve([_, b, c, _])) => EdgeCurve::Cubic { controls: [to(*b), to(*c)] },
-            Run::Both([a, b]) => {
-                let drawn = a.points(PARTS).into_iter().chain(b.points(PARTS).into_iter().skip(1));
-                let inner: Vec<Point2> = drawn.map(to).collect();
-                EdgeCurve::Polyline { points: inner[1..inner.len() - 1].to_vec() }
+            Run::Chain(all) => {
+                let drawn = all.iter().flat_map(|c| c.points(PARTS).into_iter().skip(1));
+                let mut points: Vec<Point2> = drawn.map(to).collect();
+                points.pop();
+                EdgeCurve::Polyline { points }
             }
         }
     }
@@ -112,8 +152,8 @@ impl Layer {
 }
 
 /// One side of a template: its edges by name, as they lie (the second side's are mirrored back), each from below to above.
-struct Side {
-    edges: Vec<(&'static str, Curve)>,
+pub(super) struct Side {
+    pub edges: Vec<(&'static str, Curve)>,
     mirrored: bool,
     word: &'static str,
 }
@@ -130,36 +170,46 @@ impl Side {
     }
 
     /// A curve as it lies, so that loops run counter-clockwise.
-    fn laid(&self, c: Curve) -> Curve {
+    pub(super) fn laid(&self, c: Curve) -> Curve {
         if self.mirrored { c.moved(flip).turned() } else { c }
     }
 
-    /// Named edges as they lie and in counter-clockwise order, with the side's word.
-    fn named(&self, edges: &[(&str, Curve)]) -> Vec<(String, Run)> {
-        let one = |(name, c): &(&str, Curve)| (format!("{name}_{}", self.word), Run::Cubic(self.laid(*c)));
-        let mut all: Vec<(String, Run)> = edges.iter().map(one).collect();
+    /// Named edges as they lie and in counter-clockwise order.
+    fn named(&self, edges: &[(&'static str, Run)]) -> Vec<(&'static str, Run)> {
+        let one = |(name, run): &(&'static str, Run)| (*name, run.changed(self.mirrored, |c| self.laid(c)));
+        let mut all: Vec<_> = edges.iter().map(one).collect();
         if self.mirrored {
             all.reverse();
         }
         all
     }
+
+    /// The same with the side's word.
+    pub(super) fn own(&self, edges: &[(&'static str, Run)]) -> Vec<(String, Run)> {
+        self.named(edges).into_iter().map(|(name, run)| (format!("{name}_{}", self.word), run)).collect()
+    }
 }
 
-/// The pieces of one layer.
-pub(super) fn layer(fit: &Fit, form: &Form, layer: Layer) -> Vec<Flat> {
+/// The pieces of one layer, as they are cut or as they lie in the photo.
+pub(super) fn layer(fit: &Fit, form: &Form, waist: Waist, layer: Layer, is_cut: bool) -> Vec<Flat> {
     let sides = [0, 1].map(|k| Side::of(fit, form, layer, k));
+    if let Waist::Gathered { fullness, band } = waist {
+        return waist::gathered(&sides, layer, fullness, band.metres(), is_cut);
+    }
     if form.has_legs() {
         return sides.iter().map(|s| leg(s, layer)).collect();
     }
     let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form)).collect();
     let (first, last) = (0, form.edges.len() - 1);
     let both = |k: usize| [0, 1].map(|s: usize| sides[s].laid(sides[s].edges[k].1));
-    let [right_hem, left_hem] = both(first);
     let [right_top, left_top] = both(last);
-    let mut edges = sides[0].named(&cut[0].trunk);
-    edges.push((form.edges[last].name.to_owned(), Run::Both([right_top, left_top])));
-    edges.extend(sides[1].named(&cut[1].trunk));
-    edges.push(("hem".to_owned(), Run::Both([left_hem, right_hem])));
+    let mut edges = sides[0].own(&cut[0].trunk);
+    edges.push((form.edges[last].name.to_owned(), Run::Chain(vec![right_top, left_top])));
+    edges.extend(sides[1].own(&cut[1].trunk));
+    if !form.begins_at_fork() {
+        let [right_hem, left_hem] = both(first);
+        edges.push(("hem".to_owned(), Run::Chain(vec![left_hem, right_hem])));
+    }
     let trunk =
         Flat { name: layer.word().into(), edges, part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 };
     let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
@@ -168,32 +218,76 @@ pub(super) fn layer(fit: &Fit, form: &Form, layer: Layer) -> Vec<Flat> {
 
 /// A side's edges between hem and neck, and its sleeve's.
 struct Cutting {
-    trunk: Vec<(&'static str, Curve)>,
-    sleeve: Option<[Curve; 4]>,
+    trunk: Vec<(&'static str, Run)>,
+    sleeve: Option<Vec<(&'static str, Run)>>,
 }
 
 impl Cutting {
     fn of(side: &Side, form: &Form) -> Self {
         let last = form.edges.len() - 1;
+        // A hem from side to side belongs to both halves.
+        let first = usize::from(!form.begins_at_fork());
+        let run = |k: usize| (side.edges[k].0, Run::Cubic(side.edges[k].1));
         let Some(k) = form.underarm() else {
-            return Cutting { trunk: side.edges[1..last].to_vec(), sleeve: None };
+            return Cutting { trunk: (first..last).map(run).collect(), sleeve: None };
         };
-        let (underarm, cuff, top) = (side.edges[k].1, side.edges[k + 1].1, side.edges[k + 2].1);
-        let armpit = underarm.0[0];
-        let [above, shoulder] = top.parted(shoulder_at(&top, armpit));
-        let armhole = arched(armpit, above.0[3]);
-        let mut trunk = side.edges[1..k].to_vec();
-        trunk.extend([("armhole", armhole), ("shoulder", shoulder)]);
-        Cutting { trunk, sleeve: Some([underarm, cuff, above, armhole.turned()]) }
+        let armpit = side.edges[k].1.0[0];
+        let upper: Vec<Curve> = side.edges[k + 2..last].iter().map(|e| e.1).collect();
+        let [above, shoulder] = parted(&upper, armpit.x);
+        let shoulder_point = shoulder[0].0[0];
+        let armhole = arched(armpit, shoulder_point);
+        let mut trunk: Vec<_> = (first..k).map(run).collect();
+        trunk.extend([("armhole", Run::Cubic(armhole)), ("shoulder", Run::of(shoulder))]);
+        let (underarm, cap) = match opened(&side.edges[k].1, &above) {
+            Some(underarm) => (underarm, arched(underarm.0[0], shoulder_point).turned()),
+            None => (side.edges[k].1, armhole.turned()),
+        };
+        let (underarm, cap) = (("underarm", Run::Cubic(underarm)), ("cap", Run::Cubic(cap)));
+        Cutting { trunk, sleeve: Some(vec![underarm, run(k + 1), ("top", Run::of(above)), cap]) }
     }
 }
 
-/// Where the shoulder point lies on the upper edge, which runs from cuff to neck.
-fn shoulder_at(top: &Curve, armpit: Point2) -> f64 {
-    let steps = 200;
-    let at = |k: usize| k as f64 / f64::from(steps);
-    let beyond = (0..=steps as usize).map(at).find(|t| top.at(*t).x <= SHOULDER * armpit.x);
-    beyond.unwrap_or(1.0).clamp(1.0 - ALONG[1], 1.0 - ALONG[0])
+/// The underarm of a sleeve that hangs beside the body, opened at the armpit, where the sleeve lies folded: it is as wide there as it is widest
+/// below. Nothing where it is so as it lies.
+fn opened(underarm: &Curve, top: &[Curve]) -> Option<Curve> {
+    let above: Vec<Point2> = top.iter().flat_map(|c| c.points(PARTS)).collect();
+    let nearest = |p: Point2| above.iter().copied().min_by(|a, b| (a - p).norm().total_cmp(&(b - p).norm()));
+    let wide = |p: Point2| nearest(p).map_or(0.0, |q| (p - q).norm());
+    let widest = underarm.points(PARTS).into_iter().map(wide).fold(0.0, f64::max);
+    let [armpit, .., control, cuff] = underarm.0;
+    let away = (armpit - nearest(armpit)?).try_normalize(1e-9)?;
+    if widest < FOLDED * wide(armpit) {
+        return None;
+    }
+    let opened = armpit + away * (widest - wide(armpit));
+    Some(Curve([opened, opened + (cuff - opened) / 3.0, control, cuff]))
+}
+
+/// The upper border from cuff to neck, parted at the shoulder point; `armpit` is the armpit's distance from the axis.
+fn parted(upper: &[Curve], armpit: f64) -> [Vec<Curve>; 2] {
+    let at = |s: f64| {
+        let k = (s as usize).min(upper.len() - 1);
+        upper[k].at(s - k as f64)
+    };
+    let out = SHOULDER * armpit;
+    // The template's own corner, where it lies near enough.
+    let corner = (1..upper.len()).find(|k| (at(*k as f64).x / out - 1.0).abs() < CORNER);
+    if let Some(k) = corner {
+        return [upper[..k].to_vec(), upper[k..].to_vec()];
+    }
+    let steps = 200 * upper.len();
+    let along: Vec<f64> = (0..=steps).map(|k| k as f64 / 200.0).collect();
+    let mut way = vec![0.0];
+    for w in along.windows(2) {
+        way.push(way[way.len() - 1] + (at(w[1]) - at(w[0])).norm());
+    }
+    let place = |share: f64| way.partition_point(|l| *l < share * way[steps]).min(steps);
+    let beyond = along.iter().position(|s| at(*s).x <= out).unwrap_or(steps);
+    let s = along[beyond.clamp(place(ALONG[0]), place(ALONG[1]))];
+    let k = (s as usize).min(upper.len() - 1);
+    let [before, behind] = upper[k].parted(s - k as f64);
+    let first = upper[..k].iter().copied().chain([before]).collect();
+    [first, [behind].into_iter().chain(upper[k + 1..].iter().copied()).collect()]
 }
 
 fn arched(a: Point2, b: Point2) -> Curve {
@@ -201,21 +295,20 @@ fn arched(a: Point2, b: Point2) -> Curve {
 }
 
 /// The layer of a sleeve: underarm, cuff, top, cap. Its grain runs along it.
-fn sleeve(side: &Side, curves: &[Curve; 4], layer: Layer) -> Option<Flat> {
-    let middle = |c: &Curve| nalgebra::center(&c.0[0], &c.0[3]);
-    let (cuff, cap) = (side.laid(curves[1]), side.laid(curves[3]));
-    let way = (middle(&cap) - middle(&cuff)).try_normalize(1e-9)?;
-    let named: Vec<(&str, Curve)> = ["underarm", "cuff", "top", "cap"].into_iter().zip(*curves).collect();
-    let mut edges: Vec<(String, Run)> =
-        named.iter().map(|(name, c)| ((*name).to_owned(), Run::Cubic(side.laid(*c)))).collect();
-    if side.mirrored {
-        edges.reverse();
-    }
+fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Flat> {
+    let edges = side.named(edges);
+    let middle = |name: &str| {
+        let run = edges.iter().find(|e| e.0 == name).map(|e| &e.1)?;
+        let Run::Cubic(c) = run else { return None };
+        Some(nalgebra::center(&c.0[0], &c.0[3]))
+    };
+    let (cuff, cap) = (middle("cuff")?, middle("cap")?);
+    let way = (cap - cuff).try_normalize(1e-9)?;
     Some(Flat {
         name: format!("{}_sleeve_{}", side.word, layer.word()),
-        edges,
+        edges: edges.iter().map(|(name, run)| ((*name).to_owned(), run.clone())).collect(),
         part: BodyPart::Arm,
-        origin: middle(&cap),
+        origin: cap,
         turn: way.y.atan2(way.x) - std::f64::consts::FRAC_PI_2,
     })
 }
@@ -243,12 +336,22 @@ fn leg(side: &Side, layer: Layer) -> Flat {
         Layer::Back => hidden * (2.0 / 3.0),
     };
     let out = |share: f64| Vector2::new(-share * point, 0.0);
-    let tip = low + out(1.0);
+    // The point behind lies lower, so that both inseams are of one length.
+    let foot = side.edges[0].1.0[3];
+    let before = (foot - low - Vector2::new(-hidden / 3.0, 0.0)).norm_squared();
+    let drop = (before - (foot.x - low.x + point).powi(2)).max(0.0).sqrt();
+    let tip = Point2::new(low.x - point, foot.y + drop.max(LEAST_DROP * (low.y - foot.y)));
+    // Legs that are short beside the point run straight from it.
+    let share = ((foot - low).norm() / (LONG * point).max(1e-6)).min(1.0);
+    let inner = |c: &Curve| {
+        let straight = tip + (foot - tip) / 3.0;
+        straight + (c.0[1] + out(INNER) - straight) * share
+    };
     // Straight down, then out to the point.
     let rise = Curve([high, high + (low - high) * STRAIGHT, low + out(HOLLOW), tip]);
     let all = side.edges.iter().copied().chain([("rise", rise)]);
     let all = all.map(|(name, c)| match name {
-        "inseam" => (name, Curve([tip, c.0[1] + out(INNER), c.0[2], c.0[3]])),
+        "inseam" => (name, Curve([tip, inner(&c), c.0[2], c.0[3]])),
         _ => (name, c),
     });
     let mut edges: Vec<(String, Run)> =

@@ -37,6 +37,15 @@ pub(super) fn astray(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Contex
     }
 }
 
+/// Tells that one half alone looks like the garment; side 0 lies to the right as one looks at the photo.
+pub(super) fn one_half(panel: &str, form: &Form, side: usize, cx: &Context) {
+    let [seen, other] = if side == 0 { ["right", "left"] } else { ["left", "right"] };
+    cx.warn(format!(
+        "only the {seen} half of \"{panel}\" in the photo looks like {}: the {other} one is cut as its mirror image",
+        form.word
+    ));
+}
+
 /// Tells edges that are longer on one side: the garment lies uneven.
 pub(super) fn uneven(panel: &str, form: &Form, fit: &Fit, size: f64, sides: Sides, cx: &Context) {
     let cut = match sides {

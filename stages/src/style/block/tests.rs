@@ -53,6 +53,7 @@ fn outline(points: Vec<Point2>) -> Outline {
         edges: vec![],
         inner: vec![],
         frame: Some(frame),
+        lies: vec![],
     }
 }
 
@@ -256,7 +257,9 @@ fn a_block_says_why_it_does_not_fit() {
         "the garment in \"front\" has no left and right half"
     );
     let strict = Block { stray: 0.001, ..of(BlockStyle::TShirt) };
-    let e = refusal(&strict, garment(TEE));
+    let ragged = garment(TEE).into_iter().enumerate();
+    let ragged = ragged.map(|(i, p)| p + Vector2::new(0.0, if i % 8 < 4 { 0.004 } else { -0.004 })).collect();
+    let e = refusal(&strict, ragged);
     assert!(e.starts_with("\"front\" was to be a T-shirt, but strays from one by "), "{e}");
 }
 
@@ -520,4 +523,138 @@ fn sleeves_without_an_armpit_are_cut_in_one_with_the_top() {
     assert_eq!(names, ["front", "back"]);
     let cuff = length(&pattern, "front", "cuff_left");
     assert!((cuff - between(BATWING, 4)).abs() < 12.0, "{cuff:.1}");
+}
+
+/// A shirt whose left sleeve lies under it: the outline runs up there without one.
+fn one_sleeve() -> Vec<Point2> {
+    let tucked = |p: Point2| Point2::new(p.x.max(-0.25), p.y);
+    garment(TEE).into_iter().map(tucked).collect()
+}
+
+#[test]
+fn a_half_that_hides_its_sleeve_is_cut_as_the_other_ones_mirror_image() {
+    let front: Set<Outline> = [("front".to_owned(), outline(one_sleeve()))].into_iter().collect();
+    let cx = Context::quiet();
+    let (pattern, outlines, _) = of(BlockStyle::TShirt).run(front, &body(), None, &cx).unwrap();
+    for side in ["left", "right"] {
+        let cuff = length(&pattern, &format!("{side}_sleeve_front"), "cuff");
+        assert!((cuff - between(TEE, 3)).abs() < 8.0, "{side}: {cuff:.1}");
+    }
+    let told = cx.take_notes().1;
+    let want = "only the right half of \"front\" in the photo looks like a T-shirt: the left one is cut as its mirror image";
+    assert!(told.contains(&want.to_owned()), "{told:?}");
+    // The hidden sleeve gets the colours of the one that is seen: its cuff lies at that one's.
+    let cuff = |name: &str| {
+        let o = outlines.get(name).unwrap();
+        let points = o.edge_points(o.edge("cuff").unwrap());
+        o.to_px(points[points.len() / 2]).unwrap()
+    };
+    let (seen, hidden) = (cuff("left_sleeve_front"), cuff("right_sleeve_front"));
+    assert!((seen - hidden).norm() < 8.0, "{seen} {hidden}");
+}
+
+#[test]
+fn spread_legs_are_stood_under_the_hips_and_keep_their_lengths() {
+    // Each leg leans out by a tenth of the way down from the hip, 720 mm above the hem.
+    let spread: Vec<[f64; 2]> = TROUSERS
+        .iter()
+        .map(|p| [p[0] + if p[1] < 700.0 { 0.1 * (720.0 - p[1]) } else { 0.0 }, p[1]])
+        .collect();
+    let (pattern, outlines, _) = cut(&of(BlockStyle::Trousers), garment(&spread)).unwrap();
+    let leg = pattern.piece("left_leg_front").unwrap();
+    let outseam = leg.path("outseam").unwrap();
+    let (foot, hip) = (outseam.at(0.0), outseam.at(outseam.length()));
+    assert!((foot.x - hip.x).abs() < 0.015, "{foot} {hip}");
+    assert!((1e3 * outseam.length() - 720.0).abs() < 12.0, "{}", outseam.length());
+    // Its colours are those of the leg as it lies.
+    let o = outlines.get("left_leg_front").unwrap();
+    let hem = o.edge_points(o.edge("hem").unwrap());
+    let middle = o.to_px(hem[hem.len() / 2]).unwrap();
+    assert!((middle - Point2::new(500.0 + 160.0 + 72.0, 900.0)).norm() < 8.0, "{middle}");
+}
+
+/// A child's one-piece with short legs.
+const ONEPIECE: &[[f64; 2]] = &[
+    [0.0, 95.0],
+    [30.0, 0.0],
+    [170.0, 5.0],
+    [155.0, 370.0],
+    [205.0, 330.0],
+    [250.0, 440.0],
+    [150.0, 505.0],
+    [60.0, 530.0],
+    [0.0, 500.0],
+];
+
+#[test]
+fn a_one_piece_is_front_and_back_with_sleeves_and_two_legs() {
+    let (pattern, _, plan) = cut(&Block::default(), garment(ONEPIECE)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names[..3], ["front", "left_sleeve_front", "right_sleeve_front"]);
+    for (edge, corner) in [("inseam_left", 0), ("hem_right", 1), ("side_left", 2)] {
+        let is = length(&pattern, "front", edge);
+        assert!((is - between(ONEPIECE, corner)).abs() < 8.0, "{edge}: {is:.1}");
+    }
+    // Inseams, sides and shoulders; four caps; underarms and tops of the sleeves.
+    assert_eq!(plan.seams.len(), 14);
+}
+
+fn gathered(fullness: f64, band: &str) -> Block {
+    Block { waist: Waist::Gathered { fullness, band: band.parse().unwrap() }, ..of(BlockStyle::Skirt) }
+}
+
+#[test]
+fn a_gathered_skirt_is_wider_than_its_band_and_looks_like_its_photo() {
+    let (pattern, outlines, plan) = cut(&gathered(1.6, "3 cm"), garment(SKIRT)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["front", "band_front", "back", "band_back"]);
+    let near = |piece: &str, edge: &str, want: f64| {
+        let is = length(&pattern, piece, edge);
+        assert!((is - want).abs() < 6.0, "{piece} {edge}: {is:.1} for {want:.1}");
+    };
+    near("band_front", "joint", 360.0);
+    near("band_front", "end_left", 30.0);
+    near("front", "waist", 1.6 * 360.0);
+    near("front", "hem", 640.0);
+    let gathers = plan.seams.iter().filter(|s| s.kind == SeamKind::Gathered).count();
+    assert_eq!(gathers, 2);
+    // The middle of its side shows what the photo shows at the middle of its side.
+    let o = outlines.get("front").unwrap();
+    let side = o.edge_points(o.edge("side_left").unwrap());
+    let px = o.to_px(side[side.len() / 2]).unwrap();
+    assert!((px.x - 500.0 - 253.0).abs() < 8.0, "{px}");
+}
+
+#[test]
+fn what_cannot_be_gathered_is_refused() {
+    let refused = |stage: &Block, points| cut(stage, points).unwrap_err().message;
+    let tee = Block { style: BlockStyle::TShirt, ..gathered(1.6, "3 cm") };
+    assert_eq!(refused(&tee, garment(TEE)), "only a skirt is gathered at the waist, and this is a T-shirt");
+    assert_eq!(refused(&gathered(0.5, "3 cm"), garment(SKIRT)), "a fullness of 0.5 is not between 1 and 4");
+    assert_eq!(
+        refused(&gathered(2.0, "50 cm"), garment(SKIRT)),
+        "a band of 50 cm is not between 5 mm and 20 cm"
+    );
+}
+
+#[test]
+fn a_sleeve_that_hangs_folded_at_the_armpit_is_opened_there() {
+    // Sleeves hang beside the body; at the armpit 70 mm of them show, 100 mm below.
+    const HUNG: &[[f64; 2]] = &[
+        [0.0, 0.0],
+        [260.0, 0.0],
+        [235.0, 400.0],
+        [280.0, 120.0],
+        [370.0, 140.0],
+        [300.0, 520.0],
+        [230.0, 630.0],
+        [80.0, 670.0],
+        [0.0, 640.0],
+    ];
+    let (pattern, _, plan) = cut(&of(BlockStyle::LongSleeve), garment(HUNG)).unwrap();
+    let cap = length(&pattern, "left_sleeve_front", "cap");
+    let armhole = length(&pattern, "front", "armhole_left");
+    assert!(cap >= armhole - 0.1, "{cap} {armhole}");
+    let kinds = plan.seams.iter().filter(|s| s.kind == SeamKind::Gathered).count();
+    assert_eq!(kinds > 0, cap > 1.02 * armhole, "{cap} {armhole}");
 }
