@@ -43,7 +43,7 @@ pub struct Measure {
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
     /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a share: they lie on the body or hang together
-    /// with it through cloth that is stretched by 2 % and more, and the cloth there is longer in some direction than it was cut, by at least
+    /// with it through cloth that is stretched by 0.5 % and more, and the cloth there is longer in some direction than it was cut, by at least
     /// as much. Beyond it the garment is too small for the body (woven cotton
     /// tears at some 25 %); from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]

@@ -217,7 +217,7 @@ impl Chord {
     /// The curve made round and so deep that it is as long as `least`; as deep as `most` where that is not enough.
     fn long_enough(&self, curve: Curve, least: f64, most: f64) -> Curve {
         let at = |depth: f64| Curve { depth, power: curve.power.max(ROUND) };
-        let (mut low, mut high) = (curve.depth.min(most), most);
+        let (mut low, mut high) = (curve.depth, most.max(curve.depth));
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             if self.length(&at(middle)) < least { low = middle } else { high = middle }

@@ -1,7 +1,7 @@
 //! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
 //!
 //! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
-//! outline, [`pieces`] cuts it, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
+//! outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
 mod alike;
 mod bow;
@@ -216,7 +216,9 @@ impl Block {
             let is_sound = strays(&best.2) <= limit * HALF && best.2.near(&upright, other, limit) >= OTHER;
             is_sound.then_some((best, upright))
         };
-        let by_half = if doubtful && !upright.unseen.contains(&true) { one() } else { None };
+        // Sides that are to be kept apart are not mirrored.
+        let may_mirror = self.sides == Sides::Alike && !upright.unseen.contains(&true);
+        let by_half = if doubtful && may_mirror { one() } else { None };
         let ((name, form, fit), upright) = match by_half {
             Some(found) => found,
             None => (found?, upright),

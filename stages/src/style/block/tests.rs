@@ -554,6 +554,13 @@ fn a_half_that_hides_its_sleeve_is_cut_as_the_other_ones_mirror_image() {
 }
 
 #[test]
+fn sides_that_are_kept_apart_are_not_mirrored() {
+    let stage = Block { sides: Sides::AsTheyLie, ..of(BlockStyle::TShirt) };
+    let e = cut(&stage, one_sleeve()).unwrap_err();
+    assert_eq!(e.message, "\"front\" does not look like a T-shirt: its sides run up without an armpit");
+}
+
+#[test]
 fn spread_legs_are_stood_under_the_hips_and_keep_their_lengths() {
     // Each leg leans out by a tenth of the way down from the hip, 720 mm above the hem.
     let spread: Vec<[f64; 2]> = TROUSERS
