@@ -6,6 +6,7 @@
 //! | `Otsu` | grey levels against the threshold that parts them best | a plain ground |
 //! | `Local` | grey levels against their surroundings | a plain ground in uneven light |
 //! | `Background` | colour against the colours along the frame | rugs, wood, patterns |
+//! | `Difference` | colour against the same ground without the garment | a camera on a stand |
 //! | `GraphCut` | colour models and edges together | the hardest photos |
 //!
 //! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
@@ -16,6 +17,7 @@ mod auto;
 mod background;
 mod cut;
 mod cut_out;
+mod difference;
 mod finish;
 mod global;
 mod graph_cut;
@@ -34,6 +36,7 @@ mod tone;
 
 pub use auto::{Auto, candidates};
 pub use background::Background;
+pub use difference::Difference;
 pub use finish::{Finish, fill_holes, finish, mask_of, no_garment};
 pub use global::{Global, global};
 pub use graph_cut::GraphCut;
@@ -50,5 +53,12 @@ use toile_core::Registry;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Otsu>().add::<Global>().add::<Local>().add::<Background>().add::<GraphCut>().add::<Auto>();
+    registry
+        .add::<Otsu>()
+        .add::<Global>()
+        .add::<Local>()
+        .add::<Background>()
+        .add::<GraphCut>()
+        .add::<Auto>()
+        .add::<Difference>();
 }
