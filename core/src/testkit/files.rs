@@ -47,7 +47,7 @@ fn pieces() -> String {
     out + "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n  0\nTEXT\n  8\n1\n  1\nUnits: METRIC\n  0\nENDSEC\n  0\nEOF\n"
 }
 
-/// Lays the files that an example names into a folder: pictures, a body as OBJ (a garment where its name says so), a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
+/// Lays the files that an example names into a folder: pictures (`empty.jpg` shows the ground without the garment), a body as OBJ (a garment where its name says so), a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
 /// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
@@ -58,8 +58,9 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
     for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
         match name.rsplit_once('.').map(|(_, extension)| extension) {
             _ if name.ends_with("_specification.json") => lay(name, PATTERN.as_bytes())?,
-            Some("jpg" | "jpeg") => lay(name, &picture(image::ImageFormat::Jpeg))?,
-            Some("png") => lay(name, &picture(image::ImageFormat::Png))?,
+            Some("jpg") if name == "empty.jpg" => lay(name, &encoded(&shapes::ground(), image::ImageFormat::Jpeg))?,
+            Some("jpg" | "jpeg") => lay(name, &encoded(&shapes::photo(), image::ImageFormat::Jpeg))?,
+            Some("png") => lay(name, &encoded(&shapes::photo(), image::ImageFormat::Png))?,
             Some("dxf") => lay(name, pieces().as_bytes())?,
             Some("svg") => lay(name, DRAWING.as_bytes())?,
             Some("obj") if name.contains("garment") => lay(name, &garment_file())?,
@@ -85,10 +86,10 @@ fn writers_for<'r>(registry: &'r Registry, example: &'r str) -> impl Iterator<It
     registry.cards().filter(kin).chain(registry.cards())
 }
 
-fn picture(format: image::ImageFormat) -> Vec<u8> {
+fn encoded(photo: &Photo, format: image::ImageFormat) -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     // Writing into memory cannot fail; a stage that is given nothing says so.
-    let _ = shapes::photo().pixels.write_to(&mut bytes, format);
+    let _ = photo.pixels.write_to(&mut bytes, format);
     bytes.into_inner()
 }
 

@@ -253,6 +253,14 @@ pub fn photo() -> Photo {
     photo_of(&outline()).0
 }
 
+/// The ground of [`photo`] without the vest.
+pub fn ground() -> Photo {
+    let photo = photo();
+    let noise = |x, y| (f64::from(grain(y, x) % 9) - 4.0) as i16;
+    let colour = |x, y| Rgb(GROUND.map(|v| (i16::from(v) + noise(x, y)).clamp(0, 255) as u8));
+    photo_from(RgbImage::from_fn(photo.pixels.width(), photo.pixels.height(), colour))
+}
+
 /// The mask of [`photo`].
 pub fn mask() -> Mask {
     photo_of(&outline()).1

@@ -11,12 +11,10 @@
 
 use super::background::{SHADOW, clean};
 use super::finish::{Finish, mask_of, no_garment};
-use super::marks::{check, of_photo};
 use super::refine::refine;
 use super::small::{Lab, Small};
 use crate::photo::decode;
 use image::RgbImage;
-use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
 /// A difference in CIE Lab that is seen at a glance; less is no garment.
@@ -37,13 +35,13 @@ const SAME_FORM: f64 = 0.01;
 #[stage(
     role = Binariser,
     source = "Horprasert, Harwood, Davis 1999; CIE Lab, 1976",
-    example = "Difference(ground: {\"front\": \"empty.jpg\"})",
+    example = "Difference(ground: \"empty.jpg\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct Difference {
-    /// Files, by photo: the same ground without the garment, by the same camera from the same place.
-    #[param(default = BTreeMap::new())]
-    pub ground: BTreeMap<String, String>,
+    /// A photo of the same ground without the garment, by the same camera from the same place.
+    #[param(default = String::new())]
+    pub ground: String,
     /// How much of the ground's lightness a shadow may take: 0 for no shadows.
     #[param(default = SHADOW, min = 0.0, max = 1.0)]
     pub shadow: f64,
@@ -74,22 +72,18 @@ impl Difference {
             refine(photo, &small, &mask, cx)
         })
     }
-
-    /// Grounds of photos that are not there.
-    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
-        check("ground", self.ground.keys(), crate::photo::sides(&placed.sources()).as_deref())
-    }
 }
 
 impl Difference {
     /// The photo of the ground, of the photo's proportions.
     fn ground(&self, photo: &Photo, cx: &Context) -> Result<Photo, StageError> {
         let at = |e: StageError| e.at("ground");
-        let Some(file) = of_photo(&self.ground, photo, cx) else {
-            let name = cx.entry();
-            return Err(at(StageError::invalid(format!("there is no photo of the ground of \"{name}\""))
-                .hint(format!("photograph the ground without the garment: Difference(ground: {{\"{name}\": \"empty.jpg\"}})"))));
-        };
+        let file = self.ground.as_str();
+        if file.is_empty() {
+            return Err(at(StageError::invalid("no photo of the ground is named").hint(
+                "photograph the ground without the garment: Difference(ground: \"empty.jpg\")",
+            )));
+        }
         let empty = cx.read(file).and_then(|bytes| decode(&bytes, file)).map_err(at)?.pixels;
         let form = |p: &RgbImage| f64::from(p.width()) / f64::from(p.height().max(1));
         if (form(&empty) / form(&photo.pixels) - 1.0).abs() > SAME_FORM {
@@ -157,8 +151,7 @@ mod tests {
     }
 
     fn stage(file: &str) -> Difference {
-        let ground = [(Context::quiet().entry().to_owned(), file.to_owned())].into();
-        Difference { ground, size: 300, ..Difference::default() }
+        Difference { ground: file.into(), shadow: SHADOW, size: 300, holes: 1.0, touch: 0.05 }
     }
 
     fn photo() -> Photo {
@@ -180,11 +173,13 @@ mod tests {
 
     #[test]
     fn what_cannot_be_compared_is_refused() {
-        let e = stage("empty.png");
-        let none = Difference::default().run(&photo(), &Context::quiet()).unwrap_err();
-        let name = Context::quiet().entry().to_owned();
-        assert_eq!(none.message, format!("there is no photo of the ground of \"{name}\""));
-        assert!(e.run(&photo(), &Context::quiet()).is_err());
+        let e = Difference::default().run(&photo(), &Context::quiet()).unwrap_err();
+        assert_eq!(e.message, "no photo of the ground is named");
+        assert_eq!(
+            e.hint.unwrap(),
+            "photograph the ground without the garment: Difference(ground: \"empty.jpg\")"
+        );
+        assert!(stage("empty.png").run(&photo(), &Context::quiet()).is_err());
         let dir = tempfile::tempdir().unwrap();
         let file = dir.path().join("square.png");
         RgbImage::new(200, 200).save(&file).unwrap();
