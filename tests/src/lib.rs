@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 20] = [
+pub const PIPELINES: [&str; 22] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -78,5 +78,7 @@ pub const PIPELINES: [&str; 20] = [
     "photo_shorts.ron",
     "photo_gathered.ron",
     "photo_onepiece.ron",
+    "photo_pleated.ron",
+    "photo_shirt.ron",
     "flatten.ron",
 ];

@@ -23,6 +23,7 @@ mod migrate;
 mod new_stage;
 mod outputs;
 mod photos;
+mod proposals;
 mod plugins;
 mod qualities;
 mod repeatable;

@@ -58,7 +58,9 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
     for name in example.split('"').skip(1).step_by(2).filter(|n| !n.contains(['/', '\\'])) {
         match name.rsplit_once('.').map(|(_, extension)| extension) {
             _ if name.ends_with("_specification.json") => lay(name, PATTERN.as_bytes())?,
-            Some("jpg") if name == "empty.jpg" => lay(name, &encoded(&shapes::ground(), image::ImageFormat::Jpeg))?,
+            Some("jpg") if name == "empty.jpg" => {
+                lay(name, &encoded(&shapes::ground(), image::ImageFormat::Jpeg))?
+            }
             Some("jpg" | "jpeg") => lay(name, &encoded(&shapes::photo(), image::ImageFormat::Jpeg))?,
             Some("png") => lay(name, &encoded(&shapes::photo(), image::ImageFormat::Png))?,
             Some("dxf") => lay(name, pieces().as_bytes())?,

@@ -108,6 +108,23 @@ pub(crate) fn longsleeve() -> Outline {
     close(&half, &[neck_curve(neck, 92.0)], &[hem_curve(hem)], Side::Front)
 }
 
+/// A shirt that is buttoned in front, 108 cm around the chest, 125 cm from cuff to cuff, 72 cm long.
+pub(crate) fn shirt() -> Outline {
+    let (neck, armpit, hem) = ([88.0, 717.0], [270.0, 366.0], [276.0, 8.0]);
+    let (cuff_top, cuff_low) = ([626.0, 191.0], [546.0, 128.0]);
+    let top = vec![
+        [cuff_top, [496.0, 354.0], [339.0, 568.0], [246.0, 659.0]],
+        [[246.0, 659.0], [201.0, 689.0], [144.0, 702.0], neck],
+    ];
+    let half: Half = vec![
+        ("side", "hem", vec![[hem, [271.0, 117.0], [262.0, 244.0], armpit]]),
+        ("underarm", "armpit", vec![[armpit, [318.0, 333.0], [456.0, 208.0], cuff_low]]),
+        ("cuff", "cuff_low", vec![line(cuff_low, cuff_top)]),
+        ("shoulder", "cuff_top", top),
+    ];
+    close(&half, &[neck_curve(neck, 84.0)], &[hem_curve(hem)], Side::Front)
+}
+
 /// A skirt that flares from the hip, 73 cm around the waist, 102 around the hip, 55 cm long.
 pub(crate) fn skirt() -> Outline {
     let (waist, hip, hem) = ([183.0, 552.0], [255.0, 362.0], [312.0, 9.0]);

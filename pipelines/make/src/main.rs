@@ -54,7 +54,7 @@ fn enlarged(shot: Shot, factor: f64) -> Shot {
 }
 
 /// The garments of one photo.
-fn single() -> [(&'static str, Shot, Outline); 6] {
+fn single() -> [(&'static str, Shot, Outline); 8] {
     let knit = Shot {
         seed: 31,
         size: [1900, 1130],
@@ -149,7 +149,34 @@ fn single() -> [(&'static str, Shot, Outline); 6] {
             _ => Finish::Seam,
         },
     };
+    let shirt = Shot {
+        seed: 91,
+        size: [2040, 1230],
+        px_per_mm: 1.5,
+        origin: [1018.3, 1150.2],
+        ground: Ground::Oak,
+        structure: Structure::Woven,
+        base: srgb(74, 96, 130),
+        thread: srgb(110, 132, 164),
+        print: print::placket,
+        finish: |edge| match edge {
+            "hem" => Finish::Hemmed(8.0),
+            "cuff_left" | "cuff_right" => Finish::Bound(55.0, srgb(64, 84, 116)),
+            "neck" => Finish::Bound(26.0, srgb(64, 84, 116)),
+            _ => Finish::Seam,
+        },
+    };
+    let pleated = Shot {
+        seed: 101,
+        base: srgb(86, 58, 92),
+        thread: srgb(128, 98, 134),
+        ground: Ground::Linen,
+        print: print::pleats,
+        ..skirt
+    };
     [
+        ("shirt", shirt, garment::shirt()),
+        ("pleated", pleated, garment::skirt()),
         ("longsleeve", knit, garment::longsleeve()),
         ("shorts", shorts, garment::shorts()),
         ("onepiece", onepiece, garment::onepiece()),

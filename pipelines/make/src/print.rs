@@ -24,6 +24,27 @@ pub(crate) fn border(base: Rgb, p: P) -> Rgb {
     paint(cloth, srgb(150, 70, 52), (high - 108.0).abs() - 4.0)
 }
 
+/// A band down the middle, 32 mm wide, with its buttons.
+pub(crate) fn placket(base: Rgb, p: P) -> Rgb {
+    let edge = (p[0] + 16.0).abs() - 0.7;
+    let stitches = (p[0].abs() - 11.0).abs() - 0.35;
+    let row = ((p[1] - 40.0) / 84.0).round();
+    let button = distance(p, [0.0, 40.0 + 84.0 * row]) - 5.5;
+    let hole = distance([p[0].abs(), p[1]], [1.6, 40.0 + 84.0 * row]) - 0.8;
+    let cloth = paint(paint(base, srgb(52, 72, 104), edge), srgb(98, 120, 152), stitches);
+    paint(paint(cloth, srgb(226, 218, 200), button), srgb(90, 84, 76), hole)
+}
+
+/// Edges of six pleats, from a waist of 366 mm down to a hem of 624, and the shade beside each.
+pub(crate) fn pleats(base: Rgb, p: P) -> Rgb {
+    let wide = 312.0 - (p[1] - 9.0) / 543.0 * 129.0;
+    let share = (p[0] / wide + 1.0) * 3.0 - 0.5;
+    let off = (share - share.round()) * wide / 3.0;
+    let shade = blend(srgb(40, 30, 44), base, 1.0 - 0.5 * smoothstep(14.0, 0.0, off.abs()));
+    let shaded = if off > 0.0 { shade } else { base };
+    paint(shaded, srgb(30, 22, 34), off.abs() - 0.6)
+}
+
 /// Dots in rows.
 pub(crate) fn dots(base: Rgb, p: P) -> Rgb {
     let row = (p[1] / 34.0).round();

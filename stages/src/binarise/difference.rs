@@ -80,9 +80,8 @@ impl Difference {
         let at = |e: StageError| e.at("ground");
         let file = self.ground.as_str();
         if file.is_empty() {
-            return Err(at(StageError::invalid("no photo of the ground is named").hint(
-                "photograph the ground without the garment: Difference(ground: \"empty.jpg\")",
-            )));
+            return Err(at(StageError::invalid("no photo of the ground is named")
+                .hint("photograph the ground without the garment: Difference(ground: \"empty.jpg\")")));
         }
         let empty = cx.read(file).and_then(|bytes| decode(&bytes, file)).map_err(at)?.pixels;
         let form = |p: &RgbImage| f64::from(p.width()) / f64::from(p.height().max(1));

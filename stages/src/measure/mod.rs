@@ -1,6 +1,7 @@
 //! The judgement of a finished garment, behind `metrics.json`.
 
 mod girth;
+mod looks;
 mod on_body;
 mod quality;
 mod tight;

@@ -6,7 +6,7 @@
 //! collider or body they are not measured, and `metrics.json` says so with a null.
 
 use super::tight::Tight;
-use super::{girth, on_body};
+use super::{girth, looks, on_body};
 use crate::cloth::check_garment;
 use crate::collide::crossing::body_crossings;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,10 +21,11 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// Measures the garment and holds it against its quality limits.
 ///
 /// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
-/// misses a limit is written all the same, with exit code 4.
+/// misses a limit is written all the same, with exit code 4. What looks odd on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
+/// stand off, an uneven hem, a photo that is drawn out.
 #[stage(
     role = Writer,
-    version = 6,
+    version = 7,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -78,6 +79,7 @@ impl Measure {
         figures.shortfalls = self.shortfalls(&figures.garment, &loose, tight.rest());
         figures.shortfalls.extend(tight.judge(garment, self.max_strain, self.max_tight, cx));
         girth::tell(&figures.garment.girths, cx);
+        looks::tell(garment, collider, cx);
         figures.shortfalls.extend(on_body::shortfall(garment, self.least_on_body));
         Ok(figures)
     }

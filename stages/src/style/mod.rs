@@ -5,6 +5,7 @@
 //! divisions in [`sewing`]. [`neckline`] then looks at the photo for what the outline cannot show.
 
 mod block;
+mod closed_front;
 mod naming;
 mod neck;
 mod neckline;

@@ -10,6 +10,7 @@
 //! the middle of the neck points; a garment photographed closed and without any seam at its neck gets the
 //! usual depth, with a warning.
 
+use super::closed_front::ClosedFront;
 use super::naming::is_back;
 use super::sewing::own_gauge;
 use rayon::prelude::*;
@@ -90,14 +91,17 @@ impl Neckline {
         let behind = outlines.iter().filter(|(name, _)| is_back(name)).find_map(|(_, o)| neck_of(o));
         let least =
             body.and_then(throat).zip(behind).map_or(0.0, |(throat, behind)| TIGHTEST * throat - behind);
-        outlines
-            .iter()
-            .map(|(name, o)| {
-                cx.check()?;
-                let photo = photos.get(name);
-                Ok((name.to_owned(), self.cut(name, o, photo, least, cx).unwrap_or_else(|| o.clone())))
-            })
-            .collect()
+        let closed = ClosedFront::among(&outlines);
+        let both = closed.as_ref().and_then(|front| {
+            front.halved(&self.cut("front", &front.whole, photos.get("front"), least, cx)?)
+        });
+        let is_half = |name: &str| both.is_some() && closed.as_ref().is_some_and(|f| f.is_half(name));
+        let others = outlines.iter().filter(|(name, _)| !is_half(name)).map(|(name, o)| {
+            cx.check()?;
+            let photo = photos.get(name);
+            Ok((name.to_owned(), self.cut(name, o, photo, least, cx).unwrap_or_else(|| o.clone())))
+        });
+        others.chain(both.clone().into_iter().flatten().map(Ok)).collect()
     }
 }
 
@@ -364,7 +368,7 @@ fn colour(photo: &Photo, p: Point2) -> [f64; 3] {
 }
 
 /// The outline with an edge's inner points replaced.
-fn replaced(outline: &Outline, edge: &Edge, inner: &[Point2]) -> Outline {
+pub(super) fn replaced(outline: &Outline, edge: &Edge, inner: &[Point2]) -> Outline {
     let n = outline.outer.points.len();
     // The loop begins where the edge ends.
     let moved = |i: usize| (i + n - edge.end) % n;
@@ -444,6 +448,55 @@ mod tests {
 
     fn lowest(o: &Outline) -> f64 {
         o.edge_points(o.edge("neck").unwrap()).iter().map(|p| 0.5 - p.y).fold(0.0, f64::max)
+    }
+
+    /// The shirt, cut in halves along its middle.
+    fn halves() -> Set<Outline> {
+        let part = |name: &str, corners: &[(f64, f64)], names: &[&str]| {
+            let n = corners.len();
+            let gauge = Gauge::straight(0.1);
+            let edge = |i: usize| Edge { name: names[i].into(), start: i, end: (i + 1) % n, gauge };
+            let points = corners.iter().map(|(x, y)| Point2::new(*x, *y)).collect();
+            let outer = Loop { points, corners: (0..n).collect() };
+            let edges = (0..n).map(edge).collect();
+            (name.to_owned(), Arc::new(Outline { outer, edges, ..shirt() }))
+        };
+        let left = [(0.0, 0.0), (0.2, 0.0), (0.2, 0.48), (0.08, 0.5), (0.0, 0.5)];
+        let right = [(0.0, 0.0), (0.0, 0.5), (-0.08, 0.5), (-0.2, 0.48), (-0.2, 0.0)];
+        let left = part(
+            "left_front",
+            &left,
+            &["hem_left", "side_left", "shoulder_left", "neck_left", "middle_left"],
+        );
+        let right = part(
+            "right_front",
+            &right,
+            &["middle_right", "neck_right", "shoulder_right", "side_right", "hem_right"],
+        );
+        Set([left, right].into_iter().collect())
+    }
+
+    #[test]
+    fn a_front_in_halves_gets_one_neckline() {
+        let stage = Neckline { depth: Some(Length::m(0.1)), usual: 0.45 };
+        let cut =
+            stage.run(halves(), Set(std::collections::BTreeMap::new()), None, &Context::quiet()).unwrap();
+        let ends = |panel: &str, edge: &str| {
+            let o = cut.get(panel).unwrap();
+            let points = o.edge_points(o.edge(edge).unwrap());
+            (points[0], points[points.len() - 1], polyline_length(&points))
+        };
+        let (left, right) = (ends("left_front", "neck_left"), ends("right_front", "neck_right"));
+        assert!(
+            (left.1 - Point2::new(0.0, 0.4)).norm() < 1e-9 && left.1 == right.0,
+            "{} {}",
+            left.1,
+            right.0
+        );
+        assert!((left.2 - right.2).abs() < 1e-6 && left.2 > 0.12, "{} {}", left.2, right.2);
+        let (a, b) = (ends("left_front", "middle_left"), ends("right_front", "middle_right"));
+        assert!((a.2 - 0.4).abs() < 1e-9 && (a.2 - b.2).abs() < 1e-9);
+        assert_eq!(cut.0.len(), 2);
     }
 
     #[test]

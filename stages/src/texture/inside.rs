@@ -40,15 +40,13 @@ impl PixelBox {
     }
 }
 
-/// 255 for every pixel of the box that a triangle covers, 0 for the others.
-pub(super) fn covered(points: &[Point2], triangles: &[[u32; 3]], area: PixelBox) -> GrayImage {
-    let mut picture = GrayImage::new(area.width, area.height);
+/// Sets every pixel of the box that a triangle covers to 255.
+pub(super) fn cover(picture: &mut GrayImage, points: &[Point2], triangles: &[[u32; 3]], area: PixelBox) {
     let origin = Point2::new(area.left as f64, area.top as f64);
     for t in triangles {
         let corners = t.map(|i| Point2::from(points[i as usize] - origin));
-        fill(&mut picture, corners);
+        fill(picture, corners);
     }
-    picture
 }
 
 /// A panel of which the mask shows less than this share is not the one that it was made from.

@@ -4,7 +4,7 @@
 //! coordinates are the photo coordinates that the mesher kept for every vertex.
 //! Cost: a few passes over the photo's pixels. Limit: light and shadow in the photo stay in the texture.
 
-use super::inside::{PixelBox, covered, keep_shown};
+use super::inside::{PixelBox, cover, keep_shown};
 use super::texture_size::{self, LARGEST};
 use super::{bleed, crop, of_panel, parts, plain};
 use rayon::prelude::*;
@@ -50,7 +50,7 @@ pub enum Unseen {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 3,
+    version = 4,
     source = "garment modelling thesis, 2012: replace and modulate",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -110,10 +110,13 @@ impl PhotoTexturer {
             model.materials.push(material);
         }
         cx.progress(0.5, format!("textures of {} panels", pictures.len()));
+        let shown: Vec<(&GarmentPanel, &Photo)> = pictures.iter().map(|p| (p.0, p.1)).collect();
         let texture =
             |(panel, photo, mask, plain, area): (&GarmentPanel, &Photo, Option<&Mask>, bool, PixelBox)| {
                 cx.check()?;
-                self.texture(garment, panel, (photo, mask, plain), area)
+                let beside: Vec<&GarmentPanel> =
+                    shown.iter().filter(|(_, p)| std::ptr::eq(*p, photo)).map(|(panel, _)| *panel).collect();
+                self.texture(garment, panel, &beside, (photo, mask, plain), area)
             };
         let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
         model.textures = textures.into_iter().collect::<Result<_, _>>()?;
@@ -141,17 +144,22 @@ impl PhotoTexturer {
         self.unseen == Unseen::Plain && photo.mirrored && photos.is_some_and(|all| all.iter().any(other))
     }
 
+    /// A panel's texture. `beside` are all panels that the photo shows, this one as well: where two of them meet is no rim of the garment.
     fn texture(
         &self,
         garment: &Garment,
         panel: &GarmentPanel,
+        beside: &[&GarmentPanel],
         (photo, mask, plain): (&Photo, Option<&Mask>, bool),
         area: PixelBox,
     ) -> Result<Texture, StageError> {
-        let first = panel.vertices.start as u32;
-        let triangles: Vec<[u32; 3]> =
-            garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
-        let mut inside = covered(&panel.photo_px, &triangles, area);
+        let mut inside = image::GrayImage::new(area.width, area.height);
+        for panel in beside {
+            let first = panel.vertices.start as u32;
+            let triangles: Vec<[u32; 3]> =
+                garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
+            cover(&mut inside, &panel.photo_px, &triangles, area);
+        }
         if let Some(mask) = mask {
             keep_shown(&mut inside, &mask.pixels, photo.pixels.width(), area);
         }

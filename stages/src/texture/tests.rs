@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::bleed::{bleed, eroded, nearest};
-use super::inside::{PixelBox, covered, keep_shown};
+use super::inside::{PixelBox, cover, keep_shown};
 use super::{PhotoTexturer, crop, fixture};
 use image::{GrayImage, Luma, Rgb, RgbImage};
 use proptest::prelude::*;
@@ -85,6 +85,37 @@ fn no_ground_shows_anywhere_in_a_texture() {
             let green = texture.pixels.pixels().filter(|p| greenish(p.0)).count();
             assert_eq!(green, 0, "{params}: {} of {:?}", texture.name, texture.pixels.dimensions());
         }
+    }
+}
+
+#[test]
+fn where_two_pieces_of_one_photo_meet_its_colours_stay() {
+    let mut garment = fixture::garment(8);
+    let mut photo = fixture::photos().get("front").unwrap().clone();
+    let middle = 0.5 * f64::from(photo.pixels.width() - 1);
+    for (panel, (name, first)) in
+        garment.panels.iter_mut().zip([("left_front", middle), ("right_front", 40.5)])
+    {
+        name.clone_into(&mut panel.name);
+        for px in &mut panel.photo_px {
+            px.x = first + 0.5 * (px.x - 40.5);
+        }
+    }
+    let near = |panel: &GarmentPanel| {
+        let off = |p: &Point2| (p.x - middle).abs();
+        (0..panel.photo_px.len()).min_by(|a, b| off(&panel.photo_px[*a]).total_cmp(&off(&panel.photo_px[*b])))
+    };
+    let line = photo.pixels.width() / 2 - 60..photo.pixels.width() / 2 + 60;
+    let buttons = RgbImage::from_fn(photo.pixels.width(), photo.pixels.height(), |x, y| {
+        if line.contains(&x) { Rgb([10, 20, 250]) } else { *photo.pixels.get_pixel(x, y) }
+    });
+    photo.pixels = Shared::new(buttons);
+    let photos: Set<Photo> = [("front".to_owned(), photo)].into_iter().collect();
+    let texturer = texturer("(inset: \"90 mm\")");
+    let model = texturer.run(&garment, Some(photos), None, None, &Context::quiet()).unwrap();
+    for (panel, mesh) in garment.panels.iter().zip(&model.meshes) {
+        let k = near(panel).unwrap();
+        assert_eq!(texel(&model.textures[mesh.material], mesh.uv[k]), [10, 20, 250], "{}", panel.name);
     }
 }
 
@@ -214,7 +245,8 @@ proptest! {
     fn covered_pixels_lie_in_the_triangle(c in proptest::collection::vec((-3.0..13.0, -3.0..13.0), 3)) {
         let p: Vec<Point2> = c.iter().map(|&(x, y)| Point2::new(x, y)).collect();
         let area = PixelBox { left: 0, top: 0, width: 10, height: 10 };
-        let picture = covered(&p, &[[0, 1, 2]], area);
+        let mut picture = image::GrayImage::new(area.width, area.height);
+        cover(&mut picture, &p, &[[0, 1, 2]], area);
         let side = |a: Point2, b: Point2, q: Point2| (b - a).perp(&(q - a));
         for (x, y, v) in picture.enumerate_pixels() {
             let q = Point2::new(f64::from(x), f64::from(y));

@@ -1,7 +1,10 @@
 //! A cubic edge of a piece, which can be parted and turned.
 
 use super::bow::Bow;
-use toile_core::artifact::Point2;
+use toile_core::artifact::{Point2, polyline_length};
+
+/// Parts in which lengths are measured.
+const PARTS: usize = 24;
 
 /// A Bézier curve by its four points.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,5 +47,24 @@ impl Curve {
     /// Evenly spaced parameters' points, both ends included.
     pub(super) fn points(&self, parts: usize) -> Vec<Point2> {
         (0..=parts).map(|k| self.at(k as f64 / parts as f64)).collect()
+    }
+
+    /// Its length.
+    pub(super) fn length(&self) -> f64 {
+        polyline_length(&self.points(PARTS))
+    }
+
+    /// The parameter at so long a way from its start.
+    pub(super) fn parameter(&self, way: f64) -> f64 {
+        let points = self.points(PARTS);
+        let mut gone = 0.0;
+        for (k, w) in points.windows(2).enumerate() {
+            let step = (w[1] - w[0]).norm();
+            if gone + step >= way && step > 0.0 {
+                return (k as f64 + ((way - gone) / step).clamp(0.0, 1.0)) / PARTS as f64;
+            }
+            gone += step;
+        }
+        1.0
     }
 }

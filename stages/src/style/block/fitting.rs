@@ -8,7 +8,7 @@
 use super::complete::Complete;
 use super::fit::Fit;
 use super::form::Form;
-use super::{Block, BlockStyle, Fitted, Sides, Waist, refusal};
+use super::{Block, BlockStyle, Fitted, Front, Sides, Waist, refusal};
 use crate::body::Mannequin;
 use toile_core::prelude::*;
 
@@ -73,7 +73,7 @@ const SPREAD: f64 = 10.0;
 /// know the wearer.
 #[stage(
     role = Body,
-    version = 3,
+    version = 4,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -105,6 +105,7 @@ impl Fitting {
                 complete,
                 sides: Sides::Alike,
                 waist: Waist::Plain,
+                front: Front::Whole,
             };
             block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
         };

@@ -3,8 +3,7 @@
 use super::fit::Fit;
 use super::form::Form;
 use super::halves::Upright;
-use super::pieces::{self, Flat, Layer};
-use super::waist::Waist;
+use super::pieces::{self, Flat, Layer, Making};
 use super::{seams, stand};
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;
@@ -40,28 +39,32 @@ pub(super) fn mirrored(outline: &Outline) -> Outline {
 pub(super) fn pattern(
     form: &Form,
     layers: &[(Layer, Fitted)],
-    waist: Waist,
+    making: Making,
     body: &Body,
     cx: &Context,
 ) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
     let hung = if form.edges.last().is_some_and(|e| e.name == "neck") { "neck_left" } else { "waist_front" };
     for (_, fitted) in layers {
         let edges = &fitted.fit.sides[0];
-        waist.check(form, edges.last().map_or(0.0, |e| e.a.y) - edges.first().map_or(0.0, |e| e.b.y))?;
+        let [top, low] =
+            [edges.last().map(|e| e.a), edges.first().map(|e| e.b)].map(Option::unwrap_or_default);
+        making.waist.check(form, top.y - low.y, 2.0 * top.x)?;
+        making.front.check(form)?;
     }
     let (mut flats, mut pieces, mut photos) = (Vec::new(), Vec::new(), BTreeMap::new());
     for (layer, fitted) in layers {
         let top = fitted.fit.sides[0].last().map_or(0.0, |neck| neck.a.y);
         let stand = stand::Stand::of(body, hung, top)?;
-        let lying = pieces::layer(&fitted.lying, form, waist, *layer, false);
-        for (flat, lying) in pieces::layer(&fitted.fit, form, waist, *layer, true).into_iter().zip(lying) {
+        let lying = pieces::layer(&fitted.lying, form, making, *layer, false);
+        for (flat, lying) in pieces::layer(&fitted.fit, form, making, *layer, true).into_iter().zip(lying) {
             let pose = Some(stand.pose(&flat, *layer));
             pieces.push(Piece { pose, ..flat.piece() });
             photos.insert(flat.name.clone(), fitted.frame.map(|f| Lying::of(f, fitted, &lying)));
             flats.push(flat);
         }
     }
-    let pattern = Pattern { name: "block".into(), pieces, seams: seams::seams(&flats, form) };
+    let pattern =
+        Pattern { name: "block".into(), pieces, seams: seams::seams(&flats, form, making.waist.fold()) };
     let lowered = pattern.lower().map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
     lowered.notes.into_iter().for_each(|what| cx.warn(what));
     let framed = |(name, o): (String, Outline)| {

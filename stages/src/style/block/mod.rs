@@ -1,7 +1,7 @@
 //! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
 //!
 //! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
-//! outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
+//! outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]), [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
 mod alike;
 mod bow;
@@ -10,10 +10,12 @@ mod curve;
 mod fit;
 mod fitting;
 mod form;
+mod front;
 mod halves;
 mod lay;
 mod marks;
 mod pieces;
+mod pleat;
 mod refusal;
 mod seams;
 mod segment;
@@ -30,10 +32,11 @@ pub use complete::Complete;
 use fit::{Fit, Halves, fit};
 pub use fitting::Fitting;
 use form::Form;
+use front::Front;
 use halves::Upright;
 use lay::{Fitted, mirrored, pattern};
 use marks::missing;
-use pieces::Layer;
+use pieces::{Layer, Making};
 use rayon::prelude::*;
 use tell::at_95;
 use toile_core::prelude::*;
@@ -106,7 +109,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 5,
+    version = 6,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -128,6 +131,9 @@ pub struct Block {
     /// How a skirt is held at the waist.
     #[param(default = Waist::Plain)]
     waist: Waist,
+    /// Whether the front is one piece, or two halves that are closed along the middle.
+    #[param(default = Front::Whole)]
+    front: Front,
 }
 
 #[stage]
@@ -154,7 +160,7 @@ impl Block {
         let (.., behind) = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
         cx.check()?;
         let layers = [(Layer::Front, before), (Layer::Back, behind)];
-        pattern(form, &layers, self.waist, body, cx)
+        pattern(form, &layers, Making { waist: self.waist, front: self.front }, body, cx)
     }
 }
 
@@ -269,7 +275,11 @@ fn tried<'f>(
             Err(reason) => reasons.push((*form, reason)),
         }
     }
-    let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
+    // An edge that is not where the form has it says more than the sum over all.
+    let is_astray = |form: &Form, fit: &Fit| !tell::stray_edges(form, fit, upright.size).is_empty();
+    let best = found.into_iter().min_by(|a, b| {
+        is_astray(a.1, &a.2).cmp(&is_astray(b.1, &b.2)).then(a.2.score.total_cmp(&b.2.score))
+    });
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 

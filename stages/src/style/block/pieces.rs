@@ -9,6 +9,7 @@
 use super::curve::Curve;
 use super::fit::Fit;
 use super::form::Form;
+use super::front::{self, Front};
 use super::waist::{self, Waist};
 use nalgebra::Rotation2;
 use toile_core::artifact::BodyPart;
@@ -46,6 +47,8 @@ pub(super) struct Flat {
     pub name: String,
     /// Its edges, counter-clockwise; each starts where the one before ends.
     pub edges: Vec<(String, Run)>,
+    /// Lines of its pleats; `pleat_1_a` is sewn to `pleat_1_b`.
+    pub lines: Vec<(String, [Point2; 2])>,
     pub part: BodyPart,
     /// Where its own origin lies, and how far its own axes are turned, radians.
     pub origin: Point2,
@@ -68,23 +71,23 @@ impl Run {
         }
     }
 
-    pub(super) fn length(&self) -> f64 {
-        let of = |c: &Curve| polyline_length(&c.points(PARTS));
+    pub(super) fn curves(&self) -> &[Curve] {
         match self {
-            Run::Cubic(c) => of(c),
-            Run::Chain(all) => all.iter().map(of).sum(),
+            Run::Cubic(c) => std::slice::from_ref(c),
+            Run::Chain(all) => all,
         }
+    }
+
+    pub(super) fn length(&self) -> f64 {
+        self.curves().iter().map(Curve::length).sum()
     }
 
     fn start(&self) -> Point2 {
-        match self {
-            Run::Cubic(c) => c.0[0],
-            Run::Chain(all) => all.first().map_or_else(Point2::origin, |c| c.0[0]),
-        }
+        self.curves().first().map_or_else(Point2::origin, |c| c.0[0])
     }
 
     /// Each curve changed, and the last first where they are `turned`.
-    fn changed(&self, turned: bool, to: impl Fn(Curve) -> Curve) -> Self {
+    pub(super) fn changed(&self, turned: bool, to: impl Fn(Curve) -> Curve) -> Self {
         match self {
             Run::Cubic(c) => Run::Cubic(to(*c)),
             Run::Chain(all) => {
@@ -111,16 +114,27 @@ impl Run {
 }
 
 impl Flat {
+    /// A piece of the trunk in the garment's own frame.
+    pub(super) fn of_trunk(name: String, edges: Vec<(String, Run)>) -> Flat {
+        Flat { name, edges, lines: Vec::new(), part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 }
+    }
+
     /// The piece in its own coordinates; it stands nowhere yet.
     pub(super) fn piece(&self) -> Piece {
         let to = |p: Point2| Point2::from(Rotation2::new(-self.turn) * (p - self.origin));
         let edge = |(name, run): &(String, Run)| PieceEdge { name: name.clone(), curve: run.moved(to) };
+        let line = |(name, ends): &(String, [Point2; 2])| PieceLine {
+            name: name.clone(),
+            purpose: LinePurpose::Pleat,
+            points: ends.map(to).into(),
+        };
         Piece {
             name: self.name.clone(),
             outer: PatternLoop {
                 corners: self.edges.iter().map(|(_, run)| to(run.start())).collect(),
                 edges: self.edges.iter().map(edge).collect(),
             },
+            lines: self.lines.iter().map(line).collect(),
             body_part: Some(self.part),
             ..Piece::default()
         }
@@ -155,7 +169,7 @@ impl Layer {
 pub(super) struct Side {
     pub edges: Vec<(&'static str, Curve)>,
     mirrored: bool,
-    word: &'static str,
+    pub word: &'static str,
 }
 
 fn flip(p: Point2) -> Point2 {
@@ -190,16 +204,41 @@ impl Side {
     }
 }
 
+/// How a garment is made up, beyond its outline.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Making {
+    pub waist: Waist,
+    pub front: Front,
+}
+
 /// The pieces of one layer, as they are cut or as they lie in the photo.
-pub(super) fn layer(fit: &Fit, form: &Form, waist: Waist, layer: Layer, is_cut: bool) -> Vec<Flat> {
+pub(super) fn layer(fit: &Fit, form: &Form, making: Making, layer: Layer, is_cut: bool) -> Vec<Flat> {
     let sides = [0, 1].map(|k| Side::of(fit, form, layer, k));
-    if let Waist::Gathered { fullness, band } = waist {
+    if let Waist::Gathered { fullness, band } = making.waist {
         return waist::gathered(&sides, layer, fullness, band.metres(), is_cut);
     }
     if form.has_legs() {
         return sides.iter().map(|s| leg(s, layer)).collect();
     }
     let cut: Vec<Cutting> = sides.iter().map(|s| Cutting::of(s, form)).collect();
+    let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
+    let trunk = match (layer, making.front) {
+        (Layer::Front, Front::Halves) => {
+            sides.iter().zip(&cut).map(|(s, c)| front::half(s, &c.trunk, form)).collect()
+        }
+        _ => {
+            let whole = trunk(&sides, &cut, form, layer);
+            vec![match making.waist.pleats() {
+                Some(pleats) if is_cut => pleats.let_into(whole),
+                _ => whole,
+            }]
+        }
+    };
+    trunk.into_iter().chain(sleeves).collect()
+}
+
+/// Front or back from side to side.
+fn trunk(sides: &[Side; 2], cut: &[Cutting], form: &Form, layer: Layer) -> Flat {
     let (first, last) = (0, form.edges.len() - 1);
     let both = |k: usize| [0, 1].map(|s: usize| sides[s].laid(sides[s].edges[k].1));
     let [right_top, left_top] = both(last);
@@ -210,10 +249,7 @@ pub(super) fn layer(fit: &Fit, form: &Form, waist: Waist, layer: Layer, is_cut: 
         let [right_hem, left_hem] = both(first);
         edges.push(("hem".to_owned(), Run::Chain(vec![left_hem, right_hem])));
     }
-    let trunk =
-        Flat { name: layer.word().into(), edges, part: BodyPart::Body, origin: Point2::origin(), turn: 0.0 };
-    let sleeves = sides.iter().zip(&cut).filter_map(|(s, c)| sleeve(s, c.sleeve.as_ref()?, layer));
-    std::iter::once(trunk).chain(sleeves).collect()
+    Flat::of_trunk(layer.word().into(), edges)
 }
 
 /// A side's edges between hem and neck, and its sleeve's.
@@ -307,6 +343,7 @@ fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Fl
     Some(Flat {
         name: format!("{}_sleeve_{}", side.word, layer.word()),
         edges: edges.iter().map(|(name, run)| ((*name).to_owned(), run.clone())).collect(),
+        lines: Vec::new(),
         part: BodyPart::Arm,
         origin: cap,
         turn: way.y.atan2(way.x) - std::f64::consts::FRAC_PI_2,
@@ -359,13 +396,8 @@ fn leg(side: &Side, layer: Layer) -> Flat {
     if side.mirrored {
         edges.reverse();
     }
-    Flat {
-        name: format!("{}_leg_{}", side.word, layer.word()),
-        edges,
-        part: BodyPart::Leg,
-        origin: Point2::origin(),
-        turn: 0.0,
-    }
+    let name = format!("{}_leg_{}", side.word, layer.word());
+    Flat { part: BodyPart::Leg, ..Flat::of_trunk(name, edges) }
 }
 
 /// How far out a curve lies at a height: where it passes it, or its end that is nearer.

@@ -6,6 +6,8 @@ use super::*;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
 
+mod made_up;
+
 /// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below to above.
 fn garment(half: &[[f64; 2]]) -> Vec<Point2> {
     let right = half.iter().map(|p| Point2::new(p[0] / 1e3, p[1] / 1e3));

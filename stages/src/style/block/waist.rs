@@ -1,4 +1,4 @@
-//! The waist of a skirt: as its outline, or gathered to a band.
+//! The waist of a skirt: as its outline, gathered to a band, or laid in pleats.
 //!
 //! A gathered skirt that lies flat shows how long it is, and how wide at waist and hem; how much cloth its gathers hold it does not show. That is
 //! stated: `fullness` times the waist. The hem is as wide as the photo shows it, or as the gathered edge, if that is wider. The photo is laid over the
@@ -7,7 +7,7 @@
 use super::curve::Curve;
 use super::form::Form;
 use super::pieces::{Flat, Layer, Run, Side};
-use toile_core::artifact::BodyPart;
+use super::pleat::{Fold, Pleats};
 use toile_core::prelude::*;
 
 /// How a skirt is held at the waist.
@@ -23,35 +23,81 @@ pub enum Waist {
         /// Height of the band: 5 mm to 20 cm.
         band: Length,
     },
+    /// Laid in pleats, that are sewn down from the waist.
+    Pleated {
+        /// Pleats in front, and as many behind: 1 to 24.
+        count: u32,
+        /// What each takes up: a knife pleat lies half as deep, each side of a box pleat a quarter.
+        cloth: Length,
+        /// How they are laid.
+        fold: Fold,
+        /// How far down they are sewn: 1 cm at least.
+        stitched: Length,
+    },
 }
 
 impl Waist {
-    /// Refuses what cannot be cut.
-    pub(super) fn check(self, form: &Form, length: f64) -> Result<(), StageError> {
-        let Waist::Gathered { fullness, band } = self else { return Ok(()) };
+    /// Its pleats.
+    pub(super) fn pleats(self) -> Option<Pleats> {
+        let Waist::Pleated { count, cloth, fold, stitched } = self else { return None };
+        Some(Pleats { count, cloth: cloth.metres(), fold, stitched: stitched.metres() })
+    }
+
+    /// How its pleats are laid.
+    pub(super) fn fold(self) -> PleatFold {
+        self.pleats().map_or(PleatFold::Knife, |p| p.fold.into())
+    }
+
+    /// Refuses what cannot be cut from a garment so long, and as wide at the waist.
+    pub(super) fn check(self, form: &Form, length: f64, width: f64) -> Result<(), StageError> {
+        if self == Waist::Plain {
+            return Ok(());
+        }
+        let wrong = |text: String, hint: &str| Err(StageError::invalid(text).hint(hint).at("waist"));
         if form.edges.last().is_none_or(|e| e.name != "waist") || form.has_legs() {
-            return Err(StageError::invalid(format!(
-                "only a skirt is gathered at the waist, and this is {}",
-                form.word
-            ))
-            .hint("take `waist` out, or say `style: Block(style: Skirt)` where it is a skirt")
-            .at("waist"));
+            let word = if let Waist::Pleated { .. } = self { "pleated" } else { "gathered" };
+            return wrong(
+                format!("only a skirt is {word} at the waist, and this is {}", form.word),
+                "take `waist` out, or say `style: Block(style: Skirt)` where it is a skirt",
+            );
         }
-        if !(1.0..=4.0).contains(&fullness) {
-            return Err(StageError::invalid(format!("a fullness of {fullness} is not between 1 and 4"))
-                .hint("1.5 is usual, 2 is full")
-                .at("waist"));
+        match self {
+            Waist::Gathered { fullness, .. } if !(1.0..=4.0).contains(&fullness) => {
+                wrong(format!("a fullness of {fullness} is not between 1 and 4"), "1.5 is usual, 2 is full")
+            }
+            Waist::Gathered { band, .. } => {
+                let most = (0.5 * length).min(0.2);
+                match (0.005..=most).contains(&band.metres()) {
+                    true => Ok(()),
+                    false => wrong(
+                        format!("a band of {band} is not between 5 mm and {}", Length::m(most)),
+                        "3 cm is usual",
+                    ),
+                }
+            }
+            Waist::Pleated { count, .. } if !(1..=24).contains(&count) => {
+                wrong(format!("{count} pleats are not between 1 and 24"), "count those that the photo shows")
+            }
+            Waist::Pleated { count, cloth, .. }
+                if !(0.01..=2.0 * width / f64::from(count)).contains(&cloth.metres()) =>
+            {
+                let most = Length::m(2.0 * width / f64::from(count));
+                wrong(
+                    format!(
+                        "a pleat of {cloth} is not between 1 cm and {most}, twice the space between two of {count} pleats"
+                    ),
+                    "say less `cloth`, or a smaller `count`",
+                )
+            }
+            Waist::Pleated { stitched, .. } if !(0.01..=0.8 * length).contains(&stitched.metres()) => {
+                let most = Length::m(0.8 * length);
+                wrong(
+                    format!("pleats cannot be sewn down for {stitched}; 1 cm to {most} can be"),
+                    "12 cm is usual",
+                )
+            }
+            _ => Ok(()),
         }
-        let most = (0.5 * length).min(0.2);
-        if !(0.005..=most).contains(&band.metres()) {
-            return Err(StageError::invalid(format!(
-                "a band of {band} is not between 5 mm and {}",
-                Length::m(most)
-            ))
-            .hint("3 cm is usual")
-            .at("waist"));
-        }
-        Ok(())
     }
 }
 
@@ -75,15 +121,9 @@ pub(super) fn gathered(sides: &[Side; 2], layer: Layer, fullness: f64, band: f64
         .chain([("waist".to_owned(), upper)])
         .chain(end(1))
         .chain([("joint".to_owned(), lower)]);
-    let flat = |name: String, edges: Vec<(String, Run)>| Flat {
-        name,
-        edges,
-        part: BodyPart::Body,
-        origin: Point2::origin(),
-        turn: 0.0,
-    };
     let word = layer.word();
-    vec![flat(word.to_owned(), skirt.collect()), flat(format!("band_{word}"), strip.collect())]
+    let band = Flat::of_trunk(format!("band_{word}"), strip.collect());
+    vec![Flat::of_trunk(word.to_owned(), skirt.collect()), band]
 }
 
 /// One half of the skirt, upwards, and of its band.
@@ -132,7 +172,7 @@ impl Half {
     }
 }
 
-fn straight(a: Point2, b: Point2) -> Curve {
+pub(super) fn straight(a: Point2, b: Point2) -> Curve {
     Curve([a, a + (b - a) / 3.0, a + (b - a) * (2.0 / 3.0), b])
 }
 

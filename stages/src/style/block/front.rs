@@ -1,0 +1,39 @@
+//! A front in one piece, or in two halves that are closed along the middle.
+
+use super::curve::Curve;
+use super::form::Form;
+use super::pieces::{Flat, Run, Side};
+use super::waist::straight;
+use toile_core::prelude::*;
+
+/// How the front is cut.
+#[choice]
+#[derive(Copy, Eq)]
+pub(crate) enum Front {
+    /// In one piece.
+    Whole,
+    /// In two halves, closed along the middle edge to edge: shirts, blouses and jackets that are buttoned or zipped.
+    Halves,
+}
+
+impl Front {
+    /// Refuses what has no front to open.
+    pub(super) fn check(self, form: &Form) -> Result<(), StageError> {
+        let has_front = form.edges.last().is_some_and(|e| e.name == "neck") && !form.begins_at_fork();
+        if self == Front::Whole || has_front {
+            return Ok(());
+        }
+        let text = format!("only a top or a dress is cut in halves in front, and this is {}", form.word);
+        Err(StageError::invalid(text).hint("take `front` out").at("front"))
+    }
+}
+
+/// One half of the front: hem, the edges up to the neck, the neck, and the middle down to the hem.
+pub(super) fn half(side: &Side, trunk: &[(&'static str, Run)], form: &Form) -> Flat {
+    let (hem, neck) = (side.edges[0].1, side.edges[form.edges.len() - 1].1);
+    let middle: Curve = straight(neck.0[3], hem.0[0]);
+    let mut edges = vec![("hem", Run::Cubic(hem))];
+    edges.extend(trunk.iter().cloned());
+    edges.extend([("neck", Run::Cubic(neck)), ("middle", Run::Cubic(middle))]);
+    Flat::of_trunk(format!("{}_front", side.word), side.own(&edges))
+}

@@ -1,0 +1,86 @@
+//! Pleats, and fronts in two halves.
+
+use super::*;
+use crate::style::block::front::Front;
+use crate::style::block::pleat::Fold;
+
+fn pleated(count: u32, cloth: &str, fold: Fold, stitched: &str) -> Block {
+    let waist =
+        Waist::Pleated { count, cloth: cloth.parse().unwrap(), fold, stitched: stitched.parse().unwrap() };
+    Block { waist, ..of(BlockStyle::Skirt) }
+}
+
+#[test]
+fn pleats_are_let_in_from_waist_to_hem_and_sewn_down() {
+    let (pattern, outlines, plan) = cut(&pleated(4, "8 cm", Fold::Box, "14 cm"), garment(SKIRT)).unwrap();
+    let near = |edge: &str, want: f64| {
+        let is = length(&pattern, "front", edge);
+        assert!((is - want).abs() < 6.0, "{edge}: {is:.1} for {want:.1}");
+    };
+    near("waist", 360.0 + 4.0 * 80.0);
+    near("hem", 640.0 + 4.0 * 80.0);
+    near("pleat_1_a", 140.0 - 5.0);
+    near("pleat_1_b", 140.0 - 5.0);
+    let pleats = plan.seams.iter().filter(|s| s.kind == SeamKind::Pleat(PleatFold::Box)).count();
+    assert_eq!(pleats, 8);
+    // Both lines of a pleat are the pleat's cloth apart, above and below, and end inside of the piece.
+    let front = pattern.piece("front").unwrap();
+    for k in 1..=4 {
+        let ends = |word: &str| {
+            let path = front.path(&format!("pleat_{k}_{word}")).unwrap();
+            [path.at(0.0), path.at(path.length())]
+        };
+        let ([a, c], [b, d]) = (ends("a"), ends("b"));
+        assert!((b.x - a.x - 0.08).abs() < 1e-9 && (d.x - c.x - 0.08).abs() < 1e-9, "{k}");
+    }
+    // The photo is drawn apart over it: its corners stay where they lie.
+    let o = outlines.get("front").unwrap();
+    let waist = o.edge_points(o.edge("waist").unwrap());
+    assert!((o.to_px(waist[0]).unwrap().x - 500.0 - 180.0).abs() < 6.0);
+}
+
+#[test]
+fn pleats_that_cannot_be_laid_are_refused() {
+    let refused = |stage: &Block, points| cut(stage, points).unwrap_err();
+    let knife =
+        |count, cloth, stitched| refused(&pleated(count, cloth, Fold::Knife, stitched), garment(SKIRT));
+    let tee = Block { style: BlockStyle::TShirt, ..pleated(4, "8 cm", Fold::Box, "14 cm") };
+    let e = refused(&tee, garment(TEE));
+    assert_eq!(e.message, "only a skirt is pleated at the waist, and this is a T-shirt");
+    assert_eq!(knife(0, "8 cm", "14 cm").message, "0 pleats are not between 1 and 24");
+    let wide = knife(4, "40 cm", "14 cm").message;
+    assert!(
+        wide.starts_with("a pleat of 40 cm is not between 1 cm and 1")
+            && wide.ends_with("twice the space between two of 4 pleats"),
+        "{wide}"
+    );
+    let long = knife(4, "8 cm", "90 cm");
+    assert!(long.message.starts_with("pleats cannot be sewn down for 90 cm; 1 cm to 4"), "{}", long.message);
+    assert_eq!(long.hint.unwrap(), "12 cm is usual");
+}
+
+#[test]
+fn a_front_in_halves_is_closed_along_the_middle() {
+    let whole = cut(&of(BlockStyle::TShirt), garment(TEE)).unwrap();
+    let halves = cut(&Block { front: Front::Halves, ..of(BlockStyle::TShirt) }, garment(TEE)).unwrap();
+    let names: Vec<&str> = halves.0.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names[..3], ["left_front", "right_front", "left_sleeve_front"]);
+    let both = |edge: &str| {
+        length(&halves.0, "left_front", &format!("{edge}_left"))
+            + length(&halves.0, "right_front", &format!("{edge}_right"))
+    };
+    for edge in ["neck", "hem"] {
+        assert!((both(edge) - length(&whole.0, "front", edge)).abs() < 0.5, "{edge}");
+    }
+    assert!((both("middle") - 2.0 * 660.0).abs() < 12.0, "{}", both("middle"));
+    // One seam more than with a whole front.
+    assert_eq!(halves.2.seams.len(), whole.2.seams.len() + 1);
+}
+
+#[test]
+fn what_has_no_front_is_not_cut_in_halves() {
+    let skirt = Block { front: Front::Halves, ..of(BlockStyle::Skirt) };
+    let e = cut(&skirt, garment(SKIRT)).unwrap_err();
+    assert_eq!(e.message, "only a top or a dress is cut in halves in front, and this is a skirt");
+    assert_eq!(e.hint.unwrap(), "take `front` out");
+}
