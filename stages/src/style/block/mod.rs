@@ -277,9 +277,9 @@ fn tried<'f>(
     }
     // An edge that is not where the form has it says more than the sum over all.
     let is_astray = |form: &Form, fit: &Fit| !tell::stray_edges(form, fit, upright.size).is_empty();
-    let best = found.into_iter().min_by(|a, b| {
-        is_astray(a.1, &a.2).cmp(&is_astray(b.1, &b.2)).then(a.2.score.total_cmp(&b.2.score))
-    });
+    let best = found
+        .into_iter()
+        .min_by(|a, b| is_astray(a.1, &a.2).cmp(&is_astray(b.1, &b.2)).then(a.2.score.total_cmp(&b.2.score)));
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 
