@@ -73,7 +73,7 @@ const SPREAD: f64 = 10.0;
 /// know the wearer.
 #[stage(
     role = Body,
-    version = 4,
+    version = 5,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)

@@ -101,7 +101,7 @@ pub(super) const DRESS: Form = Form {
 pub(super) const SLEEVED: Form = Form {
     word: "a dress with sleeves",
     marks: &[
-        Mark::Dent(2, 16.0, "its sides run up without a waist"),
+        Mark::Dent(2, 12.0, "its sides run up without a waist"),
         Mark::Dent(3, 25.0, NO_ARMPIT),
         Mark::Below(3, 65.0, NO_ARMPIT),
     ],

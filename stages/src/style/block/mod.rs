@@ -109,7 +109,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 6,
+    version = 7,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -275,11 +275,7 @@ fn tried<'f>(
             Err(reason) => reasons.push((*form, reason)),
         }
     }
-    // An edge that is not where the form has it says more than the sum over all.
-    let is_astray = |form: &Form, fit: &Fit| !tell::stray_edges(form, fit, upright.size).is_empty();
-    let best = found
-        .into_iter()
-        .min_by(|a, b| is_astray(a.1, &a.2).cmp(&is_astray(b.1, &b.2)).then(a.2.score.total_cmp(&b.2.score)));
+    let best = found.into_iter().min_by(|a, b| a.2.score.total_cmp(&b.2.score));
     best.ok_or_else(|| refusal::none(panel, &reasons))
 }
 

@@ -22,20 +22,18 @@ pub(super) fn figures(panel: &str, form: &Form, fit: &Fit, cx: &Context) {
     }
 }
 
-/// The edges from which the outline strays far, and how far.
-pub(super) fn stray_edges<'f>(form: &'f Form, fit: &Fit, size: f64) -> Vec<(&'f str, f64)> {
-    let shown = form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty());
-    shown.map(|(e, misses)| (e.name, at_95(misses))).filter(|(_, stray)| *stray > TOLD * size).collect()
-}
-
 /// Tells edges from which the outline strays far.
 pub(super) fn astray(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
-    for (name, stray) in stray_edges(form, fit, size) {
-        cx.warn(format!(
-            "the {name} of \"{panel}\" strays by {:.0} mm from that of {}; it is cut as the block has it",
-            stray * 1e3,
-            form.word
-        ));
+    for (e, misses) in form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty()) {
+        let stray = at_95(misses);
+        if stray > TOLD * size {
+            cx.warn(format!(
+                "the {} of \"{panel}\" strays by {:.0} mm from that of {}; it is cut as the block has it",
+                e.name,
+                stray * 1e3,
+                form.word
+            ));
+        }
     }
 }
 
