@@ -14,7 +14,7 @@ use crate::distortion::distortion;
 use crate::error::{FlattenError, SurfaceError};
 use crate::flatteners::{Flattening, Placement};
 use crate::islands::{Piece, Pieces, islands_by_seams};
-use crate::newton::NewtonOptions;
+use crate::newton::{NewtonOptions, chain_length};
 use crate::surface::Surface;
 use nalgebra::{Point2, Vector2};
 
@@ -52,6 +52,10 @@ impl Default for DartOptions {
 
 /// By how much more a saving counts where the cut lies along the grain; in between by the square of the cosine.
 const GRAIN_BONUS: f64 = 0.25;
+
+/// A dart is at most so many times as long as the shortest from its tip: one that runs across the piece, through the
+/// places where others end, would save the most and could not be sewn.
+const MOST_DETOUR: f64 = 2.0;
 
 /// How exactly a piece must be its own mirror image for its darts to be mirrored, a share of its diagonal.
 const SYMMETRIC: f64 = 1e-3;
@@ -187,8 +191,7 @@ impl<'a> Search<'a> {
         let (tips, _) = tips(&stage.piece.surface, &ways, &table.triangles);
         let mut best: Option<Candidate> = None;
         for tip in tips {
-            for direction in [-Vector2::y(), Vector2::y(), -Vector2::x(), Vector2::x()] {
-                let Some(way) = ways.to_boundary(tip, direction) else { continue };
+            for way in short_ways(&ways, tip, &stage.flat.points) {
                 let along = grain_share(&way, &stage.flat.points);
                 let way: Vec<u32> = way.iter().map(|&v| stage.piece.vertices[v as usize]).collect();
                 let Some(candidate) = self.candidate(stage, cuts, way, along) else { continue };
@@ -217,6 +220,15 @@ impl<'a> Search<'a> {
         let mirror = self.mirror.as_ref()?;
         Some(way.iter().map(|&v| mirror.partner[v as usize]).collect())
     }
+}
+
+/// The ways down and up the grain and across it, but those that are much longer than the shortest.
+fn short_ways(ways: &Ways<'_>, tip: u32, flat: &[Point2<f64>]) -> Vec<Vec<u32>> {
+    let directions = [-Vector2::y(), Vector2::y(), -Vector2::x(), Vector2::x()];
+    let mut found: Vec<_> = directions.iter().filter_map(|d| ways.to_boundary(tip, *d)).collect();
+    let shortest = found.iter().map(|w| chain_length(w, flat)).fold(f64::INFINITY, f64::min);
+    found.retain(|w| chain_length(w, flat) <= MOST_DETOUR * shortest);
+    found
 }
 
 /// The squared cosine between a way, end to end, and the grain.

@@ -6,6 +6,7 @@
 //! different meshes become mirror images. Cost: some ten Newton iterations a piece.
 
 use super::Objective;
+use super::laid::Pull;
 use super::mirror::{MirrorPair, mean, mirror_distance, mirror_pairs};
 use super::outline_mirror::{OutlineMirror, OutlinePair, outline_pairs};
 use super::piece_care::PieceCare;
@@ -93,8 +94,9 @@ pub struct CareReport {
     pub outlines: Vec<OutlinePair>,
 }
 
-/// The share of a corner's angle that is enough to lay outlines over each other by.
-const KNOT: f64 = 0.25;
+/// Where an outline is held on another, edges that leave their line by this share are straight: the other's edges
+/// decide, not how far its own are from straight.
+const STRAIGHT: f64 = 1e-4;
 
 /// Corrects the flat pieces in place; `flats` and `placements` have one entry a piece.
 ///
@@ -116,7 +118,7 @@ pub fn refine(
         pairs.iter().map(|p| mirror_distance(p, &flats[p.a].points, &flats[p.b].points)).collect();
     make_mirrors(pieces, &pairs, flats);
     let near_pairs = options.outline_pairs(pieces, &pairs);
-    let corner = options.corner.to_radians() * KNOT;
+    let corner = options.corner.to_radians();
     let equal = OutlineMirror { pieces, corner, tolerance: options.mirror_outline };
     let alike: Vec<_> = near_pairs.iter().flat_map(|&pair| equal.seam_partners(pair, flats)).collect();
     let targets = seam_targets(&pieces.seams, flats, &alike);
@@ -129,7 +131,13 @@ pub fn refine(
     // Where only the vertices are mirror images, the mean of two solutions would undo their seam lengths.
     let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
     make_mirrors(pieces, &exact, flats);
-    let solve = |i: usize, near: &[Term], flat: &mut Flattening| care(i).solve(flat, near).map(|_| ());
+    let solve = |i: usize, near: &[Term], pull: Pull, flat: &mut Flattening| {
+        let mut care = care(i);
+        if pull != Pull::Slide {
+            care.options.straight = care.options.straight.min(STRAIGHT);
+        }
+        care.solve(flat, near).map(|_| ())
+    };
     let mut outlines = Vec::new();
     for &pair in &near_pairs {
         outlines.extend(equal.equalise(pair, flats, solve)?);
