@@ -36,7 +36,7 @@ pub struct Dart {
 pub struct DartOptions {
     /// The strain that the cloth bears, spread over a neighbourhood: 0.015 is 1.5 per cent. Above 0.
     pub max_strain: f64,
-    /// The least share of the first energy that a cut must save, above 0, below 1.
+    /// The least share of the energy that is left that a cut must save, above 0, below 1.
     pub least_saving: f64,
     /// Most cuts, 1 or more.
     pub most: usize,
@@ -46,7 +46,7 @@ pub struct DartOptions {
 
 impl Default for DartOptions {
     fn default() -> Self {
-        Self { max_strain: 0.015, least_saving: 0.1, most: 8, newton: NewtonOptions::default() }
+        Self { max_strain: 0.015, least_saving: 0.25, most: 8, newton: NewtonOptions::default() }
     }
 }
 
@@ -56,6 +56,9 @@ const GRAIN_BONUS: f64 = 0.25;
 /// A dart is at most so many times as long as the shortest from its tip: one that runs across the piece, through the
 /// places where others end, would save the most and could not be sewn.
 const MOST_DETOUR: f64 = 2.0;
+
+/// The share of the first energy that a cut saves at least, whatever is left.
+const LEAST_OF_FIRST: f64 = 0.01;
 
 /// How exactly a piece must be its own mirror image for its darts to be mirrored, a share of its diagonal.
 const SYMMETRIC: f64 = 1e-3;
@@ -92,15 +95,15 @@ pub fn propose_darts(
     let mut strain = search.strain(&stage)?;
     while strain > options.max_strain && cuts.len() < options.most {
         let Some(best) = search.best(&stage, &cuts)? else { break };
-        let saves = (stage.flat.report.energy - best.stage.flat.report.energy) / first;
-        if saves < options.least_saving {
+        let saved = stage.flat.report.energy - best.stage.flat.report.energy;
+        if saved < options.least_saving * stage.flat.report.energy || saved < LEAST_OF_FIRST * first {
             break;
         }
         let after = search.strain(&best.stage)?;
         let (at, both) = (darts.len(), best.paths.len() == 2);
         for (k, path) in best.paths.into_iter().enumerate() {
             let mirror = both.then_some(at + 1 - k);
-            darts.push(Dart { path: path.clone(), saves, strain: [strain, after], mirror });
+            darts.push(Dart { path: path.clone(), saves: saved / first, strain: [strain, after], mirror });
             cuts.push(path);
         }
         (stage, strain) = (best.stage, after);

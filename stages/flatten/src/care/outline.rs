@@ -4,7 +4,7 @@
 //! best rigid motion (Procrustes) leaves least distance. Corners and seam ends that then lie near each other
 //! are knots; in between, lengths correspond in proportion. Cost O(k^2) for k samples.
 
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
 /// Samples an outline: corners far apart decide, so few are enough.
 const SAMPLES: usize = 128;
@@ -105,6 +105,24 @@ impl Motion {
     /// Half of its turn, backwards.
     pub(super) fn half_turned_back(&self) -> Rotation2<f64> {
         Rotation2::new(-self.turn.angle() / 2.0)
+    }
+
+    /// The motion after one step that brings the moved `second` nearer to the points of `first`: least squares of the distances
+    /// across its line, so that long edges may slide along each other (Chen and Medioni 1992).
+    pub(super) fn nearer(&self, first: &Outline, second: &Outline) -> Self {
+        let moved = second.moved(self);
+        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for p in first.places() {
+            let q = moved.nearest(p);
+            let Some(n) = (p - q).try_normalize(f64::MIN_POSITIVE) else { continue };
+            // A turn by a small angle about `to` moves q at right angles to its arm.
+            let row = Vector3::new(n.x, n.y, (q.coords - self.to).perp(&n));
+            matrix += row * row.transpose();
+            right += row * (p - q).dot(&n);
+        }
+        let step = matrix.cholesky().map_or_else(Vector3::zeros, |c| c.solve(&right));
+        let turn = Rotation2::new(step.z) * self.turn;
+        Self { turn, to: self.to + Vector2::new(step.x, step.y), ..*self }
     }
 
     pub(super) fn undone(&self, p: &Point2<f64>) -> Point2<f64> {

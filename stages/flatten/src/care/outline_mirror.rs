@@ -240,16 +240,15 @@ impl OutlineMirror<'_> {
         let knots = [f64::INFINITY, KNOT * self.corner]
             .map(|least| [self.ends(a, flats, least), reversed(self.ends(b, flats, least))]);
         let reach = self.reach(a);
-        // Each fit of the motion improves the knots, and they the fit; nearest places do the rest (Besl and McKay 1992).
-        for round in 0..2 * FITS {
-            let moved = second.moved(&motion);
-            let images: Vec<_> = if round < FITS {
-                let map = Correspondence::new(&first, &moved, &knots, shift, reach);
-                (0..first.places().len()).map(|i| second.at(map.forward(first.arc(i)))).collect()
-            } else {
-                first.places().iter().map(|p| motion.undone(&moved.nearest(p))).collect()
-            };
+        // Each fit of the motion improves the knots, and they the fit (Besl and McKay 1992).
+        for _ in 0..FITS {
+            let map = Correspondence::new(&first, &second.moved(&motion), &knots, shift, reach);
+            let images: Vec<_> =
+                (0..first.places().len()).map(|i| second.at(map.forward(first.arc(i)))).collect();
             motion = fit(first.places(), &images);
+        }
+        for _ in 0..FITS {
+            motion = motion.nearer(&first, &second);
         }
         let moved = second.moved(&motion);
         let map = Correspondence::new(&first, &moved, &knots, shift, reach);
