@@ -115,7 +115,8 @@ fn dart_tips(file: &Path) -> Vec<(String, [f64; 2])> {
     let spec: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
     let (unit, pattern) = (number(&spec["properties"]["units_in_meter"]), &spec["pattern"]);
     let mut tips = Vec::new();
-    for stitch in pattern["stitches"].as_array().unwrap() {
+    let stitches = pattern["stitches"].as_array().unwrap().iter();
+    for stitch in stitches.filter(|s| s[0]["panel"] == s[1]["panel"]) {
         let panel = stitch[0]["panel"].as_str().unwrap();
         let drawn = &pattern["panels"][panel];
         let ends = [0, 1].map(|side| {
@@ -124,7 +125,7 @@ fn dart_tips(file: &Path) -> Vec<(String, [f64; 2])> {
         });
         // The two legs of a dart meet at its tip.
         let tip = ends[0].iter().find(|v| ends[1].contains(v));
-        if let Some(&tip) = tip.filter(|_| stitch[1]["panel"] == panel) {
+        if let Some(&tip) = tip {
             tips.push((panel.to_owned(), [0, 1].map(|k| number(&drawn["vertices"][tip][k]) / unit)));
         }
     }

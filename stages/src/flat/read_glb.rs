@@ -22,7 +22,10 @@ pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> 
             .hint("write it again as one .glb file with its buffers in it, or as OBJ")
             .at("file")
     };
-    let gltf = gltf::Gltf::from_slice(bytes).map_err(|e| damaged(format!("it is no sound GLB ({e})")))?;
+    let unsound = |e: gltf::Error| damaged(format!("it is no sound GLB ({e})"));
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(unsound)?;
+    names_what_it_holds(unchecked.as_json()).map_err(damaged)?;
+    let gltf = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
     let blob = gltf.blob.as_deref();
     let mut reader = Reader { blob, raw: RawMesh::default() };
     reader.raw.material_names =
@@ -36,6 +39,16 @@ pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> 
         return Err(damaged("it holds no triangles".to_owned()));
     }
     Ok(reader.raw)
+}
+
+/// The library's own check looks into the list of accessors before it knows how long that is.
+fn names_what_it_holds(root: &gltf::json::Root) -> Result<(), String> {
+    let named = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
+    let held = root.accessors.len();
+    match named.map(|i| i.value()).find(|i| *i >= held) {
+        Some(i) => Err(format!("a mesh names accessor {i}, the file has {held}")),
+        None => Ok(()),
+    }
 }
 
 struct Reader<'a> {

@@ -286,6 +286,16 @@ fn a_glb_is_read_where_its_nodes_put_it() {
     assert!((area - was).abs() < 1e-6, "{area}");
 }
 
+#[test]
+fn a_glb_that_names_what_it_does_not_hold_is_refused() {
+    let json = br#"{"asset":{"version":"2.0"},"meshes":[{"primitives":[{"attributes":{"POSITION":3}}]}]}  "#;
+    let length = |n: usize| (n as u32).to_le_bytes();
+    let parts =
+        [b"glTF", &2_u32.to_le_bytes(), &length(20 + json.len()), &length(json.len()), b"JSON", &json[..]];
+    let e = read_as("garment.glb", &parts.concat(), "").unwrap_err();
+    assert_eq!(e.message, "\"garment.glb\": a mesh names accessor 3, the file has 0");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 

@@ -3,8 +3,8 @@
 //! Again and again, while the strain spread over a neighbourhood passes the limit: from the place of most
 //! strain and from that of most curvature the ways to the boundary are tried, down and up the grain and across
 //! it (and their mirror images, if the piece is symmetric); each is cut and flattened, and the one that saves
-//! most energy is kept, those along the grain counting a quarter more. Proposals end when the limit is met,
-//! when no cut saves enough, or at the number that is allowed. Cost: up to eight flattenings a dart.
+//! most energy is kept, those along the grain counting a quarter more. Ways much longer than the shortest are not tried. Proposals
+//! end when the limit is met, when no cut saves enough of what is left, or at the number that is allowed. Cost: up to eight flattenings a dart.
 
 use super::Objective;
 use super::dart_path::Ways;

@@ -2,8 +2,9 @@
 //!
 //! Two pieces are a pair if the mirrored boundary of one lies near that of the other in space, about the plane
 //! half-way between their centres (one plane for the whole garment), and their flat outlines lie near each
-//! other, too. The first is solved for near the mean outline, the second with the first one's outline held.
-//! Cost O(n^2) for n boundary vertices of each pair, and one solution a piece.
+//! other, too. The first is solved for near the mean outline; the second slides along the first one's outline, then is held on
+//! it. In turn the first is held on the mean of both and the second on the first, until no vertex of the one is far off the other
+//! or for a few rounds. Cost O(n^2) for n boundary vertices of each pair, and three to seven solutions a piece.
 
 use super::chains::corner_vertices;
 use super::laid::{Laid, Pull, Side};
@@ -140,8 +141,7 @@ pub(super) struct OutlineMirror<'a> {
 impl OutlineMirror<'_> {
     /// Makes both outlines mirror images; none if the flat ones are too far apart.
     ///
-    /// `solve` moves a piece near places, with a weight, whatever else it must fulfil: the first near the mean
-    /// outline, then the second to the first one's.
+    /// `solve` moves a piece near places, with a weight, whatever else it must fulfil.
     pub(super) fn equalise(
         &self,
         [a, b]: [usize; 2],

@@ -17,6 +17,7 @@ use crate::frames::flipped;
 use crate::islands::Pieces;
 use crate::newton::{NewtonOptions, Term};
 use nalgebra::Point2;
+use rayon::prelude::*;
 
 /// What is taken care of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,8 +127,8 @@ pub fn refine(
         let sides = if options.seams { sides_of(i, &pieces.seams, &targets) } else { Vec::new() };
         PieceCare { surface: &pieces.pieces[i].surface, objective, placement: &placements[i], options, sides }
     };
-    let solved = flats.iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
-    let straight = solved.collect::<Result<Vec<_>, _>>()?;
+    let solved = flats.par_iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
+    let straight = solved.collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, _>>()?;
     // Where only the vertices are mirror images, the mean of two solutions would undo their seam lengths.
     let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
     make_mirrors(pieces, &exact, flats);
@@ -138,9 +139,16 @@ pub fn refine(
         }
         care.solve(flat, near).map(|_| ())
     };
+    // No piece is in two pairs.
+    let equalised = near_pairs.par_iter().map(|&pair| {
+        let mut own = flats.to_vec();
+        equal.equalise(pair, &mut own, solve).map(|done| (done, pair.map(|i| own[i].clone())))
+    });
     let mut outlines = Vec::new();
-    for &pair in &near_pairs {
-        outlines.extend(equal.equalise(pair, flats, solve)?);
+    for (pair, equalised) in near_pairs.iter().zip(equalised.collect::<Vec<_>>()) {
+        let (done, [a, b]) = equalised?;
+        outlines.extend(done);
+        (flats[pair[0]], flats[pair[1]]) = (a, b);
     }
     let seams = pieces.seams.iter().zip(before);
     let seams = seams.map(|(s, before)| SeamLengths { before, after: side_lengths(s, flats) }).collect();
