@@ -12,6 +12,7 @@ use toile_flatten::newton::NewtonOptions;
 /// A triangle's deviation is the squared distance of its map from the nearest rotation. No triangle flips, and the scale is true.
 #[stage(
     role = Flattener,
+    version = 3,
     source = "Liu, Zhang, Xu, Gotsman, Gortler 2008",
     example = "Arap(darts: Propose)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)

@@ -11,6 +11,7 @@ use toile_flatten::flatteners::lscm;
 /// triangles over, the embedding of Tutte stands in.
 #[stage(
     role = Flattener,
+    version = 2,
     source = "Lévy, Petitjean, Ray, Maillot 2002",
     example = "Lscm(tension: (0.05, 0.1))",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)

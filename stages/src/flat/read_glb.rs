@@ -1,10 +1,11 @@
 //! A garment from a binary glTF file (GLB).
 //!
 //! Every triangle primitive of every node of the scene is read where the node puts it; a node's mesh is a group, line primitives mark seams.
-//! Limits: everything must stand in the one file; of animated or skinned meshes the shape at rest is read.
+//! Limits: everything must stand in the one file, without sparse accessors; of animated or skinned meshes the shape at rest is read.
 
 use super::raw::{NO_POINT, RawMesh};
-use gltf::mesh::{Mode, Primitive};
+use gltf::accessor::{DataType, Dimensions};
+use gltf::mesh::{Mode, Primitive, Semantic};
 use nalgebra::Matrix4;
 use toile_core::prelude::*;
 
@@ -12,6 +13,10 @@ use toile_core::prelude::*;
 const DEEPEST: usize = 64;
 /// Most vertices, all meshes together.
 const MOST: usize = 4_000_000;
+/// Most items of one list: the corners of twice as many triangles.
+const MOST_ITEMS: usize = 6 * MOST;
+/// Most bytes from one item to the next: more than the format allows.
+const MOST_STRIDE: usize = 1 << 12;
 /// Coordinates reach this far, in the file's unit.
 const FARTHEST: f64 = 1e7;
 
@@ -22,7 +27,10 @@ pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> 
             .hint("write it again as one .glb file with its buffers in it, or as OBJ")
             .at("file")
     };
-    let gltf = gltf::Gltf::from_slice(bytes).map_err(|e| damaged(format!("it is no sound GLB ({e})")))?;
+    let unsound = |e: gltf::Error| damaged(format!("it is no sound GLB ({e})"));
+    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(unsound)?;
+    names_what_it_holds(unchecked.as_json()).map_err(damaged)?;
+    let gltf = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
     let blob = gltf.blob.as_deref();
     let mut reader = Reader { blob, raw: RawMesh::default() };
     reader.raw.material_names =
@@ -36,6 +44,16 @@ pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> 
         return Err(damaged("it holds no triangles".to_owned()));
     }
     Ok(reader.raw)
+}
+
+/// The library's own check looks into the list of accessors before it knows how long that is.
+fn names_what_it_holds(root: &gltf::json::Root) -> Result<(), String> {
+    let named = root.meshes.iter().flat_map(|m| &m.primitives).flat_map(|p| p.attributes.values());
+    let held = root.accessors.len();
+    match named.map(|i| i.value()).find(|i| *i >= held) {
+        Some(i) => Err(format!("a mesh names accessor {i}, the file has {held}")),
+        None => Ok(()),
+    }
 }
 
 struct Reader<'a> {
@@ -67,6 +85,18 @@ impl Reader<'_> {
         group: u32,
     ) -> Result<(), String> {
         let blob = self.blob;
+        let wanted = [
+            (primitive.get(&Semantic::Positions), &[DataType::F32][..], Dimensions::Vec3),
+            (primitive.indices(), &[DataType::U8, DataType::U16, DataType::U32][..], Dimensions::Scalar),
+            (
+                primitive.get(&Semantic::TexCoords(0)),
+                &[DataType::U8, DataType::U16, DataType::F32][..],
+                Dimensions::Vec2,
+            ),
+        ];
+        for (accessor, types, dimensions) in wanted {
+            accessor.map_or(Ok(()), |a| is_sound(&a, types, dimensions))?;
+        }
         let reader = primitive.reader(|buffer| match buffer.source() {
             gltf::buffer::Source::Bin => blob,
             gltf::buffer::Source::Uri(_) => None,
@@ -111,6 +141,27 @@ impl Reader<'_> {
         self.raw.lines.extend(lines(primitive.mode(), &indices).into_iter().map(|l| l.map(global)));
         Ok(())
     }
+}
+
+/// Refuses a list of numbers on which the library would panic: it takes types, counts and strides for what they should be.
+fn is_sound(accessor: &gltf::Accessor<'_>, types: &[DataType], dimensions: Dimensions) -> Result<(), String> {
+    let bad = |what: &str| Err(format!("accessor {} {what}", accessor.index()));
+    if !types.contains(&accessor.data_type()) || accessor.dimensions() != dimensions {
+        return bad("holds numbers of another kind than its mesh needs");
+    }
+    if accessor.sparse().is_some() {
+        return bad("is sparse, which is not read");
+    }
+    let Some(view) = accessor.view() else { return bad("names no part of the file") };
+    if !(1..=MOST_ITEMS).contains(&accessor.count()) {
+        return bad(&format!("holds {} items, not 1 to {MOST_ITEMS}", accessor.count()));
+    }
+    let reaches = |offset: usize| offset <= view.buffer().length();
+    let is_stride = |s: usize| (accessor.size()..=MOST_STRIDE).contains(&s);
+    if !view.stride().is_none_or(is_stride) || !reaches(accessor.offset()) || !reaches(view.offset()) {
+        return bad("lies outside its part of the file");
+    }
+    Ok(())
 }
 
 /// The triangles of a primitive's indices.

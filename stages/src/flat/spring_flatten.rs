@@ -13,6 +13,7 @@ use toile_flatten::newton::NewtonOptions;
 /// the layout by distances turns triangles over, the springs start from a map that turns none.
 #[stage(
     role = Flattener,
+    version = 2,
     source = "Fan, Zhou, Wang, Yuen 1999",
     example = "SpringFlatten(settled: 1e-8)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)

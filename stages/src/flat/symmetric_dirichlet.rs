@@ -12,6 +12,7 @@ use toile_flatten::newton::NewtonOptions;
 /// A triangle's energy is the sum of the squares of its stretches and of their inverses. No triangle flips, and the scale is true.
 #[stage(
     role = Flattener,
+    version = 2,
     source = "Smith and Schaefer 2015",
     example = "SymmetricDirichlet(straight: 0.01)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)

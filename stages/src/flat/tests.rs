@@ -286,6 +286,44 @@ fn a_glb_is_read_where_its_nodes_put_it() {
     assert!((area - was).abs() < 1e-6, "{area}");
 }
 
+#[test]
+fn a_glb_that_is_not_what_it_says_is_refused() {
+    let told = |json: &str| {
+        let json = format!("{{\"asset\":{{\"version\":\"2.0\"}},{json}}}");
+        let json = format!("{json:<0$}", json.len().next_multiple_of(4)).into_bytes();
+        let length = |n: usize| (n as u32).to_le_bytes();
+        let parts = [
+            b"glTF",
+            &2_u32.to_le_bytes(),
+            &length(20 + json.len()),
+            &length(json.len()),
+            b"JSON",
+            &json[..],
+        ];
+        read_as("garment.glb", &parts.concat(), "").unwrap_err().message
+    };
+    assert_eq!(
+        told(r#""meshes":[{"primitives":[{"attributes":{"POSITION":3}}]}]"#),
+        "\"garment.glb\": a mesh names accessor 3, the file has 0"
+    );
+    let scene = |indices: &str| {
+        told(&format!(
+            r#""scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"indices":1}}]}}],
+            "buffers":[{{"byteLength":36}}],"bufferViews":[{{"buffer":0,"byteLength":36}}],
+            "accessors":[{{"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,1],"bufferView":0}},{{{indices}}}]"#
+        ))
+    };
+    assert_eq!(
+        scene(r#""componentType":5126,"count":3,"type":"SCALAR","bufferView":0"#),
+        "\"garment.glb\": accessor 1 holds numbers of another kind than its mesh needs"
+    );
+    assert_eq!(
+        scene(r#""componentType":5125,"count":3,"type":"SCALAR","bufferView":0,"byteOffset":40"#),
+        "\"garment.glb\": accessor 1 lies outside its part of the file"
+    );
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(60))]
 

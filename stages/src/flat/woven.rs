@@ -13,6 +13,7 @@ use toile_flatten::newton::NewtonOptions;
 /// The stiffness of warp and weft is the force of the fabric's curve at `strain` over that strain, that of shear the same at `angle`. The grain is held upright.
 #[stage(
     role = Flattener,
+    version = 2,
     source = "Fan, Zhou, Wang, Yuen 1999; membrane energy of warp, weft and shear",
     example = "Woven(strain: 0.02)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)

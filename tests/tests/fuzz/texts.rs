@@ -49,18 +49,48 @@ fn pipelines() {
 
 /// Runs a stage that reads `file` beside it; what it gives is sound, what it refuses has words. True where it answers.
 fn reads(stage: &str, file: &str, folder: &Path) -> Result<bool, String> {
+    let options = format!("(file: \"{file}\")");
+    answers(stage, &options, Inputs::default(), folder).map(|made| made.is_some())
+}
+
+/// Runs a stage; what it gives is sound, what it refuses has words, and is nothing.
+fn answers(
+    stage: &str,
+    options: &str,
+    inputs: Inputs,
+    folder: &Path,
+) -> Result<Option<Vec<PortValue>>, String> {
     let card = REGISTRY.named(stage).next().ok_or("there is no such stage")?;
-    let stage = REGISTRY.make(card, &format!("(file: \"{file}\")"))?;
+    let stage = REGISTRY.make(card, options)?;
     let cx = Context::new(card.name, folder, Cancel::new(), Arc::new(()));
-    match stage.run_ports(&Inputs::default(), &cx) {
+    match stage.run_ports(&inputs, &cx) {
         Err(e) if e.code == ErrorCode::Internal => Err(format!("it calls it its own fault: {e}")),
         Err(e) if e.message.is_empty() => Err("it refuses without a word".to_owned()),
-        Err(_) => Ok(false),
-        Ok(made) => made.iter().flat_map(PortValue::entries).try_fold(true, |answers, (_, a)| {
-            let _ = (a.measures(), a.export());
-            a.check().map(|()| answers).map_err(|e| format!("it gave a {} that cannot be: {e}", a.kind()))
-        }),
+        Err(_) => Ok(None),
+        Ok(made) => {
+            for (_, a) in made.iter().flat_map(PortValue::entries) {
+                let _ = (a.measures(), a.export());
+                a.check().map_err(|e| format!("it gave a {} that cannot be: {e}", a.kind()))?;
+            }
+            Ok(Some(made))
+        }
     }
+}
+
+/// Reads a garment and lays what it is flat, with the flattener of this number. True where the garment was read.
+fn flattens(file: &str, number: usize, folder: &Path) -> Result<bool, String> {
+    const FLATTENERS: [(&str, &str); 5] = [
+        ("Arap", "(iterations: 20, darts: Auto(max_strain: 5))"),
+        ("Lscm", "()"),
+        ("SpringFlatten", "(iterations: 20)"),
+        ("SymmetricDirichlet", "(iterations: 20, darts: Propose)"),
+        ("Woven", "(iterations: 20)"),
+    ];
+    let options = format!("(file: \"{file}\")");
+    let Some(mut made) = answers("Garment3d", &options, Inputs::default(), folder)? else { return Ok(false) };
+    let (stage, options) = FLATTENERS[number % FLATTENERS.len()];
+    let inputs = Inputs(vec![Some(made.swap_remove(0)), None]);
+    answers(stage, options, inputs, folder).map(|_| true).map_err(|e| format!("{stage}: {e}"))
 }
 
 /// A box of that size, its feet at 0.
@@ -174,10 +204,63 @@ fn garments() {
     let seeds = [parts, marked.as_bytes().to_vec()];
     let garment = |bytes: &[u8]| {
         std::fs::write(dir.path().join("fuzz.obj"), bytes).unwrap();
-        reads("Garment3d", "fuzz.obj", dir.path())
+        flattens("fuzz.obj", bytes.len(), dir.path())
     };
     assert_eq!([&seeds[0], &seeds[1]].map(|seed| garment(seed)), [Ok(true), Ok(true)]);
     fuzz("garment", 300, |dice| spoil::text(&seeds, dice), |bytes| garment(bytes).map(drop));
+}
+
+/// A sheet of `n` x `n` squares of 1 m with a hump, as a GLB of one node that is turned and moved.
+fn glb(n: u32) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    for k in 0..(n + 1) * (n + 1) {
+        let [x, y] = [k % (n + 1), k / (n + 1)].map(|i| i as f32 / n as f32);
+        bytes.extend([x, y, x * y * (1.0 - x)].iter().flat_map(|c| c.to_le_bytes()));
+    }
+    let places = bytes.len();
+    for k in 0..n * n {
+        let a = k % n + k / n * (n + 1);
+        let corners = [a, a + 1, a + n + 2, a, a + n + 2, a + n + 1];
+        bytes.extend(corners.iter().flat_map(|v| v.to_le_bytes()));
+    }
+    let count = (n + 1) * (n + 1);
+    let json = serde_json::json!({
+        "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "name": "front", "mesh": 0, "rotation": [0.0, 0.6, 0.0, 0.8], "translation": [1.0, 2.0, 3.0] }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": count, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1] },
+            { "bufferView": 1, "componentType": 5125, "count": 6 * n * n, "type": "SCALAR" },
+        ],
+        "bufferViews": [
+            { "buffer": 0, "byteOffset": 0, "byteLength": places },
+            { "buffer": 0, "byteOffset": places, "byteLength": bytes.len() - places },
+        ],
+        "buffers": [{ "byteLength": bytes.len() }],
+    });
+    let mut json = json.to_string().into_bytes();
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let chunk = |kind: &[u8], body: &[u8]| [&(body.len() as u32).to_le_bytes()[..], kind, body].concat();
+    let chunks = [chunk(b"JSON", &json), chunk(b"BIN\0", &bytes)].concat();
+    let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
+    [head, chunks].concat()
+}
+
+#[test]
+fn garments_as_glb() {
+    let dir = tempfile::tempdir().unwrap();
+    let seeds = [glb(3), glb(1)];
+    let garment = |bytes: &[u8]| {
+        std::fs::write(dir.path().join("fuzz.glb"), bytes).unwrap();
+        flattens("fuzz.glb", bytes.len(), dir.path())
+    };
+    assert_eq!([&seeds[0], &seeds[1]].map(|seed| garment(seed)), [Ok(true), Ok(true)]);
+    // Half of them as text, so that what the head says is spoilt as often as the numbers.
+    let spoilt = |dice: &mut crate::Dice| match dice.below(2) {
+        0 => spoil::text(&seeds, dice),
+        _ => spoil::binary(&seeds, dice),
+    };
+    fuzz("garment_glb", 300, spoilt, |bytes| garment(bytes).map(drop));
 }
 
 #[test]

@@ -3,8 +3,8 @@
 //! Again and again, while the strain spread over a neighbourhood passes the limit: from the place of most
 //! strain and from that of most curvature the ways to the boundary are tried, down and up the grain and across
 //! it (and their mirror images, if the piece is symmetric); each is cut and flattened, and the one that saves
-//! most energy is kept, those along the grain counting a quarter more. Proposals end when the limit is met,
-//! when no cut saves enough, or at the number that is allowed. Cost: up to eight flattenings a dart.
+//! most energy is kept, those along the grain counting a quarter more. Ways much longer than the shortest are not tried. Proposals
+//! end when the limit is met, when no cut saves enough of what is left, or at the number that is allowed. Cost: up to eight flattenings a dart.
 
 use super::Objective;
 use super::dart_path::Ways;
@@ -14,7 +14,7 @@ use crate::distortion::distortion;
 use crate::error::{FlattenError, SurfaceError};
 use crate::flatteners::{Flattening, Placement};
 use crate::islands::{Piece, Pieces, islands_by_seams};
-use crate::newton::NewtonOptions;
+use crate::newton::{NewtonOptions, chain_length};
 use crate::surface::Surface;
 use nalgebra::{Point2, Vector2};
 
@@ -36,7 +36,7 @@ pub struct Dart {
 pub struct DartOptions {
     /// The strain that the cloth bears, spread over a neighbourhood: 0.015 is 1.5 per cent. Above 0.
     pub max_strain: f64,
-    /// The least share of the first energy that a cut must save, above 0, below 1.
+    /// The least share of the energy that is left that a cut must save, above 0, below 1.
     pub least_saving: f64,
     /// Most cuts, 1 or more.
     pub most: usize,
@@ -46,12 +46,19 @@ pub struct DartOptions {
 
 impl Default for DartOptions {
     fn default() -> Self {
-        Self { max_strain: 0.015, least_saving: 0.1, most: 8, newton: NewtonOptions::default() }
+        Self { max_strain: 0.015, least_saving: 0.25, most: 8, newton: NewtonOptions::default() }
     }
 }
 
 /// By how much more a saving counts where the cut lies along the grain; in between by the square of the cosine.
 const GRAIN_BONUS: f64 = 0.25;
+
+/// A dart is at most so many times as long as the shortest from its tip: one that runs across the piece, through the
+/// places where others end, would save the most and could not be sewn.
+const MOST_DETOUR: f64 = 2.0;
+
+/// The share of the first energy that a cut saves at least, whatever is left.
+const LEAST_OF_FIRST: f64 = 0.01;
 
 /// How exactly a piece must be its own mirror image for its darts to be mirrored, a share of its diagonal.
 const SYMMETRIC: f64 = 1e-3;
@@ -88,15 +95,15 @@ pub fn propose_darts(
     let mut strain = search.strain(&stage)?;
     while strain > options.max_strain && cuts.len() < options.most {
         let Some(best) = search.best(&stage, &cuts)? else { break };
-        let saves = (stage.flat.report.energy - best.stage.flat.report.energy) / first;
-        if saves < options.least_saving {
+        let saved = stage.flat.report.energy - best.stage.flat.report.energy;
+        if saved < options.least_saving * stage.flat.report.energy || saved < LEAST_OF_FIRST * first {
             break;
         }
         let after = search.strain(&best.stage)?;
         let (at, both) = (darts.len(), best.paths.len() == 2);
         for (k, path) in best.paths.into_iter().enumerate() {
             let mirror = both.then_some(at + 1 - k);
-            darts.push(Dart { path: path.clone(), saves, strain: [strain, after], mirror });
+            darts.push(Dart { path: path.clone(), saves: saved / first, strain: [strain, after], mirror });
             cuts.push(path);
         }
         (stage, strain) = (best.stage, after);
@@ -187,8 +194,7 @@ impl<'a> Search<'a> {
         let (tips, _) = tips(&stage.piece.surface, &ways, &table.triangles);
         let mut best: Option<Candidate> = None;
         for tip in tips {
-            for direction in [-Vector2::y(), Vector2::y(), -Vector2::x(), Vector2::x()] {
-                let Some(way) = ways.to_boundary(tip, direction) else { continue };
+            for way in short_ways(&ways, tip, &stage.flat.points) {
                 let along = grain_share(&way, &stage.flat.points);
                 let way: Vec<u32> = way.iter().map(|&v| stage.piece.vertices[v as usize]).collect();
                 let Some(candidate) = self.candidate(stage, cuts, way, along) else { continue };
@@ -217,6 +223,15 @@ impl<'a> Search<'a> {
         let mirror = self.mirror.as_ref()?;
         Some(way.iter().map(|&v| mirror.partner[v as usize]).collect())
     }
+}
+
+/// The ways down and up the grain and across it, but those that are much longer than the shortest.
+fn short_ways(ways: &Ways<'_>, tip: u32, flat: &[Point2<f64>]) -> Vec<Vec<u32>> {
+    let directions = [-Vector2::y(), Vector2::y(), -Vector2::x(), Vector2::x()];
+    let mut found: Vec<_> = directions.iter().filter_map(|d| ways.to_boundary(tip, *d)).collect();
+    let shortest = found.iter().map(|w| chain_length(w, flat)).fold(f64::INFINITY, f64::min);
+    found.retain(|w| chain_length(w, flat) <= MOST_DETOUR * shortest);
+    found
 }
 
 /// The squared cosine between a way, end to end, and the grain.

@@ -7,6 +7,7 @@ mod chains;
 mod dart_path;
 mod dart_tips;
 mod darts;
+mod laid;
 mod mirror;
 mod objective;
 mod outline;

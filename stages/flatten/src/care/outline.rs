@@ -4,7 +4,7 @@
 //! best rigid motion (Procrustes) leaves least distance. Corners and seam ends that then lie near each other
 //! are knots; in between, lengths correspond in proportion. Cost O(k^2) for k samples.
 
-use nalgebra::{Point2, Rotation2, Vector2};
+use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
 /// Samples an outline: corners far apart decide, so few are enough.
 const SAMPLES: usize = 128;
@@ -35,15 +35,6 @@ impl Outline {
         &self.places
     }
 
-    /// The length on this outline where `other`, of as many points, has the length `arc`: at the same share
-    /// between the same points.
-    pub(super) fn same_share(&self, other: &Self, arc: f64) -> f64 {
-        let next = other.arcs.partition_point(|&a| a <= arc).clamp(1, other.places.len());
-        let step = other.arcs[next] - other.arcs[next - 1];
-        let share = if step > 0.0 { (arc - other.arcs[next - 1]) / step } else { 0.0 };
-        self.arcs[next - 1] + share * (self.arcs[next] - self.arcs[next - 1])
-    }
-
     /// The length up to a point of the list.
     pub(super) fn arc(&self, point: usize) -> f64 {
         self.arcs[point]
@@ -60,13 +51,33 @@ impl Outline {
 
     /// The distance of a point from the line.
     pub(super) fn distance(&self, p: &Point2<f64>) -> f64 {
+        (self.nearest(p) - p).norm()
+    }
+
+    /// The place on the line that is nearest to a point.
+    pub(super) fn nearest(&self, p: &Point2<f64>) -> Point2<f64> {
+        self.nearest_edge(p).1
+    }
+
+    /// The edge that is nearest to a point, by its first vertex, and the place on it.
+    pub(super) fn nearest_edge(&self, p: &Point2<f64>) -> (usize, Point2<f64>) {
         let edges = self.places.iter().zip(self.places.iter().cycle().skip(1));
-        let to_edge = |(a, b): (&Point2<f64>, &Point2<f64>)| {
+        let on_edge = |(a, b): (&Point2<f64>, &Point2<f64>)| {
             let along = b - a;
             let share = ((p - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-            (p - (a + along * share)).norm()
+            a + along * share
         };
-        edges.map(to_edge).fold(f64::INFINITY, f64::min)
+        let off = |q: &Point2<f64>| (q - p).norm_squared();
+        let places = edges.map(on_edge).enumerate();
+        places.min_by(|(_, q), (_, r)| off(q).total_cmp(&off(r))).unwrap_or((0, *p))
+    }
+
+    /// The point of the list that is nearest to a length, along the line.
+    pub(super) fn vertex_near(&self, arc: f64) -> usize {
+        let arc = arc.rem_euclid(self.length());
+        let next = self.arcs.partition_point(|&a| a <= arc).clamp(1, self.places.len());
+        let is_next = self.arcs[next] - arc < arc - self.arcs[next - 1];
+        if is_next { next % self.places.len() } else { next - 1 }
     }
 
     pub(super) fn moved(&self, motion: &Motion) -> Self {
@@ -94,6 +105,24 @@ impl Motion {
     /// Half of its turn, backwards.
     pub(super) fn half_turned_back(&self) -> Rotation2<f64> {
         Rotation2::new(-self.turn.angle() / 2.0)
+    }
+
+    /// The motion after one step that brings the moved `second` nearer to the points of `first`: least squares of the distances
+    /// across its line, so that long edges may slide along each other (Chen and Medioni 1992).
+    pub(super) fn nearer(&self, first: &Outline, second: &Outline) -> Self {
+        let moved = second.moved(self);
+        let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
+        for p in first.places() {
+            let q = moved.nearest(p);
+            let Some(n) = (p - q).try_normalize(f64::MIN_POSITIVE) else { continue };
+            // A turn by a small angle about `to` moves q at right angles to its arm.
+            let row = Vector3::new(n.x, n.y, (q.coords - self.to).perp(&n));
+            matrix += row * row.transpose();
+            right += row * (p - q).dot(&n);
+        }
+        let step = matrix.cholesky().map_or_else(Vector3::zeros, |c| c.solve(&right));
+        let turn = Rotation2::new(step.z) * self.turn;
+        Self { turn, to: self.to + Vector2::new(step.x, step.y), ..*self }
     }
 
     pub(super) fn undone(&self, p: &Point2<f64>) -> Point2<f64> {
@@ -142,17 +171,24 @@ pub(super) struct Correspondence {
 }
 
 impl Correspondence {
-    /// From points of both outlines (already laid over each other) that may be knots, and the shift of [`align`].
-    pub(super) fn new(a: &Outline, b: &Outline, points: [&[usize]; 2], shift: f64, reach: f64) -> Self {
+    /// From points of both outlines (already laid over each other) that may be knots, those that must first, and the
+    /// shift of [`align`].
+    pub(super) fn new(a: &Outline, b: &Outline, points: &[[Vec<usize>; 2]], shift: f64, reach: f64) -> Self {
         let rounds = [a.length(), b.length()];
-        let mut knots: Vec<[f64; 2]> = mutual_pairs(a, b, points, reach);
-        // A corner that the other outline does not have takes its nearest vertex, away from other knots.
         let spacing = rounds[0] / a.places.len() as f64 + rounds[1] / b.places.len() as f64;
+        let mut knots: Vec<[f64; 2]> = Vec::new();
+        for points in points {
+            let away = |k: &[f64; 2]| knots.iter().all(|other| other[0] != k[0] && other[1] != k[1]);
+            let more: Vec<_> = mutual_pairs(a, b, points, reach).into_iter().filter(away).collect();
+            knots.extend(more);
+        }
+        // A corner that the other outline does not have takes its nearest vertex, away from other knots.
+        let [points_a, points_b] = points.last().map_or([&[][..]; 2], |p| [&p[0], &p[1]]);
         let all = |x: &Outline| (0..x.places.len()).collect::<Vec<_>>();
         let singles_a =
-            points[0].iter().filter_map(|&i| Some([a.arc(i), b.arc(nearest(a, i, b, &all(b), reach)?)]));
+            points_a.iter().filter_map(|&i| Some([a.arc(i), b.arc(nearest(a, i, b, &all(b), reach)?)]));
         let singles_b =
-            points[1].iter().filter_map(|&j| Some([a.arc(nearest(b, j, a, &all(a), reach)?), b.arc(j)]));
+            points_b.iter().filter_map(|&j| Some([a.arc(nearest(b, j, a, &all(a), reach)?), b.arc(j)]));
         for single in singles_a.chain(singles_b).collect::<Vec<_>>() {
             if knots.iter().all(|k| (k[0] - single[0]).abs() > spacing) {
                 knots.push(single);
@@ -202,10 +238,10 @@ impl Correspondence {
 }
 
 /// Points of both lists that are nearest to each other, by their lengths.
-fn mutual_pairs(a: &Outline, b: &Outline, points: [&[usize]; 2], reach: f64) -> Vec<[f64; 2]> {
+fn mutual_pairs(a: &Outline, b: &Outline, points: &[Vec<usize>; 2], reach: f64) -> Vec<[f64; 2]> {
     let pairs = points[0].iter().filter_map(|&i| {
-        let j = nearest(a, i, b, points[1], reach)?;
-        (nearest(b, j, a, points[0], reach) == Some(i)).then(|| [a.arc(i), b.arc(j)])
+        let j = nearest(a, i, b, &points[1], reach)?;
+        (nearest(b, j, a, &points[0], reach) == Some(i)).then(|| [a.arc(i), b.arc(j)])
     });
     pairs.collect()
 }

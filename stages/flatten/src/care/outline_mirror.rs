@@ -2,17 +2,19 @@
 //!
 //! Two pieces are a pair if the mirrored boundary of one lies near that of the other in space, about the plane
 //! half-way between their centres (one plane for the whole garment), and their flat outlines lie near each
-//! other, too. The first is solved for near the mean outline, the second with the first one's outline held.
-//! Cost O(n^2) for n boundary vertices of each pair, and one solution a piece.
+//! other, too. The first is solved for near the mean outline; the second slides along the first one's outline, then is held on
+//! it. In turn the first is held on the mean of both and the second on the first, until no vertex of the one is far off the other
+//! or for a few rounds. Cost O(n^2) for n boundary vertices of each pair, and three to seven solutions a piece.
 
 use super::chains::corner_vertices;
-use super::outline::{Correspondence, Motion, Outline, align, fit};
+use super::laid::{Laid, Pull, Side};
+use super::outline::{Correspondence, Outline, align, fit};
 use crate::error::FlattenError;
 use crate::flatteners::Flattening;
 use crate::islands::Pieces;
 use crate::newton::Term;
 use crate::surface::Surface;
-use nalgebra::{Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector2, Vector3};
 
 /// Two pieces whose outlines are mirror images, nearly before and exactly after.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +50,19 @@ const DRAW_WEIGHT: f64 = 1.0;
 
 /// Weight that holds an outline: a thousand times the stiffness of a triangle; only seam lengths still move it.
 const HOLD_WEIGHT: f64 = 1e3;
+
+/// The share of a corner's angle that is enough to lay outlines over each other by.
+const KNOT: f64 = 0.25;
+
+/// How often the second outline slides along the first before it is held.
+const SLIDES: usize = 2;
+
+/// How often the one is held on the other and the other on the mean of both, at most: what only one of the two meshes
+/// can draw is halved each time.
+const ROUNDS: usize = 6;
+
+/// Outlines that are so near are mirror images, a share of a piece's diagonal: 0.4 mm on one of a metre.
+const NEAR: f64 = 4e-4;
 
 /// Pairs of pieces that are not in `taken`; `tolerance` is a share of a piece's diagonal.
 pub(super) fn outline_pairs(pieces: &Pieces, taken: &[bool], tolerance: f64) -> Vec<[usize; 2]> {
@@ -114,15 +129,6 @@ fn diagonal(s: &Surface) -> f64 {
     (high - low).norm()
 }
 
-/// The outlines of a pair, laid over each other.
-struct Laid {
-    a: Outline,
-    /// The mirrored second outline in the plane of the first.
-    b: Outline,
-    motion: Motion,
-    map: Correspondence,
-}
-
 /// What a pair is made equal with.
 pub(super) struct OutlineMirror<'a> {
     pub(super) pieces: &'a Pieces,
@@ -135,25 +141,42 @@ pub(super) struct OutlineMirror<'a> {
 impl OutlineMirror<'_> {
     /// Makes both outlines mirror images; none if the flat ones are too far apart.
     ///
-    /// `solve` moves a piece near places, with a weight, whatever else it must fulfil: the first near the mean
-    /// outline, then the second to the first one's.
+    /// `solve` moves a piece near places, with a weight, whatever else it must fulfil.
     pub(super) fn equalise(
         &self,
         [a, b]: [usize; 2],
         flats: &mut [Flattening],
-        solve: impl Fn(usize, &[Term], &mut Flattening) -> Result<(), FlattenError>,
+        solve: impl Fn(usize, &[Term], Pull, &mut Flattening) -> Result<(), FlattenError>,
     ) -> Result<Option<OutlinePair>, FlattenError> {
         let laid = self.lay([a, b], flats);
         let before = laid.distance();
         if before > self.reach(a) {
             return Ok(None);
         }
-        let outline = &self.pieces.pieces[a].surface.loops()[0];
-        solve(a, &drawn(outline, &laid.mean(), DRAW_WEIGHT), &mut flats[a])?;
-        let solved = Outline::new(outline.iter().map(|&v| flats[a].points[v as usize]).collect());
-        let outline = &self.pieces.pieces[b].surface.loops()[0];
-        solve(b, &drawn(outline, &laid.back_to_second(&solved), HOLD_WEIGHT), &mut flats[b])?;
-        let laid = self.lay([a, b], flats);
+        let draw = |laid: &Laid, side: Side, pull: Pull, flats: &mut [Flattening]| {
+            let piece = laid.pieces[side as usize];
+            solve(piece, &self.drawn(laid, side, pull), pull, &mut flats[piece])
+        };
+        draw(&laid, Side::First, Pull::Slide, flats)?;
+        for _ in 0..SLIDES {
+            draw(&self.lay([a, b], flats), Side::Second, Pull::Slide, flats)?;
+        }
+        let mut laid = self.lay([a, b], flats);
+        for round in 0..ROUNDS {
+            if round > 0 {
+                draw(&laid, Side::First, Pull::Hold, flats)?;
+                laid = self.lay([a, b], flats);
+            }
+            draw(&laid, Side::Second, Pull::Hold, flats)?;
+            laid = self.lay([a, b], flats);
+            if laid.is_near() {
+                break;
+            }
+        }
+        if !laid.is_near() {
+            draw(&laid, Side::Second, Pull::Fit, flats)?;
+            laid = self.lay([a, b], flats);
+        }
         let after = laid.distance();
         // Both turn by half of what keeps them from standing like mirror images.
         let half = laid.motion.half_turned_back();
@@ -212,28 +235,48 @@ impl OutlineMirror<'_> {
         let mirror = |&v: &u32| Point2::new(-flats[b].points[v as usize].x, flats[b].points[v as usize].y);
         let second = Outline::new(reversed.map(mirror).collect());
         let (mut motion, shift) = align(&first, &second);
-        let (points_a, mut points_b) = (self.knots(a, flats), self.knots(b, flats));
         let count = self.pieces.pieces[b].surface.loops()[0].len();
-        points_b.iter_mut().for_each(|k| *k = count - 1 - *k);
-        let mut round = 0;
-        loop {
-            let moved = second.moved(&motion);
-            let map = Correspondence::new(&first, &moved, [&points_a, &points_b], shift, self.reach(a));
-            if round == FITS {
-                return Laid { a: first, b: moved, motion, map };
-            }
-            // Each fit of the motion improves the knots, and they the fit (Besl and McKay 1992).
+        let reversed = |knots: Vec<usize>| knots.into_iter().map(|k| count - 1 - k).collect::<Vec<_>>();
+        let knots = [f64::INFINITY, KNOT * self.corner]
+            .map(|least| [self.ends(a, flats, least), reversed(self.ends(b, flats, least))]);
+        let reach = self.reach(a);
+        // Each fit of the motion improves the knots, and they the fit (Besl and McKay 1992).
+        for _ in 0..FITS {
+            let map = Correspondence::new(&first, &second.moved(&motion), &knots, shift, reach);
             let images: Vec<_> =
                 (0..first.places().len()).map(|i| second.at(map.forward(first.arc(i)))).collect();
             motion = fit(first.places(), &images);
-            round += 1;
         }
+        for _ in 0..FITS {
+            motion = motion.nearer(&first, &second);
+        }
+        let moved = second.moved(&motion);
+        let map = Correspondence::new(&first, &moved, &knots, shift, reach);
+        let ends = [self.ends(a, flats, self.corner), reversed(self.ends(b, flats, self.corner))];
+        let near = NEAR * diagonal(&self.pieces.pieces[a].surface);
+        Laid { pieces: [a, b], a: first, b: moved, ends, near, motion, map }
     }
 
-    /// Places in the outline of corners and seam ends.
-    fn knots(&self, piece: usize, flats: &[Flattening]) -> Vec<usize> {
+    /// Terms that draw one outline to the other: the first to the mean of both, the second onto the first.
+    fn drawn(&self, laid: &Laid, side: Side, pull: Pull) -> Vec<Term> {
+        let outline = &self.pieces.pieces[laid.pieces[side as usize]].surface.loops()[0];
+        let weight = if (side, pull) == (Side::First, Pull::Slide) { DRAW_WEIGHT } else { HOLD_WEIGHT };
+        let targets = laid.targets(side, pull);
+        let places: Vec<_> = targets.iter().map(|t| t.0).collect();
+        let term = |(k, &v): (usize, &u32)| {
+            let slides = pull == Pull::Slide && !targets[k].1;
+            match normal(&places, k).filter(|_| slides) {
+                Some(normal) => Term::on_line(v, places[k], normal, weight),
+                None => Term::at(v, places[k], weight),
+            }
+        };
+        outline.iter().enumerate().map(term).collect()
+    }
+
+    /// Places in the outline of corners of at least this angle, and of seam ends.
+    fn ends(&self, piece: usize, flats: &[Flattening], corner: f64) -> Vec<usize> {
         let surface = &self.pieces.pieces[piece].surface;
-        let mut is_knot = corner_vertices(surface, &flats[piece].points, self.corner);
+        let mut is_knot = corner_vertices(surface, &flats[piece].points, corner);
         for chain in self.pieces.seams.iter().flat_map(|s| [&s.a, &s.b]).filter(|c| c.piece == piece) {
             is_knot[chain.vertices[0] as usize] = true;
             is_knot[chain.vertices[chain.vertices.len() - 1] as usize] = true;
@@ -243,34 +286,9 @@ impl OutlineMirror<'_> {
     }
 }
 
-/// Terms that draw vertices to places.
-fn drawn(vertices: &[u32], places: &[Point2<f64>], weight: f64) -> Vec<Term> {
-    vertices.iter().zip(places).map(|(&v, &p)| Term::at(v, p, weight)).collect()
-}
-
-impl Laid {
-    /// The largest distance of a vertex of either outline from the other.
-    fn distance(&self) -> f64 {
-        let farthest =
-            |x: &Outline, y: &Outline| x.places().iter().map(|p| y.distance(p)).fold(0.0, f64::max);
-        farthest(&self.a, &self.b).max(farthest(&self.b, &self.a))
-    }
-
-    /// The mean of both, at the vertices of the first.
-    fn mean(&self) -> Vec<Point2<f64>> {
-        let mean =
-            |(i, p): (usize, &Point2<f64>)| nalgebra::center(p, &self.b.at(self.map.forward(self.a.arc(i))));
-        self.a.places().iter().enumerate().map(mean).collect()
-    }
-
-    /// The vertices of the second outline on the line `solved` that the first has become, in the second piece's
-    /// own plane and order.
-    fn back_to_second(&self, solved: &Outline) -> Vec<Point2<f64>> {
-        let place = |j: usize| {
-            let on_first = self.map.back(self.b.arc(j)).rem_euclid(self.a.length());
-            let p = self.motion.undone(&solved.at(solved.same_share(&self.a, on_first)));
-            Point2::new(-p.x, p.y)
-        };
-        (0..self.b.places().len()).rev().map(place).collect()
-    }
+/// The normal of a closed line at one of its points; none where its neighbours coincide.
+fn normal(places: &[Point2<f64>], k: usize) -> Option<Vector2<f64>> {
+    let n = places.len();
+    let along = places[(k + 1) % n] - places[(k + n - 1) % n];
+    Vector2::new(along.y, -along.x).try_normalize(0.0)
 }

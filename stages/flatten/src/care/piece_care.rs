@@ -120,6 +120,8 @@ impl StretchedPlane {
 
     fn terms(&self, near: &[Term]) -> Vec<Term> {
         let target = |t: &Term| t.target.component_mul(&self.stretch) / self.frames.unit();
-        near.iter().map(|t| Term { target: target(t), ..*t }).collect()
+        // Normals of stretched lines.
+        let normal = |t: &Term| t.normal.map(|n| n.component_div(&self.stretch).normalize());
+        near.iter().map(|t| Term { target: target(t), normal: normal(t), ..*t }).collect()
     }
 }

@@ -6,6 +6,7 @@
 //! different meshes become mirror images. Cost: some ten Newton iterations a piece.
 
 use super::Objective;
+use super::laid::Pull;
 use super::mirror::{MirrorPair, mean, mirror_distance, mirror_pairs};
 use super::outline_mirror::{OutlineMirror, OutlinePair, outline_pairs};
 use super::piece_care::PieceCare;
@@ -16,6 +17,7 @@ use crate::frames::flipped;
 use crate::islands::Pieces;
 use crate::newton::{NewtonOptions, Term};
 use nalgebra::Point2;
+use rayon::prelude::*;
 
 /// What is taken care of.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -93,8 +95,9 @@ pub struct CareReport {
     pub outlines: Vec<OutlinePair>,
 }
 
-/// The share of a corner's angle that is enough to lay outlines over each other by.
-const KNOT: f64 = 0.25;
+/// Where an outline is held on another, edges that leave their line by this share are straight: the other's edges
+/// decide, not how far its own are from straight.
+const STRAIGHT: f64 = 1e-4;
 
 /// Corrects the flat pieces in place; `flats` and `placements` have one entry a piece.
 ///
@@ -116,7 +119,7 @@ pub fn refine(
         pairs.iter().map(|p| mirror_distance(p, &flats[p.a].points, &flats[p.b].points)).collect();
     make_mirrors(pieces, &pairs, flats);
     let near_pairs = options.outline_pairs(pieces, &pairs);
-    let corner = options.corner.to_radians() * KNOT;
+    let corner = options.corner.to_radians();
     let equal = OutlineMirror { pieces, corner, tolerance: options.mirror_outline };
     let alike: Vec<_> = near_pairs.iter().flat_map(|&pair| equal.seam_partners(pair, flats)).collect();
     let targets = seam_targets(&pieces.seams, flats, &alike);
@@ -124,15 +127,28 @@ pub fn refine(
         let sides = if options.seams { sides_of(i, &pieces.seams, &targets) } else { Vec::new() };
         PieceCare { surface: &pieces.pieces[i].surface, objective, placement: &placements[i], options, sides }
     };
-    let solved = flats.iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
-    let straight = solved.collect::<Result<Vec<_>, _>>()?;
+    let solved = flats.par_iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
+    let straight = solved.collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, _>>()?;
     // Where only the vertices are mirror images, the mean of two solutions would undo their seam lengths.
     let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
     make_mirrors(pieces, &exact, flats);
-    let solve = |i: usize, near: &[Term], flat: &mut Flattening| care(i).solve(flat, near).map(|_| ());
+    let solve = |i: usize, near: &[Term], pull: Pull, flat: &mut Flattening| {
+        let mut care = care(i);
+        if pull != Pull::Slide {
+            care.options.straight = care.options.straight.min(STRAIGHT);
+        }
+        care.solve(flat, near).map(|_| ())
+    };
+    // No piece is in two pairs.
+    let equalised = near_pairs.par_iter().map(|&pair| {
+        let mut own = flats.to_vec();
+        equal.equalise(pair, &mut own, solve).map(|done| (done, pair.map(|i| own[i].clone())))
+    });
     let mut outlines = Vec::new();
-    for &pair in &near_pairs {
-        outlines.extend(equal.equalise(pair, flats, solve)?);
+    for (pair, equalised) in near_pairs.iter().zip(equalised.collect::<Vec<_>>()) {
+        let (done, [a, b]) = equalised?;
+        outlines.extend(done);
+        (flats[pair[0]], flats[pair[1]]) = (a, b);
     }
     let seams = pieces.seams.iter().zip(before);
     let seams = seams.map(|(s, before)| SeamLengths { before, after: side_lengths(s, flats) }).collect();

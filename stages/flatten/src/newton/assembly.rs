@@ -116,15 +116,14 @@ impl Assembly {
         let mut energy = 0.0;
         for (i, term) in problem.terms.iter().enumerate() {
             energy += term.value(q);
-            let pull = term.error(q) * (2.0 * term.weight);
+            let (pull, stiff) = (term.error(q) * (2.0 * term.weight), term.counted() * (2.0 * term.weight));
             for k in 0..3 {
                 let (v, c) = (term.vertices[k], term.coefficients[k]);
                 self.add_gradient(v, &(pull * c));
-                self.add_diagonal(v, &Matrix2::from_diagonal_element(2.0 * term.weight * c * c));
+                self.add_diagonal(v, &(stiff * (c * c)));
                 let (u, other) = (term.vertices[(k + 1) % 3], term.coefficients[(k + 1) % 3]);
-                let both = Matrix2::from_diagonal_element(2.0 * term.weight * c * other);
                 if u != v {
-                    self.add_pair(self.term_pairs[i][k], false, &both);
+                    self.add_pair(self.term_pairs[i][k], false, &(stiff * (c * other)));
                 }
             }
         }

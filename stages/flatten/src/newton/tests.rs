@@ -46,6 +46,19 @@ fn a_constraint_is_met_and_a_held_vertex_stays() {
 }
 
 #[test]
+fn a_vertex_on_a_line_slides_along_it() {
+    let (place, normal) = (Point2::new(0.3, 0.9), Vector2::new(0.6, 0.8));
+    let held = |term| {
+        solve(&Arap, &[term, Term::at(0, Point2::new(-0.5, -0.5), 1e4)], &[], NewtonOptions::default())
+    };
+    let Ok((q, slid)) = held(Term::on_line(80, place, normal, 1e6)) else { unreachable!() };
+    assert!((q[80] - place).dot(&normal).abs() < 1e-6 && (q[80] - place).norm() > 0.05, "{}", q[80]);
+    // What is free along the line costs less than what is held on it.
+    let Ok((_, held)) = held(Term::at(80, place, 1e6)) else { unreachable!() };
+    assert!(slid.converged && held.converged && slid.energy < 0.99 * held.energy, "{slid:?} {held:?}");
+}
+
+#[test]
 fn a_constraint_that_is_said_twice_is_met() {
     let length =
         Constraint::ChainLength { vertices: (0..13).collect(), target: 1.05, scale: Vector2::new(1.0, 1.0) };
