@@ -106,6 +106,8 @@ fn every_shipped_style_comes_back_as_it_was_cut() {
         ("photo_gathered.ron", [14.0, 14.0]),
         ("pleats.ron", [14.0, 13.0]),
         ("photo_longsleeve.ron", [15.0, 13.0]),
+        ("photo_shirt.ron", [15.0, 11.5]),
+        ("photo_pleated.ron", [3.0, 2.5]),
         ("photo_shorts.ron", [17.5, 16.5]),
     ]);
 }

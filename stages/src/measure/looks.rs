@@ -176,6 +176,7 @@ fn drawn_out(garment: &Garment) -> impl Iterator<Item = String> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloth::fixtures::Capsules;
     use crate::texture::fixture;
 
     fn told(garment: &Garment) -> Vec<String> {
@@ -197,6 +198,24 @@ mod tests {
             told[0].starts_with("the hem hangs ")
                 && told[0].ends_with(" on the wearer's right than on the left")
         );
+    }
+
+    #[test]
+    fn a_shoulder_seam_is_told_where_it_stands_off_the_body() {
+        let mut garment = fixture::garment(8);
+        garment.seams[0].name = "shoulder_left".into();
+        let over = |x: f64, radius: f64| {
+            let beam = Capsules::new(&[([x, 0.0, 0.0], [x, 2.0, 0.0], radius)]);
+            shoulders(&garment, Some(&beam.collider())).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            over(0.0, 0.05),
+            [
+                "the seam \"shoulder_left\" stands 13 cm off the shoulder: the garment's shoulder is longer or less sloped than the body's"
+            ]
+        );
+        // The seam lies on this one.
+        assert!(over(0.165, 0.03).is_empty());
     }
 
     #[test]

@@ -29,12 +29,12 @@ const ARMHOLE: [f64; 2] = [0.18, 0.08];
 pub(super) const SEAT: f64 = 0.35;
 /// Both points of the fork, as a share of the seat's girth.
 const FORK: f64 = 0.15;
-/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is there, of the point; and of the inseam below the
-/// point.
 /// Legs are long from so many times the length of the point on.
 const LONG: f64 = 6.0;
 /// The point behind lies no lower than this share of the way from hem to fork.
 const LEAST_DROP: f64 = 0.7;
+/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is there, of the point; and of the inseam below the
+/// point.
 const STRAIGHT: f64 = 0.7;
 const HOLLOW: f64 = 0.15;
 const INNER: f64 = 0.15;

@@ -6,6 +6,7 @@ use super::*;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
 
+mod halves;
 mod made_up;
 
 /// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below to above.
@@ -430,138 +431,6 @@ fn every_size_of_the_table_can_be_made() {
     }
 }
 
-/// A photo of 1,000 pixels a metre whose garment is stated to be so wide.
-fn photo(size: (u32, u32), width: Option<f64>) -> Set<Photo> {
-    let pixels = Shared::new(image::RgbImage::new(size.0, size.1));
-    let photo = Photo { pixels, garment_width: width, ..toile_core::testkit::shapes::photo() };
-    [("front".to_owned(), photo)].into_iter().collect()
-}
-
-/// The points of a shirt of which the frame shows nothing to the right of 300 mm from its middle.
-fn cut_shirt() -> Vec<Point2> {
-    garment(TEE).into_iter().map(|p| Point2::new(p.x.min(0.3), p.y)).collect()
-}
-
-#[test]
-fn a_sleeve_that_the_frame_cuts_is_the_other_ones_mirror_image() {
-    let front: Set<Outline> = [("front".to_owned(), outline(cut_shirt()))].into_iter().collect();
-    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    // The outline's origin lies at 500 px, so that the frame ends at 800.
-    let photos = photo((800, 1000), None);
-    let (pattern, ..) = stage.run(front, &body(), Some(photos), &Context::quiet()).unwrap();
-    for side in ["left", "right"] {
-        let cuff = length(&pattern, &format!("{side}_sleeve_front"), "cuff");
-        assert!((cuff - between(TEE, 3)).abs() < 8.0, "{side}: {cuff:.1}");
-    }
-}
-
-#[test]
-fn a_stated_width_is_that_of_the_whole_garment() {
-    let front: Set<Outline> = [("front".to_owned(), outline(cut_shirt()))].into_iter().collect();
-    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    // What is shown is 740 mm wide by the scale of its outline, and stated to be the whole: the shirt is smaller by 740 / 880.
-    let photos = photo((800, 1000), Some(0.74));
-    let (pattern, ..) = stage.run(front, &body(), Some(photos), &Context::quiet()).unwrap();
-    let hem = length(&pattern, "front", "hem");
-    assert!((hem - 520.0 * 740.0 / 880.0).abs() < 8.0, "{hem:.1}");
-}
-
-#[test]
-fn what_has_no_frame_is_not_completed() {
-    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    let e = cut(&stage, cut_shirt()).unwrap_err();
-    assert_eq!(e.to_string(), "there is no photo of \"front\" whose frame could cut it");
-}
-
-#[test]
-fn both_sleeves_cut_are_refused() {
-    let points = cut_shirt().into_iter().map(|p| Point2::new(p.x.max(-0.3), p.y)).collect();
-    let mut outline = outline(points);
-    outline.frame = outline.frame.map(|f| PhotoFrame { origin_px: Point2::new(300.0, 900.0), ..f });
-    let front: Set<Outline> = [("front".to_owned(), outline)].into_iter().collect();
-    let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    let e = stage.run(front, &body(), Some(photo((600, 1000), None)), &Context::quiet()).unwrap_err();
-    assert_eq!(e.to_string(), "the frame cuts both halves of \"front\" at the same place");
-}
-
-/// A shirt whose left cuff is folded to half its width.
-fn folded() -> Vec<Point2> {
-    let fold = |p: Point2| match p.x < -0.37 {
-        true => Point2::new(p.x, 0.43 + 0.5 * (p.y - 0.43)),
-        false => p,
-    };
-    garment(TEE).into_iter().map(fold).collect()
-}
-
-#[test]
-fn a_folded_cuff_is_cut_as_the_other_one() {
-    let cuffs = |sides| {
-        let (pattern, ..) = cut(&Block { sides, ..of(BlockStyle::TShirt) }, folded()).unwrap();
-        ["left", "right"].map(|side| length(&pattern, &format!("{side}_sleeve_front"), "cuff"))
-    };
-    let [left, right] = cuffs(Sides::AsTheyLie);
-    assert!((left - right).abs() > 20.0, "{left:.1} {right:.1}");
-    let alike = cuffs(Sides::Alike);
-    assert!(alike.iter().all(|c| (c - between(TEE, 3)).abs() < 8.0), "{alike:?}");
-    assert!((alike[0] - alike[1]).abs() < 1e-6);
-}
-
-/// A batwing top: its sides sweep out to the cuffs without an armpit.
-const BATWING: &[[f64; 2]] = &[
-    [0.0, 0.0],
-    [230.0, 0.0],
-    [235.0, 150.0],
-    [290.0, 270.0],
-    [400.0, 340.0],
-    [440.0, 500.0],
-    [110.0, 620.0],
-    [0.0, 590.0],
-];
-
-#[test]
-fn sleeves_without_an_armpit_are_cut_in_one_with_the_top() {
-    let (pattern, ..) = cut(&Block::default(), garment(BATWING)).unwrap();
-    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(names, ["front", "back"]);
-    let cuff = length(&pattern, "front", "cuff_left");
-    assert!((cuff - between(BATWING, 4)).abs() < 12.0, "{cuff:.1}");
-}
-
-/// A shirt whose left sleeve lies under it: the outline runs up there without one.
-fn one_sleeve() -> Vec<Point2> {
-    let tucked = |p: Point2| Point2::new(p.x.max(-0.25), p.y);
-    garment(TEE).into_iter().map(tucked).collect()
-}
-
-#[test]
-fn a_half_that_hides_its_sleeve_is_cut_as_the_other_ones_mirror_image() {
-    let front: Set<Outline> = [("front".to_owned(), outline(one_sleeve()))].into_iter().collect();
-    let cx = Context::quiet();
-    let (pattern, outlines, _) = of(BlockStyle::TShirt).run(front, &body(), None, &cx).unwrap();
-    for side in ["left", "right"] {
-        let cuff = length(&pattern, &format!("{side}_sleeve_front"), "cuff");
-        assert!((cuff - between(TEE, 3)).abs() < 8.0, "{side}: {cuff:.1}");
-    }
-    let told = cx.take_notes().1;
-    let want = "only the right half of \"front\" in the photo looks like a T-shirt: the left one is cut as its mirror image";
-    assert!(told.contains(&want.to_owned()), "{told:?}");
-    // The hidden sleeve gets the colours of the one that is seen: its cuff lies at that one's.
-    let cuff = |name: &str| {
-        let o = outlines.get(name).unwrap();
-        let points = o.edge_points(o.edge("cuff").unwrap());
-        o.to_px(points[points.len() / 2]).unwrap()
-    };
-    let (seen, hidden) = (cuff("left_sleeve_front"), cuff("right_sleeve_front"));
-    assert!((seen - hidden).norm() < 8.0, "{seen} {hidden}");
-}
-
-#[test]
-fn sides_that_are_kept_apart_are_not_mirrored() {
-    let stage = Block { sides: Sides::AsTheyLie, ..of(BlockStyle::TShirt) };
-    let e = cut(&stage, one_sleeve()).unwrap_err();
-    assert_eq!(e.message, "\"front\" does not look like a T-shirt: its sides run up without an armpit");
-}
-
 #[test]
 fn spread_legs_are_stood_under_the_hips_and_keep_their_lengths() {
     // Each leg leans out by a tenth of the way down from the hip, 720 mm above the hem.
@@ -606,44 +475,6 @@ fn a_one_piece_is_front_and_back_with_sleeves_and_two_legs() {
     }
     // Inseams, sides and shoulders; four caps; underarms and tops of the sleeves.
     assert_eq!(plan.seams.len(), 14);
-}
-
-fn gathered(fullness: f64, band: &str) -> Block {
-    Block { waist: Waist::Gathered { fullness, band: band.parse().unwrap() }, ..of(BlockStyle::Skirt) }
-}
-
-#[test]
-fn a_gathered_skirt_is_wider_than_its_band_and_looks_like_its_photo() {
-    let (pattern, outlines, plan) = cut(&gathered(1.6, "3 cm"), garment(SKIRT)).unwrap();
-    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
-    assert_eq!(names, ["front", "band_front", "back", "band_back"]);
-    let near = |piece: &str, edge: &str, want: f64| {
-        let is = length(&pattern, piece, edge);
-        assert!((is - want).abs() < 6.0, "{piece} {edge}: {is:.1} for {want:.1}");
-    };
-    near("band_front", "joint", 360.0);
-    near("band_front", "end_left", 30.0);
-    near("front", "waist", 1.6 * 360.0);
-    near("front", "hem", 640.0);
-    let gathers = plan.seams.iter().filter(|s| s.kind == SeamKind::Gathered).count();
-    assert_eq!(gathers, 2);
-    // The middle of its side shows what the photo shows at the middle of its side.
-    let o = outlines.get("front").unwrap();
-    let side = o.edge_points(o.edge("side_left").unwrap());
-    let px = o.to_px(side[side.len() / 2]).unwrap();
-    assert!((px.x - 500.0 - 253.0).abs() < 8.0, "{px}");
-}
-
-#[test]
-fn what_cannot_be_gathered_is_refused() {
-    let refused = |stage: &Block, points| cut(stage, points).unwrap_err().message;
-    let tee = Block { style: BlockStyle::TShirt, ..gathered(1.6, "3 cm") };
-    assert_eq!(refused(&tee, garment(TEE)), "only a skirt is gathered at the waist, and this is a T-shirt");
-    assert_eq!(refused(&gathered(0.5, "3 cm"), garment(SKIRT)), "a fullness of 0.5 is not between 1 and 4");
-    assert_eq!(
-        refused(&gathered(2.0, "50 cm"), garment(SKIRT)),
-        "a band of 50 cm is not between 5 mm and 20 cm"
-    );
 }
 
 #[test]

@@ -1,8 +1,46 @@
-//! Pleats, and fronts in two halves.
+//! Gathers, pleats, and fronts in two halves.
 
 use super::*;
 use crate::style::block::front::Front;
 use crate::style::block::pleat::Fold;
+
+fn gathered(fullness: f64, band: &str) -> Block {
+    Block { waist: Waist::Gathered { fullness, band: band.parse().unwrap() }, ..of(BlockStyle::Skirt) }
+}
+
+#[test]
+fn a_gathered_skirt_is_wider_than_its_band_and_looks_like_its_photo() {
+    let (pattern, outlines, plan) = cut(&gathered(1.6, "3 cm"), garment(SKIRT)).unwrap();
+    let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["front", "band_front", "back", "band_back"]);
+    let near = |piece: &str, edge: &str, want: f64| {
+        let is = length(&pattern, piece, edge);
+        assert!((is - want).abs() < 6.0, "{piece} {edge}: {is:.1} for {want:.1}");
+    };
+    near("band_front", "joint", 360.0);
+    near("band_front", "end_left", 30.0);
+    near("front", "waist", 1.6 * 360.0);
+    near("front", "hem", 640.0);
+    let gathers = plan.seams.iter().filter(|s| s.kind == SeamKind::Gathered).count();
+    assert_eq!(gathers, 2);
+    // The middle of its side shows what the photo shows at the middle of its side.
+    let o = outlines.get("front").unwrap();
+    let side = o.edge_points(o.edge("side_left").unwrap());
+    let px = o.to_px(side[side.len() / 2]).unwrap();
+    assert!((px.x - 500.0 - 253.0).abs() < 8.0, "{px}");
+}
+
+#[test]
+fn what_cannot_be_gathered_is_refused() {
+    let refused = |stage: &Block, points| cut(stage, points).unwrap_err().message;
+    let tee = Block { style: BlockStyle::TShirt, ..gathered(1.6, "3 cm") };
+    assert_eq!(refused(&tee, garment(TEE)), "only a skirt is gathered at the waist, and this is a T-shirt");
+    assert_eq!(refused(&gathered(0.5, "3 cm"), garment(SKIRT)), "a fullness of 0.5 is not between 1 and 4");
+    assert_eq!(
+        refused(&gathered(2.0, "50 cm"), garment(SKIRT)),
+        "a band of 50 cm is not between 5 mm and 20 cm"
+    );
+}
 
 fn pleated(count: u32, cloth: &str, fold: Fold, stitched: &str) -> Block {
     let waist =
