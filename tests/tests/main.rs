@@ -10,6 +10,7 @@ mod before_run;
 mod benches;
 mod cache;
 mod catalogue;
+mod circles;
 mod command_line;
 mod costs;
 mod decisions;

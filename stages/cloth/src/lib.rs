@@ -14,7 +14,6 @@ pub mod linear;
 pub mod membrane;
 pub mod mesh;
 pub mod motion;
-pub mod obj;
 pub mod rest;
 pub mod scene;
 pub mod solver;

@@ -1,14 +1,7 @@
 //! The way in: checks what was given and hands it to the finder of the object's kind.
 
-use crate::{Found, Object, ScaleError, chessboard, rectangle, ruler};
+use crate::{Found, Object, Options, ScaleError, chessboard, rectangle, ruler};
 use image::RgbImage;
-
-/// What is known besides the photo.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Options {
-    /// Focal length on 35 mm film, mm, 8 to 400 (EXIF `FocalLengthIn35mmFilm`); `None` for a phone's main lens.
-    pub focal_35mm: Option<f64>,
-}
 
 /// Sides of a photo that is looked at, pixels, and its most pixels.
 pub(crate) const SIDES: std::ops::RangeInclusive<u32> = 32..=30_000;

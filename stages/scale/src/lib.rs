@@ -41,6 +41,7 @@ mod find;
 mod found;
 mod judge;
 mod object;
+mod options;
 mod pixels;
 mod pose;
 mod quads;
@@ -53,7 +54,8 @@ mod side;
 
 pub use draw::draw;
 pub use error::ScaleError;
-pub use find::{Options, find, find_with};
+pub use find::{find, find_with};
 pub use found::{Found, Kind};
 pub use object::Object;
+pub use options::Options;
 pub use rectify::{Rectified, RectifyOptions, Sampling, rectify};

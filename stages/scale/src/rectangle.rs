@@ -6,10 +6,10 @@
 //! sides run on beyond the corners (boards, tiles, checks), or where the corners are round or sharp against the
 //! object's kind (`judge`).
 
-use crate::find::Options;
 use crate::found::{Found, Kind, density, inverse, middle};
 use crate::judge::{self, Judged};
 use crate::object::Rectangle;
+use crate::options::Options;
 use crate::pixels::Small;
 use crate::pose::{Camera, MOST_TILT};
 use crate::quads::{Quad, quads};

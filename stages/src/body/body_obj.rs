@@ -8,8 +8,8 @@ use super::isosurface::TriMesh;
 use super::topology::{Pieces, Topology};
 use crate::engine::OBJ_HINT;
 use std::collections::BTreeMap;
-use toile_cloth::obj;
 use toile_core::prelude::*;
+use toile_geometry::obj;
 
 /// Heights of people, metres.
 const HEIGHTS: (f64, f64) = (0.5, 2.5);

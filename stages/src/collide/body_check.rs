@@ -4,9 +4,10 @@
 //! through it in opposite directions, every piece facing outwards. Each fault is told with its
 //! count, edges with the place of the first. O(n log n).
 
-use toile_cloth::obj::is_flat;
 use toile_core::artifact::{Body, Point3};
 use toile_core::{ErrorCode, StageError};
+use toile_geometry::components::{groups, links};
+use toile_geometry::obj::is_flat;
 
 /// Errs with the first kind of fault and how often it occurs.
 pub fn check_body(body: &Body) -> Result<(), StageError> {
@@ -116,45 +117,18 @@ const TURN: &str = "list each triangle's corners counter-clockwise as seen from 
 /// The enclosed volume of each connected piece, seen from its first corner so that a body far from
 /// the origin keeps its digits.
 fn piece_volumes(body: &Body) -> Vec<f64> {
-    let piece = pieces(body);
-    let mut volumes = vec![0.0; piece.iter().max().map_or(0, |m| m + 1)];
+    let (piece, count) = groups(body.positions.len(), links(&body.triangles));
+    let mut volumes = vec![0.0; count];
     let mut origins: Vec<Option<Point3>> = vec![None; volumes.len()];
-    for (t, &k) in body.triangles.iter().zip(&piece) {
+    for t in &body.triangles {
+        let k = piece[t[0] as usize] as usize;
         let corners = t.map(|i| body.positions[i as usize]);
         let origin = *origins[k].get_or_insert(corners[0]);
         let [a, b, c] = corners.map(|p| p - origin);
         volumes[k] += a.dot(&b.cross(&c)) / 6.0;
     }
-    volumes
-}
-
-/// The number of the connected piece that each triangle belongs to, in order of first appearance.
-fn pieces(body: &Body) -> Vec<usize> {
-    let mut root: Vec<usize> = (0..body.positions.len()).collect();
-    for t in &body.triangles {
-        let [a, b, c] = t.map(|i| find(&mut root, i as usize));
-        let least = a.min(b).min(c);
-        [a, b, c].into_iter().for_each(|r| root[r] = least);
-    }
-    let mut number = vec![usize::MAX; body.positions.len()];
-    let mut count = 0;
-    let mut number_of = |t: &[u32; 3]| {
-        let r = find(&mut root, t[0] as usize);
-        if number[r] == usize::MAX {
-            number[r] = count;
-            count += 1;
-        }
-        number[r]
-    };
-    body.triangles.iter().map(&mut number_of).collect()
-}
-
-fn find(root: &mut [usize], mut i: usize) -> usize {
-    while root[i] != i {
-        root[i] = root[root[i]];
-        i = root[i];
-    }
-    i
+    // A vertex of no triangle is no piece.
+    volumes.into_iter().zip(origins).filter_map(|(v, origin)| origin.map(|_| v)).collect()
 }
 
 fn triangles(n: usize) -> String {

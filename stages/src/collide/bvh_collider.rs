@@ -3,12 +3,12 @@
 use super::asked_distances::{self, Distances};
 use super::body_check::check_body;
 use super::scheme::BvhScheme;
-use super::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
 use crate::body::bridged;
 use std::sync::Arc;
 use toile_core::decide::{Decision, Known};
 use toile_core::param::ron_text;
 use toile_core::prelude::*;
+use toile_geometry::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
 
 /// The bounding volume of the hierarchies.
 #[choice]

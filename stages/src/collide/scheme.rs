@@ -2,12 +2,13 @@
 
 use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
-use super::cloth_tree::ClothTree;
-use super::volume::BoundingVolume;
-use super::{crossing, self_collision};
+use super::points::coords;
+use super::self_collision::{Cloth, tree, usable};
 use std::sync::{Mutex, PoisonError};
 use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact, Surface};
 use toile_core::{Context, StageError};
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::volume::BoundingVolume;
 
 /// Trees kept for the next query: one a garment is enough, a few let garments run side by side.
 const POOL: usize = 4;
@@ -18,7 +19,16 @@ pub struct BvhScheme<V> {
     card: ColliderCard,
     body: Option<BodyIndex<V>>,
     // A query takes a tree out and puts it back, and works on it outside the lock.
-    pool: Mutex<Vec<ClothTree<V>>>,
+    pool: Mutex<Vec<Kept<V>>>,
+}
+
+/// A tree with the cloth that it was made for.
+#[derive(Debug)]
+struct Kept<V> {
+    vertices: usize,
+    triangles: Vec<[u32; 3]>,
+    usable: Vec<(u32, [u32; 3])>,
+    tree: ClothTree<V>,
 }
 
 impl<V: BoundingVolume> BvhScheme<V> {
@@ -33,52 +43,28 @@ impl<V: BoundingVolume> BvhScheme<V> {
         Ok(BvhScheme { card, body, pool: Mutex::default() })
     }
 
-    /// The body's skin.
-    pub fn body(&self) -> Option<&BodyIndex<V>> {
-        self.body.as_ref()
-    }
-
-    /// How many pairs of volumes a search for self-contacts tests, and how many pairs of features it
-    /// finds: what the choice of the volume trades.
-    pub fn count_tests(&self, positions: &[Point3], triangles: &[[u32; 3]], reach: f64) -> (u64, usize) {
-        self.with_tree(positions, triangles, |tree| self_collision::count_tests(tree, positions, reach))
-    }
-
-    fn with_tree<T>(
+    /// What `f` makes of the cloth, with a tree that was kept for the same triangles or is made for it.
+    fn with_cloth<T>(
         &self,
         positions: &[Point3],
         triangles: &[[u32; 3]],
-        f: impl FnOnce(&ClothTree<V>) -> T,
+        f: impl FnOnce(&Cloth<'_, V>) -> T,
     ) -> T {
-        let kept = self.lock().pop();
-        let tree = match kept {
-            Some(tree) => tree.updated(positions, triangles),
-            None => ClothTree::build(positions, triangles),
-        };
-        let result = f(&tree);
+        let x = coords(positions);
+        let kept = self.lock().pop().filter(|k| k.vertices == x.len() && k.triangles == triangles);
+        let kept = kept.unwrap_or_else(|| {
+            let usable = usable(triangles, x.len());
+            Kept { vertices: x.len(), triangles: triangles.to_vec(), tree: tree(x, &usable), usable }
+        });
+        let result = f(&Cloth { x, usable: &kept.usable, tree: &kept.tree });
         let mut pool = self.lock();
         if pool.len() < POOL {
-            pool.push(tree);
+            pool.push(kept);
         }
         result
     }
 
-    /// As [`Self::with_tree`] for what is asked once: a tree that had to be built for it is not kept.
-    fn with_passing_tree<T>(
-        &self,
-        positions: &[Point3],
-        triangles: &[[u32; 3]],
-        f: impl FnOnce(&ClothTree<V>) -> T,
-    ) -> T {
-        // Not in the scrutinee, whose lock would be held below.
-        let none = self.lock().is_empty();
-        match none {
-            true => f(&ClothTree::build(positions, triangles)),
-            false => self.with_tree(positions, triangles, f),
-        }
-    }
-
-    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<ClothTree<V>>> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<Kept<V>>> {
         self.pool.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
@@ -107,17 +93,15 @@ impl<V: BoundingVolume> Collide for BvhScheme<V> {
         reach: f64,
         out: &mut Vec<SelfContact>,
     ) {
-        self.with_tree(positions, triangles, |tree| self_collision::contacts(tree, positions, reach, out));
+        self.with_cloth(positions, triangles, |cloth| cloth.contacts(reach, out));
     }
 
     fn conservative_bounds(&self, positions: &[Point3], triangles: &[[u32; 3]], reach: f64) -> Vec<f64> {
-        self.with_tree(positions, triangles, |tree| {
-            self_collision::conservative_bounds(tree, positions, reach)
-        })
+        self.with_cloth(positions, triangles, |cloth| cloth.conservative_bounds(reach))
     }
 
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
-        self.with_passing_tree(positions, triangles, |tree| crossing::crossings(tree, positions))
+        self.with_cloth(positions, triangles, |cloth| cloth.crossings())
     }
 
     fn surface(&self) -> Option<Surface<'_>> {

@@ -9,7 +9,7 @@
 //! curve length. Limits: two corners nearer than an arm are seen as one, and a corner rounder than
 //! about a third of an arm is none.
 
-use super::curve::Closed;
+use super::curve::{Closed, Corner};
 use toile_core::artifact::{Point2, Vector2};
 
 /// What counts as a corner; lengths in the curve's units.
@@ -21,17 +21,6 @@ pub(crate) struct CornerScale {
     pub(crate) gap: f64,
     /// Least turn, radians.
     pub(crate) least_turn: f64,
-}
-
-/// A corner of a closed curve.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Corner {
-    /// Arc length at which the curve passes it.
-    pub(crate) at: f64,
-    /// The exact point.
-    pub(crate) point: Point2,
-    /// Signed turn, radians, positive to the left.
-    pub(crate) turn: f64,
 }
 
 /// A parabola over the arc length: `p + v s + a s^2`.

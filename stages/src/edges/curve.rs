@@ -7,10 +7,20 @@
 //! a moving mean does. Cost: window length times curve length. Limits: detail shorter than the window is
 //! smoothed away.
 
-use super::corners::Corner;
 use super::refine::smooth_closed;
 use rayon::prelude::*;
 use toile_core::artifact::{Loop, Point2, Vector2};
+
+/// A corner of a closed curve.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Corner {
+    /// Arc length at which the curve passes it.
+    pub(crate) at: f64,
+    /// The exact point.
+    pub(crate) point: Point2,
+    /// Signed turn, radians, positive to the left.
+    pub(crate) turn: f64,
+}
 
 /// A closed curve sampled at even steps.
 #[derive(Debug, Clone)]

@@ -158,7 +158,7 @@ fn smooth_loop(points: &[Point2], lengths: &Lengths) -> Result<Loop, StageError>
         let smooth = curve::smooth(&curve, &corners, Smoothing { window, gap, spacing });
         // Ragged borders can feign corners whose stretches cross each other: the one nearest to the place goes.
         let Some(p) = crossing::first(std::iter::once(&smooth)) else { return Ok(smooth) };
-        let far = |c: &corners::Corner| (c.point - p).norm();
+        let far = |c: &curve::Corner| (c.point - p).norm();
         let nearest = (0..corners.len()).min_by(|a, b| far(&corners[*a]).total_cmp(&far(&corners[*b])));
         match nearest.filter(|i| far(&corners[*i]) <= arm) {
             Some(i) => drop(corners.remove(i)),

@@ -2,11 +2,11 @@
 
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
-use toile_cloth::contact::body::Nearest;
-use toile_cloth::contact::facets::Facets;
-use toile_cloth::contact::sharp::Sharp;
 use toile_cloth::contact::skin::Skin;
 use toile_core::artifact::{BodyContact, Collide, Point3};
+use toile_geometry::facets::Facets;
+use toile_geometry::sharp::Sharp;
+use toile_geometry::signed_distance::Nearest;
 
 /// Vertices, m, and triangles of a collider's mesh.
 type Corners<'a> = (Vec<Vector3<f64>>, &'a [[u32; 3]]);

@@ -2,8 +2,8 @@
 
 use super::raw::{NO_POINT, RawMesh};
 use crate::engine::OBJ_HINT;
-use toile_cloth::obj::{Marks, parse_marked};
 use toile_core::prelude::*;
+use toile_geometry::obj::{Marks, parse_marked};
 
 /// The mesh of a file's bytes, in its own unit and axes.
 pub(super) fn read_obj(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> {

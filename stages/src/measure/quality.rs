@@ -8,7 +8,7 @@
 use super::tight::Tight;
 use super::{girth, looks, on_body};
 use crate::cloth::check_garment;
-use crate::collide::crossing::body_crossings;
+use crate::collide::body_crossings;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{
     BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,
@@ -220,7 +220,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<
         },
         tight_p99: None,
         body_penetration: collider.map(|c| penetration(garment, c)),
-        body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b).len()),
+        body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b)),
         self_crossings: collider.map(|c| crossings(garment, c)),
         on_body: on_body::least(garment).map(|(_, share)| share),
         girths: body.map(|b| girth::girths(garment, b)).unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! How much a set of photos is, before they are decoded.
 
 use super::decode::upright_size;
-use super::photos::resolve;
+use super::resolve::resolve;
 use super::{PhotoEntry, PhotoFile, Photos};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

@@ -16,6 +16,7 @@ mod expected;
 mod form;
 mod header;
 mod photos;
+mod resolve;
 mod scale;
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,8 @@
 //! The stage that reads a pipeline's photos.
 
 use super::decode::check;
-use super::entry::{scale_fault, width_fault};
 use super::expected;
+use super::resolve::resolve;
 use super::scale::{self, ScaleObject};
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use toile_core::StageMeta;
 use toile_core::cost::Size;
 use toile_core::param::ron_options;
-use toile_core::pipeline::{Node, nearest};
+use toile_core::pipeline::Node;
 use toile_core::prelude::*;
 
 /// Reads the photos of the garment's sides.
@@ -183,55 +183,4 @@ fn read_file(
         }
     };
     Ok(Picture { pixels: Shared::new(pixels), alpha: alpha.map(Shared::new), px_per_metre })
-}
-
-/// Follows mirrors to a file; true where the pattern is that file's mirror image.
-pub(super) fn resolve<'a>(
-    entries: &'a BTreeMap<String, PhotoEntry>,
-    name: &str,
-) -> Result<(&'a PhotoFile, bool), StageError> {
-    let mut at = name;
-    let mut mirrored = false;
-    // A chain longer than the number of entries visits one of them twice.
-    for _ in 0..=entries.len() {
-        match entries.get(at) {
-            Some(PhotoEntry::File(file)) => return checked(name, file).map(|f| (f, mirrored != f.mirror)),
-            Some(PhotoEntry::MirrorOf(other)) => (at, mirrored) = (other, !mirrored),
-            None => return Err(no_such_photo(entries, name, at)),
-        }
-    }
-    Err(StageError::invalid(format!("photo \"{name}\" mirrors itself"))
-        .hint("one of the photos must be a file")
-        .at("photos")
-        .within(name))
-}
-
-fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &str) -> StageError {
-    let known: Vec<String> = entries.keys().map(|k| format!("\"{k}\"")).collect();
-    let others = entries.keys().map(String::as_str).filter(|k| *k != name);
-    let near = nearest(target, others).map_or_else(String::new, |n| format!("did you mean \"{n}\"? "));
-    StageError::invalid(format!("photo \"{name}\" is to mirror \"{target}\", which there is not"))
-        .hint(format!("{near}the photos are {}", known.join(", ")))
-        .at("photos")
-        .within(name)
-}
-
-/// Values set from code have not passed the pipeline reader.
-fn checked<'a>(name: &str, file: &'a PhotoFile) -> Result<&'a PhotoFile, StageError> {
-    let fault = file.width.and_then(width_fault).or(file.px_per_metre.and_then(scale_fault));
-    let given = [
-        ("width", file.width.is_some()),
-        ("px_per_metre", file.px_per_metre.is_some()),
-        ("scale", file.scale.is_some()),
-    ];
-    let given: Vec<&str> = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
-    let twice = || format!("both {} are given; one of them fixes the scale", given.join(" and "));
-    let fault = fault.or_else(|| (given.len() > 1).then(twice));
-    match fault {
-        Some(fault) => {
-            let text = format!("photo \"{name}\": {fault}");
-            Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos").within(name))
-        }
-        None => Ok(file),
-    }
 }

@@ -159,12 +159,12 @@ impl Camera {
 
 /// Finite points of what is to be framed; everything where there is no garment.
 fn framed_points(model: &Model, frame: Frame) -> impl Iterator<Item = &Point3> {
-    let garment = model.meshes.iter().any(|m| m.name != super::scene::BODY);
+    let garment = model.meshes.iter().any(|m| m.name != super::BODY);
     let skip_body = frame == Frame::Garment && garment;
     model
         .meshes
         .iter()
-        .filter(move |m| !(skip_body && m.name == super::scene::BODY))
+        .filter(move |m| !(skip_body && m.name == super::BODY))
         .flat_map(|m| &m.positions)
         .filter(|p| p.iter().all(|c| c.is_finite()))
 }

@@ -29,6 +29,9 @@ pub use scene::Scene;
 use image::RgbImage;
 use toile_core::artifact::Model;
 
+/// The name of the mesh that is the body.
+const BODY: &str = "body";
+
 /// One picture of a model.
 ///
 /// An empty model gives the bare background; triangles that are degenerate or not finite are left out.

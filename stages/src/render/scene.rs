@@ -17,8 +17,7 @@ use rayon::prelude::*;
 use toile_core::Context;
 use toile_core::artifact::{Digester, Mesh, Model, Point3, Vector3};
 
-/// The name of the mesh that is the body.
-pub(crate) const BODY: &str = "body";
+use super::BODY;
 /// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that nearly
 /// level edges are smoothed as well.
 const SAMPLES: [[i64; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];

@@ -5,16 +5,17 @@
 //! in a garment; the stage names what it leaves out, and what was mended.
 
 use crate::body::Units;
-use crate::collide::{Aabb, BvhScheme, Distances, asked_distances, check_body};
+use crate::collide::{BvhScheme, Distances, asked_distances, check_body};
 use crate::engine::{garment_of, lost, scene_error};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use toile_cloth::obj;
 use toile_cloth::scene::{self, Loaded, Options, SceneError};
 use toile_core::artifact::{Artifact, Digester};
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
+use toile_geometry::obj;
+use toile_geometry::volume::Aabb;
 
 /// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
 ///

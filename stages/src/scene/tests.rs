@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::Scene;
-use crate::collide::crossing::body_crossings;
+use crate::collide::body_crossings;
 use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, SpringDraper, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
@@ -81,7 +81,7 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
         // On the plate it is told as not at rest.
         assert!(draped.status.converged || k == 1, "{k}");
         let pairs = body_crossings(&draped.positions, &draped.triangles, &body);
-        assert!(pairs.is_empty(), "{k}: {pairs:?}");
+        assert_eq!(pairs, 0, "{k}");
     }
 }
 

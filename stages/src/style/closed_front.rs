@@ -2,7 +2,7 @@
 //!
 //! Both halves lie in the same coordinates, and their edges `neck_left` and `neck_right` meet in the middle.
 
-use super::neckline::replaced;
+use super::replaced::replaced;
 use toile_core::prelude::*;
 
 /// Ends of both necks nearer than this are one point, metres.

@@ -9,6 +9,7 @@ mod closed_front;
 mod naming;
 mod neck;
 mod neckline;
+mod replaced;
 mod seams;
 mod sewing;
 mod shape;

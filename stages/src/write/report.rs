@@ -1,7 +1,7 @@
 //! `Report`: one self-contained page on the run.
 //!
 //! Views of the result, key figures, then every stage with its pictures, parameters, time and measures.
-//! Cost: two small drawings for every garment on the way. Limit: pictures beyond [`PICTURE_BUDGET`] are left out,
+//! Cost: two small drawings for every garment on the way. Limit: pictures beyond `PICTURE_BUDGET` are left out,
 //! and the page says so.
 
 use super::report_data::{Page, VIEW_HEIGHT, page};
@@ -11,9 +11,6 @@ use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
-
-/// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
-pub(super) const PICTURE_BUDGET: usize = 2_600_000;
 
 /// The page; autoescaped, since its name ends in `.html`.
 const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));

@@ -1,6 +1,5 @@
 //! What stands on the report's page, gathered from the run's record.
 
-use super::report::PICTURE_BUDGET;
 use super::report_views::{Views, taken};
 use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, thumbnail};
 use base64::Engine;
@@ -15,6 +14,9 @@ use toile_core::artifact::{
 };
 use toile_core::cost::Estimate;
 use toile_core::{Context, StageError};
+
+/// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
+const PICTURE_BUDGET: usize = 2_600_000;
 
 /// Height of the three views at the head, px.
 pub(super) const VIEW_HEIGHT: u32 = 640;

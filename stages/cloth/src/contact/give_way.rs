@@ -8,8 +8,8 @@
 //! What is left meets again, perhaps: whoever asks must still end moves before that (see [`super::limit`]).
 
 use super::limit::meet;
-use super::pair::Pair;
 use nalgebra::Vector3;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 

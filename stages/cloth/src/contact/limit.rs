@@ -5,10 +5,10 @@
 //! is shortened. What is returned has been tested: every pair keeps a share of its distance. Pairs that were found for longer moves
 //! do not answer for shorter ones: see [`hold_apart`].
 
-use super::ccd::impact;
-use super::pair::Pair;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use toile_geometry::ccd::impact;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 

@@ -2,12 +2,13 @@
 //!
 //! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`Skin`].
 
-use super::body::{Body, Nearest};
-use super::facets::Facets;
-use super::sharp::Sharp;
+use super::body::Body;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 use std::sync::Arc;
+use toile_geometry::facets::Facets;
+use toile_geometry::sharp::Sharp;
+use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 

@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::body::Body;
-use super::ccd::impact;
 use super::limit::{hold_apart, limit};
-use super::pair::{Kind, Pair};
-use super::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::scene::generate;
 use nalgebra::{Vector2, Vector3};
 use proptest::prelude::*;
+use toile_geometry::ccd::impact;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::pair::{Kind, Pair};
 
 type Vec3 = Vector3<f64>;
 
@@ -70,7 +70,7 @@ proptest! {
     #[test]
     fn the_tree_finds_what_all_pairs_find(seed in 0u64..1000, reach in 0.01..0.2f64) {
         let (sheet, x, moves) = crumpled(4, seed, 0.05);
-        let found = ClothTree::new(&sheet, &x).pairs(&x, &moves, reach);
+        let found = ClothTree::new(sheet.triangles(), &x).pairs(&x, &moves, reach);
         for pair in all_pairs(&sheet) {
             if least(pair.kind, &pair.at(&x), &pair.at(&moves), 1.0) < reach {
                 let there = found.iter().any(|p| same(p, &pair));
@@ -82,7 +82,7 @@ proptest! {
     #[test]
     fn pairs_of_some_nodes_are_those_of_all_that_have_one(seed in 0u64..1000, reach in 0.01..0.2f64, every in 2usize..40) {
         let (sheet, x, moves) = crumpled(5, seed, 0.05);
-        let tree = ClothTree::new(&sheet, &x);
+        let tree = ClothTree::new(sheet.triangles(), &x);
         let some: Vec<bool> = (0..x.len()).map(|k| k % every == 0).collect();
         let mut all = tree.pairs(&x, &moves, reach);
         all.retain(|p| p.nodes.iter().any(|&i| some[i as usize]));
@@ -92,7 +92,7 @@ proptest! {
     #[test]
     fn a_limited_step_crosses_nothing(seed in 0u64..1000, size in 0.01..0.5f64) {
         let (sheet, x, mut moves) = crumpled(6, seed, size);
-        let tree = ClothTree::new(&sheet, &x);
+        let tree = ClothTree::new(sheet.triangles(), &x);
         prop_assume!(tree.crossings(&x).is_empty());
         let pairs = tree.pairs(&x, &moves, 1e-3);
         limit(&x, &mut moves, &pairs);
@@ -186,7 +186,7 @@ fn what_falls_together_does_not_pass_what_is_held_back() {
     }
     let sheet = Sheet::flat(&scene.rest, &scene.triangles, 0.1).unwrap();
     let x = scene.positions.clone();
-    let tree = ClothTree::new(&sheet, &x);
+    let tree = ClothTree::new(sheet.triangles(), &x);
     let fall = |v: usize| if v < n { Vec3::zeros() } else { Vec3::new(0.0, -0.025, 0.0) };
     let mut moves: Vec<Vec3> = (0..x.len()).map(fall).collect();
     let seek = |moves: &[Vec3]| tree.pairs(&x, moves, 1e-3);
@@ -223,10 +223,10 @@ fn wavy() -> (Sheet, Vec<Vec3>, Vec<bool>) {
 fn only_what_is_awake_looks_for_others() {
     let (sheet, x, awake) = wavy();
     let still = vec![Vec3::zeros(); x.len()];
-    let tree = ClothTree::new(&sheet, &x);
+    let tree = ClothTree::new(sheet.triangles(), &x);
     let wakes = |p: &Pair| p.nodes.iter().any(|&i| awake[i as usize]);
     let all: Vec<Pair> = tree.pairs(&x, &still, 5e-3).into_iter().filter(wakes).collect();
-    let some = tree.waking(&awake).pairs(&x, &still, 5e-3);
+    let some = tree.with_active(&awake).pairs(&x, &still, 5e-3);
     assert!(all.len() > 500 && some.iter().all(wakes));
     assert_eq!(all, some);
 }
@@ -235,14 +235,14 @@ fn only_what_is_awake_looks_for_others() {
 fn a_part_of_the_tree_finds_what_the_whole_finds_about_it() {
     let (sheet, x, awake) = wavy();
     let still = vec![Vec3::zeros(); x.len()];
-    let tree = ClothTree::new(&sheet, &x).waking(&awake);
+    let tree = ClothTree::new(sheet.triangles(), &x).with_active(&awake);
     let known = tree.about(&x, 5e-3);
     let nodes: Vec<u32> = (0..x.len() as u32).filter(|&i| known[i as usize]).collect();
     let mut index = vec![u32::MAX; x.len()];
     nodes.iter().enumerate().for_each(|(k, &i)| index[i as usize] = k as u32);
     let pick = |of: &[Vec3]| -> Vec<Vec3> { nodes.iter().map(|&i| of[i as usize]).collect() };
     let own: Vec<bool> = nodes.iter().map(|&i| awake[i as usize]).collect();
-    let part = tree.part(&nodes, &index, &pick(&x)).waking(&own);
+    let part = tree.part(&nodes, &index, &pick(&x)).with_active(&own);
     let sides = |pairs: Vec<Pair>, name: &dyn Fn(u32) -> u32| {
         let side = |n: &[u32]| {
             let mut n: Vec<u32> = n.iter().map(|&i| name(i)).collect();

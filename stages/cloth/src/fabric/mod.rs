@@ -1,19 +1,16 @@
-//! What a fabric is: mass, tensile curves, shear, bending, damping; from SI values or from a KES (Kawabata) test sheet.
+//! What a fabric is: mass, tensile curves, shear, bending, damping. Cloths by name and by their KES (Kawabata) sheets are stages.
 //!
 //! Every quantity is per unit width of the sheet, in SI units: kg/m², N/m, N/m per radian, N m.
 
 mod curve;
-mod kes;
-mod presets;
+mod rigidity;
 
 #[cfg(test)]
 mod tests;
 
 pub use curve::Curve;
-pub use kes::Kes;
-pub use presets::{PRESETS, Preset};
+pub use rigidity::Rigidity;
 
-use crate::bending::Rigidity;
 use crate::error::{ClothError, check_parameter};
 
 /// Strain of a worn garment where it carries load.

@@ -1,7 +1,6 @@
 //! Derivatives against central differences: the first test of every model, also of models from other crates.
 
 use super::energy::{Energy, Projection, Vec3};
-use crate::linear::BlockMatrix;
 
 /// Largest difference between the gradient and central differences of the value, relative to the largest entry.
 #[must_use]
@@ -23,7 +22,7 @@ pub fn gradient_error(energy: &dyn Energy, x: &[Vec3], step: f64) -> f64 {
 /// The same for the exact Hessian against central differences of the gradient.
 #[must_use]
 pub fn hessian_error(energy: &dyn Energy, x: &[Vec3], step: f64) -> f64 {
-    let mut hessian = BlockMatrix::for_energies(x.len(), &[energy]);
+    let mut hessian = crate::force::matrix_of(x.len(), &[energy]);
     energy.add_hessian(x, Projection::Exact, &mut hessian);
     let (mut worst, mut scale) = (0.0_f64, f64::MIN_POSITIVE);
     for v in 0..x.len() {

@@ -51,3 +51,9 @@ pub fn total_gradient(energies: &[&dyn Energy], x: &[Vec3]) -> Vec<Vec3> {
     }
     gradient
 }
+
+/// An all-zero matrix with the pattern of these energies' Hessians, for `n` nodes.
+#[must_use]
+pub fn matrix_of(n: usize, energies: &[&dyn Energy]) -> BlockMatrix {
+    BlockMatrix::with_couplings(n, |visit| energies.iter().for_each(|e| e.couplings(visit)))
+}

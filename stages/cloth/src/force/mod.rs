@@ -13,6 +13,6 @@ mod tests;
 pub use air::{Air, AirDrag, AirStep, carried, mobility};
 pub use assemble::{Assembled, Element};
 pub use check::{gradient_error, hessian_error};
-pub use energy::{Energy, Projection, Vec3, total_gradient, total_value};
+pub use energy::{Energy, Projection, Vec3, matrix_of, total_gradient, total_value};
 pub use gravity::Gravity;
 pub use load::DeadLoad;

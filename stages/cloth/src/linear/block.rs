@@ -3,9 +3,9 @@
 //! Every diagonal block exists. The pattern is made once from the couplings of the energies; adding a block is a search among
 //! the few entries of its row. Products run through the rows in order, so they are the same bits every time.
 
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
-use crate::force::{Energy, Vec3};
+type Vec3 = Vector3<f64>;
 
 /// The matrix. Block (i, j) with i <= j stands for itself and, transposed, for (j, i).
 #[derive(Debug, Clone)]
@@ -36,12 +36,6 @@ impl BlockMatrix {
         }
         let blocks = vec![Matrix3::zeros(); pairs.len()];
         Self { starts, columns: pairs.into_iter().map(|p| p.1).collect(), blocks }
-    }
-
-    /// An all-zero matrix with the pattern of these energies' Hessians.
-    #[must_use]
-    pub fn for_energies(n: usize, energies: &[&dyn Energy]) -> Self {
-        Self::with_couplings(n, |visit| energies.iter().for_each(|e| e.couplings(visit)))
     }
 
     /// Number of block rows.

@@ -1,10 +1,10 @@
 //! What cloth meets on its way: the body, and itself.
 
 use crate::contact::limit::hold_apart;
-use crate::contact::pair::Pair;
-use crate::contact::tree::ClothTree;
 use crate::rest::solve::Wearer;
 use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 

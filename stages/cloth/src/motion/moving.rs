@@ -3,13 +3,13 @@
 use super::contact::{off_itself, off_the_body, stop_short};
 use super::seams::Seams;
 use super::{Motion, MotionError, Progress, Run, Vec3};
-use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::force::{Air, AirDrag};
 use crate::mesh::Sheet;
 use crate::rest::solve::Wearer;
 use crate::rest::start::{check_lying, crossing, crossings};
 use crate::solver::{Model, Solver, State};
+use toile_geometry::cloth_tree::ClothTree;
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
 const SAME_STEP: f64 = 1e-6;
@@ -87,7 +87,7 @@ impl Moving {
         let solver = settings.method.solver(&sheet, &model, &state.x, run.fabric, settings.dt)?;
         let inverse =
             model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
-        let tree = run.scene.self_collision.then(|| ClothTree::new(&sheet, &state.x));
+        let tree = run.scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &state.x));
         Ok(Self {
             sheet,
             model,

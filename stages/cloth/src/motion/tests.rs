@@ -96,7 +96,7 @@ fn cloth_thrown_at_a_ball_stays_outside_and_does_not_cross_itself() {
     let deepest = moved.positions.iter().filter_map(|p| body.nearest(p, 1.0)).map(|n| n.distance);
     assert!(deepest.fold(f64::INFINITY, f64::min) > 0.0);
     let sheet = crate::mesh::Sheet::flat(&scene.rest, &scene.triangles, 0.15).unwrap();
-    let tree = crate::contact::tree::ClothTree::new(&sheet, &scene.positions);
+    let tree = toile_geometry::cloth_tree::ClothTree::new(sheet.triangles(), &scene.positions);
     assert_eq!(tree.crossings(&moved.positions).len(), 0);
 }
 

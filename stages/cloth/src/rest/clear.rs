@@ -6,11 +6,11 @@
 //! points is found as well: an edge between two facets is finer than the lattice. Cost: a distance a lattice point and a look at the body's
 //! tree a triangle, once the cloth is at rest. Limits: features finer than the lattice of a body that shows no triangles.
 
-use crate::contact::facets::Facets;
 use crate::contact::skin::Skin;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use toile_geometry::facets::Facets;
 
 type Vec3 = Vector3<f64>;
 

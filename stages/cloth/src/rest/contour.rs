@@ -7,10 +7,10 @@
 //! long whichever way the cloth moves, as where one tube passes straight through another, or a hem lies below cloth along its whole length, may
 //! stay.
 
-use crate::contact::tree::ClothTree;
 use crate::mesh::{Edge, Sheet};
 use nalgebra::Vector3;
 use std::collections::HashMap;
+use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 

@@ -1,13 +1,13 @@
 //! Tells cloth that has fallen past the body from cloth that is on its way.
 
 use super::error::RestError;
-use super::pieces::groups;
 use super::system::System;
 use super::work::Work;
 use crate::contact::past::{Fallen, NO_PIECE, Start, list};
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;
+use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 

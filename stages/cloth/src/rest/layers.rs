@@ -7,10 +7,10 @@
 use super::grip::{Grip, Memory, between};
 use super::pattern::{Pattern, add_at};
 use super::press::Press;
-use crate::contact::closest::Feature;
-use crate::contact::pair::{Closest, Kind, Pair};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
+use toile_geometry::closest::Feature;
+use toile_geometry::pair::{Closest, Kind, Pair};
 
 mod crowd;
 mod tangles;

@@ -137,10 +137,10 @@ fn widened(own: &Pattern, touched: &BTreeMap<[u32; 4], u32>) -> (Pattern, Vec<u3
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::contact::pair::{Kind, Pair};
     use crate::rest::assemble::{assemble, cloths};
     use crate::rest::pieces::Pieces;
     use crate::scene::generate;
+    use toile_geometry::pair::{Kind, Pair};
 
     /// Two sheets over each other; the one pair that may touch does, or not.
     #[test]

@@ -14,11 +14,11 @@ use super::pieces::Pieces;
 use super::solve::{LevelReport, Progress, Rest, RestError, Rested};
 use super::system::System;
 use super::unrest::unbalanced;
-use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 use std::time::Instant;
+use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
@@ -75,7 +75,7 @@ impl<'a> Live<'a> {
         system.elastic.hold(&x, false);
         system.elastic.hold_at(&state.folds);
         let layout = pieces.sew(&scene.positions, &even);
-        let tree = scene.self_collision.then(|| ClothTree::new(&sheet, &layout));
+        let tree = scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &layout));
         let descent = Descent::new(&mut system, &layout, tree, &x, FIRST);
         Ok(Self { rest, scene, wearer, pieces, sheet, system, descent, x })
     }

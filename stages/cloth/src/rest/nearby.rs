@@ -6,11 +6,11 @@
 
 use crate::contact::give_way::give_way;
 use crate::contact::limit::{hold_apart, meet};
-use crate::contact::pair::Pair;
-use crate::contact::tree::ClothTree;
 use crate::rest::layers::Layers;
 use crate::rest::system::System;
 use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 

@@ -29,9 +29,9 @@ use super::real::Precision;
 use super::search::{descend, shorten};
 use super::support::Sight;
 use super::system::System;
-use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
+use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 

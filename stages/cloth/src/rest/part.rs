@@ -10,9 +10,9 @@ use super::layers::Layers;
 use super::support::Support;
 use super::system::System;
 use super::thread::Thread;
-use crate::contact::pair::Pair;
-use crate::contact::tree::ClothTree;
 use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 
@@ -91,7 +91,7 @@ impl<'a> Part<'a> {
     /// The tree of its triangles, of which only those of awake nodes look for what they may meet. `layout` is that of the part.
     pub(super) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
         let awake: Vec<bool> = self.pick(&self.cut.awake);
-        whole.part(&self.nodes, &self.cut.index, layout).waking(&awake)
+        whole.part(&self.nodes, &self.cut.index, layout).with_active(&awake)
     }
 
     /// This part, to stand for so many of one shape, one on the other, of which it is the lowest: what lies under it carries

@@ -9,6 +9,7 @@ use crate::fabric::Fabric;
 use crate::mesh::{Sheet, Side};
 use crate::scene::{Band, Scene};
 use nalgebra::{Vector2, Vector3};
+use toile_geometry::components::{groups, links};
 
 /// Flat pieces and which of their vertices are sewn into one.
 #[derive(Debug, Clone)]
@@ -91,8 +92,7 @@ impl Pieces {
         for (k, p) in scene.panels.iter().enumerate() {
             panel[p.vertices.clone()].fill(k as u32 + 1);
         }
-        let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);
-        let (piece, _) = groups(n, sides);
+        let (piece, _) = groups(n, links(&scene.triangles));
         let mut pinned = vec![false; n];
         scene.pinned.iter().for_each(|&p| pinned[p as usize] = true);
         let mut gathered = vec![false; n];
@@ -275,35 +275,9 @@ impl Pieces {
 
 /// How many cloths a scene has, that hang together by triangles or seams.
 pub(super) fn count_cloths(scene: &Scene) -> usize {
-    let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);
-    groups(scene.rest.len(), sides.chain(scene.seams.iter().flat_map(|s| &s.pairs).copied())).1
-}
-
-/// Numbers the groups that `pairs` connect, in the order of their first members.
-pub(crate) fn groups(n: usize, pairs: impl Iterator<Item = [u32; 2]>) -> (Vec<u32>, usize) {
-    let mut parent: Vec<u32> = (0..n as u32).collect();
-    fn root(parent: &mut [u32], mut i: u32) -> u32 {
-        while parent[i as usize] != i {
-            parent[i as usize] = parent[parent[i as usize] as usize];
-            i = parent[i as usize];
-        }
-        i
-    }
-    for [a, b] in pairs {
-        let (a, b) = (root(&mut parent, a), root(&mut parent, b));
-        parent[a.max(b) as usize] = a.min(b);
-    }
-    let mut number = vec![u32::MAX; n];
-    let mut count = 0;
-    let of = (0..n as u32)
-        .map(|i| {
-            let r = root(&mut parent, i) as usize;
-            if number[r] == u32::MAX {
-                number[r] = count;
-                count += 1;
-            }
-            number[r]
-        })
-        .collect();
-    (of, count as usize)
+    groups(
+        scene.rest.len(),
+        links(&scene.triangles).chain(scene.seams.iter().flat_map(|s| &s.pairs).copied()),
+    )
+    .1
 }

@@ -12,12 +12,13 @@ use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::newton::{Descent, Pace, Watch};
 use super::part::Part;
-use super::pieces::{count_cloths, groups};
+use super::pieces::count_cloths;
 use super::system::System;
-use crate::contact::tree::ClothTree;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 
@@ -134,7 +135,7 @@ impl Around<'_> {
         bundle: usize,
         watch: &mut Watch<'_>,
     ) -> Result<ControlFlow<()>, Halt> {
-        let tree = self.tree.clone().waking(awake);
+        let tree = self.tree.clone().with_active(awake);
         let thickness = system.layers.as_ref().map_or(0.0, |l| l.thickness);
         let own = awake.iter().filter(|a| **a).count().max(1);
         let mut way = Way { reach: REACH.0 * thickness, dt: self.pace.first, steps: 0 };

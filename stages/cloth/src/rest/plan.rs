@@ -11,11 +11,11 @@ use super::solve::Rest;
 use super::start::{crossing, crossings_at_start};
 use crate::contact::past::BodyBox;
 use crate::contact::skin::Skin;
-use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
@@ -127,7 +127,7 @@ impl<'a> Plan<'a> {
 
     /// The tree of a level; what thread holds together is no obstacle to itself.
     pub(super) fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
-        let tree = ClothTree::new(sheet, layout);
+        let tree = ClothTree::new(sheet.triangles(), layout);
         let kept = || self.scene.seams.iter().any(|s| !s.joined);
         let nodes = |p: &Pieces| if sewing { p.rest.len() } else { p.nodes };
         match self.pieces.iter().rev().find(|p| nodes(p) == layout.len()) {

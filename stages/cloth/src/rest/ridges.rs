@@ -14,12 +14,12 @@ use super::pattern::{Pattern, add_at};
 use super::press::Press;
 use super::rub::{Rub, SOFT};
 use super::support::{NUDGE, Support};
-use crate::contact::pair::Kind;
-use crate::contact::sharp::{Sharp, Side};
 use crate::mesh::Sheet;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use std::sync::Arc;
+use toile_geometry::pair::Kind;
+use toile_geometry::sharp::{Sharp, Side};
 
 mod limit;
 

@@ -18,13 +18,13 @@ pub(crate) use touching::{crossing, crossings};
 use super::assemble::{cloths, layer_thickness};
 use super::pieces::Pieces;
 use super::words::{both, list, place};
-use crate::contact::body::Nearest;
 use crate::contact::skin::Skin;
 use crate::contact::start::{DEEPEST, clear_start};
-use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::scene::Scene;
 use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 
@@ -189,7 +189,7 @@ pub(crate) fn check_lying<E: From<StartError> + From<ClothError>>(
     }
     let cloths = cloths(scene);
     let sheet = pieces.open_sheet(&cloths)?;
-    let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
+    let tree = ClothTree::new(sheet.triangles(), start).sewing(pieces.point.clone());
     let thickness = layer_thickness(&cloths, pieces.panel.iter().map(|&p| p as usize), &sheet);
     touching::check_squeezed(scene, pieces, start, thickness)?;
     Ok(touching::check_lying(scene, pieces, &tree, start, thickness)?)

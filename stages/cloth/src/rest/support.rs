@@ -1,8 +1,8 @@
 //! The body under the cloth: from which distance it presses, how near a move may lead, and what was seen of it.
 
-use crate::contact::body::Nearest;
 use crate::contact::skin::Skin;
 use nalgebra::Vector3;
+use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 

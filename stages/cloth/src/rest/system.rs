@@ -13,8 +13,8 @@ use super::ridges::Ridges;
 use super::rub::Rub;
 use super::support::{NEAR, NUDGE, Seen, Sight, Support};
 use super::thread::Thread;
-use crate::contact::body::Nearest;
 use nalgebra::{Matrix3, Vector3};
+use toile_geometry::signed_distance::Nearest;
 
 type Vec3 = Vector3<f64>;
 

@@ -111,17 +111,17 @@ fn smooth(sheet: &Sheet, x: &mut [Vec3], chosen: &[bool]) {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::contact::tree::ClothTree;
     use crate::rest::assemble::cloths;
     use crate::rest::pieces::Pieces;
     use crate::scene::generate;
+    use toile_geometry::cloth_tree::ClothTree;
 
     #[test]
     fn a_knot_is_smoothed_away_and_the_cloth_around_it_stays() {
         let scene = generate::drape(12);
         let sheet = Pieces::new(&scene).sewn_sheet(&cloths(&scene)).unwrap();
         let flat = scene.positions.clone();
-        let tree = ClothTree::new(&sheet, &flat);
+        let tree = ClothTree::new(sheet.triangles(), &flat);
         let mut x = flat.clone();
         // A vertex pulled over the next cells and down through them.
         let knot = 6 * 13 + 6;

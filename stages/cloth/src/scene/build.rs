@@ -2,12 +2,13 @@
 //!
 //! ```
 //! use nalgebra::{Vector2, Vector3};
-//! use toile_cloth::fabric::PRESETS;
+//! use toile_cloth::fabric::Fabric;
 //! use toile_cloth::scene::{Scene, Seam};
 //!
 //! let rest = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|[x, y]| Vector2::new(x, y));
 //! let at = |z: f64| rest.map(|p| Vector3::new(p.x, p.y, z));
-//! let mut scene = Scene::new("pouch", PRESETS[1].fabric());
+//! // 0.12 kg/m2, 10 kN/m, no Poisson effect, 1e-5 N m.
+//! let mut scene = Scene::new("pouch", Fabric::isotropic(0.12, 1e4, 0.0, 1e-5));
 //! let front = scene.add_panel("front", &rest, &at(0.05), &[[0, 1, 2]]);
 //! let back = scene.add_panel("back", &rest, &at(-0.05), &[[0, 1, 2]]);
 //! scene.seams.push(Seam::new("side", vec![[front.start, back.start], [front.start + 1, back.start + 1]]));

@@ -9,7 +9,7 @@ pub use sewn::{banded, dart, folded, gathered, pleat, pocket, three_sheets};
 pub use worn::{layered, sleeve};
 
 use super::{Panel, Phase, Scene, SceneBody, Seam};
-use crate::fabric::{Fabric, PRESETS};
+use crate::fabric::{Curve, Fabric};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -17,7 +17,8 @@ use std::f64::consts::{PI, TAU};
 /// A light woven cloth, the same in every standard scene.
 #[must_use]
 pub fn cloth() -> Fabric {
-    PRESETS[0].fabric()
+    let shear = Curve::linear(50.0);
+    Fabric { thickness: 1e-3, friction: 0.4, shear, ..Fabric::isotropic(0.15, 500.0, 0.0, 1e-5) }
 }
 
 /// A flat patch: rest coordinates in the unit square and triangles.

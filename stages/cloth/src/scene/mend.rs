@@ -5,10 +5,10 @@
 //! told. A vertex of no triangle stays where it starts. Cost: O(n log n).
 
 use super::{Scene, SceneError, Seam};
-use crate::obj::{JOIN, first_of_each, joined};
-use crate::rest::pieces::groups;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
+use toile_geometry::components::{groups, links};
+use toile_geometry::obj::{JOIN, first_of_each, joined};
 
 /// Triangles of a face by itself: a quad has two.
 const FACE: usize = 2;
@@ -151,7 +151,7 @@ fn check_faces(scene: &Scene, unjoined: &[[u32; 2]]) -> Result<(), SceneError> {
 /// Tells panels that fall into pieces.
 fn loose(scene: &Scene) -> Option<String> {
     let seams = scene.seams.iter().flat_map(|s| &s.pairs).copied();
-    let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);
+    let sides = links(&scene.triangles);
     let (cloth, _) = groups(scene.rest.len(), sides.chain(seams));
     let apart = |p: &super::Panel| {
         let own = &scene.triangles[p.triangles.clone()];
@@ -171,7 +171,7 @@ fn loose(scene: &Scene) -> Option<String> {
 
 /// The piece of each vertex, by triangles alone, and how many there are.
 fn pieces(scene: &Scene) -> (Vec<u32>, usize) {
-    groups(scene.rest.len(), scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]))
+    groups(scene.rest.len(), links(&scene.triangles))
 }
 
 /// The diagonal of the box around the points that take part.

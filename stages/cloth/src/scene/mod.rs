@@ -7,6 +7,7 @@ mod build;
 mod check;
 pub mod generate;
 mod mend;
+mod raw;
 mod read;
 mod strict;
 mod units;
@@ -23,10 +24,10 @@ pub use write::{body_to_obj, to_json};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::force::Air;
-use crate::obj::ObjError;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 use std::path::PathBuf;
+use toile_geometry::obj::ObjError;
 
 /// A scene, checked: every index points at something and every number is finite.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,14 +1,15 @@
 //! The JSON form `garment-scene-1`.
 
 use super::check::{check, check_lists};
+use super::raw::{RawAir, RawBand, RawBody, RawCurve, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
 use super::{Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, mend, strict, units};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::{Curve, Fabric};
 use crate::force::Air;
-use crate::obj;
 use nalgebra::{Vector2, Vector3};
-use serde::{Deserialize, de};
+use serde::Deserialize;
 use std::path::Path;
+use toile_geometry::obj;
 
 /// How a scene is read.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -31,166 +32,6 @@ pub struct Loaded {
 #[derive(Deserialize)]
 struct Head {
     format: String,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawScene {
-    #[serde(rename = "format")]
-    _format: String,
-    #[serde(default)]
-    name: String,
-    up: Option<String>,
-    rest_uv: Vec<[f64; 2]>,
-    positions: Vec<[f64; 3]>,
-    triangles: Vec<[u32; 3]>,
-    #[serde(default)]
-    panels: Vec<RawPanel>,
-    #[serde(default)]
-    seams: Vec<RawSeam>,
-    #[serde(default)]
-    bands: Vec<RawBand>,
-    #[serde(default)]
-    pinned: Vec<u32>,
-    body: Option<RawBody>,
-    material: RawMaterial,
-    strain_limit: Option<RawLimit>,
-    phases: Vec<RawPhase>,
-    seconds: Option<f64>,
-    #[serde(default)]
-    self_collision: bool,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawPanel {
-    name: String,
-    vertices: [usize; 2],
-    triangles: [usize; 2],
-    material: Option<RawMaterial>,
-    body_friction: Option<f64>,
-    #[serde(default)]
-    layer: u32,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawSeam {
-    name: String,
-    pairs: Vec<[u32; 2]>,
-    #[serde(default = "yes")]
-    joined: bool,
-    gather: Option<f64>,
-    fold: Option<f64>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawBand {
-    name: String,
-    vertices: Vec<u32>,
-    ratio: f64,
-    stiffness: f64,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawLimit {
-    warp: f64,
-    weft: f64,
-}
-
-fn yes() -> bool {
-    true
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawBody {
-    obj: String,
-    friction: f64,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawMaterial {
-    area_density: f64,
-    stretch: Option<RawCurve>,
-    warp: Option<RawCurve>,
-    weft: Option<RawCurve>,
-    #[serde(default)]
-    poisson: f64,
-    shear: RawCurve,
-    bend: Option<f64>,
-    bend_warp: Option<f64>,
-    bend_weft: Option<f64>,
-    bend_friction: Option<f64>,
-    bend_friction_warp: Option<f64>,
-    bend_friction_weft: Option<f64>,
-    friction: f64,
-    thickness: f64,
-    damping: Option<f64>,
-}
-
-/// A stiffness, or the points of a curve.
-#[derive(Clone)]
-enum RawCurve {
-    Straight(f64),
-    Points(Vec<[f64; 2]>),
-}
-
-impl<'de> Deserialize<'de> for RawCurve {
-    fn deserialize<D: de::Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> de::Visitor<'de> for Either {
-            type Value = RawCurve;
-
-            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("a stiffness in N/m or a curve [[strain, N/m], ...]")
-            }
-
-            fn visit_f64<E>(self, k: f64) -> Result<RawCurve, E> {
-                Ok(RawCurve::Straight(k))
-            }
-
-            fn visit_u64<E>(self, k: u64) -> Result<RawCurve, E> {
-                Ok(RawCurve::Straight(k as f64))
-            }
-
-            fn visit_i64<E>(self, k: i64) -> Result<RawCurve, E> {
-                Ok(RawCurve::Straight(k as f64))
-            }
-
-            fn visit_seq<A: de::SeqAccess<'de>>(self, mut list: A) -> Result<RawCurve, A::Error> {
-                let mut points = Vec::new();
-                while let Some(point) = list.next_element()? {
-                    points.push(point);
-                }
-                Ok(RawCurve::Points(points))
-            }
-        }
-        from.deserialize_any(Either)
-    }
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawPhase {
-    name: String,
-    seconds: f64,
-    gravity: [f64; 3],
-    air: Option<RawAir>,
-}
-
-#[derive(Deserialize)]
-pub(super) struct RawAir {
-    density: f64,
-    #[serde(default = "normal")]
-    normal: f64,
-    #[serde(default = "tangential")]
-    tangential: f64,
-    #[serde(default)]
-    wind: [f64; 3],
-}
-
-fn normal() -> f64 {
-    Air::NORMAL
-}
-
-fn tangential() -> f64 {
-    Air::TANGENTIAL
 }
 
 /// Reads a scene file and the body OBJ it names, which lies beside it.

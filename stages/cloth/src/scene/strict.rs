@@ -3,7 +3,7 @@
 //! The reader of the values would pass them over or take the last. Method: one walk over the text, which is known to be JSON; which
 //! fields an object has is asked of the structure that it is read into, so that there is one list. Cost: O(bytes).
 
-use super::read::{RawAir, RawBand, RawBody, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
+use super::raw::{RawAir, RawBand, RawBody, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
 use serde::de::value::Error;
 use serde::{Deserialize, Deserializer, de, forward_to_deserialize_any};
 use std::collections::BTreeSet;

@@ -2,8 +2,8 @@
 
 use super::{Panel, Phase, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
-use crate::obj;
 use serde_json::{Value, json};
+use toile_geometry::obj;
 
 /// The scene as JSON; `body_obj` is the name of the OBJ that holds its body, beside the file.
 ///

@@ -158,7 +158,7 @@ impl Model {
     #[must_use]
     pub fn stiffness(&self, x: &[Vec3], projection: Projection) -> BlockMatrix {
         let internal = self.internal();
-        let mut h = BlockMatrix::for_energies(x.len(), &internal);
+        let mut h = crate::force::matrix_of(x.len(), &internal);
         internal.iter().for_each(|e| e.add_hessian(x, projection, &mut h));
         h
     }

@@ -88,7 +88,7 @@ impl Newton {
         fixed: &[bool],
         x: &mut Vec<Vec3>,
     ) -> Result<NewtonReport, ClothError> {
-        let mut hessian = BlockMatrix::for_energies(x.len(), energies);
+        let mut hessian = crate::force::matrix_of(x.len(), energies);
         let mut value = total_value(energies, x);
         let first_shift = self.pseudo_step.powi(-2);
         let (mut shift, mut exact) = (if self.cautious { first_shift } else { 0.0 }, false);

@@ -3,6 +3,7 @@
 //! Seams whose two sides come out equal, straight edges straight, left and right mirror images, darts where the
 //! strain is too large.
 
+mod care_options;
 mod chains;
 mod dart_path;
 mod dart_tips;
@@ -19,12 +20,13 @@ mod straight;
 #[cfg(test)]
 mod tests;
 
+pub use care_options::CareOptions;
 pub use chains::boundary_chains;
 pub use darts::{Dart, DartOptions, cut_darts, dart_tip, propose_darts};
 pub use mirror::{MirrorPair, mirror_distance, mirror_pairs};
 pub use objective::Objective;
 pub use outline_mirror::OutlinePair;
-pub use refine::{CareOptions, CareReport, refine};
+pub use refine::{CareReport, refine};
 pub use seam_lengths::SeamLengths;
 pub use straight::{is_straight, straight_chains};
 

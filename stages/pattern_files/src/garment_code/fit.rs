@@ -7,7 +7,7 @@
 //! fits stays straight from point to point. Cost: points squared, a millisecond for a hundred. Limits: curves that follow each
 //! other meet without a gap, but their directions may differ a little there.
 
-use super::curves::Curve;
+use super::curve::Curve;
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv};
 use nalgebra::{Matrix4, Vector4};
 use toile_core::artifact::{EdgeCurve, Point2, Vector2};

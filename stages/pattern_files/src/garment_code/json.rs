@@ -1,6 +1,6 @@
 //! The fields of the file, in the order in which GarmentCode writes them.
 
-use super::curves::Curve;
+use super::curve::Curve;
 use serde::{Serialize, Serializer};
 use toile_core::artifact::{EdgeCurve, Point2, Vector2};
 

@@ -7,6 +7,7 @@
 //! Cost: some milliseconds a piece. Limits: the format has no holes, lines inside pieces, notches, grain lines, drill holes,
 //! layers and kinds of seams; each is told. A polyline becomes straight edges and cubic curves within 0.025 mm.
 
+mod curve;
 mod curves;
 mod fit;
 mod json;
@@ -18,7 +19,7 @@ use crate::error::{WriteError, writable};
 use crate::names::{FileNames, PieceNames, unique};
 use crate::sidecar;
 use crate::written::Written;
-use curves::Curve;
+use curve::Curve;
 use json::{Edge, File, InOrder, Panel, Sewn, Side};
 use std::collections::BTreeSet;
 use toile_core::artifact::{BodyPart, Pattern, Piece, Pose};

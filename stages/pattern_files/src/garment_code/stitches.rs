@@ -5,7 +5,7 @@
 //! Limits: the format has no seam of three sides, none along a line inside a piece, and no edge in two of them; such a
 //! seam is left out, which is told.
 
-use super::curves::Curve;
+use super::curve::Curve;
 use std::collections::BTreeSet;
 use toile_core::artifact::{EdgeUse, Pattern, PatternSeam, SeamKind, lacking_stops};
 

@@ -11,8 +11,8 @@ mod grid;
 mod refine;
 mod saddles;
 
-use crate::find::Options;
 use crate::found::{Found, Kind, density, inverse, middle};
+use crate::options::Options;
 use crate::pixels::Small;
 use crate::pose::{self, Camera, Pin, through};
 use crate::{Object, ScaleError};

@@ -1,13 +1,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::super::closest::Feature;
 use super::super::proximity::{edge_edge, vertex_triangle};
 use super::super::testing::{Cloth, both, sheet, soup};
-use super::super::volume::{Aabb, KDop, Obb, Sphere};
 use super::*;
 use proptest::prelude::*;
 use std::collections::BTreeSet;
 use toile_core::artifact::Vector3;
+use toile_geometry::closest::Feature;
+use toile_geometry::volume::{Aabb, KDop, Obb, Sphere};
 
 const CARD: ColliderCard =
     ColliderCard { thickness: 1e-3, friction: 0.3, restitution: 0.0, self_collision: true, penalty: None };
@@ -31,7 +31,7 @@ fn edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 type BrutePair = ([u32; 4], f64, Option<BTreeSet<u32>>);
 
 fn brute_pairs((positions, triangles): &Cloth, reach: f64) -> Vec<BrutePair> {
-    let at = |i: u32| positions[i as usize];
+    let at = |i: u32| positions[i as usize].coords;
     let used: BTreeSet<u32> = triangles.iter().flatten().copied().collect();
     let mut pairs = Vec::new();
     for &v in &used {
@@ -227,24 +227,13 @@ fn queries_from_inside_a_pool_do_not_wait_for_each_other() {
 }
 
 #[test]
-fn a_tighter_volume_tests_fewer_pairs() {
-    let wave = |lift: f64| sheet(30, move |x, y| 0.2 * (5.0 * x + 3.0 * y).sin() + lift);
-    let cloth = both(wave(0.0), wave(0.03));
-    let tests = |s: (u64, usize)| s.0;
-    let sphere = tests(scheme::<Sphere>().count_tests(&cloth.0, &cloth.1, 0.002));
-    let boxes = tests(scheme::<Aabb>().count_tests(&cloth.0, &cloth.1, 0.002));
-    let polytope = tests(scheme::<KDop<13>>().count_tests(&cloth.0, &cloth.1, 0.002));
-    assert!(boxes < sphere && polytope < boxes, "{sphere} {boxes} {polytope}");
-}
-
-#[test]
-fn what_is_asked_once_leaves_no_tree_behind_and_uses_one_that_is_there() {
-    let cloth = soup(7, 60, 0.5);
+fn a_tree_is_kept_for_the_same_cloth_and_made_for_another() {
+    let (cloth, other) = (soup(7, 60, 0.5), soup(8, 30, 0.5));
     let scheme = scheme::<Aabb>();
     let first = scheme.self_crossings(&cloth.0, &cloth.1);
-    assert!(!first.is_empty() && scheme.lock().is_empty());
-    contacts(&scheme, &cloth, 1e-3);
+    assert!(!first.is_empty());
+    let own = contacts(&scheme, &other, 0.1);
     assert_eq!(scheme.lock().len(), 1);
     assert_eq!(scheme.self_crossings(&cloth.0, &cloth.1), first);
-    assert_eq!(scheme.lock().len(), 1);
+    assert_eq!(contacts(&scheme, &other, 0.1), own);
 }

@@ -1,9 +1,8 @@
 //! A front in one piece, or in two halves that are closed along the middle.
 
 use super::curve::Curve;
+use super::flat::{Flat, Run, Side, straight};
 use super::form::Form;
-use super::pieces::{Flat, Run, Side};
-use super::waist::straight;
 use toile_core::prelude::*;
 
 /// How the front is cut.

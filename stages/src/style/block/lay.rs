@@ -1,9 +1,10 @@
 //! From the fits of both layers to a pattern, and where its pieces lie in the photos.
 
 use super::fit::Fit;
+use super::flat::{Flat, Layer};
 use super::form::Form;
 use super::halves::Upright;
-use super::pieces::{self, Flat, Layer, Making};
+use super::pieces::{self, Making};
 use super::{seams, stand};
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;

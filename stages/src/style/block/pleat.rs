@@ -5,8 +5,7 @@
 //! drawn apart as well.
 
 use super::curve::Curve;
-use super::pieces::{Flat, Run};
-use super::waist::straight;
+use super::flat::{Flat, Run, straight};
 use toile_core::prelude::*;
 
 /// A pleat's seam begins so far below the waist, metres: its layers hang free of the edge.

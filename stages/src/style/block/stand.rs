@@ -1,6 +1,6 @@
 //! Where the pieces of a block stand around a body: as they lie, front before it and back behind it.
 
-use super::pieces::{Flat, Layer};
+use super::flat::{Flat, Layer};
 use nalgebra::Rotation2;
 use toile_core::prelude::*;
 

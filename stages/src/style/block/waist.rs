@@ -5,8 +5,8 @@
 //! skirt as it lies, so that its gathers are drawn apart.
 
 use super::curve::Curve;
+use super::flat::{Flat, Layer, Run, Side, straight};
 use super::form::Form;
-use super::pieces::{Flat, Layer, Run, Side};
 use super::pleat::{Fold, Pleats};
 use toile_core::prelude::*;
 
@@ -170,10 +170,6 @@ impl Half {
             upper: waist,
         }
     }
-}
-
-pub(super) fn straight(a: Point2, b: Point2) -> Curve {
-    Curve([a, a + (b - a) / 3.0, a + (b - a) * (2.0 / 3.0), b])
 }
 
 /// Curves that rise one from the other, up to a height, and their place there.

@@ -6,10 +6,10 @@ use nalgebra::Vector3;
 
 use super::{Check, Must, Verdict};
 use crate::contact::body::Body;
-use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::rest::solve::{Rest, RestError, Rested};
 use crate::scene::{Scene, SceneError, Seam, generate};
+use toile_geometry::cloth_tree::ClothTree;
 
 /// Widest seam at the end, m.
 const CLOSED: f64 = 1e-3;
@@ -172,7 +172,7 @@ fn faults(scene: &Scene, x: &[Vector3<f64>]) -> (String, f64) {
     };
     // Sewn vertices are the same point: only panels without seams are looked at.
     if scene.self_collision && scene.seams.is_empty() {
-        let crossings = ClothTree::new(&sheet, x).crossings(x).len();
+        let crossings = ClothTree::new(sheet.triangles(), x).crossings(x).len();
         if crossings > 0 {
             text += &format!(", {crossings} crossings");
         }

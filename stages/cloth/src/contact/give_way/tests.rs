@@ -1,10 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::contact::limit::limit;
-use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::scene::generate;
 use proptest::prelude::*;
+use toile_geometry::cloth_tree::ClothTree;
 
 /// Two sheets of 25 nodes each, one so far over the other, and what may meet on the way of `moves`.
 fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3>, Vec<Pair>, ClothTree) {
@@ -20,7 +20,7 @@ fn two(apart: f64, moves: impl Fn(usize, &Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec3
     scene.positions = level(0.0, 0.0);
     scene.add_panel("sheet", &one.rest, &level(apart, 0.1), &one.triangles);
     let sheet = Sheet::flat(&scene.rest, &scene.triangles, 0.1).unwrap();
-    let (x, tree) = (scene.positions.clone(), ClothTree::new(&sheet, &scene.positions));
+    let (x, tree) = (scene.positions.clone(), ClothTree::new(sheet.triangles(), &scene.positions));
     let moves: Vec<Vec3> = x.iter().enumerate().map(|(k, p)| moves(k, p)).collect();
     let pairs = tree.pairs(&x, &moves, 1e-3);
     (x, moves, pairs, tree)

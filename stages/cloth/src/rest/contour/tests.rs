@@ -13,7 +13,7 @@ const CELLS: usize = 12;
 fn cloth() -> (Sheet, ClothTree, Vec<Vec3>) {
     let scene = generate::drape(CELLS as u32);
     let sheet = Pieces::new(&scene).sewn_sheet(&cloths(&scene)).unwrap();
-    let tree = ClothTree::new(&sheet, &scene.positions);
+    let tree = ClothTree::new(sheet.triangles(), &scene.positions);
     (sheet, tree, scene.positions.clone())
 }
 

@@ -1,9 +1,9 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::contact::pair::{Kind, Pair};
 use crate::rest::layers::Layers;
 use crate::rest::pattern::Pattern;
 use nalgebra::{DMatrix, Matrix3};
+use toile_geometry::pair::{Kind, Pair};
 
 const MU: f64 = 0.4;
 

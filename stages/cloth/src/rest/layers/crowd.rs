@@ -4,8 +4,8 @@
 //! may meet at an end anywhere, so at their very ends contacts fade everywhere.
 
 use super::Layers;
-use crate::contact::pair::{Closest, Kind, Pair};
 use nalgebra::Vector3;
+use toile_geometry::pair::{Closest, Kind, Pair};
 
 type Vec3 = Vector3<f64>;
 

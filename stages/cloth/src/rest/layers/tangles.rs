@@ -1,11 +1,11 @@
 //! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have it, is pulled back out.
 
 use super::{Contact, Layers};
-use crate::contact::closest::on_triangle;
-use crate::contact::pair::Pair;
 use crate::rest::press::Press;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use toile_geometry::closest::on_triangle;
+use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 

@@ -18,7 +18,7 @@ fn with_sheets(check: impl FnOnce(System<'_>, ClothTree, Vec<Vec3>)) {
         Vec3::new(p.x, 3e-3 * (k / each) as f64 + 0.01 * (20.0 * p.x).sin() * (15.0 * p.z).cos(), p.z)
     };
     let x: Vec<Vec3> = scene.positions.iter().enumerate().map(at).collect();
-    let tree = ClothTree::new(&sheet, &scene.positions);
+    let tree = ClothTree::new(sheet.triangles(), &scene.positions);
     check(system, tree, x);
 }
 

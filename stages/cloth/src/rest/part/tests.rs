@@ -1,11 +1,11 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::contact::tree::ClothTree;
 use crate::mesh::Sheet;
 use crate::rest::nearby::Nearby;
 use crate::rest::pattern::Pattern;
 use crate::rest::trial::on_its_body;
 use crate::scene::{Scene, generate};
+use toile_geometry::cloth_tree::ClothTree;
 
 /// A square on a ball, creased, in contact with the ball and with itself; every third node is awake in the half of greater x.
 fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
@@ -31,7 +31,7 @@ fn lay(
         Vec3::new(-p.x.abs(), top + 5e-4 + upper * 4e-4 + wave, p.z)
     };
     let x: Vec<Vec3> = flat.iter().map(fold).collect();
-    let mut nearby = Nearby::new(Some(ClothTree::new(sheet, &flat)));
+    let mut nearby = Nearby::new(Some(ClothTree::new(sheet.triangles(), &flat)));
     nearby.seek_about(&mut system, &x, &vec![true; x.len()]);
     system.touch(&x);
     system.elastic.hold(&flat, false);

@@ -22,7 +22,7 @@ fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec
     let sheet = pieces.sewn_sheet(&fabrics(scene)).unwrap();
     let mut system = assemble(scene, Some(wearer), &pieces, &sheet, false).unwrap();
     system.layers.iter_mut().for_each(|l| l.crowded = true);
-    check(system, &ClothTree::new(&sheet, &scene.positions), scene.positions.clone());
+    check(system, &ClothTree::new(sheet.triangles(), &scene.positions), scene.positions.clone());
 }
 
 fn pace() -> Pace {

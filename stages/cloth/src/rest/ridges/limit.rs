@@ -5,10 +5,10 @@
 //! is not held back.
 
 use super::{Pair, Ridges};
-use crate::contact::ccd::impact;
-use crate::contact::pair;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use toile_geometry::ccd::impact;
+use toile_geometry::pair;
 
 type Vec3 = Vector3<f64>;
 

@@ -2,11 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::rest::assemble::cloths;
 use crate::rest::pieces::Pieces;
 use crate::scene::{SceneError, StrainLimit, generate};
+use toile_geometry::cloth_tree::ClothTree;
 
 fn gap(scene: &Scene, x: &[Vec3]) -> f64 {
     let pairs = scene.seams.iter().flat_map(|s| &s.pairs);
@@ -89,7 +89,7 @@ fn a_pleat_stays_folded_where_it_is_sewn() {
 fn crossings_of_two_rows(scene: &Scene, x: &[Vec3]) -> usize {
     let pieces = Pieces::new(scene);
     let sheet = pieces.open_sheet(&cloths(scene)).unwrap();
-    ClothTree::new(&sheet, x).sewing(pieces.point.clone()).crossings(x).len()
+    ClothTree::new(sheet.triangles(), x).sewing(pieces.point.clone()).crossings(x).len()
 }
 
 #[test]

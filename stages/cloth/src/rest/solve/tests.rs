@@ -1,11 +1,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
-use crate::contact::tree::ClothTree;
 use crate::fabric::Fabric;
 use crate::rest::assemble::cloths;
 use crate::rest::pieces::Pieces;
 use crate::scene::Seam;
 use crate::scene::{Phase, SceneBody, generate};
+use toile_geometry::cloth_tree::ClothTree;
 
 pub(super) fn settle(scene: &Scene) -> Result<Rested, RestError> {
     Rest::default().solve(scene, &mut |_| ControlFlow::Continue(()))
@@ -42,7 +42,7 @@ pub(super) fn crossings(scene: &Scene, x: &[Vec3]) -> usize {
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
     let nodes = pieces.sew(x, &vec![1.0; x.len()]);
-    ClothTree::new(&sheet, &nodes).crossings(&nodes).len()
+    ClothTree::new(sheet.triangles(), &nodes).crossings(&nodes).len()
 }
 
 /// Writes the state to `TOILE_PICTURES`/name.obj where that is set, to be looked at.
@@ -54,7 +54,8 @@ pub(super) fn picture(scene: &Scene, x: &[Vec3], name: &str) {
         triangles.extend(b.triangles.iter().map(|t| t.map(|v| v + x.len() as u32)));
         all.extend(&b.vertices);
     }
-    crate::obj::write(&std::path::Path::new(&folder).join(format!("{name}.obj")), &all, &triangles).unwrap();
+    toile_geometry::obj::write(&std::path::Path::new(&folder).join(format!("{name}.obj")), &all, &triangles)
+        .unwrap();
 }
 
 #[test]

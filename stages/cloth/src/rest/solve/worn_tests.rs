@@ -57,7 +57,7 @@ fn face(scene: &Scene, x: &[Vec3], count: usize, p: &Vec3) -> Vec3 {
     let on = |t: &[u32; 3]| {
         let c = t.map(|v| x[v as usize]);
         (
-            (crate::contact::closest::on_triangle(p, &c).point - p).norm(),
+            (toile_geometry::closest::on_triangle(p, &c).point - p).norm(),
             (c[1] - c[0]).cross(&(c[2] - c[0])).normalize(),
         )
     };

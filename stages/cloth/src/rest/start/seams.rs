@@ -8,10 +8,10 @@
 //! Cost: O(n log n) for the outlines; for a seam that goes all round the square of its pairs.
 
 use super::StartError;
-use crate::rest::pieces::groups;
 use crate::scene::{Scene, Seam};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 

@@ -1,7 +1,6 @@
 //! Cloth that passes through cloth, or lies in it, where it starts.
 
 use super::StartError;
-use crate::contact::tree::ClothTree;
 use crate::error::ClothError;
 use crate::rest::assemble::cloths;
 use crate::rest::layers::{Layers, MERGED};
@@ -10,6 +9,7 @@ use crate::rest::words;
 use crate::scene::Scene;
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet};
+use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
@@ -29,7 +29,7 @@ pub(in crate::rest) fn crossings_at_start(
         return Ok(vec![]);
     }
     let sheet = pieces.open_sheet(&cloths(scene))?;
-    let tree = ClothTree::new(&sheet, start).sewing(pieces.point.clone());
+    let tree = ClothTree::new(sheet.triangles(), start).sewing(pieces.point.clone());
     let layer = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
     let layers = Layers { order: pieces.panel.iter().map(layer).collect(), ..Layers::default() };
     let found = crossings(&tree, &pieces.panel, start);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::contact::pair::Kind;
+use toile_geometry::pair::Kind;
 
 /// A vertex `height` over a triangle of three, one millimetre thick.
 fn vertex_over(height: f64) -> (Layers, [Vec3; 4]) {
