@@ -13,6 +13,7 @@ mod catalogue;
 mod command_line;
 mod costs;
 mod decisions;
+mod docs;
 mod doctor;
 mod error_codes;
 mod falls;
