@@ -15,12 +15,11 @@ use std::time::{Duration, Instant};
 const OURSELVES: [&str; 2] = ["cargo test --release --workspace", ".ci/wide"];
 
 /// Files that the guide takes for a reader's own, and which of ours stand for them.
-const OWN_FILES: [(&str, &str); 9] = [
+const OWN_FILES: [(&str, &str); 8] = [
     ("mine.jpg", "samples/tshirt/front.jpg"),
     ("front.jpg", "samples/vest/front.jpg"),
     ("back.jpg", "samples/vest/back.jpg"),
     ("skirt.jpg", "samples/skirt/front.jpg"),
-    ("dress.obj", "samples/garment/vest.obj"),
     ("my_specification.json", "samples/pattern/shirt_specification.json"),
     ("mine.svg", "samples/pattern/pleats.svg"),
     ("seams.ron", "samples/pattern/pleats_seams.ron"),
@@ -111,7 +110,21 @@ fn scratch() -> tempfile::TempDir {
     for (own, ours) in OWN_FILES {
         std::fs::copy(pipelines.join(ours), dir.path().join(own)).unwrap();
     }
+    let garment = std::fs::read_to_string(pipelines.join("samples/garment/vest.obj")).unwrap();
+    std::fs::write(dir.path().join("dress.obj"), in_centimetres(&garment)).unwrap();
     dir
+}
+
+/// An OBJ file in metres with its vertices in centimetres.
+fn in_centimetres(obj: &str) -> String {
+    let longer = |line: &str| match line.strip_prefix("v ") {
+        Some(numbers) => {
+            let numbers = numbers.split_whitespace().map(|n| (100.0 * n.parse::<f64>().unwrap()).to_string());
+            format!("v {}", numbers.collect::<Vec<_>>().join(" "))
+        }
+        None => line.to_owned(),
+    };
+    obj.lines().map(longer).collect::<Vec<_>>().join("\n")
 }
 
 fn copy(from: &Path, to: &Path) {
