@@ -1,4 +1,4 @@
-//! `toile explain --json`: one object, described in docs/costs.md.
+//! `toile explain --json`: one object, described in docs/reference/costs.md.
 
 use crate::explain::Explained;
 use crate::validate::Stood;

@@ -3,7 +3,7 @@
 use std::io::{stderr, stdout};
 use std::process::ExitCode;
 
-/// Counts the memory that the program holds, for what stages take (docs/costs.md).
+/// Counts the memory that the program holds, for what stages take (docs/reference/costs.md).
 #[global_allocator]
 static MEMORY: peak_alloc::PeakAlloc = peak_alloc::PeakAlloc;
 

@@ -1,8 +1,11 @@
-//! Every command of the README runs, word for word and in the README's order, and ends with exit code 0.
+//! The commands of the README, of docs/reference/cli.md and of docs/guide run, word for word and in that order, and end with
+//! exit code 0.
 //!
-//! A command is a line of an indented block, or a piece of code within a line, that begins with `toile `, `cargo ` or `.ci/`.
-//! Those of the program run in a copy of `pipelines`, which some of them change.
+//! A command is a line of an indented block that begins with `toile `, `cargo ` or `.ci/`, and in the README a piece of code within a
+//! line that does. Those of the program run in a copy of `pipelines`, which some of them change, beside the files of a reader that the
+//! guide names. A whole run that the guide alone names is checked by `toile validate` here, and run by `.ci/wide`.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -11,19 +14,55 @@ use std::time::{Duration, Instant};
 /// What these tests are a part of.
 const OURSELVES: [&str; 2] = ["cargo test --release --workspace", ".ci/wide"];
 
+/// Files that the guide takes for a reader's own, and which of ours stand for them.
+const OWN_FILES: [(&str, &str); 8] = [
+    ("mine.jpg", "samples/tshirt/front.jpg"),
+    ("front.jpg", "samples/vest/front.jpg"),
+    ("back.jpg", "samples/vest/back.jpg"),
+    ("skirt.jpg", "samples/skirt/front.jpg"),
+    ("my_specification.json", "samples/pattern/shirt_specification.json"),
+    ("mine.svg", "samples/pattern/pleats.svg"),
+    ("seams.ron", "samples/pattern/pleats_seams.ron"),
+    ("pipelines/mine.ron", "vest.ron"),
+];
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// The README's commands in its order.
-fn commands() -> Vec<String> {
-    let text = std::fs::read_to_string(root().join("README.md")).unwrap();
+/// Where commands stand: the README, the page of all commands, the guide.
+fn pages() -> Vec<PathBuf> {
+    let mut guide = files(&root().join("docs/guide"), ".md");
+    guide.sort();
+    [root().join("README.md"), root().join("docs/reference/cli.md")].into_iter().chain(guide).collect()
+}
+
+/// A page's commands in its order.
+fn commands_of(page: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(page).unwrap();
+    let is_readme = page.ends_with("README.md");
     let pieces = text.lines().flat_map(|line| match line.strip_prefix("    ") {
         Some(code) => vec![code],
-        None => line.split('`').skip(1).step_by(2).collect(),
+        None if is_readme => line.split('`').skip(1).step_by(2).collect(),
+        None => Vec::new(),
     });
     let is_command = |piece: &&str| ["toile ", "cargo ", ".ci/"].iter().any(|start| piece.starts_with(start));
     pieces.filter(is_command).map(str::to_owned).collect()
+}
+
+/// A command, and whether the guide alone names it.
+struct Told {
+    command: String,
+    by_guide: bool,
+}
+
+/// All commands, each once, in the order of the pages.
+fn commands() -> Vec<Told> {
+    let mut seen = BTreeSet::new();
+    let all = pages().into_iter().enumerate().flat_map(|(i, page)| {
+        commands_of(&page).into_iter().map(move |command| Told { command, by_guide: i > 1 })
+    });
+    all.filter(|told| seen.insert(told.command.clone())).collect()
 }
 
 /// Those that measure for minutes, and one that records from two whole runs.
@@ -33,11 +72,59 @@ fn is_long(command: &str) -> bool {
         .any(|start| command.starts_with(start))
 }
 
-/// A folder with a copy of the shipped pipelines.
+/// Those that need what another command has built.
+fn needs_build(command: &str) -> bool {
+    command.starts_with("cargo ") || command.contains("target/")
+}
+
+/// A run of the guide that takes a garment to its end.
+fn is_whole_run(told: &Told) -> bool {
+    told.by_guide && told.command.starts_with("toile run ")
+}
+
+/// No photo of ours shows an object of known size.
+fn needs_scale(command: &str) -> bool {
+    command.contains("scale: ")
+}
+
+/// The check of the pipeline that a run's command names, with its settings.
+fn validation(command: &str) -> String {
+    let mut words = command.split(' ');
+    let mut kept = Vec::new();
+    while let Some(word) = words.next() {
+        match word {
+            "--out" | "--until" => drop(words.next()),
+            "--keep" => (),
+            "run" => kept.push("validate"),
+            _ => kept.push(word),
+        }
+    }
+    kept.join(" ")
+}
+
+/// A folder with a copy of the shipped pipelines and a reader's files.
 fn scratch() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
-    copy(&root().join("pipelines"), &dir.path().join("pipelines"));
+    let pipelines = dir.path().join("pipelines");
+    copy(&root().join("pipelines"), &pipelines);
+    for (own, ours) in OWN_FILES {
+        std::fs::copy(pipelines.join(ours), dir.path().join(own)).unwrap();
+    }
+    let garment = std::fs::read_to_string(pipelines.join("samples/garment/vest.obj")).unwrap();
+    std::fs::write(dir.path().join("dress.obj"), in_centimetres(&garment)).unwrap();
     dir
+}
+
+/// An OBJ file in metres with its vertices in centimetres.
+fn in_centimetres(obj: &str) -> String {
+    let longer = |line: &str| match line.strip_prefix("v ") {
+        Some(numbers) => {
+            let numbers = numbers.split_whitespace().map(|n| (100.0 * n.parse::<f64>().unwrap()).to_string());
+            format!("v {}", numbers.collect::<Vec<_>>().join(" "))
+        }
+        None => line.to_owned(),
+    };
+    obj.lines().map(longer).collect::<Vec<_>>().join("\n")
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -87,20 +174,23 @@ fn goes_on(command: &str, folder: &Path, cache: &Path, writes: &Path) {
 fn the_commands_run() {
     let dir = scratch();
     let cache = dir.path().join("cache");
-    let ours = |c: &String| c.starts_with("toile ") && !is_long(c);
-    let commands: Vec<String> = commands().into_iter().filter(ours).collect();
-    assert!(commands.len() > 20, "{commands:#?}");
-    for command in commands {
+    let quick =
+        |t: &Told| t.command.starts_with("toile ") && !is_long(&t.command) && !needs_build(&t.command);
+    let commands: Vec<Told> = commands().into_iter().filter(quick).collect();
+    assert!(commands.len() > 40, "{}", commands.len());
+    for told in commands {
+        let command = &told.command;
         match command.contains("--watch") {
             true => {
                 let report = dir.path().join("out/vest/report.html");
                 let _ = std::fs::remove_file(&report);
-                goes_on(&command, dir.path(), &cache, &report);
+                goes_on(command, dir.path(), &cache, &report);
             }
-            // The README writes the crate twice: once in its table, once where it tells of stages.
+            false if is_whole_run(&told) => passes(&validation(command), dir.path(), &cache),
+            // The crate is written twice, with its role stated and without.
             false => {
                 let _ = std::fs::remove_dir_all(dir.path().join("my-otsu"));
-                passes(&command, dir.path(), &cache);
+                passes(command, dir.path(), &cache);
             }
         }
     }
@@ -110,18 +200,28 @@ fn the_commands_run() {
 #[ignore = "slow: .ci/wide"]
 fn the_commands_that_take_long_run() {
     let dir = scratch();
-    let commands: Vec<String> = commands().into_iter().filter(|c| is_long(c)).collect();
-    assert!(commands.len() > 5, "{commands:#?}");
-    commands.iter().for_each(|c| passes(c, dir.path(), &dir.path().join("cache")));
+    let commands: Vec<Told> = commands().into_iter().filter(|t| is_long(&t.command)).collect();
+    assert!(commands.len() > 5, "{}", commands.len());
+    commands.iter().for_each(|t| passes(&t.command, dir.path(), &dir.path().join("cache")));
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn the_whole_runs_of_the_guide_run() {
+    let dir = scratch();
+    let whole = |t: &Told| is_whole_run(t) && !t.command.contains("--watch") && !needs_scale(&t.command);
+    let commands: Vec<Told> = commands().into_iter().filter(whole).collect();
+    assert!(commands.len() > 15, "{}", commands.len());
+    commands.iter().for_each(|t| passes(&t.command, dir.path(), &dir.path().join("cache")));
 }
 
 #[test]
 #[ignore = "slow: .ci/wide"]
 fn what_builds_the_program_runs() {
     let dir = tempfile::tempdir().unwrap();
-    let commands: Vec<String> = commands().into_iter().filter(|c| c.starts_with("cargo ")).collect();
-    let built: Vec<&String> = commands.iter().filter(|c| !OURSELVES.contains(&c.as_str())).collect();
-    assert_eq!(built.len(), 2, "{built:?}");
+    let commands: Vec<Told> = commands().into_iter().filter(|t| needs_build(&t.command)).collect();
+    let built: Vec<&str> = commands.iter().map(|t| &*t.command).filter(|c| !OURSELVES.contains(c)).collect();
+    assert_eq!(built.len(), 5, "{built:?}");
     for command in built {
         let mut shell = shell(command, &root(), &dir.path().join("cache"));
         let status = shell.env("CARGO_INSTALL_ROOT", dir.path()).status().unwrap();
@@ -132,13 +232,21 @@ fn what_builds_the_program_runs() {
 
 #[test]
 fn the_tests_are_run_as_the_readme_says() {
-    let commands = commands();
+    let commands = commands_of(&root().join("README.md"));
     let ourselves: Vec<&str> =
         commands.iter().map(String::as_str).filter(|c| OURSELVES.contains(c)).collect();
     assert_eq!(ourselves, OURSELVES);
     let run = std::fs::read_to_string(root().join(".ci/run")).unwrap();
     assert!(run.lines().any(|line| line == OURSELVES[0]), "{run}");
     assert!(root().join(OURSELVES[1]).is_file());
+}
+
+#[test]
+fn a_run_is_checked_with_its_settings() {
+    assert_eq!(
+        validation("toile run a.ron --set 'b.c=\"1 mm\"' --until Otsu --keep --out out/x"),
+        "toile validate a.ron --set 'b.c=\"1 mm\"'"
+    );
 }
 
 #[test]

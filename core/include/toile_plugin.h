@@ -1,6 +1,6 @@
 /* The border between Toile and its plugins: C form of core/src/plugin/abi.rs.
  *
- * docs/plugin-abi.md is the specification. In short: fields are only added at the end of a structure, with a new
+ * docs/reference/plugin-abi.md is the specification. In short: fields are only added at the end of a structure, with a new
  * minor version; who passes memory keeps it until the call returns; nobody frees what the other side made.
  *
  * Define TOILE_ABI_MINOR as 0 before including this file to build a plugin for older programs. */

@@ -1,4 +1,4 @@
-//! docs/stages.md, docs/stages.json and docs/pipeline.schema.json are what the stages say of themselves.
+//! stages.md, stages.json and pipeline.schema.json in docs/reference are what the stages say of themselves.
 //!
 //! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test whole catalogue::`.
 
@@ -53,7 +53,7 @@ fn page() -> String {
 
 #[test]
 fn the_page_of_stages_is_up_to_date() {
-    let (file, page) = (root().join("docs/stages.md"), page());
+    let (file, page) = (root().join("docs/reference/stages.md"), page());
     if std::env::var_os("UPDATE_DOCS").is_some() {
         std::fs::write(&file, &page).unwrap();
     }
@@ -62,7 +62,7 @@ fn the_page_of_stages_is_up_to_date() {
     assert_eq!(
         behind.map(|i| i + 1),
         None,
-        "docs/stages.md is behind from that line on; see the head of this test"
+        "docs/reference/stages.md is behind from that line on; see the head of this test"
     );
     assert_eq!(kept.lines().count(), page.lines().count());
 }
@@ -98,17 +98,17 @@ fn drift(kept: &str, now: &str) -> String {
 
 #[test]
 fn the_catalogue_is_up_to_date() {
-    committed("docs/stages.json", &["stages", "--json"]);
+    committed("docs/reference/stages.json", &["stages", "--json"]);
 }
 
 #[test]
 fn the_schema_of_pipeline_files_is_up_to_date() {
-    committed("docs/pipeline.schema.json", &["stages", "--schema"]);
+    committed("docs/reference/pipeline.schema.json", &["stages", "--schema"]);
 }
 
 /// The committed schema as a validator reads it.
 fn validator() -> (boon::Schemas, boon::SchemaIndex) {
-    let text = std::fs::read_to_string(root().join("docs/pipeline.schema.json")).unwrap();
+    let text = std::fs::read_to_string(root().join("docs/reference/pipeline.schema.json")).unwrap();
     let (mut schemas, mut compiler) = (boon::Schemas::new(), boon::Compiler::new());
     compiler.add_resource("pipeline", serde_json::from_str(&text).unwrap()).unwrap();
     let index = compiler.compile("pipeline", &mut schemas).unwrap();

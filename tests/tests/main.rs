@@ -14,6 +14,7 @@ mod circles;
 mod command_line;
 mod costs;
 mod decisions;
+mod docs;
 mod doctor;
 mod error_codes;
 mod falls;

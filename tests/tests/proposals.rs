@@ -9,7 +9,7 @@ use toile_tests::{pipeline, root, toile};
 
 /// The parameters of each stage; of all of one name where several roles have it.
 fn stages() -> BTreeMap<String, Vec<String>> {
-    let text = fs::read_to_string(root().join("docs/stages.json")).unwrap();
+    let text = fs::read_to_string(root().join("docs/reference/stages.json")).unwrap();
     let all: Value = serde_json::from_str(&text).unwrap();
     let text = |v: &Value| v.as_str().unwrap().to_owned();
     let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();

@@ -52,7 +52,7 @@ pub(crate) struct ExplainArgs {
     /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation or, with --quality, out/NAME-QUALITY-ablation, where it is of the pipeline as it is]
     #[arg(long, value_name = "DIR")]
     pub(crate) ablation: Option<PathBuf>,
-    /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/costs.md)
+    /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/reference/costs.md)
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]

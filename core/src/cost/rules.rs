@@ -1,6 +1,6 @@
 //! How sizes go through a stage that does not say so itself: by its role and its edge length.
 //!
-//! The factors are those of the shipped samples (docs/costs.md); they stand in until the sizes of an earlier run of the
+//! The factors are those of the shipped samples (docs/reference/costs.md); they stand in until the sizes of an earlier run of the
 //! same stage on the same input are known.
 
 use super::{Quantity, Size};

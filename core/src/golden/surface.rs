@@ -27,7 +27,7 @@ const GRAIN: f64 = 1e-4;
 /// On a machine of equal arithmetic. Equal code gives equal bits there, so this is only what a change may do to be a remark.
 const HERE: Tolerance = Tolerance { within_mm: 0.2, most_mm: 1.0 };
 /// On a machine of other arithmetic. Folds and friction have many states of rest: sums that are rounded otherwise moved the vest by
-/// 1.2 mm at 95 % and 9 mm at most (docs/goldens.md).
+/// 1.2 mm at 95 % and 9 mm at most (docs/reference/goldens.md).
 const ELSEWHERE: Tolerance = Tolerance { within_mm: 3.0, most_mm: 20.0 };
 /// Half a unit of the last place that a sheet shows of each coordinate, together, mm.
 const SHEET_ROUNDING: f64 = 0.01;

@@ -1,4 +1,4 @@
-//! A pipeline's RON text as a JSON value, in the form that docs/pipeline.schema.json describes: RON's
+//! A pipeline's RON text as a JSON value, in the form that docs/reference/pipeline.schema.json describes: RON's
 //! `Name(field: value)` is `{"Name": {"field": value}}`, a choice `Eight` is `"Eight"`, `None` is null.
 
 use super::fault::Faults;

@@ -1,6 +1,6 @@
 //! The types that cross the border of a plugin, as C has them (`core/include/toile_plugin.h`).
 //!
-//! Rules, told in full in docs/plugin-abi.md: nothing but these types and plain numbers crosses; fields
+//! Rules, told in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers crosses; fields
 //! are only ever added at the end of a structure, with a new minor version; whoever passes memory keeps
 //! it until the call that passed it returns; nobody frees what the other side made.
 

@@ -100,7 +100,7 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     })?;
     let symbols = symbols(&bytes);
     if symbols.is_empty() {
-        let hint = "a plugin exports `toile_plugin`; see docs/plugin-abi.md".to_owned();
+        let hint = "a plugin exports `toile_plugin`; see docs/reference/plugin-abi.md".to_owned();
         return Err(refused(("it declares no plugin".into(), Some(hint))));
     }
     // A bare name would be looked for in the system's folders.

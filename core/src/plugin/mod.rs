@@ -1,6 +1,6 @@
 //! Plugins: stages in libraries of their own, behind a C ABI.
 //!
-//! - `abi` holds the types that cross; docs/plugin-abi.md is their specification and
+//! - `abi` holds the types that cross; docs/reference/plugin-abi.md is their specification and
 //!   `core/include/toile_plugin.h` their C form.
 //! - The program's side: `whole` looks whether a library is one, `library` loads and checks a plugin, `foreign` is its stage behind the
 //!   [`Stage`](crate::Stage) trait, `call` what the program offers during a call.
@@ -31,5 +31,5 @@ pub use inside::{LastWords, end, name_who_exits, under_way};
 pub use lending::Lending;
 pub use library::{Plugin, Refused, load, plugin_files};
 
-/// The C header of plugins, docs/plugin-abi.md in C.
+/// The C header of plugins, docs/reference/plugin-abi.md in C.
 pub const HEADER: &str = include_str!("../../include/toile_plugin.h");

@@ -1,4 +1,4 @@
-//! Takes dust off photos: the smallest honest stage.
+//! Takes dust off photos: a small stage with all that a stage has.
 
 use image::{Rgb, RgbImage};
 use toile_core::prelude::*;

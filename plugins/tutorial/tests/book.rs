@@ -1,4 +1,4 @@
-//! docs/writing-a-stage.md tells this crate: every block that names a file stands in it, and together they are the
+//! docs/guide/writing-a-stage.md tells this crate: every block that names a file stands in it, and together they are the
 //! whole of it.
 #![allow(clippy::unwrap_used)]
 
@@ -23,7 +23,7 @@ fn blocks(page: &str) -> BTreeMap<String, Vec<String>> {
 
 #[test]
 fn the_page_is_the_crate() {
-    let page = std::fs::read_to_string(root().join("docs/writing-a-stage.md")).unwrap();
+    let page = std::fs::read_to_string(root().join("docs/guide/writing-a-stage.md")).unwrap();
     let blocks = blocks(&page);
     let files = ["Cargo.toml", "src/lib.rs", "tests/dust.rs", "benches/dust.rs"];
     let names: Vec<String> = files.iter().map(|f| format!("plugins/tutorial/{f}")).collect();

@@ -37,7 +37,7 @@ pub fn scene_error(error: &SceneError) -> StageError {
         }
         SceneError::File { .. } | SceneError::Form { .. } | SceneError::Format { .. } => {
             return StageError::new(ErrorCode::PatternLoading, error.to_string())
-                .hint("docs/scene.md describes the format");
+                .hint("docs/reference/scene.md describes the format");
         }
         SceneError::Obj(_) => {
             return StageError::new(ErrorCode::PatternLoading, error.to_string()).hint(OBJ_HINT);
@@ -69,7 +69,7 @@ fn meant(faults: &[FieldFault]) -> String {
     let hint = |f: &FieldFault| match f.known {
         [] => format!("keep one `{}`", f.field),
         known => hint(&f.field, &format!("{} has", f.of), known)
-            .unwrap_or_else(|| "docs/scene.md describes the format".into()),
+            .unwrap_or_else(|| "docs/reference/scene.md describes the format".into()),
     };
     let mut hints: Vec<String> = faults.iter().map(hint).collect();
     hints.dedup();

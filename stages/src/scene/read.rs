@@ -19,12 +19,12 @@ use toile_geometry::volume::Aabb;
 
 /// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
 ///
-/// The form is described in docs/scene.md; benchmarks of other programs use it as well. The
+/// The form is described in docs/reference/scene.md; benchmarks of other programs use it as well. The
 /// garment's vertices keep the order of the file, so that a result can be held against it.
 /// A body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj` does.
 #[stage(
     role = Reader,
-    source = "garment-scene-1, docs/scene.md",
+    source = "garment-scene-1, docs/reference/scene.md",
     version = 2,
     example = "Scene(file: \"skirt.json\")",
     contracts(Deterministic, ThreadInvariant)
@@ -95,7 +95,7 @@ impl Scene {
     fn check(&self, made: &impl Artifact) -> Result<(), StageError> {
         made.check().map_err(|fault| {
             StageError::invalid(format!("the {} of \"{}\" cannot be used: {fault}", made.kind(), self.file))
-                .hint("docs/scene.md describes the format")
+                .hint("docs/reference/scene.md describes the format")
         })
     }
 

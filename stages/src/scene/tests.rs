@@ -291,7 +291,7 @@ fn files_that_are_no_scenes_are_refused_with_their_fault() {
     assert!(message.starts_with("the garment of \"scene.json\" cannot be used: "), "{message}");
     assert_eq!(
         (code, hint.as_deref()),
-        (ErrorCode::InvalidInput, Some("docs/scene.md describes the format"))
+        (ErrorCode::InvalidInput, Some("docs/reference/scene.md describes the format"))
     );
 }
 

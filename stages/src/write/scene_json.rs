@@ -10,10 +10,10 @@ use toile_core::prelude::*;
 ///
 /// `Scene` reads it again, and programs that know the form can be held against our solvers on a
 /// garment of ours. Take the garment before it is sewn: `SceneJson(from: "Place")`. The body's mesh
-/// is written beside it as OBJ. The form is described in docs/scene.md.
+/// is written beside it as OBJ. The form is described in docs/reference/scene.md.
 #[stage(
     role = Writer,
-    source = "garment-scene-1, docs/scene.md",
+    source = "garment-scene-1, docs/reference/scene.md",
     example = "SceneJson(name: \"vest\")",
     contracts(Deterministic, ThreadInvariant)
 )]

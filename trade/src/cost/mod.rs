@@ -11,7 +11,7 @@
 //! - `sweep`, `repeats`, `check`: the measurement that the shipped file comes from, and the proof by leaving pipelines out;
 //! - `words`: what people read.
 //!
-//! docs/costs.md has the figures.
+//! docs/reference/costs.md has the figures.
 
 mod bias;
 mod check;

@@ -14,7 +14,7 @@
 //!
 //! With [`Rest::graded`] bending starts stiff and is let go on the way (see `graded`), so that chance has less of a say.
 //!
-//! Cost: some 35 to 150 factorizations of the finest level (docs/performance.md). Limits: what the coarse level cannot see (a fold finer than its
+//! Cost: some 35 to 150 factorizations of the finest level (docs/log/2026-11-23-rest-speed.md). Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Wearer;

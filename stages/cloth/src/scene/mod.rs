@@ -1,7 +1,7 @@
 //! Prepared scenes: panels, seams, a body and what the cloth is made of.
 //!
 //! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON form `garment-scene-1`
-//! (described in docs/scene.md), `generate` makes the standard ones.
+//! (described in docs/reference/scene.md), `generate` makes the standard ones.
 
 mod build;
 mod check;

@@ -243,7 +243,7 @@ fn a_field_that_stands_twice_is_refused_and_all_faults_come_at_once() {
 
 #[test]
 fn the_fields_of_the_book_are_those_that_are_read() {
-    let book = include_str!("../../../../docs/scene.md");
+    let book = include_str!("../../../../docs/reference/scene.md");
     let rows = |from: &str| -> Vec<String> {
         let table =
             book.split(from).nth(1).unwrap().split("\n\n").find(|p| p.starts_with("| field")).unwrap();
