@@ -83,7 +83,7 @@ fn a_followed_strip_keeps_its_folds() {
 /// A garment that came to rest goes on from there: a skirt's folds are where they were, in a few steps.
 #[test]
 fn from_here_a_garment_at_rest_stays_where_it_is() {
-    let mut scene = crate::scene::generate::tube(32, 12);
+    let mut scene = crate::scene::generate::tube(34, 12);
     scene.material.bending_friction_warp = 3e-4;
     scene.material.bending_friction_weft = 3e-4;
     let mut steps = 0;
