@@ -7,7 +7,8 @@ use crate::{Streams, exit};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
-use toile_core::{Registry, Role, write_files};
+use toile_core::{Registry, Role};
+use toile_pipeline::write_files;
 
 /// The library and its tests, and what they need beside toile-core.
 fn template(role: Role) -> (&'static str, &'static str) {
@@ -115,7 +116,7 @@ fn role(asked: Option<&str>, name: &str) -> Result<Role, Refusal> {
         return Ok(role);
     }
     let words = Role::ALL.map(role_word);
-    Err(usage(match toile_core::pipeline::nearest(&wanted, words.iter().map(String::as_str)) {
+    Err(usage(match toile_core::nearest(&wanted, words.iter().map(String::as_str)) {
         Some(near) => format!("there is no role \"{asked}\"; did you mean {near}?"),
         None => format!("there is no role \"{asked}\"; there are {}", words.join(", ")),
     }))

@@ -13,11 +13,11 @@ type Keeper = Arc<dyn Any + Send + Sync>;
 /// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list grows.
 #[derive(Debug, Default)]
 #[allow(clippy::vec_box)]
-pub(super) struct Owners(Vec<Box<abi::Owner>>);
+pub struct Owners(Vec<Box<abi::Owner>>);
 
 impl Owners {
     /// Where the owner lies; good for as long as both live.
-    pub(super) fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
+    pub fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
         let ctx = std::ptr::from_ref(keeper).cast_mut().cast();
         self.0.push(Box::new(abi::Owner { ctx, retain: Some(retain), release: Some(release) }));
         self.0.last().map_or(std::ptr::null(), |o| &raw const **o)
@@ -75,13 +75,13 @@ impl Lending {
     ///
     /// # Safety
     /// The owner is there for as long as the result, or any copy of it, is asked.
-    pub(super) unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
+    pub unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
         let owner = unsafe { owner.as_ref() }?;
         Some(Lending(Asked::Foreign(*owner)))
     }
 
     /// The owner of a block of this side.
-    pub(super) fn block(keeper: Keeper) -> Self {
+    pub fn block(keeper: Keeper) -> Self {
         Lending(Asked::Block(keeper))
     }
 

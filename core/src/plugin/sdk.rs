@@ -208,7 +208,7 @@ fn run_stage<S: StageType>(
     let cx = if own.is_empty() { cx } else { cx.for_entry(own) };
     let made = on_threads(remote.threads(), || stage.run_ports(&inputs, &cx));
     for (path, digest) in cx.take_reads() {
-        remote.reads(&path, digest.map(|d| d.0.0));
+        remote.reads(&path, digest.map(|d| d.0));
     }
     for figure in cx.take_notes().0 {
         remote.figure(&figure.name, figure.value, figure.unit);

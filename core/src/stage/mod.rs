@@ -2,12 +2,14 @@
 
 mod card;
 mod contract;
+mod node;
 mod placed;
 mod role;
 mod values;
 
 pub use card::{Arity, Card, InPort, OutPort, PluginId};
 pub use contract::Contract;
+pub use node::{Feed, Node, needed_for};
 pub use placed::Placed;
 pub use role::Role;
 pub use values::{Input, Inputs, Output, PortValue, Set};
