@@ -279,11 +279,13 @@ fn files(name: &str, source: &str, manifest: &str) -> [OutputFile; 5] {
 
 fn manifest(name: &str, dependencies: &str, core: &str) -> String {
     let package = kebab(name);
+    // Whoever looks at pixels takes toile-core's pictures as those of `image`.
+    let features = if dependencies.is_empty() { "" } else { ", features = [\"image\"]" };
     format!(
         "[package]\nname = \"{package}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
          # A workspace of its own, wherever the folder lies.\n[workspace]\n\n\
          # cdylib to be loaded, rlib to be linked in.\n[lib]\ncrate-type = [\"cdylib\", \"rlib\"]\n\n\
-         [dependencies]\ntoile-core = {{ {core} }}\n{dependencies}\n\
+         [dependencies]\ntoile-core = {{ {core}{features} }}\n{dependencies}\n\
          [dev-dependencies]\ntoile-core = {{ {core}, features = [\"testkit\"] }}\n\
          criterion = {{ version = \"0.8\", default-features = false }}\n\n\
          [[bench]]\nname = \"stage\"\nharness = false\n"

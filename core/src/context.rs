@@ -1,8 +1,7 @@
 //! What a running stage may ask of the outside world.
 
 use crate::artifact::{ArtifactType, Digest, Digester, Measure};
-use crate::{ErrorCode, PortValue, StageError};
-use rayon::prelude::*;
+use crate::{ErrorCode, PortValue, StageError, parallel};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -141,17 +140,13 @@ impl Context {
     pub fn parallel_for(&self, count: usize, body: impl Fn(usize) + Sync) {
         match &self.parallel {
             Some(parallel) => parallel.run(count, &body),
-            None => (0..count).into_par_iter().for_each(&body),
+            None => parallel::each(count, &body),
         }
     }
 
     /// `work(i)` of every `i` below `count`, made in parallel, in their order.
     pub fn parallel_map<T: Send>(&self, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        let slots: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
-        self.parallel_for(count, |i| {
-            *slots[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(work(i));
-        });
-        slots.into_iter().filter_map(|s| s.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+        parallel::map(count, |count, body| self.parallel_for(count, body), work)
     }
 
     /// The stage's id in the pipeline.
@@ -244,7 +239,7 @@ impl Context {
     /// The run's cache keeps note of it: a stage whose file has changed runs again.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, StageError> {
         let content = self.read_file(path);
-        let hash = content.as_ref().ok().map(|bytes| Digest::of(bytes));
+        let hash = content.as_ref().ok().and_then(|bytes| digest_of(bytes));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
         content
     }
@@ -264,7 +259,7 @@ impl Context {
 
     /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else did.
     pub fn note_read(&self, path: &str, digest: Option<Digest>) {
-        let digest = digest.or_else(|| Some(Digest::of(&crate::read_file(&self.resolve(path)).ok()?)));
+        let digest = digest.or_else(|| digest_of(&crate::read_file(&self.resolve(path)).ok()?));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), digest));
     }
 
@@ -314,6 +309,18 @@ impl Context {
         let warnings = std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner));
         (figures, warnings)
     }
+}
+
+/// The digest of a file's content.
+#[cfg(feature = "digest")]
+fn digest_of(bytes: &[u8]) -> Option<Digest> {
+    Some(Digest::of(bytes))
+}
+
+/// A plugin without digests leaves it to the program to take that of the file.
+#[cfg(not(feature = "digest"))]
+fn digest_of(_: &[u8]) -> Option<Digest> {
+    None
 }
 
 fn unread(path: &str, why: &str) -> StageError {

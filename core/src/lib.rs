@@ -45,6 +45,7 @@ mod files;
 mod migration;
 mod near;
 pub mod panics;
+mod parallel;
 pub mod param;
 #[allow(unsafe_code)]
 pub mod plugin;
@@ -54,6 +55,7 @@ mod stage;
 pub mod testkit;
 #[doc(hidden)]
 pub mod text;
+#[cfg(feature = "typetag")]
 mod typed;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
@@ -70,8 +72,32 @@ pub use stage::{
 };
 pub use toile_core_derive::{choice, plugin, stage};
 // The `stage` macro's expansion names these.
+#[cfg(feature = "typetag")]
 #[doc(hidden)]
-pub use {ron, serde, typetag};
+pub use typetag;
+#[doc(hidden)]
+pub use {ron, serde};
+
+/// The `stage` macro's implementation of [`Stage`]: typetag then finds the stage by its name.
+#[cfg(feature = "typetag")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! stage_impl {
+    ($($implementation:tt)*) => {
+        use $crate::typetag;
+
+        #[typetag::serde]
+        $($implementation)*
+    };
+}
+
+/// The `stage` macro's implementation of [`Stage`].
+#[cfg(not(feature = "typetag"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! stage_impl {
+    ($($implementation:tt)*) => { $($implementation)* };
+}
 
 /// What the author of a stage imports.
 pub mod prelude {

@@ -228,8 +228,12 @@ impl Registry {
         match self.cards.get(&(card.name, card.role)).map(|e| &e.maker) {
             Some(Maker::Foreign(of)) => of.make(card, arguments),
             // typetag knows a stage by its name alone.
-            Some(Maker::Typed(make)) if self.named(card.name).count() > 1 => make(arguments),
-            _ => crate::typed::stage(&format!("{}{arguments}", card.name)),
+            #[cfg(feature = "typetag")]
+            Some(Maker::Typed(_)) if self.named(card.name).count() == 1 => {
+                crate::typed::stage(&format!("{}{arguments}", card.name))
+            }
+            Some(Maker::Typed(make)) => make(arguments),
+            None => Err(format!("there is no stage `{}`", card.name)),
         }
     }
 

@@ -2,8 +2,7 @@
 //! is told when the other side needs them no more.
 
 use super::abi;
-use crate::artifact::Shared;
-use image::{ImageBuffer, Pixel};
+use crate::artifact::{Picture, Shared};
 use std::any::Any;
 use std::ffi::c_void;
 use std::sync::Arc;
@@ -99,21 +98,16 @@ impl Lending {
     /// The list as a picture, where it lies; `None` where its owner cannot keep it.
     ///
     /// `bytes` is the list that this owner was named for.
-    pub(crate) fn picture<P: Pixel<Subpixel = u8>>(
-        &self,
-        bytes: &[u8],
-        w: u32,
-        h: u32,
-    ) -> Option<Shared<ImageBuffer<P, Vec<u8>>>> {
+    pub(crate) fn picture<P: Picture>(&self, bytes: &[u8], w: u32, h: u32) -> Option<Shared<P>> {
         let keeper = self.keep().filter(|_| !bytes.is_empty())?;
         // The vector only shows the bytes: `Shared` gives out references alone and never drops it, so that
         // it is neither grown nor freed; the keeper keeps the bytes for as long as it lives.
         let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
         let length = bytes.len() as u64;
-        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNEL_COUNT) {
+        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNELS) {
             std::mem::forget(shown);
             return None;
         }
-        ImageBuffer::from_raw(w, h, shown).map(|picture| Shared::lent(picture, keeper))
+        P::of_bytes(w, h, shown).map(|picture| Shared::lent(picture, keeper))
     }
 }

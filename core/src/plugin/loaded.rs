@@ -28,8 +28,7 @@ pub trait Make: std::fmt::Debug + Send + Sync {
 }
 
 /// A plugin that is not used, and why.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the plugin \"{file}\" is refused: {reason}")]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refused {
     /// The file as it was named.
     pub file: String,
@@ -38,3 +37,11 @@ pub struct Refused {
     /// What the user may do about it.
     pub hint: Option<String>,
 }
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the plugin \"{}\" is refused: {}", self.file, self.reason)
+    }
+}
+
+impl std::error::Error for Refused {}

@@ -22,7 +22,7 @@ use crate::{Context, StageError};
 ///
 /// Authors do not implement it by hand: `#[stage]` on the parameter struct and on its `impl`
 /// derives it from one typed function.
-#[typetag::serde]
+#[cfg_attr(feature = "typetag", typetag::serde)]
 pub trait Stage: std::fmt::Debug + Send + Sync {
     /// The stage's card.
     fn card(&self) -> Card;

@@ -20,6 +20,7 @@ use toile_core::plugin::inside::{inside, long};
 use toile_core::plugin::view::Lent;
 use toile_core::plugin::{Make, collide};
 use toile_core::text::intern;
+use toile_core::typetag;
 use toile_core::{
     Cancel, Card, Context, ErrorCode, Inputs, ParamDoc, ParamFault, PortValue, Stage, StageError,
 };

@@ -1,5 +1,6 @@
 //! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
 
+mod exports;
 mod faults;
 mod forecast;
 mod implicit;
@@ -29,7 +30,7 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use steps::{Run, Step};
-use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles, RunLog, StageRecord};
+use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles, RunLog};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, StageError, panics};
 
 /// What is asked of a run.
@@ -167,7 +168,7 @@ fn files(run: &mut Run<'_>, options: &RunOptions) -> Result<Vec<OutputFile>, Run
     let log = run.log(run.steps.len());
     for node in kept.iter().map(|i| &run.pipeline.nodes[*i]) {
         let record = log.stages.iter().filter(|r| r.id == node.id);
-        files.extend(unbroken(node, || Ok(record.flat_map(exports).collect::<Vec<_>>()))?);
+        files.extend(unbroken(node, || Ok(record.flat_map(exports::exports).collect::<Vec<_>>()))?);
     }
     Ok(files)
 }
@@ -305,18 +306,4 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
     };
     judged.iter().for_each(|figures| metrics.judge(figures));
     metrics
-}
-
-/// A stage's artifacts as ordinary files: `stages/STAGE/PANEL.png`.
-fn exports(record: &StageRecord) -> Vec<OutputFile> {
-    let mut files = Vec::new();
-    for value in &record.outputs {
-        for (entry, artifact) in value.entries() {
-            let stem = if entry.is_empty() { value.kind().0.replace(' ', "_") } else { entry.to_owned() };
-            for (extension, bytes) in artifact.export() {
-                files.push(OutputFile { path: format!("stages/{}/{stem}.{extension}", record.id), bytes });
-            }
-        }
-    }
-    files
 }

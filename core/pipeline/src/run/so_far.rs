@@ -1,7 +1,8 @@
 //! What a run that failed leaves for a look: what its stages made until then.
 
+use super::exports::exports;
 use super::steps::Run;
-use super::{RunError, RunOptions, exports};
+use super::{RunError, RunOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use toile_core::artifact::{Failure, OutputFile, OutputFiles, RunLog, StageRecord};
