@@ -11,8 +11,8 @@ use crate::measure::{Bench, Missed, Ran};
 use crate::source::Source;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use toile_core::pipeline::Pipeline;
 use toile_core::{ErrorCode, StageError};
+use toile_pipeline::Pipeline;
 
 /// What is asked.
 #[derive(Clone)]

@@ -7,8 +7,9 @@ use super::work::work;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use toile_core::Role;
-use toile_core::cost::{Foreseen, Size, StageCost, foresee};
-use toile_core::pipeline::Pipeline;
+use toile_core::cost::Size;
+use toile_pipeline::Pipeline;
+use toile_pipeline::cost::{Foreseen, StageCost, foresee};
 
 /// The kind of garment that a pipeline makes: the name of its first style, which names the edges; empty without one.
 pub(super) fn style(pipeline: &Pipeline) -> String {

@@ -4,9 +4,11 @@ use super::note::style;
 use super::record::Figure;
 use super::work::work;
 use super::{Costs, Place};
+use toile_core::Node;
 use toile_core::artifact::Digester;
-use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
-use toile_core::pipeline::{Node, Pipeline};
+use toile_core::cost::{Estimate, Predicted, Size};
+use toile_pipeline::Pipeline;
+use toile_pipeline::cost::{Foreseen, foresee};
 
 /// What is expected of one stage.
 #[derive(Debug, Clone, PartialEq)]
