@@ -5,8 +5,8 @@ use crate::progress::with_runs;
 use crate::trade::{bench, default_folder, failed, quality};
 use crate::{Streams, exit, interrupt};
 use std::path::Path;
-use toile_core::pipeline::Pipeline;
-use toile_core::{StageError, write_files};
+use toile_core::StageError;
+use toile_pipeline::{Pipeline, write_files};
 use toile_trade::ablate::{Ablation, Options, ablate, files, lines};
 use toile_trade::source::Source;
 

@@ -4,7 +4,7 @@
 //! file seen from the current folder becomes its full path; quotes may be left out.
 
 use std::path::Path;
-use toile_core::pipeline::Override;
+use toile_pipeline::Override;
 
 /// The overrides with their files found.
 pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {
@@ -31,7 +31,7 @@ fn with_file(o: &Override) -> Override {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::found;
-    use toile_core::pipeline::Override;
+    use toile_pipeline::Override;
 
     fn value(text: &str) -> String {
         found(&[text.parse::<Override>().unwrap()])[0].value.clone()

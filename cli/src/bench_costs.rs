@@ -8,8 +8,8 @@ use rayon::ThreadPool;
 use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
-use toile_core::pipeline::{Override, Pipeline};
-use toile_core::{Listener, Registry, RunError, RunOptions, run, write_files};
+use toile_core::{Listener, Registry};
+use toile_pipeline::{Override, Pipeline, RunError, RunOptions, run, write_files};
 use toile_trade::cost::{
     Collection, CostRecord, Costs, Figure, Variation, check, check_lines, note, parse_collection, shortest,
     variations,

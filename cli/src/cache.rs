@@ -6,7 +6,7 @@ use serde_json::json;
 use std::env::var_os;
 use std::path::PathBuf;
 use std::sync::Arc;
-use toile_core::cache::{Bytes, Cache, DEFAULT_LIMIT, default_folder};
+use toile_pipeline::cache::{Bytes, Cache, DEFAULT_LIMIT, default_folder};
 
 /// The cache that a command uses; none where it is switched off or has no place.
 pub(crate) fn chosen(choice: &CacheChoice, streams: &mut Streams<'_>) -> Option<Arc<Cache>> {

@@ -4,8 +4,8 @@ use crate::contracts::Contracts;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::path::PathBuf;
-use toile_core::plugin::{Plugin, Refused};
 use toile_core::{Arity, Card, Contract, Finer, InPort, ParamDoc, Registry, Role};
+use toile_pipeline::plugin::{Plugin, Refused};
 
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -80,7 +80,7 @@ pub(crate) fn show(
     let cards: Vec<&Card> = registry.named(name).collect();
     if cards.is_empty() {
         let names: Vec<&str> = registry.cards().map(|c| c.name).collect();
-        let hint = match toile_core::pipeline::nearest(name, names.iter().copied()) {
+        let hint = match toile_core::nearest(name, names.iter().copied()) {
             Some(near) => format!("; did you mean `{near}`?"),
             None => String::from("; `toile stages` lists them"),
         };

@@ -8,7 +8,8 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use toile_core::artifact::OutputFile;
 use toile_core::testkit::is_checked;
-use toile_core::{Card, Contract, StageError, write_files};
+use toile_core::{Card, Contract, StageError};
+use toile_pipeline::write_files;
 
 /// The file's name.
 const FILE: &str = "contracts.txt";

@@ -4,9 +4,9 @@ use crate::args::CacheChoice;
 use crate::cache;
 use peak_alloc::PeakAlloc;
 use std::sync::OnceLock;
-use toile_core::Metrics;
-use toile_core::cost::{Expect, Predicted, Size, StageCost};
-use toile_core::pipeline::Pipeline;
+use toile_core::cost::{Predicted, Size};
+use toile_pipeline::cost::{Expect, StageCost};
+use toile_pipeline::{Metrics, Pipeline};
 use toile_trade::cost::{
     Collection, CostStore, Costs, Host, MemoryCount, Opened, Stopwatch, beside as lines, forecast, note,
     shipped, sizes,
@@ -92,7 +92,7 @@ pub(crate) fn stopwatch() -> Stopwatch {
 
 /// Prediction beside fact, for people.
 pub(crate) fn beside(metrics: &Metrics, known: &Known) -> Vec<String> {
-    let both = |s: &toile_core::StageMetrics| Some((s.id.clone(), s.used?, s.predicted?));
+    let both = |s: &toile_pipeline::StageMetrics| Some((s.id.clone(), s.used?, s.predicted?));
     let stages: Vec<_> = metrics.stages.iter().filter_map(both).collect();
     let mut lines = lines(
         &stages.iter().map(|(id, used, predicted)| (id.as_str(), *used, *predicted)).collect::<Vec<_>>(),

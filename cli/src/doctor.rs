@@ -90,7 +90,7 @@ impl Finding<'_> {
 /// Examines stages; exit code 70 where one fails or breaks a contract, or a plugin was refused.
 pub(crate) fn doctor(args: &DoctorArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if let Some(unknown) = args.stages.iter().find(|name| registry.named(name).next().is_none()) {
-        let near = toile_core::pipeline::nearest(unknown, registry.cards().map(|c| c.name));
+        let near = toile_core::nearest(unknown, registry.cards().map(|c| c.name));
         let hint =
             near.map_or_else(|| "; `toile stages` lists them".into(), |n| format!("; did you mean `{n}`?"));
         return streams.refuse(args.json, format!("there is no stage `{unknown}`{hint}"));

@@ -7,7 +7,7 @@ use crate::trade::failed;
 use crate::{Streams, exit};
 use toile_cloth::bench::drivers::{Options, Report, Way, drivers};
 use toile_core::artifact::OutputFile;
-use toile_core::write_files;
+use toile_pipeline::write_files;
 use toile_trade::processor_seconds;
 
 /// Measures and writes what there is, also where Ctrl-C ends it early.

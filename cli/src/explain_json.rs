@@ -4,7 +4,8 @@ use crate::explain::Explained;
 use crate::validate::Stood;
 use serde_json::{Value, json};
 use toile_core::cost::Predicted;
-use toile_core::pipeline::{Basis, Feed, Node, Pipeline};
+use toile_core::{Feed, Node};
+use toile_pipeline::{Basis, Pipeline};
 use toile_trade::cost::{Forecast, total};
 use toile_trade::decided::Told;
 

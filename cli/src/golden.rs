@@ -9,9 +9,9 @@ use crate::validate::checked;
 use crate::{Streams, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
-use toile_core::golden::{Arithmetic, Comparison, Sheet, compare, parse};
-use toile_core::pipeline::Pipeline;
-use toile_core::{Artifact, Registry, RunError, read_file, read_text, write_files};
+use toile_core::{Artifact, Registry, read_file, read_text};
+use toile_pipeline::golden::{Arithmetic, Comparison, Sheet, compare, parse};
+use toile_pipeline::{Pipeline, RunError, write_files};
 use toile_stages::engine::arithmetic;
 use toile_stages::render::{Form, Picture, pictures_of};
 

@@ -1,14 +1,15 @@
 //! Ctrl-C, and the other signals that ask a program to end (TERM, HUP): the run is asked to stop, and the program is stopped
 //! where a stage does not listen; what did not listen is named.
 //!
-//! A plugin has longer than a stage of this program: whoever waits for it says which one it is (`toile_core::plugin`). A second
+//! A plugin has longer than a stage of this program: whoever waits for it says which one it is (`toile_pipeline::plugin`). A second
 //! signal ends the program at once. HUP stays ignored where it is, as under `nohup`.
 
 use crate::{exit, last_words};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
-use toile_core::{Cancel, ErrorCode, plugin};
+use toile_core::{Cancel, ErrorCode};
+use toile_pipeline::plugin;
 
 /// How long a stage has to stop by itself. Nothing is written before all stages are done, so
 /// ending the program loses nothing.

@@ -4,7 +4,8 @@ use crate::exit;
 use serde_json::json;
 use std::io::{IsTerminal, Write, stderr, stdout};
 use std::sync::atomic::{AtomicBool, Ordering};
-use toile_core::{ErrorCode, plugin};
+use toile_core::ErrorCode;
+use toile_pipeline::plugin;
 
 /// Whether the answer is to be JSON.
 static JSON: AtomicBool = AtomicBool::new(false);

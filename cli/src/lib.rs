@@ -46,6 +46,7 @@ use std::io::Write;
 use std::path::PathBuf;
 use streams::Streams;
 use toile_core::{Registry, panics};
+use toile_pipeline::plugin::load_plugin;
 use toile_trade::apart::Apart;
 
 /// Exit codes of the command.
@@ -157,7 +158,7 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
 /// The registry with the plugins that the arguments name, and whether all of them are in it.
 fn with_plugins(registry: &Registry, plugins: &[PathBuf]) -> (Registry, bool) {
     let mut registry = registry.clone();
-    let loads: Vec<_> = plugins.iter().map(|p| registry.load_plugin(p, None)).collect();
+    let loads: Vec<_> = plugins.iter().map(|p| load_plugin(&mut registry, p, None)).collect();
     (registry, loads.iter().all(Result::is_ok))
 }
 

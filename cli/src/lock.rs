@@ -7,10 +7,10 @@ use crate::{Streams, cache, exit, interrupt, stdin, threads};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;
-use toile_core::cache::Cache;
-use toile_core::lock::Lock;
-use toile_core::pipeline::Pipeline;
-use toile_core::{Listener, Registry, RunOptions, RunResult, faults, run as run_stages, write_files};
+use toile_core::{Listener, Registry};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::lock::Lock;
+use toile_pipeline::{Pipeline, RunOptions, RunResult, faults, run as run_stages, write_files};
 
 /// Runs every pipeline and writes its lock.
 pub(crate) fn lock(args: &LockArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {

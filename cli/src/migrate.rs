@@ -4,8 +4,8 @@ use crate::args::MigrateArgs;
 use crate::{Streams, exit, stdin};
 use std::path::Path;
 use toile_core::artifact::OutputFile;
-use toile_core::pipeline::{Faults, load, migrate};
-use toile_core::{Registry, add_implicit, faults, read_text, write_files};
+use toile_core::{Registry, read_text};
+use toile_pipeline::{Faults, add_implicit, faults, load, migrate, write_files};
 
 /// Rewrites every file that needs it, and says what was changed.
 pub(crate) fn run(args: &MigrateArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {

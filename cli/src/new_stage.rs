@@ -7,7 +7,8 @@ use crate::{Streams, exit};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
-use toile_core::{Registry, Role, write_files};
+use toile_core::{Registry, Role};
+use toile_pipeline::write_files;
 
 /// The library and its tests, and what they need beside toile-core.
 fn template(role: Role) -> (&'static str, &'static str) {
@@ -115,7 +116,7 @@ fn role(asked: Option<&str>, name: &str) -> Result<Role, Refusal> {
         return Ok(role);
     }
     let words = Role::ALL.map(role_word);
-    Err(usage(match toile_core::pipeline::nearest(&wanted, words.iter().map(String::as_str)) {
+    Err(usage(match toile_core::nearest(&wanted, words.iter().map(String::as_str)) {
         Some(near) => format!("there is no role \"{asked}\"; did you mean {near}?"),
         None => format!("there is no role \"{asked}\"; there are {}", words.join(", ")),
     }))
@@ -278,11 +279,13 @@ fn files(name: &str, source: &str, manifest: &str) -> [OutputFile; 5] {
 
 fn manifest(name: &str, dependencies: &str, core: &str) -> String {
     let package = kebab(name);
+    // Whoever looks at pixels takes toile-core's pictures as those of `image`.
+    let features = if dependencies.is_empty() { "" } else { ", features = [\"image\"]" };
     format!(
         "[package]\nname = \"{package}\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
          # A workspace of its own, wherever the folder lies.\n[workspace]\n\n\
          # cdylib to be loaded, rlib to be linked in.\n[lib]\ncrate-type = [\"cdylib\", \"rlib\"]\n\n\
-         [dependencies]\ntoile-core = {{ {core} }}\n{dependencies}\n\
+         [dependencies]\ntoile-core = {{ {core}{features} }}\n{dependencies}\n\
          [dev-dependencies]\ntoile-core = {{ {core}, features = [\"testkit\"] }}\n\
          criterion = {{ version = \"0.8\", default-features = false }}\n\n\
          [[bench]]\nname = \"stage\"\nharness = false\n"

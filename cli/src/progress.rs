@@ -8,8 +8,8 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::mpsc::channel;
 use std::time::Duration;
-use toile_core::pipeline::Pipeline;
 use toile_core::{Event, Listener, StageError};
+use toile_pipeline::Pipeline;
 use toile_trade::ablate::Progress;
 
 /// Steps of the bar a stage.

@@ -8,7 +8,7 @@ use crate::{Streams, bench as bench_words, exit};
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_core::StageError;
-use toile_core::pipeline::Pipeline;
+use toile_pipeline::Pipeline;
 use toile_trade::qualities::{Asked, Proved, prove, written};
 use toile_trade::record::{Clock, Trade, today};
 use toile_trade::slot::setting_words;

@@ -9,11 +9,11 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;
-use toile_core::cache::Cache;
-use toile_core::pipeline::{Fault, Faults, Pipeline};
-use toile_core::{
-    Cancel, ErrorCode, Listener, Metrics, Reads, Registry, RunError, RunOptions, RunResult, SoFar,
-    StageError, check_folder, run as run_stages, write_files,
+use toile_core::{Cancel, ErrorCode, Listener, Registry, StageError};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::{
+    Fault, Faults, Metrics, Pipeline, Reads, RunError, RunOptions, RunResult, SoFar, check_folder,
+    run as run_stages, write_files,
 };
 
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.

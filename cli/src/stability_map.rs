@@ -8,7 +8,7 @@ use crate::{Streams, exit};
 use std::path::{Path, PathBuf};
 use toile_cloth::bench::map::{Map, Options, Scheme, map};
 use toile_core::artifact::OutputFile;
-use toile_core::write_files;
+use toile_pipeline::write_files;
 use toile_trade::{processor_seconds, stability_pictures};
 
 /// Makes the maps and writes what there is, also where Ctrl-C ends them early.

@@ -3,7 +3,7 @@
 use crate::exit;
 use std::io::{self, ErrorKind, IsTerminal, Write};
 use toile_core::panics;
-use toile_core::pipeline::Faults;
+use toile_pipeline::Faults;
 use toile_trade::apart::Apart;
 
 /// When messages are coloured.

@@ -4,8 +4,11 @@ use crate::args::{Overrides, ValidateArgs};
 use crate::{Streams, exit, stdin};
 use serde_json::json;
 use std::path::Path;
-use toile_core::pipeline::{Basis, Changes, Fault, Faults, Pipeline, Quality, Standing, load_with};
-use toile_core::{Registry, RunError, RunOptions, add_implicit, faults, plan};
+use toile_core::Registry;
+use toile_pipeline::{
+    Basis, Changes, Fault, Faults, Pipeline, Quality, RunError, RunOptions, Standing, add_implicit, faults,
+    load_with, plan,
+};
 
 /// Loads a pipeline with its overrides and the stages that every pipeline gets.
 pub(crate) fn open(path: &Path, overrides: &Overrides, registry: &Registry) -> Result<Pipeline, Box<Faults>> {

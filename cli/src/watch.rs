@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant, SystemTime};
-use toile_core::cache::Hash;
-use toile_core::pipeline::{Pipeline, plugins_asked};
-use toile_core::plugin::plugin_files;
-use toile_core::{Metrics, Reads, Registry};
+use toile_core::Registry;
+use toile_core::artifact::Digest;
+use toile_pipeline::plugin::plugin_files;
+use toile_pipeline::{Metrics, Pipeline, Reads, plugins_asked};
 
 /// Time between two looks.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -94,14 +94,14 @@ pub(crate) fn counts(metrics: &Metrics) -> String {
 struct Look {
     modified: Option<SystemTime>,
     size: u64,
-    content: Option<Hash>,
+    content: Option<Digest>,
 }
 
 /// How files are now; none of one that is not there.
 type Looks = BTreeMap<PathBuf, Option<Look>>;
 
 /// Waits until the content of a file is another than the one that was used, and then stays; none once `stopped`.
-fn wait(used: &BTreeMap<PathBuf, Option<Hash>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
+fn wait(used: &BTreeMap<PathBuf, Option<Digest>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
     let mut last: Looks = used.keys().map(|path| (path.clone(), look(path, None))).collect();
     while !stopped() {
         std::thread::sleep(PAUSE);
@@ -116,7 +116,7 @@ fn wait(used: &BTreeMap<PathBuf, Option<Hash>>, stopped: impl Fn() -> bool) -> O
 }
 
 /// The files whose content is another than the one that was used.
-fn changed(used: &BTreeMap<PathBuf, Option<Hash>>, now: &Looks) -> Vec<PathBuf> {
+fn changed(used: &BTreeMap<PathBuf, Option<Digest>>, now: &Looks) -> Vec<PathBuf> {
     let content = |path: &PathBuf| now.get(path).and_then(|look| look.as_ref()?.content);
     used.iter().filter(|(path, was)| content(path) != **was).map(|(path, _)| path.clone()).collect()
 }
@@ -128,7 +128,7 @@ fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
     let same = was.filter(|w| w.modified == modified && w.size == size);
     let content = match same {
         Some(was) => was.content,
-        None => toile_core::read_file(path).ok().map(|bytes| Hash::of(&bytes)),
+        None => toile_core::read_file(path).ok().map(|bytes| Digest::of(&bytes)),
     };
     Some(Look { modified, size, content })
 }

@@ -7,9 +7,9 @@ use crate::{Streams, cache, exit};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::cache::{Cache, Cause};
-use toile_core::pipeline::{Feed, Node, Pipeline};
-use toile_core::{Outlook, Registry, RunError, RunOptions, forecast};
+use toile_core::{Feed, Node, Registry};
+use toile_pipeline::cache::{Cache, Cause};
+use toile_pipeline::{Outlook, Pipeline, RunError, RunOptions, forecast};
 use toile_stages::write::origin::{FILE, Trace, trace};
 
 /// Explains a run that has yet to be, or a triangle of one that was.

@@ -1,9 +1,7 @@
 //! What a running stage may ask of the outside world.
 
 use crate::artifact::{ArtifactType, Digest, Digester, Measure};
-use crate::cache::{Cache, Hash};
-use crate::{ErrorCode, PortValue, StageError};
-use rayon::prelude::*;
+use crate::{ErrorCode, PortValue, StageError, parallel};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -75,6 +73,12 @@ pub(crate) trait Parallel: Send + Sync {
     fn run(&self, count: usize, body: &(dyn Fn(usize) + Sync));
 }
 
+/// Keeps parts of a stage's work beyond the run.
+pub trait Memo: Send + Sync {
+    /// The part of the stage `id` under that key: as it was kept, else as it is made now.
+    fn part(&self, id: &str, key: &Digester, make: Box<dyn FnOnce() -> Vec<u8> + '_>) -> Vec<u8>;
+}
+
 /// The largest file that a stage may read, bytes.
 pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
@@ -88,10 +92,9 @@ pub struct Context {
     figures: Mutex<Vec<Measure>>,
     warnings: Mutex<Vec<String>>,
     so_far: Mutex<Option<PortValue>>,
-    reads: Mutex<Vec<(String, Option<Hash>)>>,
+    reads: Mutex<Vec<(String, Option<Digest>)>>,
     parallel: Option<Arc<dyn Parallel>>,
-    /// Where parts of the stage's work are kept, under keys that begin with the stage's own.
-    memo: Option<(Arc<Cache>, Hash)>,
+    memo: Option<Arc<dyn Memo>>,
 }
 
 impl Context {
@@ -117,9 +120,9 @@ impl Context {
         Context { parallel: Some(parallel), ..self }
     }
 
-    /// The same context with a cache for [`Context::memo`]; `stage` stands for the stage and its version.
-    pub(crate) fn with_memo(self, cache: Option<Arc<Cache>>, stage: Hash) -> Self {
-        Context { memo: cache.map(|cache| (cache, stage)), ..self }
+    /// The same context with a place for [`Context::memo`].
+    pub fn with_memo(self, memo: Option<Arc<dyn Memo>>) -> Self {
+        Context { memo, ..self }
     }
 
     /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
@@ -127,7 +130,7 @@ impl Context {
     /// the light on a garment whose texture is edited.
     pub fn memo(&self, key: &Digester, make: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
         match &self.memo {
-            Some((cache, stage)) => cache.memo(&self.stage, stage, key, make),
+            Some(memo) => memo.part(&self.stage, key, Box::new(make)),
             None => make(),
         }
     }
@@ -137,17 +140,13 @@ impl Context {
     pub fn parallel_for(&self, count: usize, body: impl Fn(usize) + Sync) {
         match &self.parallel {
             Some(parallel) => parallel.run(count, &body),
-            None => (0..count).into_par_iter().for_each(&body),
+            None => parallel::each(count, &body),
         }
     }
 
     /// `work(i)` of every `i` below `count`, made in parallel, in their order.
     pub fn parallel_map<T: Send>(&self, count: usize, work: impl Fn(usize) -> T + Sync) -> Vec<T> {
-        let slots: Vec<Mutex<Option<T>>> = (0..count).map(|_| Mutex::new(None)).collect();
-        self.parallel_for(count, |i| {
-            *slots[i].lock().unwrap_or_else(PoisonError::into_inner) = Some(work(i));
-        });
-        slots.into_iter().filter_map(|s| s.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+        parallel::map(count, |count, body| self.parallel_for(count, body), work)
     }
 
     /// The stage's id in the pipeline.
@@ -213,7 +212,7 @@ impl Context {
     }
 
     /// Keeps what another context was given, where it was given something.
-    pub(crate) fn take_over(&self, artifact: Option<PortValue>) {
+    pub fn take_over(&self, artifact: Option<PortValue>) {
         if artifact.is_some() {
             *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = artifact;
         }
@@ -240,7 +239,7 @@ impl Context {
     /// The run's cache keeps note of it: a stage whose file has changed runs again.
     pub fn read(&self, path: &str) -> Result<Vec<u8>, StageError> {
         let content = self.read_file(path);
-        let hash = content.as_ref().ok().map(|bytes| Hash::of(bytes));
+        let hash = content.as_ref().ok().and_then(|bytes| digest_of(bytes));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
         content
     }
@@ -259,9 +258,9 @@ impl Context {
     }
 
     /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else did.
-    pub(crate) fn note_read(&self, path: &str, digest: Option<[u8; 32]>) {
-        let hash = digest.map(|d| Hash(Digest(d))).or_else(|| crate::cache::file_hash(&self.resolve(path)));
-        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), hash));
+    pub fn note_read(&self, path: &str, digest: Option<Digest>) {
+        let digest = digest.or_else(|| digest_of(&crate::read_file(&self.resolve(path)).ok()?));
+        self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), digest));
     }
 
     fn read_file(&self, path: &str) -> Result<Vec<u8>, StageError> {
@@ -286,12 +285,12 @@ impl Context {
 
     /// The files that the stage has read so far, with the digests of their contents; `None` for one that could
     /// not be read.
-    pub(crate) fn take_reads(&self) -> Vec<(String, Option<Hash>)> {
+    pub fn take_reads(&self) -> Vec<(String, Option<Digest>)> {
         std::mem::take(&mut *self.reads.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
     /// Takes over the files that one entry of a set read.
-    pub(crate) fn absorb_reads(&self, reads: &[(String, Option<Hash>)]) {
+    pub fn absorb_reads(&self, reads: &[(String, Option<Digest>)]) {
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(reads);
     }
 
@@ -312,6 +311,18 @@ impl Context {
     }
 }
 
+/// The digest of a file's content.
+#[cfg(feature = "digest")]
+fn digest_of(bytes: &[u8]) -> Option<Digest> {
+    Some(Digest::of(bytes))
+}
+
+/// A plugin without digests leaves it to the program to take that of the file.
+#[cfg(not(feature = "digest"))]
+fn digest_of(_: &[u8]) -> Option<Digest> {
+    None
+}
+
 fn unread(path: &str, why: &str) -> StageError {
     StageError::new(ErrorCode::PatternLoading, format!("cannot read \"{path}\": {why}")).hint(RELATIVE)
 }
@@ -329,7 +340,7 @@ fn near_file(path: &str, full: &Path) -> Option<String> {
     let mut names: Vec<String> = files.filter_map(|f| f.file_name().into_string().ok()).collect();
     // A system lists its files in no order.
     names.sort();
-    let near = crate::pipeline::nearest(name, names.iter().map(String::as_str))?;
+    let near = crate::nearest(name, names.iter().map(String::as_str))?;
     let start = path.strip_suffix(name)?;
     Some(format!("{start}{near}"))
 }

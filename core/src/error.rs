@@ -1,7 +1,5 @@
 //! Errors of stages: typed, lower case, with a hint.
 
-use thiserror::Error;
-
 /// What went wrong, as a stable word that scripts can match.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum ErrorCode {
@@ -99,8 +97,7 @@ impl std::fmt::Display for ErrorCode {
 /// Why a stage could not do its work.
 ///
 /// The runner adds the stage's id, the panel and the line of the pipeline file.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{message}")]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StageError {
     /// The stable word.
     pub code: ErrorCode,
@@ -113,6 +110,14 @@ pub struct StageError {
     /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside in.
     pub path: Vec<String>,
 }
+
+impl std::fmt::Display for StageError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+impl std::error::Error for StageError {}
 
 impl StageError {
     /// An error with a code and a sentence.

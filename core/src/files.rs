@@ -9,15 +9,24 @@ use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
 /// What is said of a file that is none.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoFile {
     /// It is a folder.
-    #[error("it is not a file")]
     Folder,
     /// It is a pipe, a socket or a device.
-    #[error("it is a pipe or a device, not a file")]
     Special,
 }
+
+impl std::fmt::Display for NoFile {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            NoFile::Folder => "it is not a file",
+            NoFile::Special => "it is a pipe or a device, not a file",
+        })
+    }
+}
+
+impl std::error::Error for NoFile {}
 
 /// The content of an ordinary file of at most [`MAX_FILE_BYTES`].
 ///

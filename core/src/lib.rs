@@ -2,7 +2,8 @@
 //!
 //! A *pipeline* is a RON file that wires *stages*; a stage reads *artifacts* and makes new ones.
 //! This crate knows no stage by name and does no physics: it holds the artifacts' types, the
-//! [`Stage`] trait, the registry, the pipeline loader, the graph check, the planner and the runner.
+//! [`Stage`] trait, parameters and their checks, the registry, and the border of plugins. Pipelines are loaded and run by
+//! `toile-pipeline`, which the author of a stage does not need.
 //!
 //! A stage is a parameter struct and one typed function:
 //!
@@ -36,48 +37,67 @@
 extern crate self as toile_core;
 
 pub mod artifact;
-mod beside;
-pub mod cache;
 mod context;
 pub mod cost;
 pub mod decide;
 mod error;
 mod files;
-pub mod golden;
-pub mod lock;
-mod metrics;
-mod output;
+mod migration;
+mod near;
 pub mod panics;
+mod parallel;
 pub mod param;
-pub mod pipeline;
 #[allow(unsafe_code)]
 pub mod plugin;
 mod registry;
-mod run;
 mod stage;
 #[cfg(any(test, feature = "testkit"))]
 pub mod testkit;
-mod text;
+#[doc(hidden)]
+pub mod text;
+#[cfg(feature = "typetag")]
+mod typed;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
-pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES};
+pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES, Memo};
 pub use error::{ErrorCode, StageError};
 pub use files::{NoFile, ordinary, read_file, read_text};
-pub use metrics::{Metrics, StageMetrics};
-pub use output::{check_folder, write_files};
+pub use migration::{Change, Migration};
+pub use near::{hint, nearest, quoted};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
-pub use run::{
-    Outlook, Reads, RunError, RunOptions, RunResult, SoFar, add_implicit, faults, forecast, plan, run,
-};
 pub use stage::{
-    Arity, Card, Contract, InPort, Input, Inputs, OutPort, Output, Placed, PluginId, PortValue, Role, Set,
-    Stage, StageMeta, StageType,
+    Arity, Card, Contract, Feed, InPort, Input, Inputs, Node, OutPort, Output, Placed, PluginId, PortValue,
+    Role, Set, Stage, StageMeta, StageType, needed_for,
 };
 pub use toile_core_derive::{choice, plugin, stage};
 // The `stage` macro's expansion names these.
+#[cfg(feature = "typetag")]
 #[doc(hidden)]
-pub use {ron, serde, typetag};
+pub use typetag;
+#[doc(hidden)]
+pub use {ron, serde};
+
+/// The `stage` macro's implementation of [`Stage`]: typetag then finds the stage by its name.
+#[cfg(feature = "typetag")]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! stage_impl {
+    ($($implementation:tt)*) => {
+        use $crate::typetag;
+
+        #[typetag::serde]
+        $($implementation)*
+    };
+}
+
+/// The `stage` macro's implementation of [`Stage`].
+#[cfg(not(feature = "typetag"))]
+#[doc(hidden)]
+#[macro_export]
+macro_rules! stage_impl {
+    ($($implementation:tt)*) => { $($implementation)* };
+}
 
 /// What the author of a stage imports.
 pub mod prelude {

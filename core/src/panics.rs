@@ -37,13 +37,13 @@ pub fn quiet() {
     }));
 }
 
-/// Does the work; a panic in it becomes words: `index out of bounds: ... (core/src/run/recall.rs:40)`.
+/// Does the work; a panic in it becomes words: `index out of bounds: ... (core/pipeline/src/run/recall.rs:40)`.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(words)
 }
 
 /// What a panic says, and where it was where that is remembered.
-pub(crate) fn words(payload: Box<dyn Any + Send>) -> String {
+pub fn words(payload: Box<dyn Any + Send>) -> String {
     let text = said(payload.as_ref()).unwrap_or_default();
     // Dropping a payload may panic again, and then nothing could be told at all.
     std::mem::forget(payload);

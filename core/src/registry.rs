@@ -3,11 +3,11 @@
 //! typetag finds a stage's parameters by name; the registry holds the cards, so that a crate whose
 //! registrations the linker dropped is missed at once and not at run time.
 
-use crate::pipeline::{Change, Migration};
-use crate::plugin::{self, ForeignType, Plugin, Refused};
-use crate::{Card, Role, Stage, StageType};
+use crate::plugin::{Make, Plugin, Refused};
+use crate::{Card, Change, Migration, Role, Stage, StageType};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The cards of all known stages, by name, and the sections of pipeline files.
 ///
@@ -40,7 +40,7 @@ enum Maker {
     /// A type that is linked in.
     Typed(fn(&str) -> Result<Box<dyn Stage>, String>),
     /// A plugin.
-    Foreign(ForeignType),
+    Foreign(Arc<dyn Make>),
 }
 
 /// A top-level field of pipeline files that stands for a stage, such as `body: Mannequin()`.
@@ -97,13 +97,12 @@ impl Registry {
         self.cards.insert((card.name, card.role), Entry { card, maker, order });
     }
 
-    /// Loads a plugin and adds its stages, all or none; `pinned` is the BLAKE3 digest that its file must
-    /// have. A plugin that is there already is not loaded again.
+    /// Adds the stages of a plugin that was loaded from `path`, all or none. A plugin that is there already is not added again.
     ///
-    /// Errors: why it is refused; a refused plugin stays listed with its reason.
-    pub fn load_plugin(&mut self, path: &Path, pinned: Option<&str>) -> Result<(), Refused> {
-        let loaded = plugin::load(path, pinned, self.apart).and_then(|plugin| self.add_plugin(path, plugin));
-        loaded.inspect_err(|refused| self.refused.push(refused.clone()))
+    /// Errors: why it is refused, by the loader or since a name is taken; a refused plugin stays listed with its reason.
+    pub fn add_plugin(&mut self, path: &Path, loaded: Result<Plugin, Refused>) -> Result<(), Refused> {
+        let added = loaded.and_then(|plugin| self.take_plugin(path, plugin));
+        added.inspect_err(|refused| self.refused.push(refused.clone()))
     }
 
     /// From now on loads copies of plugins, so that their files may be replaced or written over while the program
@@ -113,7 +112,12 @@ impl Registry {
         self
     }
 
-    fn add_plugin(&mut self, path: &Path, plugin: Plugin) -> Result<(), Refused> {
+    /// Whether plugins are to be loaded as copies.
+    pub fn loads_apart(&self) -> bool {
+        self.apart
+    }
+
+    fn take_plugin(&mut self, path: &Path, plugin: Plugin) -> Result<(), Refused> {
         if self.plugins.iter().any(|p| p.id == plugin.id) {
             return Ok(());
         }
@@ -126,7 +130,7 @@ impl Registry {
             let hint = "its author must choose another name".to_owned();
             return Err(refused(format!("the stage name `{}` is taken by {by}", taken.name), Some(hint)));
         }
-        for (card, of) in plugin.cards.iter().zip(&plugin.types) {
+        for (card, of) in plugin.cards.iter().zip(&plugin.makers) {
             self.insert(card.clone(), Maker::Foreign(of.clone()));
         }
         self.plugins.push(plugin);
@@ -196,14 +200,14 @@ impl Registry {
     }
 
     /// All cards in the order in which they were added: of each role the default comes first.
-    pub(crate) fn in_order(&self) -> Vec<&Card> {
+    pub fn in_order(&self) -> Vec<&Card> {
         let mut entries: Vec<&Entry> = self.cards.values().collect();
         entries.sort_by_key(|e| e.order);
         entries.into_iter().map(|e| &e.card).collect()
     }
 
     /// Whether pipelines get that stage by themselves.
-    pub(crate) fn is_implicit(&self, card: &Card) -> bool {
+    pub fn is_implicit(&self, card: &Card) -> bool {
         self.implicit.iter().any(|make| make().card().name == card.name)
     }
 
@@ -224,8 +228,12 @@ impl Registry {
         match self.cards.get(&(card.name, card.role)).map(|e| &e.maker) {
             Some(Maker::Foreign(of)) => of.make(card, arguments),
             // typetag knows a stage by its name alone.
-            Some(Maker::Typed(make)) if self.named(card.name).count() > 1 => make(arguments),
-            _ => crate::pipeline::typed::stage(&format!("{}{arguments}", card.name)),
+            #[cfg(feature = "typetag")]
+            Some(Maker::Typed(_)) if self.named(card.name).count() == 1 => {
+                crate::typed::stage(&format!("{}{arguments}", card.name))
+            }
+            Some(Maker::Typed(make)) => make(arguments),
+            None => Err(format!("there is no stage `{}`", card.name)),
         }
     }
 

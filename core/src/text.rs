@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 static TEXTS: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
 
 /// The text as one that is never freed; equal texts are kept once.
-pub(crate) fn intern(text: &str) -> &'static str {
+pub fn intern(text: &str) -> &'static str {
     let mut texts = TEXTS.lock().unwrap_or_else(PoisonError::into_inner);
     match texts.get(text) {
         Some(known) => known,

@@ -8,13 +8,14 @@ use std::sync::Arc;
 use std::time::Duration;
 use toile_core::artifact::{Photo, Shared};
 use toile_core::{Context, Inputs, PortValue, Registry};
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::{library, vest_on_sdf};
 
 /// Linked in, and loaded.
 fn registries(name: &str, register: fn(&mut Registry)) -> [(&'static str, Registry); 2] {
     let (mut linked, mut loaded) = (toile::registry(), toile::registry());
     register(&mut linked);
-    loaded.load_plugin(&library(name), None).unwrap();
+    load_plugin(&mut loaded, &library(name), None).unwrap();
     [("linked", linked), ("loaded", loaded)]
 }
 

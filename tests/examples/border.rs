@@ -9,6 +9,7 @@
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use toile_core::Registry;
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::{library, vest_on_sdf};
 
 /// Clock ticks a second in `/proc/self/stat`.
@@ -52,7 +53,7 @@ fn linked() -> Registry {
 
 fn loaded() -> Registry {
     let mut registry = toile::registry();
-    registry.load_plugin(&library("toile_sdf"), None).unwrap();
+    load_plugin(&mut registry, &library("toile_sdf"), None).unwrap();
     registry
 }
 

@@ -11,8 +11,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 use toile_core::artifact::Garment;
-use toile_core::pipeline::{Override, Pipeline, load};
 use toile_core::{Cancel, Listener};
+use toile_pipeline::{Override, Pipeline, load};
 use toile_trade::measure::Bench;
 use toile_trade::surface::{Spread, Surface, displacement, distance, pairs};
 

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
-use toile_core::pipeline::{Override, load};
-use toile_core::{Cancel, Listener, Registry, RunOptions, RunResult, run};
+use toile_core::{Cancel, Listener, Registry};
+use toile_pipeline::{Override, RunOptions, RunResult, load, run};
 
 /// The library of a plugin crate that the tests depend on, such as `toile_faulty`: cargo puts it beside the tests'
 /// programs, which lie in `deps`, as examples do not.

@@ -123,7 +123,7 @@ fn shipped_pipelines_follow_the_schema() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|e| e == "ron") {
             let text = std::fs::read_to_string(&path).unwrap();
-            let value = toile_core::pipeline::to_json(&text, "").unwrap();
+            let value = toile_pipeline::to_json(&text, "").unwrap();
             let faults = schemas.validate(&value, index).err().map(|e| format!("{e:#}"));
             assert_eq!(faults, None, "{}", path.display());
             seen += 1;
@@ -148,7 +148,7 @@ fn the_schema_refuses_what_the_loader_refuses() {
         ("Rest()", "Resting()"),
     ] {
         assert!(text.contains(right), "{right}");
-        let value = toile_core::pipeline::to_json(&text.replace(right, wrong), "").unwrap();
+        let value = toile_pipeline::to_json(&text.replace(right, wrong), "").unwrap();
         assert!(schemas.validate(&value, index).is_err(), "{wrong}");
     }
 }
@@ -159,10 +159,10 @@ fn the_schema_takes_the_qualities_that_the_loader_takes() {
     let text = std::fs::read_to_string(root().join("pipelines/vest.ron")).unwrap();
     let change = "stages.GridMesher.edge=\"24 mm\"".parse().unwrap();
     let (error, words) = (toile_core::Length::mm(10.0), Some("2026-11-22: so".to_owned()));
-    let quality = toile_core::pipeline::Quality::new("Very rough-2".into(), error, vec![change], words);
-    let filled = toile_core::pipeline::fill_qualities(&text, &[quality]).unwrap();
+    let quality = toile_pipeline::Quality::new("Very rough-2".into(), error, vec![change], words);
+    let filled = toile_pipeline::fill_qualities(&text, &[quality]).unwrap();
     let valid = |text: &str| {
-        let value = toile_core::pipeline::to_json(text, "").unwrap();
+        let value = toile_pipeline::to_json(text, "").unwrap();
         schemas.validate(&value, index).is_ok()
     };
     assert!(valid(&filled));

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 use std::path::Path;
-use toile_core::pipeline::{Fault, load};
+use toile_pipeline::{Fault, load};
 use toile_tests::{pipeline, toile};
 
 #[test]

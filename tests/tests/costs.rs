@@ -3,10 +3,12 @@
 use serde_json::Value;
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::cost::{Meter, Used};
-use toile_core::cost::{Quantity, Size, foresee};
-use toile_core::pipeline::{Override, Pipeline, load};
-use toile_core::{Cancel, Listener, RunOptions, run};
+use toile_core::cost::Used;
+use toile_core::cost::{Quantity, Size};
+use toile_core::{Cancel, Listener};
+use toile_pipeline::cost::Meter;
+use toile_pipeline::cost::foresee;
+use toile_pipeline::{Override, Pipeline, RunOptions, load, run};
 use toile_tests::{pipeline, root, toile};
 use toile_trade::cost::{Costs, note};
 

@@ -3,8 +3,7 @@
 use serde_json::Value;
 use std::sync::Arc;
 use toile_core::artifact::{Artifact, Body, Collider, Figures, Garment, Outline, Point3};
-use toile_core::testkit;
-use toile_core::{Context, ErrorCode, Inputs, PortValue, StageError};
+use toile_core::{Context, ErrorCode, Inputs, PortValue, StageError, testkit};
 use toile_tests::{pipeline, toile};
 
 /// Runs a stage by its example on single values.

@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::Path;
-use toile_core::golden::{compare, parse};
+use toile_pipeline::golden::{compare, parse};
 use toile_tests::{Answer, napkin, pipeline, root, toile};
 
 /// Of the photos' pipelines, those that take longest: the others go the same way. `.ci/wide` checks them.

@@ -3,6 +3,7 @@
 //! Crates are built by `.ci/wide` alone: they share the workspace's target folder, and still compile for a minute what has other
 //! features there.
 
+use std::collections::BTreeSet;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::Path;
 use std::process::Command;
@@ -37,6 +38,27 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
     let text = [out.stdout, out.stderr].map(|b| String::from_utf8_lossy(&b).into_owned()).concat();
     assert!(out.status.success(), "cargo {arguments:?} in {}:\n{text}", folder.display());
     text
+}
+
+/// The crates that are built for a package with its build scripts, without what its tests need; none where cargo is not at hand.
+fn crates(package: &str) -> Option<BTreeSet<String>> {
+    let arguments = ["tree", "--offline", "-p", package, "-e", "normal,build", "--prefix", "none"];
+    let out = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().ok()?;
+    assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
+    let text = String::from_utf8(out.stdout).unwrap();
+    Some(text.lines().filter(|l| !l.is_empty() && !l.ends_with("(*)")).map(str::to_owned).collect())
+}
+
+/// What the author of a mesher builds: the crate that `toile new-stage` writes depends on toile-core alone, and
+/// `plugins/lattice` on a triangulation as well.
+#[test]
+fn the_author_of_a_mesher_builds_thirty_crates_at_most() {
+    let (Some(core), Some(lattice)) = (crates("toile-core"), crates("toile-lattice")) else { return };
+    assert!(core.len() < 30, "with the mesher itself {}: {core:#?}", core.len() + 1);
+    let spade = crates("spade").unwrap_or_default();
+    let own: Vec<_> = lattice.iter().filter(|c| core.contains(*c) || !spade.contains(*c)).collect();
+    assert!(own.len() <= 30, "without those of its triangulation {}: {own:#?}", own.len());
+    assert!(core.iter().all(|c| lattice.contains(c)), "both are counted alike");
 }
 
 /// Each contract is a test, kept or not promised, and the crate has one of its own.

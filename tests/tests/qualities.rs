@@ -3,7 +3,7 @@
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use toile_core::pipeline::{Basis, Changes, Quality, fill_qualities, load_with};
+use toile_pipeline::{Basis, Changes, Quality, fill_qualities, load_with};
 use toile_tests::napkin::{self, PIPELINE};
 use toile_tests::{Answer, PIPELINES, pipeline, toile};
 

@@ -2,7 +2,7 @@
 
 use crate::ablate::path_to;
 use crate::saving::{Evidence, Saving};
-use toile_core::decide::Decided;
+use toile_pipeline::decide::Decided;
 
 /// A decision with the words that need more than itself.
 #[derive(Debug, Clone, PartialEq)]

@@ -7,8 +7,8 @@
 use crate::dial::{Form, is_spatial, numeric};
 use crate::knob::{KnobSpec, Number, Values};
 use crate::split::field;
-use toile_core::pipeline::{Node, Pipeline};
-use toile_core::{ParamDoc, Registry, Role};
+use toile_core::{Node, ParamDoc, Registry, Role};
+use toile_pipeline::Pipeline;
 
 /// Factors around the pipeline's own edge length: from rough to four times the triangles.
 const EDGES: [f64; 2] = [0.5, 3.0];

@@ -2,9 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use toile_core::artifact::{Artifact, Digester, Garment};
-use toile_core::cache::Hash;
-use toile_core::pipeline::Pipeline;
+use toile_core::artifact::{Artifact, Digest, Digester, Garment};
+use toile_pipeline::Pipeline;
 
 /// What tells one pipeline from another: its stages with versions, plugins and parameters.
 pub fn digest(pipeline: &Pipeline, more: &[&str]) -> String {
@@ -31,7 +30,7 @@ pub(crate) fn garment_digest(garment: &Garment) -> String {
 
 /// Names a file's content; none for one that cannot be read.
 pub(crate) fn content(path: impl AsRef<Path>) -> Option<String> {
-    toile_core::read_file(path.as_ref()).ok().map(|bytes| Hash::of(&bytes).hex())
+    toile_core::read_file(path.as_ref()).ok().map(|bytes| Digest::of(&bytes).hex())
 }
 
 /// A file of these that is not as it was.

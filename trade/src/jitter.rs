@@ -6,8 +6,9 @@
 //!
 //! [`insert`] puts the move before the first stage that sews or drapes; it is no stage of the catalogue.
 
-use toile_core::pipeline::{Feed, Node, Pipeline};
 use toile_core::prelude::*;
+use toile_core::{Feed, Node};
+use toile_pipeline::Pipeline;
 
 /// Waves of the field.
 const WAVES: usize = 8;

@@ -6,8 +6,9 @@ use crate::record::Clock;
 use crate::source::Source;
 use serde::Serialize;
 use toile_core::cost::Predicted;
-use toile_core::decide::{Decided, Saves, Turn};
-use toile_core::pipeline::{Override, Pipeline};
+use toile_core::decide::{Saves, Turn};
+use toile_pipeline::decide::Decided;
+use toile_pipeline::{Override, Pipeline};
 
 /// What a figure rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

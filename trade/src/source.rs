@@ -1,8 +1,8 @@
 //! A pipeline file that is loaded again and again, each time with other overrides.
 
 use std::path::PathBuf;
-use toile_core::pipeline::{Changes, Faults, Node, Override, Pipeline, load_with};
-use toile_core::{Registry, SectionValue, add_implicit};
+use toile_core::{Node, Registry, SectionValue};
+use toile_pipeline::{Changes, Faults, Override, Pipeline, add_implicit, load_with};
 
 /// A pipeline file with what the user has set, ready to be loaded with other settings.
 #[derive(Debug, Clone)]

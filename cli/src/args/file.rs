@@ -3,7 +3,7 @@
 use super::CacheChoice;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
-use toile_core::pipeline::Override;
+use toile_pipeline::Override;
 
 /// Arguments that change a pipeline before it is loaded.
 #[derive(Debug, Args, Default, Clone)]

@@ -3,7 +3,7 @@
 use super::Overrides;
 use clap::Args;
 use std::path::PathBuf;
-use toile_core::cache::Bytes;
+use toile_pipeline::cache::Bytes;
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {

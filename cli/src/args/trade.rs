@@ -5,7 +5,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::time::Duration;
 use toile_core::Length;
-use toile_core::pipeline::Override;
+use toile_pipeline::Override;
 use toile_trade::qualities::Asked;
 use toile_trade::slot::ReferenceValue;
 

@@ -21,8 +21,8 @@ mod kind;
 
 use kind::{LENGTH, kind};
 use serde_json::{Map, Value, json};
-use toile_core::pipeline::{MAX_QUALITIES, MAX_SETTINGS};
 use toile_core::{Card, ParamDoc, Registry, SectionValue};
+use toile_pipeline::{MAX_QUALITIES, MAX_SETTINGS};
 
 /// What an id is made of: it names a folder.
 const ID: &str = "^[A-Za-z0-9_-]{1,64}$";

@@ -44,10 +44,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
         #item
 
         const _: () = {
-            use ::toile_core::typetag;
-
-            #[typetag::serde]
-            impl ::toile_core::Stage for #ty {
+            ::toile_core::stage_impl! { impl ::toile_core::Stage for #ty {
                 fn card(&self) -> ::toile_core::Card {
                     <Self as ::toile_core::StageType>::type_card()
                 }
@@ -65,7 +62,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                     let out = Self::run(self, #(#takes,)* cx)?;
                     ::std::result::Result::Ok(::toile_core::Output::pack(out))
                 }
-            }
+            } }
 
             impl ::toile_core::StageType for #ty {
                 fn type_card() -> ::toile_core::Card {

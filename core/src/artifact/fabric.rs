@@ -148,9 +148,6 @@ impl Artifact for Fabric {
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
-        match serde_json::to_vec_pretty(self) {
-            Ok(bytes) => vec![("json", bytes)],
-            Err(_) => Vec::new(),
-        }
+        Vec::new()
     }
 }

@@ -152,9 +152,6 @@ impl Artifact for Figures {
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
-        match serde_json::to_vec_pretty(&self.garment) {
-            Ok(bytes) => vec![("json", bytes)],
-            Err(_) => Vec::new(),
-        }
+        Vec::new()
     }
 }

@@ -1,8 +1,6 @@
-//! Finished files, and the encoders that artifacts share.
+//! Finished files.
 
 use super::{Artifact, ArtifactType, Digester, Kind, Measures};
-use image::{GrayImage, ImageFormat, RgbImage};
-use std::io::Cursor;
 use std::path::{Component, Path};
 
 /// One file to be written into the output folder.
@@ -74,25 +72,6 @@ impl Artifact for OutputFiles {
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         Vec::new()
-    }
-}
-
-/// A colour picture as PNG.
-pub(super) fn png_rgb(picture: &RgbImage) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    // Writing to memory fails only for pictures of zero size, which have no file form.
-    match picture.write_to(&mut bytes, ImageFormat::Png) {
-        Ok(()) => bytes.into_inner(),
-        Err(_) => Vec::new(),
-    }
-}
-
-/// A grey picture as PNG.
-pub(super) fn png_grey(picture: &GrayImage) -> Vec<u8> {
-    let mut bytes = Cursor::new(Vec::new());
-    match picture.write_to(&mut bytes, ImageFormat::Png) {
-        Ok(()) => bytes.into_inner(),
-        Err(_) => Vec::new(),
     }
 }
 

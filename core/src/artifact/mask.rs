@@ -1,8 +1,7 @@
 //! Which pixels of a photo belong to the garment.
 
 use super::sound::ensure;
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Shared};
-use image::GrayImage;
+use super::{Artifact, ArtifactType, Digester, GrayImage, Kind, Measures, Shared};
 
 /// A binary picture in the frame of its photo: 255 on the garment, 0 off it, nothing else.
 #[derive(Debug, Clone)]
@@ -70,6 +69,6 @@ impl Artifact for Mask {
     }
 
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
-        vec![("png", super::files::png_grey(&self.pixels))]
+        Vec::new()
     }
 }

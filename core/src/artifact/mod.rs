@@ -26,6 +26,7 @@ mod panel;
 mod pattern;
 mod phases;
 mod photo;
+mod picture;
 mod runlog;
 mod seam_kind;
 mod sewing;
@@ -56,6 +57,7 @@ pub use pattern::{
 };
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
+pub use picture::{GrayImage, Picture, RgbImage};
 pub use runlog::{Failure, RunLog, StageRecord};
 pub use seam_kind::{PleatFold, SeamKind};
 pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
@@ -94,7 +96,7 @@ pub trait Artifact: Any + Send + Sync + Debug {
     }
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.
     ///
-    /// An empty list where the kind has no file form.
+    /// An empty list where the kind has no file form, or one that the runner encodes: pictures, and tables as JSON.
     fn export(&self) -> Vec<(&'static str, Vec<u8>)>;
 }
 

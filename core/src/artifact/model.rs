@@ -2,8 +2,7 @@
 
 use super::body::obj_text;
 use super::sound::{ensure, finite, indices, length};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Shared, Vector3};
-use image::RgbImage;
+use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, RgbImage, Shared, Vector3};
 
 /// A colour picture that materials refer to.
 #[derive(Debug, Clone)]

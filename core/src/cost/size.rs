@@ -3,6 +3,10 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Share of a photo's frame that the garment's outline encloses, the scale being such that the garment is as wide as
+/// the frame.
+const FILL: f64 = 0.745;
+
 /// What is counted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -100,4 +104,12 @@ impl Size {
     pub fn is_empty(&self) -> bool {
         self.iter().next().is_none()
     }
+}
+
+/// A guess at a garment's area, square metres, from its photo's size, px, and its real width, metres.
+///
+/// The garment fills its photo about as well from side to side as from top to bottom.
+pub fn garment_area(width_px: f64, height_px: f64, garment_width: f64) -> f64 {
+    let ratio = (height_px / width_px).clamp(0.3, 3.0);
+    FILL * garment_width * garment_width * ratio
 }

@@ -1,15 +1,14 @@
 //! What a rule may look at.
 
-use crate::Context;
 use crate::cost::{Quantity, Size};
-use crate::pipeline::{Feed, Node, Pipeline};
+use crate::{Context, Feed, Node};
 
 /// What is known of a stage's place before anything runs.
 pub struct Known<'a> {
     /// How much the stage is expected to be given, all ports together.
     pub given: &'a Size,
-    /// The pipeline.
-    pub pipeline: &'a Pipeline,
+    /// The pipeline's stages.
+    pub nodes: &'a [Node],
     /// The stage's index in it.
     pub index: usize,
     /// For each stage whether it runs.
@@ -21,7 +20,7 @@ pub struct Known<'a> {
 impl Known<'_> {
     /// The stage's place in the pipeline.
     pub fn node(&self) -> &Node {
-        &self.pipeline.nodes[self.index]
+        &self.nodes[self.index]
     }
 
     /// Whether something feeds the port of that name.
@@ -33,7 +32,7 @@ impl Known<'_> {
 
     /// Stages before this one that run.
     pub fn before(&self) -> impl Iterator<Item = &Node> {
-        let nodes = self.pipeline.nodes.iter().zip(self.runs).take(self.index);
+        let nodes = self.nodes.iter().zip(self.runs).take(self.index);
         nodes.filter(|(_, runs)| **runs).map(|(n, _)| n)
     }
 

@@ -6,15 +6,10 @@
 //! stage itself does. Rules live beside the stages that they speak of, one file a rule; a stage tells its decisions by
 //! `fn decide(&self, known: &Known<'_>) -> Vec<Decision>` beside its `run`. Stages of plugins tell none.
 //!
-//! Core has one rule of its own, `unasked`: stages that nothing asked for depends on do not run.
+//! `toile_pipeline::decide` asks all stages, and has one rule of its own: stages that nothing asked for depends on do not run.
 
 mod decision;
-mod gather;
 mod known;
-#[cfg(test)]
-mod tests;
-mod unasked;
 
 pub use decision::{Decision, Saves, State, Tolerance, Turn};
-pub use gather::{Decided, decisions};
 pub use known::Known;

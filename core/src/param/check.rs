@@ -61,7 +61,7 @@ fn check_param<T: ParamType>(text: &str, doc: &ParamDoc) -> Result<(), ParamFaul
 }
 
 /// Checks that every number of a value is finite and in range; used when a value is set from code.
-pub(crate) fn check_number(x: f64, doc: &ParamDoc) -> Result<(), String> {
+pub fn check_number(x: f64, doc: &ParamDoc) -> Result<(), String> {
     let show = |v: f64| if doc.kind.contains("length") { Length::m(v).to_string() } else { v.to_string() };
     let unit = if doc.unit.is_empty() { String::new() } else { format!(" {}", doc.unit) };
     if !x.is_finite() {

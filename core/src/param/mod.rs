@@ -10,7 +10,8 @@ mod kind;
 mod length;
 mod words;
 
-pub(crate) use check::check_number;
+#[doc(hidden)]
+pub use check::check_number;
 pub use check::{Check, ParamFault};
 pub use dialect::ron_options;
 #[doc(hidden)]
@@ -18,4 +19,5 @@ pub use dialect::ron_text;
 pub use doc::{Finer, ParamDoc};
 pub use kind::ParamType;
 pub use length::{LENGTH_UNITS, Length};
-pub(crate) use words::ron_fault;
+#[doc(hidden)]
+pub use words::ron_fault;

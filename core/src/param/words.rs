@@ -2,7 +2,7 @@
 
 use super::check::check_number;
 use super::{ParamDoc, ParamFault};
-use crate::pipeline::near;
+use crate::near;
 
 /// The longest piece of a file that a message repeats, characters.
 const MAX_SHOWN: usize = 24;
@@ -30,7 +30,7 @@ pub(super) fn type_fault(text: &str, doc: &ParamDoc, e: &ron::error::SpannedErro
 }
 
 /// What `ron` says is wrong, in lower case, and the byte of the text where it is.
-pub(crate) fn ron_fault(text: &str, e: &ron::error::SpannedError) -> (String, Option<usize>) {
+pub fn ron_fault(text: &str, e: &ron::error::SpannedError) -> (String, Option<usize>) {
     use ron::Error as E;
     let at = byte_offset(text, &e.span.start);
     // ron points behind the name of a field that it does not want.

@@ -15,7 +15,7 @@ use std::ffi::c_void;
 use std::sync::Arc;
 
 /// A collider of this side as a table; the other side calls its `destroy`.
-pub(super) fn lend(collider: &Collider) -> abi::Collider {
+pub fn lend(collider: &Collider) -> abi::Collider {
     let this = Box::into_raw(Box::new(collider.clone()));
     // The text lies in the box, which stays where it is until `destroy`.
     let signature = Text::of(unsafe { &(*this).signature });
@@ -156,7 +156,7 @@ unsafe extern "C" fn destroy(this: *mut c_void) {
 }
 
 /// A collider of the other side.
-pub(super) struct Foreign {
+pub struct Foreign {
     collider: abi::Collider,
     table: abi::ColliderTable,
     card: ColliderCard,
@@ -191,7 +191,7 @@ impl Drop for Foreign {
 ///
 /// # Safety
 /// The collider obeys the rules of the border.
-pub(super) unsafe fn take(
+pub unsafe fn take(
     collider: *const abi::Collider,
     owner: &'static str,
     library: Option<Arc<dyn Send + Sync>>,
@@ -228,7 +228,7 @@ pub(super) unsafe fn take(
 ///
 /// # Safety
 /// As for [`take`].
-pub(super) unsafe fn shared(collider: *const abi::Collider, owner: &'static str) -> Result<Collider, String> {
+pub unsafe fn shared(collider: *const abi::Collider, owner: &'static str) -> Result<Collider, String> {
     let lent = unsafe { list::<abi::Collider>(collider.cast(), 1, "the collider")? }[0];
     let table = unsafe { list::<abi::ColliderTable>(lent.table.cast(), 1, "the collider's table")? }[0];
     let share = table.share.ok_or("the collider cannot be shared")?;

@@ -11,7 +11,7 @@ thread_local! {
 }
 
 /// Runs the inside of an entry point; its failure or panic becomes a status.
-pub(super) fn guarded(work: impl FnOnce() -> Result<(), String>) -> i32 {
+pub fn guarded(work: impl FnOnce() -> Result<(), String>) -> i32 {
     let (status, message) = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(())) => return abi::OK,
         Ok(Err(message)) => (abi::FAILED, message),
@@ -22,12 +22,12 @@ pub(super) fn guarded(work: impl FnOnce() -> Result<(), String>) -> i32 {
 }
 
 /// The message of the last failure on this thread, good until the next one.
-pub(super) fn last_failure() -> abi::Text {
+pub fn last_failure() -> abi::Text {
     LAST.with(|last| abi::Text::of(&last.borrow()))
 }
 
 /// A status in words: `panicked`.
-pub(super) fn meaning(status: i32) -> String {
+pub fn meaning(status: i32) -> String {
     match status {
         abi::FAILED => "failed".into(),
         abi::PANICKED => "panicked".into(),

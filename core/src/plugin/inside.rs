@@ -22,12 +22,12 @@ thread_local! {
 static LONG: Mutex<Vec<(u64, String)>> = Mutex::new(Vec::new());
 
 /// This thread is in a plugin until this is dropped.
-pub(super) struct Inside {
+pub struct Inside {
     before: Option<&'static str>,
 }
 
 /// Notes that this thread goes into a plugin; its words are interned.
-pub(super) fn inside(plugin: &'static str) -> Inside {
+pub fn inside(plugin: &'static str) -> Inside {
     Inside { before: HERE.replace(Some(plugin)) }
 }
 
@@ -38,13 +38,13 @@ impl Drop for Inside {
 }
 
 /// A call that may be long, until this is dropped.
-pub(super) struct Long {
+pub struct Long {
     number: u64,
     _inside: Inside,
 }
 
 /// Notes a call that may be long: `plugin "sdf" 0.1.0`, `its stage SdfCollider`.
-pub(super) fn long(plugin: &'static str, what: &str) -> Long {
+pub fn long(plugin: &'static str, what: &str) -> Long {
     let mut all = LONG.lock().unwrap_or_else(PoisonError::into_inner);
     let number = all.last().map_or(0, |(n, _)| n + 1);
     all.push((number, format!("{plugin}, {what}")));

@@ -2,8 +2,7 @@
 //! is told when the other side needs them no more.
 
 use super::abi;
-use crate::artifact::Shared;
-use image::{ImageBuffer, Pixel};
+use crate::artifact::{Picture, Shared};
 use std::any::Any;
 use std::ffi::c_void;
 use std::sync::Arc;
@@ -13,11 +12,11 @@ type Keeper = Arc<dyn Any + Send + Sync>;
 /// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list grows.
 #[derive(Debug, Default)]
 #[allow(clippy::vec_box)]
-pub(super) struct Owners(Vec<Box<abi::Owner>>);
+pub struct Owners(Vec<Box<abi::Owner>>);
 
 impl Owners {
     /// Where the owner lies; good for as long as both live.
-    pub(super) fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
+    pub fn lend(&mut self, keeper: &Keeper) -> *const abi::Owner {
         let ctx = std::ptr::from_ref(keeper).cast_mut().cast();
         self.0.push(Box::new(abi::Owner { ctx, retain: Some(retain), release: Some(release) }));
         self.0.last().map_or(std::ptr::null(), |o| &raw const **o)
@@ -75,13 +74,13 @@ impl Lending {
     ///
     /// # Safety
     /// The owner is there for as long as the result, or any copy of it, is asked.
-    pub(super) unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
+    pub unsafe fn of(owner: *const abi::Owner) -> Option<Self> {
         let owner = unsafe { owner.as_ref() }?;
         Some(Lending(Asked::Foreign(*owner)))
     }
 
     /// The owner of a block of this side.
-    pub(super) fn block(keeper: Keeper) -> Self {
+    pub fn block(keeper: Keeper) -> Self {
         Lending(Asked::Block(keeper))
     }
 
@@ -99,21 +98,16 @@ impl Lending {
     /// The list as a picture, where it lies; `None` where its owner cannot keep it.
     ///
     /// `bytes` is the list that this owner was named for.
-    pub(crate) fn picture<P: Pixel<Subpixel = u8>>(
-        &self,
-        bytes: &[u8],
-        w: u32,
-        h: u32,
-    ) -> Option<Shared<ImageBuffer<P, Vec<u8>>>> {
+    pub(crate) fn picture<P: Picture>(&self, bytes: &[u8], w: u32, h: u32) -> Option<Shared<P>> {
         let keeper = self.keep().filter(|_| !bytes.is_empty())?;
         // The vector only shows the bytes: `Shared` gives out references alone and never drops it, so that
         // it is neither grown nor freed; the keeper keeps the bytes for as long as it lives.
         let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
         let length = bytes.len() as u64;
-        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNEL_COUNT) {
+        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNELS) {
             std::mem::forget(shown);
             return None;
         }
-        ImageBuffer::from_raw(w, h, shown).map(|picture| Shared::lent(picture, keeper))
+        P::of_bytes(w, h, shown).map(|picture| Shared::lent(picture, keeper))
     }
 }

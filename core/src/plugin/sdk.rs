@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::{Arc, Mutex, Once, OnceLock, PoisonError, RwLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, RwLock};
 
 /// A crate's stage tables, made when they are first asked for.
 #[derive(Debug, Default)]
@@ -208,7 +208,7 @@ fn run_stage<S: StageType>(
     let cx = if own.is_empty() { cx } else { cx.for_entry(own) };
     let made = on_threads(remote.threads(), || stage.run_ports(&inputs, &cx));
     for (path, digest) in cx.take_reads() {
-        remote.reads(&path, digest.map(|d| d.0.0));
+        remote.reads(&path, digest.map(|d| d.0));
     }
     for figure in cx.take_notes().0 {
         remote.figure(&figure.name, figure.value, figure.unit);
@@ -216,10 +216,17 @@ fn run_stage<S: StageType>(
     made
 }
 
+/// Runs the work, which has no pool.
+#[cfg(not(feature = "rayon"))]
+fn on_threads<T: Send>(_: u32, work: impl FnOnce() -> T + Send) -> T {
+    work()
+}
+
 /// Runs in a pool of as many threads as the user allows: a library has its own pool.
+#[cfg(feature = "rayon")]
 fn on_threads<T: Send>(threads: u32, work: impl FnOnce() -> T + Send) -> T {
     static POOLS: Mutex<BTreeMap<u32, Arc<rayon::ThreadPool>>> = Mutex::new(BTreeMap::new());
-    static COMMON: Once = Once::new();
+    static COMMON: std::sync::Once = std::sync::Once::new();
     // Colliders are asked outside of any run: their loops fall to the library's common pool.
     COMMON.call_once(|| {
         let _ = rayon::ThreadPoolBuilder::new().num_threads(threads as usize).build_global();

@@ -13,7 +13,7 @@ const MAX_FIELDS: usize = 1000;
 
 /// A record in C's form, with the record whose lists it shows.
 #[derive(Debug)]
-pub(super) struct Lent<'a> {
+pub struct Lent<'a> {
     views: Views,
     /// Its lists lie on the heap or elsewhere, so that they stay where they are when this moves.
     _record: Record<'a>,
@@ -38,12 +38,12 @@ struct Part {
 
 impl<'a> Lent<'a> {
     /// Lends a record for as long as the result lives.
-    pub(super) fn of(record: Record<'a>) -> Self {
+    pub fn of(record: Record<'a>) -> Self {
         Lent { views: Views::of(&record), _record: record }
     }
 
     /// Where it lies.
-    pub(super) fn as_ptr(&self) -> *const abi::Record {
+    pub fn as_ptr(&self) -> *const abi::Record {
         &*self.views.view
     }
 }
@@ -88,7 +88,7 @@ fn lend_all(records: &[Record<'_>], parts: &mut Vec<Part>) -> *const abi::Record
 ///
 /// # Safety
 /// `text` holds as many bytes as it says, for as long as the result is used.
-pub(super) unsafe fn text<'a>(text: abi::Text) -> Result<&'a str, String> {
+pub unsafe fn text<'a>(text: abi::Text) -> Result<&'a str, String> {
     let bytes = unsafe { list::<u8>(text.ptr.cast(), text.len, "a text")? };
     std::str::from_utf8(bytes).map_err(|_| "a text is not UTF-8".into())
 }
@@ -97,7 +97,7 @@ pub(super) unsafe fn text<'a>(text: abi::Text) -> Result<&'a str, String> {
 ///
 /// # Safety
 /// There are as many elements as it says, for as long as the result is used.
-pub(super) unsafe fn list<'a, T>(ptr: *const c_void, count: usize, what: &str) -> Result<&'a [T], String> {
+pub unsafe fn list<'a, T>(ptr: *const c_void, count: usize, what: &str) -> Result<&'a [T], String> {
     let ptr = ptr.cast::<T>();
     if count == 0 {
         return Ok(&[]);
@@ -118,7 +118,7 @@ pub(super) unsafe fn list<'a, T>(ptr: *const c_void, count: usize, what: &str) -
 ///
 /// # Safety
 /// All that it points at is there for as long as the result is used.
-pub(super) unsafe fn record<'a>(record: *const abi::Record, budget: &mut u64) -> Result<Record<'a>, String> {
+pub unsafe fn record<'a>(record: *const abi::Record, budget: &mut u64) -> Result<Record<'a>, String> {
     let view = unsafe { list::<abi::Record>(record.cast(), 1, "a record")? };
     unsafe { fields(view[0], budget, 0) }
 }

@@ -2,12 +2,14 @@
 
 mod card;
 mod contract;
+mod node;
 mod placed;
 mod role;
 mod values;
 
 pub use card::{Arity, Card, InPort, OutPort, PluginId};
 pub use contract::Contract;
+pub use node::{Feed, Node, needed_for};
 pub use placed::Placed;
 pub use role::Role;
 pub use values::{Input, Inputs, Output, PortValue, Set};
@@ -20,7 +22,7 @@ use crate::{Context, StageError};
 ///
 /// Authors do not implement it by hand: `#[stage]` on the parameter struct and on its `impl`
 /// derives it from one typed function.
-#[typetag::serde]
+#[cfg_attr(feature = "typetag", typetag::serde)]
 pub trait Stage: std::fmt::Debug + Send + Sync {
     /// The stage's card.
     fn card(&self) -> Card;

@@ -1,12 +1,12 @@
 //! A stage in its pipeline, before anything runs.
 
+use super::node::{Feed, Node, needed_for};
 use crate::Context;
-use crate::pipeline::{Feed, Node, Pipeline};
 
 /// What a stage may look at to check its parameters and files before the run.
 pub struct Placed<'a> {
-    /// The pipeline.
-    pub pipeline: &'a Pipeline,
+    /// The pipeline's stages.
+    pub nodes: &'a [Node],
     /// The stage's index in it.
     pub index: usize,
     /// For what the stage must look at outside: files, by the rules of the pipeline's paths.
@@ -16,7 +16,7 @@ pub struct Placed<'a> {
 impl<'a> Placed<'a> {
     /// The stage's place in the pipeline.
     pub fn node(&self) -> &'a Node {
-        &self.pipeline.nodes[self.index]
+        &self.nodes[self.index]
     }
 
     /// The stage that feeds the port of that name.
@@ -28,14 +28,14 @@ impl<'a> Placed<'a> {
 
     /// All stages from which this one's input comes, near and far, the nearest first.
     pub fn sources(&self) -> Vec<&'a Node> {
-        let needed = self.pipeline.needed_for(&[self.index]);
-        let before = self.pipeline.nodes.iter().zip(needed).take(self.index);
+        let needed = needed_for(self.nodes, &[self.index]);
+        let before = self.nodes.iter().zip(needed).take(self.index);
         before.filter(|(_, needed)| *needed).map(|(node, _)| node).rev().collect()
     }
 
     fn fed_by(&self, feed: &Feed) -> Option<&'a Node> {
         match feed {
-            Feed::Node { node, .. } => self.pipeline.nodes.get(*node),
+            Feed::Node { node, .. } => self.nodes.get(*node),
             _ => None,
         }
     }

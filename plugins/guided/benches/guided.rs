@@ -2,8 +2,7 @@
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
-use toile_core::Context;
-use toile_core::testkit;
+use toile_core::{Context, testkit};
 use toile_guided::{By, guided};
 
 fn twelve_megapixels(c: &mut Criterion) {

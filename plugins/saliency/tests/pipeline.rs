@@ -4,9 +4,10 @@ use crate::kit::{digest, given, overlap, run, tiny};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_core::artifact::{Mask, Photo};
-use toile_core::pipeline::load;
+use toile_pipeline::{RunOptions, load};
 use toile_core::testkit::{self, Trial};
-use toile_core::{Cancel, Inputs, Listener, PortValue, Registry, RunOptions};
+use toile_core::{Cancel, Inputs, Listener, PortValue, Registry};
+use toile_pipeline::plugin::load_plugin;
 
 /// The library of this crate, which lies beside the tests' programs.
 fn library() -> PathBuf {
@@ -31,7 +32,7 @@ fn mask_after(stages: &str, dir: &Path) -> Mask {
     let until = pipeline.nodes.iter().rfind(|n| n.card.outputs[0].kind.0 == "mask").unwrap().id.clone();
     let options = RunOptions { until: Some(until), ..RunOptions::default() };
     let listener: Arc<dyn Listener> = Arc::new(());
-    let made = toile_core::run(&pipeline, &options, &Cancel::new(), &listener).unwrap();
+    let made = toile_pipeline::run(&pipeline, &options, &Cancel::new(), &listener).unwrap();
     let picture = made.files.iter().find(|f| f.path.ends_with(".png")).unwrap();
     Mask { pixels: image::load_from_memory(&picture.bytes).unwrap().into_luma8().into() }
 }
@@ -51,7 +52,7 @@ fn it_stands_alone_or_before_auto() {
 fn it_gives_the_same_bits_loaded_and_linked_in() {
     let (dir, own) = given(&tiny().file());
     let mut registry = Registry::new();
-    registry.load_plugin(&library(), None).unwrap();
+    load_plugin(&mut registry, &library(), None).unwrap();
     let arguments = format!("(weights: \"tiny.onnx\", digest: \"{}\")", own.digest);
     let foreign = registry.make(registry.card("Saliency").unwrap(), &arguments).unwrap();
     let photo: PortValue = PortValue::One(Arc::new(testkit::photo()));
@@ -70,7 +71,7 @@ fn a_file_that_is_not_there_is_told_before_the_run() {
     let (dir, _) = given(&tiny().file());
     testkit::photo().pixels.save(dir.path().join("front.png")).unwrap();
     let pipeline = load(text, "p.ron", dir.path(), &registry, &[]).unwrap();
-    let told = toile_core::faults(&pipeline, |_| true, None).unwrap_err().to_string();
+    let told = toile_pipeline::faults(&pipeline, |_| true, None).unwrap_err().to_string();
     assert!(told.contains("cannot read \"gone.onnx\": no such file"), "{told}");
 }
 

@@ -2,8 +2,7 @@
 
 use crate::kit::{digest, given, run, tiny};
 use crate::onnx::Net;
-use toile_core::ErrorCode;
-use toile_core::testkit;
+use toile_core::{ErrorCode, testkit};
 use toile_saliency::Saliency;
 
 /// Code, message, hint and parameter of the refusal.

@@ -15,7 +15,7 @@ const MOST_MOVED: f64 = 1e-3;
 
 /// The decision on the photos before the stage, where they are large enough.
 pub(super) fn rule(known: &Known<'_>, pixel: f64) -> Option<Decision> {
-    let read = |node: &toile_core::pipeline::Node| frames(node.card.name, &node.stage.params(), known.cx);
+    let read = |node: &toile_core::Node| frames(node.card.name, &node.stage.params(), known.cx);
     let frames = known.before().find_map(read)?;
     let joint =
         |((w, h), width): &((u32, u32), f64)| (joint_of((*w, *h), *width, pixel), width / f64::from(*w));

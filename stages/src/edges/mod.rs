@@ -29,8 +29,7 @@ pub use prewitt::Prewitt;
 pub use roberts::Roberts;
 pub use sobel::Sobel;
 
-use toile_core::Registry;
-use toile_core::pipeline::Migration;
+use toile_core::{Migration, Registry};
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {

@@ -2,8 +2,7 @@
 
 use toile_cloth::error::ClothError;
 use toile_cloth::scene::{FieldFault, SceneError};
-use toile_core::pipeline::hint;
-use toile_core::{ErrorCode, StageError};
+use toile_core::{ErrorCode, StageError, hint};
 
 /// A fault of the numbers that the engine was given.
 pub fn cloth_error(error: &ClothError) -> StageError {

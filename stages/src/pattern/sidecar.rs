@@ -14,7 +14,7 @@
 
 use serde::Deserialize;
 use std::fmt::Write;
-use toile_core::pipeline::nearest;
+use toile_core::nearest;
 use toile_core::prelude::*;
 use toile_pattern_files::kind_word;
 

@@ -7,11 +7,10 @@ use super::scale::{self, ScaleObject};
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use toile_core::StageMeta;
 use toile_core::cost::Size;
 use toile_core::param::ron_options;
-use toile_core::pipeline::Node;
 use toile_core::prelude::*;
+use toile_core::{Node, StageMeta};
 
 /// Reads the photos of the garment's sides.
 ///

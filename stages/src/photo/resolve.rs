@@ -3,7 +3,7 @@
 use super::entry::{scale_fault, width_fault};
 use super::{PhotoEntry, PhotoFile};
 use std::collections::BTreeMap;
-use toile_core::pipeline::nearest;
+use toile_core::nearest;
 use toile_core::prelude::*;
 
 /// Follows mirrors to a file; true where the pattern is that file's mirror image.

@@ -5,8 +5,7 @@ mod spring;
 mod tests;
 
 pub use spring::SpringStitcher;
-use toile_core::Registry;
-use toile_core::pipeline::Migration;
+use toile_core::{Migration, Registry};
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {

@@ -7,7 +7,7 @@ use super::naming::is_back;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use toile_core::pipeline::nearest;
+use toile_core::nearest;
 use toile_core::prelude::*;
 
 /// Lengths that differ by more than this share are no seam unless it is declared gathered.

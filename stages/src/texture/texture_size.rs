@@ -21,7 +21,7 @@ pub(super) fn rule(known: &Known<'_>, size: u32) -> Option<Decision> {
     if !known.is_wired("photos") {
         return None;
     }
-    let read = |node: &toile_core::pipeline::Node| frames(node.card.name, &node.stage.params(), known.cx);
+    let read = |node: &toile_core::Node| frames(node.card.name, &node.stage.params(), known.cx);
     let longest = known.before().find_map(read)?.iter().map(|((w, h), _)| *w.max(h)).max()?;
     is_larger(longest, size).then(|| Decision {
         rule: "texture-size".into(),

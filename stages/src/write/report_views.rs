@@ -8,10 +8,9 @@
 use super::preview::Preview;
 use image::RgbImage;
 use toile_core::artifact::{ArtifactType, Model, OutputFiles, RunLog};
-use toile_core::choice;
 use toile_core::decide::{Decision, Known, Saves, State, Tolerance, Turn};
 use toile_core::param::ron_options;
-use toile_core::{PortValue, StageMeta};
+use toile_core::{PortValue, StageMeta, choice};
 
 /// Where the views at the report's head come from.
 #[choice]

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::{Artifact, Kind, Phase, Phases, Vector3};
-use toile_core::pipeline::{Override, Pipeline, load};
 use toile_core::testkit::dress;
-use toile_core::{Cancel, Listener, RunOptions, add_implicit, run};
+use toile_core::{Cancel, Listener};
+use toile_pipeline::{Override, Pipeline, RunOptions, add_implicit, load, run};
 
 /// Height of the photos, px: small, so that many runs are cheap.
 const PHOTO_HEIGHT: u32 = 240;

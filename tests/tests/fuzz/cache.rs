@@ -4,9 +4,10 @@ use crate::dice::Dice;
 use crate::{fuzz, spoil};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use toile_core::cache::{Cache, Hash};
-use toile_core::pipeline::{Pipeline, load};
-use toile_core::{Cancel, Listener, RunOptions, run};
+use toile_core::artifact::Digest;
+use toile_core::{Cancel, Listener};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::{Pipeline, RunOptions, load, run};
 use toile_tests::napkin;
 
 /// A file with its content.
@@ -26,7 +27,7 @@ fn files(folder: &Path) -> Vec<Kept> {
     all
 }
 
-fn result(pipeline: &Pipeline, folder: &Path) -> Result<Vec<(String, Option<Hash>)>, String> {
+fn result(pipeline: &Pipeline, folder: &Path) -> Result<Vec<(String, Option<Digest>)>, String> {
     let listener: Arc<dyn Listener> = Arc::new(());
     let options = RunOptions { cache: Some(Arc::new(Cache::new(folder))), ..RunOptions::default() };
     let run = run(pipeline, &options, &Cancel::new(), &listener).map_err(|e| e.to_string())?;
@@ -36,7 +37,7 @@ fn result(pipeline: &Pipeline, folder: &Path) -> Result<Vec<(String, Option<Hash
 /// A manifest is believed by its first line: the digest of the rest. Spoilt within, it gets the right one, so that
 /// what is behind is read.
 fn sealed(body: &[u8]) -> Vec<u8> {
-    [Hash::of(body).hex().as_bytes(), b"\n", body].concat()
+    [Digest::of(body).hex().as_bytes(), b"\n", body].concat()
 }
 
 /// A spoilt store: each file as its place among the files, then its bytes.
@@ -71,7 +72,7 @@ fn lay(kept: &[Kept], case: &[u8]) {
         return std::fs::write(path, content).unwrap();
     }
     let old = path.file_name().unwrap().to_string_lossy().into_owned();
-    let new = Hash::of(content).hex();
+    let new = Digest::of(content).hex();
     let folder = path.parent().unwrap().with_file_name(&new[..2]);
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join(&new), content).unwrap();

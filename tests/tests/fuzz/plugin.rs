@@ -7,6 +7,7 @@ use crate::dice::Dice;
 use crate::{HEAP, MAX_BYTES, fuzz, spoil};
 use std::path::Path;
 use std::process::Command;
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::compiled;
 
 /// Names the library for the process that opens it.
@@ -58,7 +59,7 @@ fn opened(file: &Path) -> Result<(), String> {
 #[ignore = "the other process of plugin_files"]
 fn opens_a_library() {
     let Some(file) = std::env::var_os(FILE) else { return };
-    if let Err(refused) = toile::registry().load_plugin(Path::new(&file), None) {
+    if let Err(refused) = load_plugin(&mut toile::registry(), Path::new(&file), None) {
         assert!(!refused.reason.is_empty());
     }
     assert!(HEAP.peak_usage() < MAX_BYTES, "it held {} MiB", HEAP.peak_usage() >> 20);

@@ -3,9 +3,9 @@
 use crate::{fuzz, spoil};
 use std::path::Path;
 use std::sync::{Arc, LazyLock};
-use toile_core::lock::Lock;
-use toile_core::pipeline::{load, to_json};
-use toile_core::{Artifact, Cancel, Context, ErrorCode, Inputs, PortValue, Registry, golden, testkit};
+use toile_core::{Artifact, Cancel, Context, ErrorCode, Inputs, PortValue, Registry, testkit};
+use toile_pipeline::lock::Lock;
+use toile_pipeline::{golden, load, to_json};
 use toile_tests::{PIPELINES, napkin, pipeline, root};
 
 static REGISTRY: LazyLock<Registry> = LazyLock::new(toile::registry);

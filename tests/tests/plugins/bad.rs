@@ -2,6 +2,7 @@
 
 use crate::plugins::kit::{bad, make, photo, run};
 use std::sync::Arc;
+use toile_pipeline::plugin::load_plugin;
 
 /// Why a plugin is refused.
 fn refused(case: &str) -> String {
@@ -49,7 +50,7 @@ fn what_is_no_library_is_never_loaded() {
     let mut refused = |name: &str, content: &[u8]| {
         let path = dir.path().join(name);
         std::fs::write(&path, content).unwrap();
-        registry.load_plugin(&path, None).unwrap_err().reason
+        load_plugin(&mut registry, &path, None).unwrap_err().reason
     };
     assert_eq!(refused("empty.so", b""), "it declares no plugin");
     assert_eq!(refused("words.so", b"a garment"), "it declares no plugin");
@@ -57,11 +58,14 @@ fn what_is_no_library_is_never_loaded() {
     assert!(half == "it declares no plugin" || half.starts_with("the system cannot load it: "), "{half}");
     let torn = refused("torn.so", b"\x7fELF\0toile_plugin\0 and no more");
     assert!(torn.starts_with("the system cannot load it: "), "{torn}");
-    assert_eq!(registry.load_plugin(dir.path(), None).unwrap_err().reason, "it is not a file");
+    assert_eq!(load_plugin(&mut registry, dir.path(), None).unwrap_err().reason, "it is not a file");
     let pipe = dir.path().join("pipe.so");
     assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-    assert_eq!(registry.load_plugin(&pipe, None).unwrap_err().reason, "it is a pipe or a device, not a file");
-    let gone = registry.load_plugin(&dir.path().join("gone.so"), None).unwrap_err();
+    assert_eq!(
+        load_plugin(&mut registry, &pipe, None).unwrap_err().reason,
+        "it is a pipe or a device, not a file"
+    );
+    let gone = load_plugin(&mut registry, &dir.path().join("gone.so"), None).unwrap_err();
     assert_eq!(gone.reason, "there is no such file");
     assert_eq!(registry.refused().len(), 7, "a refused plugin stays listed");
 }
@@ -75,7 +79,7 @@ fn a_library_that_was_cut_short_is_refused_wherever_it_ends() {
     for share in 1..40 {
         let path = dir.path().join(format!("{share}.so"));
         std::fs::write(&path, &whole[..whole.len() * share / 40]).unwrap();
-        let refused = registry.load_plugin(&path, None).unwrap_err();
+        let refused = load_plugin(&mut registry, &path, None).unwrap_err();
         let head = "the system cannot load it: it is cut short: its tables name ";
         assert!(refused.reason.starts_with(head), "{share}: {}", refused.reason);
         assert!(refused.reason.ends_with(&format!("it has {}", whole.len() * share / 40)));
@@ -83,7 +87,7 @@ fn a_library_that_was_cut_short_is_refused_wherever_it_ends() {
         assert_eq!(refused.hint.as_deref(), Some(hint));
     }
     std::fs::write(dir.path().join("whole.so"), &whole).unwrap();
-    registry.load_plugin(&dir.path().join("whole.so"), None).unwrap();
+    load_plugin(&mut registry, &dir.path().join("whole.so"), None).unwrap();
 }
 
 /// What a run of the plugin says.

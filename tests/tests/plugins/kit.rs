@@ -5,13 +5,14 @@ use std::sync::Arc;
 use toile_core::artifact::{Artifact, Outline, Photo, Point2, Shared};
 use toile_core::plugin::Refused;
 use toile_core::{Context, Inputs, PortValue, Registry, Stage, StageError};
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::{compiled, library};
 
 /// The built-in stages and those of plugins.
 pub(crate) fn registry_with(names: &[&str]) -> Registry {
     let mut registry = toile::registry();
     for name in names {
-        registry.load_plugin(&library(name), None).unwrap();
+        load_plugin(&mut registry, &library(name), None).unwrap();
     }
     registry
 }
@@ -62,5 +63,5 @@ pub(crate) fn only(made: &[PortValue]) -> String {
 pub(crate) fn bad(case: &str, dir: &Path) -> Result<Registry, Refused> {
     let library = compiled("tests/faulty/bad.c", dir, &[&format!("-DCASE_{case}")]).unwrap();
     let mut registry = toile::registry();
-    registry.load_plugin(&library, None).map(|()| registry)
+    load_plugin(&mut registry, &library, None).map(|()| registry)
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 use toile_core::{Cancel, Context, ErrorCode, Event, Listener, Registry, Stage};
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::compiled;
 
 const FAULTY: &str = "plugin \"toile-faulty\" 0.1.0";
@@ -177,7 +178,7 @@ fn inverted(flags: &[&str]) -> (Box<dyn Stage>, String) {
     let dir = tempfile::tempdir().unwrap();
     let library = compiled("plugins/c/invert.c", dir.path(), flags).unwrap();
     let mut registry = Registry::new();
-    registry.load_plugin(&library, None).unwrap();
+    load_plugin(&mut registry, &library, None).unwrap();
     let stage = make(&registry, "InvertC", "(white: 200)");
     let made = only(&run(stage.as_ref(), vec![Arc::new(photo())]).unwrap());
     (stage, made)

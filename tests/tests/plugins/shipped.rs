@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use toile_core::testkit::{Trial, cases, folder, from_example};
 use toile_core::{Card, Registry};
+use toile_pipeline::plugin::load_plugin;
 use toile_tests::plugins::library;
 
 type Register = fn(&mut Registry);
@@ -24,7 +25,7 @@ fn every_stage_gives_the_same_bits_loaded_and_linked_in() {
     for (name, register) in SHIPPED {
         let (mut linked, mut loaded) = (Registry::new(), Registry::new());
         register(&mut linked);
-        loaded.load_plugin(&library(name), None).unwrap();
+        load_plugin(&mut loaded, &library(name), None).unwrap();
         for card in linked.cards() {
             let [own, foreign] = [&linked, &loaded].map(|r| from_example(r, card, &dir).unwrap());
             assert_eq!(own.params(), foreign.params());
@@ -46,7 +47,7 @@ fn every_stage_gives_the_same_bits_loaded_and_linked_in() {
 #[test]
 fn a_loaded_card_says_what_makes_a_stage_do_other_work() {
     let mut loaded = Registry::new();
-    loaded.load_plugin(&library("toile_guided"), None).unwrap();
+    load_plugin(&mut loaded, &library("toile_guided"), None).unwrap();
     let ways = loaded.card("Guided").unwrap().params.iter().filter(|p| p.way).map(|p| p.name);
     assert_eq!(ways.collect::<Vec<_>>(), ["guide"]);
 }

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::Duration;
 use toile_core::StageError;
-use toile_core::pipeline::Pipeline;
+use toile_pipeline::Pipeline;
 
 /// The record's kind.
 const KIND: Kind = Kind {

@@ -10,6 +10,7 @@
 //! - `turned`: the pipelines; `run`: the rounds; `kept`: what is on disk; `rows`, `record`, `table`: what it comes to.
 
 mod kept;
+mod options;
 mod outline;
 mod progress;
 mod record;
@@ -22,7 +23,8 @@ mod turned;
 
 pub use progress::{Progress, Step};
 pub use record::{Ablation, Change, Cut, Row, SCHEME, Saved, Unmeasured, Verdict};
-pub use run::{Options, ablate};
+pub use options::Options;
+pub use run::ablate;
 pub use table::{csv, lines};
 pub(crate) use turned::path_to;
 

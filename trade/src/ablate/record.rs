@@ -5,8 +5,9 @@ use crate::errors::Millimetres;
 use crate::record::Machine;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use toile_core::decide::{Decided, Tolerance};
-use toile_core::pipeline::Pipeline;
+use toile_core::decide::Tolerance;
+use toile_pipeline::Pipeline;
+use toile_pipeline::decide::Decided;
 
 /// The version of this form.
 pub const SCHEME: u32 = 1;

@@ -4,7 +4,7 @@ use super::kept::{Came, Kept};
 use super::record::{Ablation, Cut, Row, SCHEME, Unmeasured, Verdict};
 use super::turned::Turned;
 use crate::digest::digest;
-use toile_core::pipeline::Pipeline;
+use toile_pipeline::Pipeline;
 
 /// The ablation of a pipeline by the runs that are kept; `until` is the stage that they ended at.
 pub(super) fn ablation(

@@ -1,33 +1,18 @@
 //! The runs of an ablation, each kept as soon as it is done.
 
 use super::kept::{Came, Kept};
+use super::options::Options;
 use super::record::{Ablation, Change};
 use super::rows::ablation;
 use super::turned::{Turned, all_turned};
 use super::{Progress, Step, outline};
 use crate::digest::garment_digest;
 use crate::errors::compare;
-use crate::measure::{Bench, Missed, Ran};
+use crate::measure::{Missed, Ran};
 use crate::source::Source;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use toile_core::pipeline::Pipeline;
 use toile_core::{ErrorCode, StageError};
-
-/// What is asked.
-#[derive(Clone)]
-pub struct Options {
-    /// Folder of the record.
-    pub out: PathBuf,
-    /// Rounds, those of earlier sessions counted.
-    pub repeats: usize,
-    /// Time for everything; none ends with the last round.
-    pub budget: Option<Duration>,
-    /// Longest run with a decision turned round.
-    pub limit: Option<Duration>,
-    /// How runs are made.
-    pub bench: Bench,
-}
+use toile_pipeline::Pipeline;
 
 /// Runs the pipeline as decided and with each decision turned round, or goes on with what was run.
 ///

@@ -4,7 +4,8 @@ use super::*;
 use crate::errors::Millimetres;
 use crate::record::Machine;
 use std::time::Duration;
-use toile_core::decide::{Decided, Decision, Saves, State, Tolerance, Turn};
+use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
+use toile_pipeline::decide::Decided;
 
 fn change(p95: f64, same_bits: bool) -> Change {
     let mm = |x: f64| Millimetres { mean: x / 2.0, p95: x, max: 2.0 * x };

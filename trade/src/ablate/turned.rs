@@ -1,9 +1,10 @@
 //! A pipeline with one of its decisions turned round.
 
 use crate::source::{Source, path_of};
-use toile_core::decide::{Decided, Turn, decisions};
-use toile_core::pipeline::{Override, Pipeline};
-use toile_core::{RunOptions, StageError};
+use toile_core::StageError;
+use toile_core::decide::Turn;
+use toile_pipeline::decide::{Decided, decisions};
+use toile_pipeline::{Override, Pipeline, RunOptions};
 
 /// A decision with the pipeline that it is turned round in.
 pub(super) struct Turned {

@@ -4,9 +4,9 @@ use super::wire::{Task, write};
 use crate::jitter;
 use crate::measure::{Bench, Missed, Ran};
 use std::sync::Arc;
-use toile_core::cache::Cache;
-use toile_core::pipeline::{Changes, Pipeline, load_with};
-use toile_core::{Cancel, Registry, StageError, add_implicit};
+use toile_core::{Cancel, Registry, StageError};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::{Changes, Pipeline, add_implicit, load_with};
 
 /// Runs the task of a line and gives its answer as bytes.
 ///

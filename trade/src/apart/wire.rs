@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 use toile_core::artifact::stored::{decode, encode};
-use toile_core::pipeline::Pipeline;
 use toile_core::{Artifact, ArtifactType, ErrorCode, Length, StageError};
+use toile_pipeline::Pipeline;
 
 /// A run.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

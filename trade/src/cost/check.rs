@@ -120,7 +120,7 @@ fn judge(check: &mut Check, pipeline: &str, left_out: &[CostRecord], costs: &Cos
         }
         ratios.sort_by(f64::total_cmp);
         let (pipeline, stage) = (pipeline.to_owned(), stage.to_owned());
-        let (stand_in, fact) = (!costs.knows(&stage), super::law::median(&mut facts));
+        let (stand_in, fact) = (!costs.knows(&stage), super::seen::median(&mut facts));
         check.stages.push(Verdict { pipeline, stage, stand_in, ratios, fact, tally });
     }
 }

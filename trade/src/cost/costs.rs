@@ -1,7 +1,8 @@
 //! The laws of all stages, from what this machine's runs took and from what is shipped.
 
 use super::bias::Bias;
-use super::law::{Law, Seen, median};
+use super::law::Law;
+use super::seen::{Seen, median};
 use super::record::{CostRecord, Figure};
 use super::terms::terms;
 use std::collections::{BTreeMap, BTreeSet};

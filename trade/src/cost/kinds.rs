@@ -5,7 +5,7 @@
 //! pipelines and drawn towards 1 while these are few (the mean of a random effect: Robinson, That BLUP is a good thing,
 //! 1991).
 
-use super::law::{Seen, median};
+use super::seen::{Seen, median};
 use std::collections::BTreeMap;
 
 /// Pipelines of a kind that are needed for half of its own factor, as a logarithm, to count: kinds differ by about as much as

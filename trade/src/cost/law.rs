@@ -2,6 +2,7 @@
 
 use super::fit::{Row, fit};
 use super::kinds::Kinds;
+use super::seen::{Seen, median};
 use super::terms::Term;
 use std::collections::BTreeMap;
 use toile_core::cost::{Estimate, Size};
@@ -34,16 +35,6 @@ pub(super) struct Law {
     /// Least and greatest prediction of the runs that it was fitted on.
     range: (f64, f64),
     floor: f64,
-}
-
-/// A run that a law is fitted on.
-#[derive(Debug, Clone)]
-pub(super) struct Seen<'a> {
-    pub(super) pipeline: &'a str,
-    pub(super) style: &'a str,
-    pub(super) size: &'a Size,
-    pub(super) fact: f64,
-    pub(super) weight: f64,
 }
 
 impl Law {
@@ -117,14 +108,4 @@ fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
     let own = if count > 1.0 { squares * (count / (count - 1.0)).powi(2) } else { 0.0 };
     let free = count - 1.0 + BETWEEN.1;
     (((own + BETWEEN.0 * BETWEEN.0 * BETWEEN.1) / free).sqrt(), free)
-}
-
-/// The middle of some values; 0 of none.
-pub(super) fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
-    }
 }

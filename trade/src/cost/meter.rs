@@ -3,7 +3,8 @@
 use cpu_time::ProcessTime;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
-use toile_core::cost::{Meter, Used};
+use toile_core::cost::Used;
+use toile_pipeline::cost::Meter;
 
 /// A program's count of the memory that it holds.
 #[derive(Debug, Clone, Copy)]

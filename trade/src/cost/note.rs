@@ -1,20 +1,14 @@
 //! From a run to its records.
 
 use super::Costs;
-use super::predict::key;
+use super::named::{key, style};
 use super::record::CostRecord;
 use super::work::work;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use toile_core::Role;
-use toile_core::cost::{Foreseen, Size, StageCost, foresee};
-use toile_core::pipeline::Pipeline;
-
-/// The kind of garment that a pipeline makes: the name of its first style, which names the edges; empty without one.
-pub(super) fn style(pipeline: &Pipeline) -> String {
-    let style = pipeline.nodes.iter().find(|n| n.card.role == Role::Style);
-    style.map_or_else(String::new, |n| n.card.name.to_owned())
-}
+use toile_core::cost::Size;
+use toile_pipeline::Pipeline;
+use toile_pipeline::cost::{Foreseen, StageCost, foresee};
 
 /// What the stages of a run took, with the sizes that they had; what came from the cache has none and is taken from
 /// earlier runs.

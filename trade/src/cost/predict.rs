@@ -1,12 +1,13 @@
 //! A pipeline's forecast.
 
-use super::note::style;
+use super::named::{key, style};
 use super::record::Figure;
 use super::work::work;
 use super::{Costs, Place};
-use toile_core::artifact::Digester;
-use toile_core::cost::{Estimate, Foreseen, Predicted, Size, foresee};
-use toile_core::pipeline::{Node, Pipeline};
+use toile_core::Node;
+use toile_core::cost::{Estimate, Predicted, Size};
+use toile_pipeline::Pipeline;
+use toile_pipeline::cost::{Foreseen, foresee};
 
 /// What is expected of one stage.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,17 +22,6 @@ pub struct Forecast {
     pub known: bool,
     /// False where the stage has not run on this machine yet.
     pub measured_here: bool,
-}
-
-/// Names what a stage is to be given, for finding what it made of the same before.
-pub(super) fn key(node: &Node, foreseen: &Size) -> String {
-    let mut d = Digester::new();
-    d.text("toile size").text(node.card.name).count(node.card.version as usize).text(&node.stage.params());
-    foreseen.iter().for_each(|(quantity, amount)| {
-        // Text does not bring the last bit of a number back.
-        d.text(&format!("{quantity:?} {amount:.6e}"));
-    });
-    d.finish().short()
 }
 
 /// What each stage of a pipeline will be given, make and take. Nothing is run.

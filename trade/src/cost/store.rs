@@ -7,8 +7,9 @@ use super::record::{CostRecord, Host};
 use super::shipped::{Collection, LONGEST, parse};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use toile_core::StageError;
 use toile_core::artifact::OutputFile;
-use toile_core::{StageError, write_files};
+use toile_pipeline::write_files;
 
 /// The file's name.
 const FILE: &str = "costs.jsonl";

@@ -4,8 +4,8 @@ use image::{GenericImageView, ImageFormat, imageops::FilterType};
 use std::io::Cursor;
 use std::path::Path;
 use toile_core::artifact::OutputFile;
-use toile_core::pipeline::{Override, Pipeline, fields_of};
-use toile_core::{Length, Role, StageError, write_files};
+use toile_core::{Length, Role, StageError};
+use toile_pipeline::{Override, Pipeline, fields_of, write_files};
 
 /// Factors of the edge length and of the photos' sides.
 const FACTORS: [(f64, f64); 7] =
@@ -54,7 +54,7 @@ fn variation(
 /// Meshers with their edge length, metres.
 fn edges(pipeline: &Pipeline) -> Vec<(String, f64)> {
     let meshers = pipeline.nodes.iter().filter(|n| n.card.role == Role::Mesher);
-    let edge = |n: &toile_core::pipeline::Node| {
+    let edge = |n: &toile_core::Node| {
         let edge: Length = fields_of(&n.stage.params()).get("edge")?.trim_matches('"').parse().ok()?;
         Some((n.id.clone(), edge.metres()))
     };

@@ -2,8 +2,8 @@
 
 use super::check::{Check, Tally, Verdict, is_right};
 use super::predict::{Forecast, total};
-use toile_core::cache::Bytes;
 use toile_core::cost::{Estimate, Predicted, Used};
+use toile_pipeline::cache::Bytes;
 
 /// A time as people read it.
 pub(crate) fn time(s: f64) -> String {

@@ -1,6 +1,7 @@
 //! Which work of a stage it is that takes so long.
 
-use toile_core::pipeline::{Node, fields_of};
+use toile_core::Node;
+use toile_pipeline::fields_of;
 
 /// The stage's name, and what of its parameters makes it do other work than by default: `Rest(from_here: true)`.
 pub(super) fn work(node: &Node) -> String {

@@ -18,7 +18,8 @@ use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
-use toile_core::{StageError, read_file, write_files};
+use toile_core::{StageError, read_file};
+use toile_pipeline::write_files;
 
 /// What kind of record it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -24,8 +24,8 @@ use crate::slot::{Board, Setting, setting_words};
 use crate::source::Source;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use toile_core::cache::Cache;
 use toile_core::{Length, StageError};
+use toile_pipeline::cache::Cache;
 
 /// Factor between levels: twice the triangles, so that a further level is never far out of the budget.
 pub const RATIO: f64 = std::f64::consts::SQRT_2;

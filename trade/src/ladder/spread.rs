@@ -7,9 +7,9 @@ use crate::record::{Level, OwnSpread};
 use crate::source::Source;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use toile_core::cache::Cache;
-use toile_core::pipeline::Override;
 use toile_core::{Length, StageError};
+use toile_pipeline::Override;
+use toile_pipeline::cache::Cache;
 
 impl Search<'_> {
     /// Starts the level before the last again from moved starts.

@@ -18,11 +18,9 @@ use memory::{forget_peak, peak};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
-use toile_core::cache::Cache;
-use toile_core::pipeline::Pipeline;
-use toile_core::{
-    Cancel, ErrorCode, Length, Listener, Reads, RunError, RunOptions, RunResult, StageError, run,
-};
+use toile_core::{Cancel, ErrorCode, Length, Listener, StageError};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::{Pipeline, Reads, RunError, RunOptions, RunResult, run};
 
 /// Seconds of processor time that this process has taken, all threads.
 #[must_use]

@@ -4,7 +4,8 @@ use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::PoisonError;
 use toile_core::artifact::{Body, Figures, Garment, Model, RunLog};
-use toile_core::{ArtifactType, ErrorCode, Reads, RunResult, StageError};
+use toile_core::{ArtifactType, ErrorCode, StageError};
+use toile_pipeline::{Reads, RunResult};
 
 /// What a run gave.
 #[derive(Debug)]
@@ -83,7 +84,7 @@ fn stages(result: &RunResult) -> BTreeMap<String, f64> {
 /// Files by name, with the digests of their contents.
 fn named(reads: &Reads) -> BTreeMap<String, Option<String>> {
     let reads = reads.lock().unwrap_or_else(PoisonError::into_inner);
-    let one = |(path, hash): (&std::path::PathBuf, &Option<toile_core::cache::Hash>)| {
+    let one = |(path, hash): (&std::path::PathBuf, &Option<toile_core::artifact::Digest>)| {
         (path.display().to_string(), hash.map(|h| h.hex()))
     };
     reads.iter().map(one).collect()

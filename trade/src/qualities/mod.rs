@@ -9,8 +9,8 @@ mod tests;
 use crate::record::{Clock, Machine};
 use crate::tune::{Proof, Prover, Wish, overrides, refusal};
 use std::str::FromStr;
-use toile_core::pipeline::{Basis, Quality, fill_qualities, load, without_qualities};
 use toile_core::{ErrorCode, Length, StageError};
+use toile_pipeline::{Basis, Quality, fill_qualities, load, without_qualities};
 
 /// A quality that is asked for: `Draft=10 mm`.
 #[derive(Debug, Clone, PartialEq)]

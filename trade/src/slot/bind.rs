@@ -4,8 +4,8 @@ use super::{Board, Knob, Setting, Slot};
 use crate::dial::{Dial, dial};
 use crate::knob::{KnobSpec, Values, fault};
 use crate::source::{Source, path_of};
-use toile_core::pipeline::{Node, Pipeline, nearest};
-use toile_core::{Card, ParamDoc, Role, StageError};
+use toile_core::{Card, Node, ParamDoc, Role, StageError, nearest};
+use toile_pipeline::Pipeline;
 
 impl Board {
     /// Holds knobs against a pipeline.

@@ -3,7 +3,7 @@
 use super::{Board, Setting, Slot};
 use std::collections::BTreeMap;
 use toile_core::ParamDoc;
-use toile_core::pipeline::Override;
+use toile_pipeline::Override;
 
 impl Board {
     /// The overrides that make a setting, in the order in which they are applied.

@@ -23,9 +23,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use store::{Against, KIND, Store};
-use toile_core::cache::Cache;
-use toile_core::pipeline::Pipeline;
 use toile_core::{Length, StageError};
+use toile_pipeline::Pipeline;
+use toile_pipeline::cache::Cache;
 
 /// The reference's share of the budget, and that of its moved starts.
 const REFERENCE_SHARE: [f64; 2] = [0.35, 0.15];

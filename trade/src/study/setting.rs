@@ -7,9 +7,9 @@ use crate::measure::{Missed, Ran};
 use crate::page::pictures;
 use crate::record::{Measured, Outcome, Point};
 use crate::slot::{Setting, setting_words};
+use toile_core::StageError;
 use toile_core::artifact::Digester;
-use toile_core::pipeline::Pipeline;
-use toile_core::{StageError, write_files};
+use toile_pipeline::{Pipeline, write_files};
 
 impl Study<'_> {
     /// Measures a setting; none where it makes a pipeline that was measured already, which is then noted as known.

@@ -26,7 +26,7 @@ pub use written::MARK;
 use crate::digest::{changed, digest};
 use crate::record::Trade;
 use toile_core::StageError;
-use toile_core::pipeline::{Override, Pipeline};
+use toile_pipeline::{Override, Pipeline};
 
 /// Holds a record against the pipeline that it is to be used for.
 ///

@@ -10,9 +10,9 @@ use crate::source::Source;
 use crate::study::measured;
 use std::path::Path;
 use std::sync::Arc;
-use toile_core::cache::Cache;
-use toile_core::pipeline::{Override, Pipeline};
 use toile_core::{ErrorCode, Length, StageError};
+use toile_pipeline::cache::Cache;
+use toile_pipeline::{Override, Pipeline};
 
 /// Everything that a proof needs.
 pub struct Prover<'a> {

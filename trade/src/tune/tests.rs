@@ -64,8 +64,7 @@ fn a_measurement_of_another_state_is_refused() {
         registry
     };
     let text = "(scene: Scene(file: \"a.json\"), stages: [Rest(), GarmentObj()])";
-    let pipeline =
-        toile_core::pipeline::load(text, "a.ron", std::path::Path::new("."), &registry, &[]).unwrap();
+    let pipeline = toile_pipeline::load(text, "a.ron", std::path::Path::new("."), &registry, &[]).unwrap();
     let refused = |trade: &Trade| check(trade, &pipeline).unwrap_err().message;
     let mut now = trade(None);
     (now.file, now.toile) = ("a.ron".into(), env!("CARGO_PKG_VERSION").into());

@@ -4,7 +4,7 @@ use super::{Proof, Prover, Wish, overrides};
 use crate::record::{Clock, Machine, Point};
 use crate::slot::setting_words;
 use toile_core::StageError;
-use toile_core::pipeline::without_qualities;
+use toile_pipeline::without_qualities;
 
 /// Begins each line that tuning puts on top of a pipeline file.
 pub const MARK: &str = "// toile tune:";

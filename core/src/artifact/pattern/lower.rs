@@ -10,9 +10,8 @@ use super::super::{
 };
 use super::chain::{Cuts, Link};
 use super::{EdgePath, LinePurpose, Pattern, PatternSeam, Piece};
-use rayon::prelude::*;
+use crate::parallel;
 use std::collections::{BTreeMap, BTreeSet};
-use thiserror::Error;
 
 /// Sides of a matched seam whose lengths differ by more than this share of the longer are gathered.
 const EASE: f64 = 0.03;
@@ -32,19 +31,16 @@ pub struct Lowered {
 }
 
 /// Why a pattern cannot be lowered.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LoweringError {
     /// The pattern itself is not sound.
-    #[error("the pattern is not sound: {0}")]
     Unsound(String),
     /// Chains of edges that cut each other again and again.
-    #[error("the seam \"{seam}\" and others divide each other without end")]
     Endless {
         /// The seam.
         seam: String,
     },
     /// An edge that stands on two sides of one seam.
-    #[error("the seam \"{seam}\" sews {edge} to itself")]
     Itself {
         /// The seam.
         seam: String,
@@ -52,6 +48,20 @@ pub enum LoweringError {
         edge: EdgeRef,
     },
 }
+
+impl std::fmt::Display for LoweringError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            LoweringError::Unsound(what) => write!(f, "the pattern is not sound: {what}"),
+            LoweringError::Endless { seam } => {
+                write!(f, "the seam \"{seam}\" and others divide each other without end")
+            }
+            LoweringError::Itself { seam, edge } => write!(f, "the seam \"{seam}\" sews {edge} to itself"),
+        }
+    }
+}
+
+impl std::error::Error for LoweringError {}
 
 impl LoweringError {
     /// What can be done about it.
@@ -85,12 +95,11 @@ impl Pattern {
         let sewn: BTreeSet<&EdgeRef> =
             self.seams.iter().flat_map(|s| s.sides.iter().flatten()).map(|u| &u.edge).collect();
         let mut notes = Vec::new();
-        let mut outlines: BTreeMap<String, Outline> = self
-            .pieces
-            .par_iter()
-            .zip(&names)
-            .map(|(p, names)| (p.name.clone(), outline(p, names, &cuts, &sewn)))
-            .collect();
+        let drawn = parallel::map(self.pieces.len(), parallel::each, |k| {
+            let p = &self.pieces[k];
+            (p.name.clone(), outline(p, &names[k], &cuts, &sewn))
+        });
+        let mut outlines: BTreeMap<String, Outline> = drawn.into_iter().collect();
         for p in &self.pieces {
             let slits = p.lines.iter().filter(|l| l.purpose == LinePurpose::Cut);
             notes

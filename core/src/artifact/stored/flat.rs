@@ -5,7 +5,7 @@ use super::super::{
     Point2, Shared,
 };
 use super::{Reader, Record, Stored};
-use image::{GrayImage, RgbImage};
+use crate::artifact::{GrayImage, RgbImage};
 
 /// A colour picture as two fields.
 pub(super) fn rgb<'a>(record: Record<'a>, pixels: &'a Shared<RgbImage>) -> Record<'a> {

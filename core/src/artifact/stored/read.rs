@@ -2,9 +2,7 @@
 
 use super::super::Shared;
 use super::list::{Data, Field, Listed, Owner, Record};
-use image::{GrayImage, ImageBuffer, Pixel, RgbImage};
-
-type Picture<P> = Result<Shared<ImageBuffer<P, Vec<u8>>>, String>;
+use crate::artifact::{GrayImage, Picture, RgbImage};
 
 /// Reads the fields of one record by their names.
 #[derive(Debug, Clone, Copy)]
@@ -91,15 +89,16 @@ impl<'a> Reader<'a> {
 
     /// A colour picture: `size` (width, height) and three bytes a pixel.
     pub fn rgb(&self, name: &str) -> Result<Shared<RgbImage>, String> {
-        self.picture(name, 3)
+        self.picture(name)
     }
 
     /// A grey picture: `size` and one byte a pixel.
     pub fn grey(&self, name: &str) -> Result<Shared<GrayImage>, String> {
-        self.picture(name, 1)
+        self.picture(name)
     }
 
-    fn picture<P: Pixel<Subpixel = u8>>(&self, name: &str, width: u32) -> Picture<P> {
+    fn picture<P: Picture>(&self, name: &str) -> Result<Shared<P>, String> {
+        let width = P::CHANNELS;
         let [w, h] = self.one::<[u32; 2]>("size")?;
         let field = self.field(name)?;
         let Data::U8(bytes) = &field.data else {
@@ -116,7 +115,7 @@ impl<'a> Reader<'a> {
             Owner::Foreign(lending) => lending.picture(bytes, w, h),
             _ => None,
         };
-        let copied = || ImageBuffer::from_raw(w, h, bytes.to_vec()).map(Shared::new);
+        let copied = || P::of_bytes(w, h, bytes.to_vec()).map(Shared::new);
         let cannot = || format!("`{name}` is no picture of {w} x {h} pixels");
         lent.or_else(copied).ok_or_else(cannot)
     }

@@ -1,8 +1,7 @@
 //! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what to do.
 
 use thiserror::Error;
-use toile_core::pipeline::nearest;
-use toile_core::{ErrorCode, StageError};
+use toile_core::{ErrorCode, StageError, nearest};
 
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]

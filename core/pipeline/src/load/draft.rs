@@ -1,0 +1,114 @@
+//! A stage between text and graph, and the ids of all stages.
+
+use super::fault::Fault;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use toile_core::{Card, Feed, Node, Stage};
+
+/// A stage as far as it could be read.
+#[derive(Debug)]
+pub(super) struct Draft {
+    /// Its id; set by [`name_all`].
+    pub(super) id: String,
+    /// The name that the file gives it.
+    pub(super) name: String,
+    /// The name that was probably meant: others read from it by that.
+    pub(super) meant: Option<&'static str>,
+    /// The `id` that the file gives it.
+    pub(super) given_id: Option<(String, Range<usize>)>,
+    /// The ids that its `from` names.
+    pub(super) from: Vec<(String, Range<usize>)>,
+    /// Its card; of an unknown stage, the card of the one that was probably meant, so that the
+    /// graph can be checked all the same.
+    pub(super) card: Option<Card>,
+    /// True of a table section, which has no place for `from`.
+    pub(super) is_table: bool,
+    pub(super) span: Range<usize>,
+    pub(super) place: Range<usize>,
+    pub(super) params: BTreeMap<String, Range<usize>>,
+    /// The parameters whose values are wrong.
+    pub(super) wrong: Vec<&'static str>,
+    /// None where it has a fault; where only values are wrong, the stage without them, if it can be made.
+    pub(super) stage: Option<Box<dyn Stage>>,
+}
+
+impl Draft {
+    /// Something in place of a stage, of which nothing is known.
+    pub(super) fn unknown(span: &Range<usize>) -> Self {
+        Draft::new("", span, span, None)
+    }
+
+    /// A stage of which no argument has been read yet.
+    pub(super) fn new(name: &str, span: &Range<usize>, place: &Range<usize>, card: Option<Card>) -> Self {
+        Draft {
+            id: String::new(),
+            name: name.to_owned(),
+            meant: None,
+            given_id: None,
+            from: Vec::new(),
+            card,
+            is_table: false,
+            span: span.clone(),
+            place: place.clone(),
+            params: BTreeMap::new(),
+            wrong: Vec::new(),
+            stage: None,
+        }
+    }
+
+    /// The finished node; none where the stage has a fault.
+    pub(super) fn finish(self, inputs: Vec<Feed>) -> Option<Node> {
+        let Draft { id, card, span, place, params, stage, .. } = self;
+        Some(Node { id, stage: stage?, card: card?, span, place, params, inputs })
+    }
+}
+
+/// The nodes of the stages that could be made and are fed by such, near and far, and of each whether all its values are its own.
+pub(super) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> (Vec<Node>, Vec<bool>) {
+    let (mut nodes, mut own): (Vec<Node>, Vec<bool>) = Default::default();
+    // Where each draft stands among the nodes.
+    let mut places: Vec<Option<usize>> = Vec::new();
+    for (draft, inputs) in drafts.into_iter().zip(feeds) {
+        let moved = |feed: Feed| match feed {
+            Feed::Node { node, port } => {
+                places.get(node).copied().flatten().map(|node| Feed::Node { node, port })
+            }
+            other => Some(other),
+        };
+        let inputs: Option<Vec<Feed>> = inputs.into_iter().map(moved).collect();
+        let is_own = draft.wrong.is_empty();
+        let node = inputs.and_then(|inputs| draft.finish(inputs));
+        places.push(node.as_ref().map(|_| nodes.len()));
+        own.extend(node.as_ref().map(|_| is_own));
+        nodes.extend(node);
+    }
+    (nodes, own)
+}
+
+/// Gives every stage its id: the one it asks for, else its name with a number where that is taken.
+pub(super) fn name_all<'a>(drafts: impl Iterator<Item = &'a mut Draft>, faults: &mut Vec<Fault>) {
+    let mut drafts: Vec<&mut Draft> = drafts.collect();
+    let mut taken: BTreeMap<String, Range<usize>> = BTreeMap::new();
+    for draft in &mut drafts {
+        let Some((id, span)) = &draft.given_id else { continue };
+        draft.id = id.clone();
+        if let Some(first) = taken.get(id) {
+            let message = format!("two stages have the id `{id}`");
+            faults.push(Fault::new("duplicate_id", message).at(span, "second").at(first, "first"));
+        }
+        taken.entry(id.clone()).or_insert_with(|| span.clone());
+    }
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for draft in drafts.into_iter().filter(|d| d.given_id.is_none()) {
+        let name = draft.meant.unwrap_or(&draft.name).to_owned();
+        let count = counts.entry(name.clone()).or_insert(0);
+        loop {
+            *count += 1;
+            draft.id = if *count == 1 { name.clone() } else { format!("{name}{count}") };
+            if !taken.contains_key(&draft.id) {
+                break;
+            }
+        }
+        taken.insert(draft.id.clone(), draft.place.clone());
+    }
+}

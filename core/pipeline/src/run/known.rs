@@ -1,0 +1,133 @@
+//! Results that are known: looked for in the cache, put together with what was made, and kept there.
+
+use super::node::{Failure, Made};
+use super::steps::{Ran, Run};
+use super::value::{Held, gather};
+use crate::cache::{Cache, Found, Ingredients, Kept, Manifest, Miss};
+use rayon::prelude::*;
+use toile_core::artifact::Digest;
+use toile_core::{Arity, Context, Contract, Event, Node};
+
+/// One run of a stage, as it is looked for in the cache.
+pub(super) struct Search {
+    pub(super) entry: String,
+    pub(super) ingredients: Ingredients,
+    pub(super) found: Found,
+}
+
+impl Run<'_> {
+    /// Looks for every run of a stage in the cache.
+    pub(super) fn search(&self, index: usize) -> Result<Vec<Search>, Failure> {
+        let node = &self.pipeline.nodes[index];
+        let kept = node.card.contracts.contains(&Contract::Deterministic);
+        let search = |entry: String| {
+            let ingredients = self.ingredients(index, &entry);
+            let key = ingredients.key().filter(|_| kept);
+            let found = match (self.cache, key) {
+                (Some(cache), Some(key)) => shaped(node, cache.find(&key, &self.pipeline.base)),
+                _ => Found::Miss(Miss::Unknown),
+            };
+            Search { entry, ingredients, found }
+        };
+        Ok(self.entries(index)?.into_iter().map(search).collect())
+    }
+
+    /// The key of a run; none where it cannot be kept.
+    pub(super) fn key(&self, node: &Node, ingredients: &Ingredients) -> Option<(&Cache, Digest)> {
+        let kept = node.card.contracts.contains(&Contract::Deterministic);
+        Some((self.cache?, ingredients.key().filter(|_| kept)?))
+    }
+
+    /// Says what is wrong with the cache, and repeats the warnings of results that come from it.
+    pub(super) fn tell(&self, node: &Node, searches: &[Search]) {
+        for search in searches {
+            match &search.found {
+                Found::Hit(manifest) => {
+                    self.note_reads(manifest.reads.clone());
+                    for warning in &manifest.warnings {
+                        self.listener.event(&node.id, &search.entry, &Event::Warning(warning.clone()));
+                    }
+                }
+                Found::Miss(Miss::Damaged(why)) => self.damaged(node, &search.entry, why),
+                Found::Miss(_) => {}
+            }
+        }
+    }
+
+    pub(super) fn damaged(&self, node: &Node, entry: &str, why: &str) {
+        let of = if entry.is_empty() { String::new() } else { format!(" ({entry})") };
+        if let Some(cache) = self.cache {
+            cache.warn(format!("damaged cache entry of {}{of}: {why}; it is made anew", node.id));
+        }
+    }
+
+    /// Keeps what was made and puts it together with what was found.
+    pub(super) fn ran(&self, node: &Node, searches: Vec<Search>, made: Vec<Made>, cx: &Context) -> Ran {
+        let cached = made.is_empty() && self.cache.is_some();
+        let kept = self.keep(node, &searches, &made);
+        let mut made = made.into_iter().zip(kept).peekable();
+        let (mut notes, mut entries) = ((Vec::new(), Vec::new()), Vec::new());
+        for Search { entry, ingredients, found } in searches {
+            let (fresh, manifest) = match found {
+                Found::Hit(manifest) => (None, Some(manifest)),
+                Found::Miss(_) => made.next().map_or((None, None), |(made, kept)| (Some(made), kept)),
+            };
+            if let (Some(cache), Some(manifest)) = (self.cache, &manifest) {
+                if let (None, Some(key)) = (&fresh, ingredients.key()) {
+                    cache.touch(&key, manifest);
+                }
+                cache.note(self.pipeline, &node.id, &ingredients, manifest);
+            }
+            entries.push((entry.clone(), held(node, fresh.as_ref(), manifest.as_ref())));
+            let own = match (fresh, manifest) {
+                (Some(made), _) => (made.figures, made.warnings),
+                (None, Some(manifest)) => (manifest.figures(), manifest.warnings),
+                (None, None) => (Vec::new(), Vec::new()),
+            };
+            match node.card.is_mapped() {
+                true => cx.absorb(&entry, own.0, own.1),
+                false => notes = own,
+            }
+        }
+        let outputs = match node.card.is_mapped() {
+            true => {
+                notes = cx.take_notes();
+                gather(&node.card, &entries)
+            }
+            false => entries.pop().map(|(_, outputs)| outputs).unwrap_or_default(),
+        };
+        Ran { outputs, wall_s: 0.0, cached, figures: notes.0, warnings: notes.1, cost: None }
+    }
+
+    /// Puts into the cache what was made; none for what cannot be kept.
+    fn keep(&self, node: &Node, searches: &[Search], made: &[Made]) -> Vec<Option<Manifest>> {
+        let keep = |made: &Made| {
+            let search = searches.iter().find(|s| s.entry == made.entry)?;
+            let (cache, key) = self.key(node, &search.ingredients)?;
+            Some(cache.keep(&key, made))
+        };
+        made.par_iter().map(keep).collect()
+    }
+}
+
+/// The values of one run's ports.
+pub(super) fn held(node: &Node, made: Option<&Made>, manifest: Option<&Manifest>) -> Vec<Held> {
+    let port = |(i, out): (usize, &toile_core::OutPort)| {
+        let value = made.and_then(|m| m.outputs.get(i));
+        Held::of(out.kind, value, manifest.and_then(|m| m.outputs.get(i)))
+    };
+    node.card.outputs.iter().enumerate().map(port).collect()
+}
+
+/// A manifest that does not have the stage's ports is damaged.
+fn shaped(node: &Node, found: Found) -> Found {
+    let Found::Hit(manifest) = found else { return found };
+    let fits = |(port, kept): (&toile_core::OutPort, &Kept)| {
+        (port.arity == Arity::All) == matches!(kept, Kept::Set(_))
+    };
+    let ports = &node.card.outputs;
+    match manifest.outputs.len() == ports.len() && ports.iter().zip(&manifest.outputs).all(fits) {
+        true => Found::Hit(manifest),
+        false => Found::Miss(Miss::Damaged("its outputs are not those of the stage".into())),
+    }
+}
