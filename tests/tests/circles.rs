@@ -187,7 +187,10 @@ impl Crate {
                     _ => Some([&parent[..], rest].concat()),
                 }
             }
-            _ => self.files.contains_key(&[&at[..], &[first.clone()]].concat()).then(|| [at, path].concat()),
+            _ => self
+                .files
+                .contains_key(&[&at[..], std::slice::from_ref(first)].concat())
+                .then(|| [at, path].concat()),
         }
     }
 
@@ -239,7 +242,7 @@ fn imports(src: &Path) -> BTreeMap<PathBuf, BTreeSet<PathBuf>> {
     for file in &all {
         let at = module_of(file.strip_prefix(src).unwrap());
         let text = std::fs::read_to_string(file).unwrap();
-        let parsed = syn::parse_file(&text).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let parsed = syn::parse_file(&text).map_err(|e| format!("{}: {e}", file.display())).unwrap();
         let mut seen =
             Named { at: at.clone(), root: &house, paths: vec![], tests: vec![], handed_on: vec![] };
         seen.visit_file(&parsed);

@@ -53,5 +53,5 @@ fn main() -> Result<(), Box<dyn Error>> {
         "residual_n": state.residual, "joined_at_m": state.joined_at, "error": error, "levels": levels,
     });
     println!("{line}");
-    Ok(toile_cloth::obj::write(Path::new(out), &state.positions, &scene.triangles)?)
+    Ok(toile_geometry::obj::write(Path::new(out), &state.positions, &scene.triangles)?)
 }

@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{level:?}");
     }
     if let Some(file) = file.first() {
-        toile_cloth::obj::write(Path::new(file), &state.positions, &scene.triangles)?;
+        toile_geometry::obj::write(Path::new(file), &state.positions, &scene.triangles)?;
     }
     Ok(())
 }

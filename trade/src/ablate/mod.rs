@@ -21,9 +21,9 @@ mod table;
 mod tests;
 mod turned;
 
+pub use options::Options;
 pub use progress::{Progress, Step};
 pub use record::{Ablation, Change, Cut, Row, SCHEME, Saved, Unmeasured, Verdict};
-pub use options::Options;
 pub use run::ablate;
 pub use table::{csv, lines};
 pub(crate) use turned::path_to;

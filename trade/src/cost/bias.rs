@@ -4,8 +4,8 @@
 //! Of each stage and quantity the middle of fact / rule is kept, by kind of garment and for all kinds together, and the
 //! same of all stages together: what a T-shirt's mesh has in one stage it has in the next as well.
 
-use super::seen::median;
 use super::record::CostRecord;
+use super::seen::median;
 use std::collections::BTreeMap;
 use toile_core::cost::{Quantity, Size};
 

@@ -2,8 +2,8 @@
 
 use super::bias::Bias;
 use super::law::Law;
-use super::seen::{Seen, median};
 use super::record::{CostRecord, Figure};
+use super::seen::{Seen, median};
 use super::terms::terms;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Mutex, OnceLock, PoisonError};

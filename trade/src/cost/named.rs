@@ -1,9 +1,9 @@
 //! How stages and kinds of garments are named in the records.
 
 use toile_core::Node;
+use toile_core::Role;
 use toile_core::artifact::Digester;
 use toile_core::cost::Size;
-use toile_core::Role;
 use toile_pipeline::Pipeline;
 
 /// Names what a stage is to be given, for finding what it made of the same before.

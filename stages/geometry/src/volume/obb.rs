@@ -35,7 +35,7 @@ impl Obb {
     fn around(axes: Matrix3<f64>, points: &[Vec3]) -> Self {
         let far = Vec3::repeat(f64::INFINITY);
         let (low, high) = points.iter().fold((far, -far), |(low, high), p| {
-            let s = axes.tr_mul(&p);
+            let s = axes.tr_mul(p);
             (low.inf(&s), high.sup(&s))
         });
         Self::along(axes, low, high)
@@ -97,7 +97,7 @@ fn across(x: &Vec3) -> Vec3 {
 
 /// The covariance of points.
 fn covariance(points: &[Vec3]) -> Matrix3<f64> {
-    let mean = points.iter().map(|p| p).sum::<Vec3>() / points.len() as f64;
+    let mean = points.iter().sum::<Vec3>() / points.len() as f64;
     points.iter().map(|p| p - mean).map(|d| d * d.transpose()).sum()
 }
 

@@ -283,8 +283,8 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
 
 #[test]
 fn a_share_of_the_vertices_may_still_move() {
-    let scene = crossed();
-    let through = Rest { sew_through: true, ..Rest::default() };
+    // One level, so that both runs go the same way until one of them stops.
+    let scene = generate::drape(10);
     let steps = |rest: Rest| {
         let state =
             rest.solve(&scene, &mut |_| ControlFlow::Continue(())).map_err(|e| e.to_string()).unwrap();
@@ -292,10 +292,10 @@ fn a_share_of_the_vertices_may_still_move() {
         if rest.non_static == 0.0 {
             assert_eq!(state.outcome.speed, state.outcome.fastest);
         }
-        // Both go the same way until one of them stops.
+        assert_eq!(state.levels.len(), 1);
         state.levels[0].outcome.steps
     };
-    let (all, most) = (steps(through), steps(Rest { non_static: 0.2, ..through }));
+    let (all, most) = (steps(Rest::default()), steps(Rest { non_static: 0.2, ..Rest::default() }));
     assert!(most < all, "{most} {all}");
 }
 
