@@ -1,8 +1,8 @@
 //! `toile trade PIPELINE --ablate`: each decision of a pipeline turned round.
 
 use crate::args::TradeArgs;
+use crate::measuring::{bench, default_folder, failed, quality};
 use crate::progress::with_runs;
-use crate::trade::{bench, default_folder, failed, quality};
 use crate::{Streams, exit, interrupt};
 use std::path::Path;
 use toile_core::StageError;

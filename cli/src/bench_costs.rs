@@ -1,7 +1,7 @@
 //! `toile bench costs`: what stages take over edge lengths and photo sizes, and how well that is predicted.
 
 use crate::args::{CostsArgs, Overrides};
-use crate::run::fail_run;
+use crate::failing::fail_run;
 use crate::validate::open;
 use crate::{Streams, apart, costs, exit, interrupt, stdin, threads};
 use rayon::ThreadPool;

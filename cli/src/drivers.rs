@@ -3,7 +3,7 @@
 use crate::args::DriversArgs;
 use crate::bench::{bar, chosen, tell, usage};
 use crate::interrupt::{begin_writing, end_writing, on_ctrl_c};
-use crate::trade::failed;
+use crate::measuring::failed;
 use crate::{Streams, exit};
 use toile_cloth::bench::drivers::{Options, Report, Way, drivers};
 use toile_core::artifact::OutputFile;

@@ -3,8 +3,9 @@
 use crate::args::ExplainArgs;
 use crate::costs::Known;
 use crate::explain_json::json;
-use crate::run::fail_run;
-use crate::trade::{default_folder, failed, opened, quality};
+use crate::explained::Explained;
+use crate::failing::fail_run;
+use crate::measuring::{default_folder, failed, opened, quality};
 use crate::validate::{Stood, quality_words, standings};
 use crate::{Streams, exit};
 use std::path::Path;
@@ -13,22 +14,8 @@ use toile_pipeline::decide::{Decided, decisions};
 use toile_pipeline::{Pipeline, RunError, RunOptions, plan};
 use toile_trade::ablate::Ablation;
 use toile_trade::cost::{Forecast, forecast_lines, predict};
-use toile_trade::decided::{self, Told, told};
+use toile_trade::decided::{self, told};
 use toile_trade::saving::Evidence;
-
-/// What is said of a pipeline.
-pub(crate) struct Explained<'a> {
-    pub(crate) pipeline: &'a Pipeline,
-    /// Its qualities with what their claims are worth.
-    pub(crate) qualities: Vec<Stood>,
-    /// For each stage `None` where it runs, or why it is left out.
-    pub(crate) plan: Vec<Option<String>>,
-    /// What each stage is expected to take.
-    pub(crate) forecasts: Vec<Forecast>,
-    /// What the forecasts rest on.
-    pub(crate) source: String,
-    pub(crate) told: Vec<Told>,
-}
 
 /// Prints one line a stage: what feeds it, and whether it runs; then what is expected, and the decisions.
 pub(crate) fn explain(args: &ExplainArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {

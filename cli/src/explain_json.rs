@@ -1,6 +1,6 @@
 //! `toile explain --json`: one object, described in docs/reference/costs.md.
 
-use crate::explain::Explained;
+use crate::explained::Explained;
 use crate::validate::Stood;
 use serde_json::{Value, json};
 use toile_core::cost::Predicted;

@@ -4,7 +4,8 @@
 //! `pipelines/goldens/vest/`.
 
 use crate::args::{AcceptArgs, CheckArgs, Overrides};
-use crate::run::{fail_run, run_quietly};
+use crate::failing::fail_run;
+use crate::run::run_quietly;
 use crate::validate::checked;
 use crate::{Streams, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! `toile lock` and `toile run --locked`: what a pipeline was made of, kept beside it as `PIPELINE.lock`.
 
 use crate::args::{LockArgs, Overrides};
-use crate::run::fail_run;
+use crate::failing::fail_run;
 use crate::validate::open;
 use crate::{Streams, cache, exit, interrupt, stdin, threads};
 use std::path::{Path, PathBuf};

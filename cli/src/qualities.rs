@@ -1,9 +1,9 @@
 //! `toile tune PIPELINE --quality NAME=LENGTH ...`: the named qualities of a pipeline, measured and written into its file.
 
 use crate::args::TuneArgs;
+use crate::measuring::{bench, failed};
 use crate::progress::with_budget;
-use crate::trade::{bench, failed};
-use crate::tune::{front, target, write};
+use crate::tuned::{front, target, write};
 use crate::{Streams, bench as bench_words, exit};
 use serde_json::{Value, json};
 use std::path::Path;

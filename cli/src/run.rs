@@ -2,18 +2,18 @@
 
 use crate::args::RunArgs;
 use crate::costs::{self, Known};
+use crate::failing::{fail_load, fail_run};
 use crate::progress::Bar;
 use crate::validate::{Refused, inspect, open, warn_unused};
-use crate::{Streams, cache, exit, interrupt, lock, stdin, threads, watch};
-use serde_json::json;
+use crate::{Streams, cache, exit, interrupt, lock, reads, stdin, threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;
-use toile_core::{Cancel, ErrorCode, Listener, Registry, StageError};
+use toile_core::{Cancel, Listener, Registry, StageError};
 use toile_pipeline::cache::Cache;
 use toile_pipeline::{
-    Fault, Faults, Metrics, Pipeline, Reads, RunError, RunOptions, RunResult, SoFar, check_folder,
-    run as run_stages, write_files,
+    Metrics, Pipeline, Reads, RunError, RunOptions, RunResult, SoFar, check_folder, run as run_stages,
+    write_files,
 };
 
 /// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
@@ -54,7 +54,7 @@ pub(crate) fn once(
     // A lock is compared by digests, which a cache takes.
     let cache = cache.or_else(|| lock.as_ref().map(|_| Arc::new(Cache::nowhere())));
     if let Some(reads) = reads {
-        watch::note_plugins(&pipeline, reads);
+        reads::note_plugins(&pipeline, reads);
     }
     let known = Arc::new(Known::of(&args.cache, args.threads));
     let so_far = SoFar::default();
@@ -227,41 +227,13 @@ fn summary(metrics: &Metrics, dir: &std::path::Path, files: &[OutputFile], strea
     if let Some(quality) = &metrics.quality {
         streams.say(format!("quality {quality}"));
     }
-    let stages = watch::counts(metrics);
+    let stages = counts(metrics);
     streams.say(format!("{:.2} s ({stages}), {} files in {}", metrics.wall_s, files.len(), dir.display()));
 }
 
-/// Shows what is wrong with a pipeline file.
-pub(crate) fn fail_load(faults: &Faults, json: bool, streams: &mut Streams<'_>) -> u8 {
-    match json {
-        true => streams.say(json!({ "valid": false, "faults": faults.records() })),
-        false => streams.fault(faults),
-    }
-    exit::INVALID
-}
-
-/// Shows a stage's error at its place in the pipeline file.
-pub(crate) fn fail_run(pipeline: &Pipeline, e: &RunError, json: bool, streams: &mut Streams<'_>) -> u8 {
-    let faults = as_faults(pipeline, e);
-    match json {
-        true => streams.say(json!({ "error": e.error.code.as_str(), "stage": e.stage, "panel": e.entry,
-            "message": e.error.message, "hint": e.error.hint, "faults": faults.records() })),
-        false => streams.fault(&faults),
-    }
-    e.error.code.exit_code()
-}
-
-fn as_faults(pipeline: &Pipeline, e: &RunError) -> Faults {
-    let StageError { code, hint, .. } = &e.error;
-    let fault = Fault::new(code.as_str(), e.to_string()).hint(hint.clone());
-    let fault = if e.span.is_empty() { fault } else { fault.at(&e.span, code_words(*code)) };
-    pipeline.faults(vec![fault])
-}
-
-fn code_words(code: ErrorCode) -> &'static str {
-    match code {
-        ErrorCode::Cancelled => "stopped here",
-        ErrorCode::Timeout => "ran out of time here",
-        _ => "failed here",
-    }
+/// How many stages ran and how many came from the cache.
+fn counts(metrics: &Metrics) -> String {
+    let ran = metrics.stages.iter().filter(|s| s.skipped.is_none());
+    let (cached, run): (Vec<_>, Vec<_>) = ran.partition(|s| s.cached);
+    format!("{} stages run, {} from the cache", run.len(), cached.len())
 }

@@ -3,7 +3,7 @@
 use crate::args::StabilityArgs;
 use crate::bench::{bar, chosen, tell, usage};
 use crate::interrupt::{begin_writing, end_writing, on_ctrl_c};
-use crate::trade::failed;
+use crate::measuring::failed;
 use crate::{Streams, exit};
 use std::path::{Path, PathBuf};
 use toile_cloth::bench::map::{Map, Options, Scheme, map};

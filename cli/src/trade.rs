@@ -1,18 +1,14 @@
 //! `toile trade`: how a pipeline trades accuracy for time.
 
-use crate::args::{Overrides, StudyArgs, TradeArgs};
+use crate::args::{StudyArgs, TradeArgs};
+use crate::measuring::{bench, default_folder, failed, inspected, opened, quality};
 use crate::progress::with_budget;
-use crate::run::{fail_load, fail_run};
-use crate::validate::{Refused, inspect, open};
-use crate::{Streams, ablate, at_hand, exit, interrupt, stdin};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Duration;
-use toile_core::{Length, Registry, StageError};
-use toile_pipeline::{Pipeline, RunOptions, write_files};
+use crate::{Streams, ablate, exit, interrupt};
+use std::path::PathBuf;
+use toile_core::{Registry, StageError};
+use toile_pipeline::{Pipeline, write_files};
 use toile_trade::default_knobs::default_knobs;
 use toile_trade::knob::KnobSpec;
-use toile_trade::measure::Bench;
 use toile_trade::record::{Clock, Trade};
 use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
@@ -101,119 +97,7 @@ pub(crate) fn measured(
     written.map(|_| trade)
 }
 
-/// The pipeline with its source, checked; faults are shown, as JSON where asked for.
-pub(crate) fn opened<'a>(
-    path: &Path,
-    overrides: &Overrides,
-    registry: &'a Registry,
-    json: bool,
-    streams: &mut Streams<'_>,
-) -> Result<(Source<'a>, Pipeline), u8> {
-    let opened = open(path, overrides, registry);
-    let pipeline = opened.map_err(|faults| fail_load(&faults, json, streams))?;
-    let text = stdin::text(path).map_err(|why| {
-        streams.tell(format!("error: cannot read the pipeline \"{}\": {why}", stdin::name(path)));
-        exit::INVALID
-    })?;
-    let source = Source {
-        text,
-        file: stdin::name(path),
-        base: stdin::folder(path).to_owned(),
-        quality: overrides.quality.clone(),
-        set: at_hand::found(&overrides.set),
-        registry,
-    };
-    Ok((source, pipeline))
-}
-
-/// Asks the stages that will run what is wrong with their parameters and files: a measurement would tell it of its first run alone.
-pub(crate) fn inspected(
-    pipeline: &Pipeline,
-    until: Option<String>,
-    streams: &mut Streams<'_>,
-) -> Result<(), u8> {
-    inspect(pipeline, &RunOptions { until, ..RunOptions::default() }).map_err(|refused| match refused {
-        Refused::Run(e) => fail_run(pipeline, &e, false, streams),
-        Refused::File(faults) => fail_load(&faults, false, streams),
-    })
-}
-
-/// How runs are made.
-pub(crate) fn bench(until: Option<String>, streams: &Streams<'_>) -> Bench {
-    Bench { until, cancel: interrupt::on_ctrl_c(), listener: Arc::new(()), apart: streams.apart.clone() }
-}
-
 /// The clock of the front.
 fn clock(study: &StudyArgs) -> Clock {
     if study.clock == "cpu" { Clock::Cpu } else { Clock::Wall }
-}
-
-/// Shows an error and gives its exit code.
-pub(crate) fn failed(e: &StageError, streams: &mut Streams<'_>) -> u8 {
-    streams.tell(format!("error: {e}"));
-    if let Some(hint) = &e.hint {
-        streams.tell(format!("  help: {hint}"));
-    }
-    e.code.exit_code()
-}
-
-/// The quality that is asked for.
-pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
-    overrides.quality.as_deref()
-}
-
-/// Where a measurement of a pipeline lies; each quality, which is another pipeline, has a folder of its own.
-pub(crate) fn default_folder(pipeline: &Path, quality: Option<&str>, what: &str) -> PathBuf {
-    let stem = stdin::stem(pipeline);
-    let quality = quality.map_or_else(String::new, |q| format!("-{q}"));
-    PathBuf::from("out").join(format!("{stem}{quality}-{what}"))
-}
-
-/// `90s`, `800ms`, `5m`, `1h`.
-pub(crate) fn duration(text: &str) -> Result<Duration, String> {
-    let fault = || format!("`{text}` is no time; write a number and a unit, like 90s (ms, s, m, h)");
-    let text = text.trim();
-    let split = text.find(|c: char| c.is_ascii_alphabetic()).ok_or_else(fault)?;
-    let (number, unit) = text.split_at(split);
-    let seconds = match unit {
-        "ms" => 1e-3,
-        "s" => 1.0,
-        "m" => 60.0,
-        "h" => 3600.0,
-        _ => return Err(fault()),
-    };
-    let seconds = number.trim().parse::<f64>().map_err(|_| fault())? * seconds;
-    // A week is more than anybody means.
-    let is_sound = seconds > 0.0 && seconds < 604_800.0;
-    if is_sound { Ok(Duration::from_secs_f64(seconds)) } else { Err(fault()) }
-}
-
-/// A length with its unit.
-pub(crate) fn length(text: &str) -> Result<Length, String> {
-    let length: Length = text.parse()?;
-    if length.metres() > 0.0 { Ok(length) } else { Err(format!("`{text}` is not above zero")) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_quality_has_a_folder_of_its_own() {
-        let folder = |quality| default_folder(Path::new("my/vest.ron"), quality, "trade");
-        assert_eq!(folder(None), Path::new("out/vest-trade"));
-        assert_eq!(folder(Some("Very fine")), Path::new("out/vest-Very fine-trade"));
-    }
-
-    #[test]
-    fn times_carry_their_unit() {
-        assert_eq!(duration("90s"), Ok(Duration::from_secs(90)));
-        assert_eq!(duration("1.5 m"), Ok(Duration::from_secs(90)));
-        assert_eq!(duration("800ms"), Ok(Duration::from_millis(800)));
-        for wrong in ["5", "-1s", "s", "1d", "1e9h", "NaNs"] {
-            let words = format!("`{wrong}` is no time; write a number and a unit, like 90s (ms, s, m, h)");
-            assert_eq!(duration(wrong), Err(words));
-        }
-        assert_eq!(length("0 mm"), Err("`0 mm` is not above zero".into()));
-    }
 }

@@ -1,19 +1,19 @@
 //! `toile tune`: a setting for an error or a time, proved and written into the pipeline file.
 
 use crate::args::{Overrides, TuneArgs};
+use crate::measuring::{bench, failed, inspected, opened};
 use crate::progress::with_budget;
-use crate::trade::{Asked, bench, default_folder, failed, inspected, measured, opened};
-use crate::{Streams, exit, interrupt, qualities, stdin};
+use crate::tuned::{front, target, write};
+use crate::{Streams, exit, qualities, stdin};
 use serde_json::json;
-use std::path::{Path, PathBuf};
-use toile_core::artifact::OutputFile;
+use std::path::Path;
 use toile_core::{Registry, StageError};
-use toile_pipeline::{Pipeline, write_files};
+use toile_pipeline::Pipeline;
 use toile_trade::record::{Clock, Trade, today};
 use toile_trade::slot::setting_words;
 use toile_trade::source::Source;
 use toile_trade::table;
-use toile_trade::tune::{Proof, Prover, Wish, check, refusal};
+use toile_trade::tune::{Proof, Prover, Wish, refusal};
 
 /// Picks, proves, writes.
 pub(crate) fn run(args: &TuneArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
@@ -68,61 +68,6 @@ fn tuned(
     write(&file, text)?;
     say(args, &trade, &wish, &proof, &file, streams);
     Ok(())
-}
-
-/// The measured front: read where a folder is named, else measured now.
-pub(crate) fn front(
-    args: &TuneArgs,
-    source: &Source<'_>,
-    pipeline: &Pipeline,
-    streams: &mut Streams<'_>,
-) -> Result<(Trade, PathBuf), StageError> {
-    if let Some(folder) = &args.from {
-        let path = folder.join("trade.json");
-        let refuse = |why: String| {
-            StageError::invalid(format!("cannot read \"{}\": {why}", path.display()))
-                .hint("--from is the folder of a `toile trade`")
-        };
-        let text = toile_core::read_text(&path).map_err(|e| refuse(e.to_string()))?;
-        let trade: Trade = serde_json::from_str(&text).map_err(|e| refuse(e.to_string()))?;
-        check(&trade, pipeline)?;
-        return Ok((trade, folder.clone()));
-    }
-    let out = default_folder(&args.pipeline, None, "trade");
-    let asked = Asked {
-        knobs: &args.knobs,
-        out: out.clone(),
-        until: None,
-        points: None,
-        starts: 3,
-        study: &args.study,
-    };
-    measured(&asked, source, pipeline, streams).map(|trade| (trade, out))
-}
-
-/// The file to write, which must lie beside the pipeline: its paths are relative to its folder.
-pub(crate) fn target(args: &TuneArgs) -> Result<PathBuf, StageError> {
-    let stem = args.pipeline.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
-    let file = args.out.clone().unwrap_or_else(|| args.pipeline.with_file_name(format!("{stem}-tuned.ron")));
-    let folder = |path: &Path| match path.parent() {
-        Some(parent) if parent.as_os_str().is_empty() => Path::new(".").canonicalize(),
-        Some(parent) => parent.canonicalize(),
-        None => Path::new(".").canonicalize(),
-    };
-    match (folder(&file), folder(&args.pipeline)) {
-        (Ok(a), Ok(b)) if a == b => Ok(file),
-        _ => Err(StageError::invalid(format!("\"{}\" is not in the folder of the pipeline", file.display()))
-            .hint("paths in the pipeline are relative to its folder: write the tuned one beside it")),
-    }
-}
-
-pub(crate) fn write(file: &Path, text: String) -> Result<(), StageError> {
-    let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let path = file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    interrupt::begin_writing();
-    let written = write_files(folder, &[OutputFile { path, bytes: text.into_bytes() }]);
-    interrupt::end_writing();
-    written.map(|_| ())
 }
 
 fn say(args: &TuneArgs, trade: &Trade, wish: &Wish, proof: &Proof, file: &Path, streams: &mut Streams<'_>) {

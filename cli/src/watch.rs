@@ -6,16 +6,17 @@
 //! so that a file half written is not run.
 
 use crate::args::RunArgs;
+use crate::reads::{Look, look, note};
 use crate::run::once;
 use crate::{Streams, exit, interrupt, refused, stdin, with_plugins};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant, SystemTime};
+use std::time::{Duration, Instant};
 use toile_core::Registry;
 use toile_core::artifact::Digest;
 use toile_pipeline::plugin::plugin_files;
-use toile_pipeline::{Metrics, Pipeline, Reads, plugins_asked};
+use toile_pipeline::{Reads, plugins_asked};
 
 /// Time between two looks.
 const PAUSE: Duration = Duration::from_millis(200);
@@ -70,33 +71,6 @@ fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
     asked.chain(plugins.iter().cloned()).flat_map(|p| plugin_files(&p)).for_each(|p| note(reads, &p));
 }
 
-/// Notes the plugins of a pipeline that may have got them by `--set`.
-pub(crate) fn note_plugins(pipeline: &Pipeline, reads: &Reads) {
-    let named = pipeline.plugins.iter().flat_map(|p| plugin_files(&pipeline.base.join(&p.file)));
-    named.for_each(|p| note(reads, &p));
-}
-
-/// Notes a file as it is now.
-fn note(reads: &Reads, path: &Path) {
-    let content = look(path, None).and_then(|l| l.content);
-    reads.lock().unwrap_or_else(PoisonError::into_inner).insert(path.to_owned(), content);
-}
-
-/// How many stages ran and how many came from the cache.
-pub(crate) fn counts(metrics: &Metrics) -> String {
-    let ran = metrics.stages.iter().filter(|s| s.skipped.is_none());
-    let (cached, run): (Vec<_>, Vec<_>) = ran.partition(|s| s.cached);
-    format!("{} stages run, {} from the cache", run.len(), cached.len())
-}
-
-/// What tells one content of a file from another; none of a file that is not there.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Look {
-    modified: Option<SystemTime>,
-    size: u64,
-    content: Option<Digest>,
-}
-
 /// How files are now; none of one that is not there.
 type Looks = BTreeMap<PathBuf, Option<Look>>;
 
@@ -119,18 +93,6 @@ fn wait(used: &BTreeMap<PathBuf, Option<Digest>>, stopped: impl Fn() -> bool) ->
 fn changed(used: &BTreeMap<PathBuf, Option<Digest>>, now: &Looks) -> Vec<PathBuf> {
     let content = |path: &PathBuf| now.get(path).and_then(|look| look.as_ref()?.content);
     used.iter().filter(|(path, was)| content(path) != **was).map(|(path, _)| path.clone()).collect()
-}
-
-/// Looks at a file; one whose time and size are as before is not read again.
-fn look(path: &Path, was: Option<&Look>) -> Option<Look> {
-    let meta = std::fs::metadata(path).ok()?;
-    let (modified, size) = (meta.modified().ok(), meta.len());
-    let same = was.filter(|w| w.modified == modified && w.size == size);
-    let content = match same {
-        Some(was) => was.content,
-        None => toile_core::read_file(path).ok().map(|bytes| Digest::of(&bytes)),
-    };
-    Some(Look { modified, size, content })
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! `toile why`: what a run would do again and why, and where a triangle of a result comes from.
 
 use crate::args::WhyArgs;
-use crate::run::{fail_load, fail_run};
+use crate::failing::{fail_load, fail_run};
 use crate::validate::open;
 use crate::{Streams, cache, exit};
 use serde_json::{Value, json};

@@ -55,7 +55,7 @@ pub(crate) struct DriversArgs {
     #[arg(long, value_name = "DIR", default_value = "out/drivers")]
     pub(crate) out: PathBuf,
     /// Longest time of a run; what would take longer is not made
-    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = crate::trade::duration)]
+    #[arg(long, value_name = "TIME", default_value = "10s", value_parser = super::amounts::duration)]
     pub(crate) limit: Duration,
     /// Print one JSON object and nothing else
     #[arg(long)]
@@ -101,7 +101,7 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "SHARE", requires = "map", value_parser = crate::stability_map::share)]
     pub(crate) max_error: Option<f64>,
     /// Longest time of a cell; what would take longer is not run [default: 2s]
-    #[arg(long, value_name = "TIME", requires = "map", value_parser = crate::trade::duration)]
+    #[arg(long, value_name = "TIME", requires = "map", value_parser = super::amounts::duration)]
     pub(crate) limit: Option<Duration>,
 }
 

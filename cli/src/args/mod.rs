@@ -1,5 +1,6 @@
 //! The arguments of every sub-command.
 
+mod amounts;
 mod bench;
 mod file;
 mod run;

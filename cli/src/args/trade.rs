@@ -44,16 +44,16 @@ pub(crate) struct TradeArgs {
 #[derive(Debug, Args)]
 pub(crate) struct StudyArgs {
     /// Time for everything, like 90s, 5m or 1h [default: 5m; with `trade --ablate` none]
-    #[arg(long, value_parser = crate::trade::duration)]
+    #[arg(long, value_parser = super::amounts::duration)]
     pub(crate) budget: Option<Duration>,
     /// Longest run of a setting [default: a tenth of the budget; with `trade --ablate` none]
-    #[arg(long, value_parser = crate::trade::duration)]
+    #[arg(long, value_parser = super::amounts::duration)]
     pub(crate) limit: Option<Duration>,
     /// Runs of each setting
     #[arg(long, value_name = "COUNT", default_value_t = 2, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=100))]
     pub(crate) repeats: usize,
     /// Root mean square move of a moved start
-    #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = crate::trade::length)]
+    #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = super::amounts::length)]
     pub(crate) jitter: Length,
     /// Value of a knob for the reference alone, like `Rest.graded=true`; may be given again [default: the pipeline's own]
     #[arg(long, value_name = "KEY=VALUE")]
@@ -78,10 +78,10 @@ pub(crate) struct TuneArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
     /// Keep 95 % of the surface this near to the reference, like "2 mm"
-    #[arg(long, value_name = "LENGTH", value_parser = crate::trade::length, required_unless_present_any = ["max_time", "qualities"])]
+    #[arg(long, value_name = "LENGTH", value_parser = super::amounts::length, required_unless_present_any = ["max_time", "qualities"])]
     pub(crate) max_error: Option<Length>,
     /// Keep a run this short, like 800ms or 1s
-    #[arg(long, value_name = "TIME", value_parser = crate::trade::duration)]
+    #[arg(long, value_name = "TIME", value_parser = super::amounts::duration)]
     pub(crate) max_time: Option<Duration>,
     /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the pipeline's named qualities; may be given again
     #[arg(long = "quality", value_name = "NAME=LENGTH", conflicts_with_all = ["max_error", "max_time"])]
