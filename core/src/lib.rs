@@ -70,7 +70,7 @@ pub use stage::{
     Arity, Card, Contract, Feed, InPort, Input, Inputs, Node, OutPort, Output, Placed, PluginId, PortValue,
     Role, Set, Stage, StageMeta, StageType, needed_for,
 };
-pub use toile_core_derive::{choice, plugin, stage};
+pub use toile_core_derive::{choice, params, plugin, stage};
 // The `stage` macro's expansion names these.
 #[cfg(feature = "typetag")]
 #[doc(hidden)]
@@ -104,6 +104,6 @@ pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
         Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, Section, SectionValue, Set,
-        Stage, StageError, StageType, choice, stage,
+        Stage, StageError, StageType, choice, params, stage,
     };
 }

@@ -13,7 +13,7 @@
 //! - `cost`: what a run will take, predicted from what earlier runs took (docs/reference/costs.md);
 //! - `tune`, `qualities`: settings for an error or a time, proved; `table`, `page`, `plot`: what people see; `plot` draws the stability maps of the cloth engine as well.
 //!
-//! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; stages read no clock, this crate does.
+//! Invariant: nothing here runs inside a pipeline, but for the jitter of a start; what a stage takes is timed here and by the runner, not by the stage.
 
 pub mod ablate;
 pub mod apart;

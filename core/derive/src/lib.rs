@@ -2,7 +2,8 @@
 //! form, the checks, the card and the [`Stage`] implementation.
 //!
 //! `#[stage(role = ..., source = "...", example = "...")]` stands on the parameter struct,
-//! `#[stage]` on the `impl` with its `run` function, `#[choice]` on an enum used as a parameter.
+//! `#[stage]` on the `impl` with its `run` function, `#[choice]` on an enum used as a parameter, `#[params]` on parameters that
+//! several stages share.
 
 mod choice;
 mod params;
@@ -23,6 +24,15 @@ pub fn stage(attr: TokenStream, item: TokenStream) -> TokenStream {
         Err(e) => Err(e),
     };
     expanded.unwrap_or_else(syn::Error::into_compile_error).into()
+}
+
+/// Makes a struct a group of parameters, which stages take by `#[param(flatten)]`.
+#[proc_macro_attribute]
+pub fn params(_attr: TokenStream, item: TokenStream) -> TokenStream {
+    syn::parse::<syn::ItemStruct>(item)
+        .and_then(params::expand_group)
+        .unwrap_or_else(syn::Error::into_compile_error)
+        .into()
 }
 
 /// Makes an enum usable as a parameter.

@@ -30,6 +30,22 @@ struct ParamArgs {
     trades: bool,
     finer: Option<Ident>,
     way: bool,
+    flatten: bool,
+}
+
+/// The fields of a struct of parameters.
+#[derive(Default)]
+struct Table {
+    /// The default of each.
+    defaults: Vec<TokenStream>,
+    /// Their rows, in lists: one of each parameter, all of a group.
+    rows: Vec<TokenStream>,
+    /// Their names, likewise.
+    names: Vec<TokenStream>,
+    /// Arms that read those that are no group.
+    reads: Vec<TokenStream>,
+    writes: Vec<TokenStream>,
+    groups: Vec<Ident>,
 }
 
 pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<TokenStream> {
@@ -40,7 +56,22 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
     if doc.is_empty() {
         return Err(syn::Error::new_spanned(&name, "a stage needs a doc comment: it is its user page"));
     }
-    let (defaults, docs) = fields(&mut item)?;
+    let table = fields(&mut item)?;
+    let (default, serde) = (table.default_impl(&name), table.serde(&name));
+    let (rows, grouped) = (&table.rows, !table.groups.is_empty());
+    let docs = if grouped {
+        quote!(::toile_core::param::Params::docs(&default))
+    } else {
+        quote!(<[::std::vec::Vec<::toile_core::ParamDoc>]>::concat(&[#(#rows),*]))
+    };
+    let derives = if grouped {
+        quote!()
+    } else {
+        quote! {
+            #[derive(::toile_core::serde::Serialize, ::toile_core::serde::Deserialize)]
+            #[serde(crate = "::toile_core::serde", deny_unknown_fields, default)]
+        }
+    };
     let role =
         args.role.ok_or_else(|| syn::Error::new_spanned(&name, "`#[stage(role = ...)]` is missing"))?;
     let source = args.source.map_or_else(String::new, |s| s.value());
@@ -48,15 +79,12 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
     let version = args.version.map_or(Ok(1), |v| v.base10_parse::<u32>())?;
     let contracts = &args.contracts;
     Ok(quote! {
-        #[derive(Debug, Clone, PartialEq, ::toile_core::serde::Serialize, ::toile_core::serde::Deserialize)]
-        #[serde(crate = "::toile_core::serde", deny_unknown_fields, default)]
+        #[derive(Debug, Clone, PartialEq)]
+        #derives
         #item
 
-        impl ::std::default::Default for #name {
-            fn default() -> Self {
-                Self { #(#defaults),* }
-            }
-        }
+        #default
+        #serde
 
         impl ::toile_core::StageMeta for #name {
             const NAME: &'static str = #name_text;
@@ -71,7 +99,7 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
                     version: #version,
                     example: #example,
                     contracts: ::std::vec![#(::toile_core::Contract::#contracts),*],
-                    params: ::std::vec![#(#docs),*],
+                    params: #docs,
                     inputs: ::std::vec![],
                     outputs: ::std::vec![],
                     package: ::std::concat!(
@@ -82,6 +110,95 @@ pub(crate) fn expand(attr: TokenStream, mut item: ItemStruct) -> syn::Result<Tok
             }
         }
     })
+}
+
+/// `#[params]` on a struct: a group.
+pub(crate) fn expand_group(mut item: ItemStruct) -> syn::Result<TokenStream> {
+    let table = fields(&mut item)?;
+    let (default, params) = (table.default_impl(&item.ident), table.params(&item.ident));
+    Ok(quote! {
+        #[derive(Debug, Clone, PartialEq)]
+        #item
+
+        #default
+        #params
+    })
+}
+
+impl Table {
+    fn default_impl(&self, name: &Ident) -> TokenStream {
+        let defaults = &self.defaults;
+        quote! {
+            impl ::std::default::Default for #name {
+                fn default() -> Self {
+                    Self { #(#defaults),* }
+                }
+            }
+        }
+    }
+
+    /// The serde form of a stage that has groups; others derive theirs.
+    fn serde(&self, name: &Ident) -> TokenStream {
+        if self.groups.is_empty() {
+            return TokenStream::new();
+        }
+        let (params, text) = (self.params(name), name.to_string());
+        quote! {
+            #params
+
+            impl ::toile_core::serde::Serialize for #name {
+                fn serialize<S: ::toile_core::serde::Serializer>(
+                    &self,
+                    s: S,
+                ) -> ::std::result::Result<S::Ok, S::Error> {
+                    ::toile_core::param::group::write(self, #text, s)
+                }
+            }
+
+            impl<'de> ::toile_core::serde::Deserialize<'de> for #name {
+                fn deserialize<D: ::toile_core::serde::Deserializer<'de>>(
+                    d: D,
+                ) -> ::std::result::Result<Self, D::Error> {
+                    ::toile_core::param::group::read(#text, d)
+                }
+            }
+        }
+    }
+
+    fn params(&self, name: &Ident) -> TokenStream {
+        let Table { rows, names, reads, writes, groups, .. } = self;
+        quote! {
+            impl ::toile_core::param::Params for #name {
+                const NAMES: &'static [&'static str] = {
+                    const PARTS: &[&[&str]] = &[#(#names),*];
+                    const ALL: [&str; ::toile_core::param::group::count(PARTS)] =
+                        ::toile_core::param::group::joined(PARTS);
+                    &ALL
+                };
+                fn docs(&self) -> ::std::vec::Vec<::toile_core::ParamDoc> {
+                    let default = self;
+                    <[::std::vec::Vec<::toile_core::ParamDoc>]>::concat(&[#(#rows),*])
+                }
+                fn read<'de, M: ::toile_core::serde::de::MapAccess<'de>>(
+                    &mut self,
+                    name: &str,
+                    map: &mut M,
+                ) -> ::std::result::Result<bool, M::Error> {
+                    ::std::result::Result::Ok(match name {
+                        #(#reads)*
+                        _ => false #(|| ::toile_core::param::Params::read(&mut self.#groups, name, map)?)*,
+                    })
+                }
+                fn write<S: ::toile_core::serde::ser::SerializeStruct>(
+                    &self,
+                    out: &mut S,
+                ) -> ::std::result::Result<(), S::Error> {
+                    #(#writes)*
+                    ::std::result::Result::Ok(())
+                }
+            }
+        }
+    }
 }
 
 fn stage_args(attr: TokenStream) -> syn::Result<StageArgs> {
@@ -105,15 +222,15 @@ fn stage_args(attr: TokenStream) -> syn::Result<StageArgs> {
     Ok(args)
 }
 
-/// Takes the `#[param]` attributes off the fields; returns the default of each and its table row.
-fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStream>)> {
-    let (mut defaults, mut docs) = (Vec::new(), Vec::new());
+/// Takes the `#[param]` attributes off the fields.
+fn fields(item: &mut ItemStruct) -> syn::Result<Table> {
+    let mut table = Table::default();
     let named = match &mut item.fields {
         Fields::Named(named) => &mut named.named,
         Fields::Unit => {
             item.fields = Fields::Named(syn::parse_quote!({}));
             item.semi_token = None;
-            return Ok((defaults, docs));
+            return Ok(table);
         }
         Fields::Unnamed(_) => {
             return Err(syn::Error::new_spanned(&item.ident, "a stage's parameters have names"));
@@ -130,10 +247,21 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
             );
             return Err(syn::Error::new_spanned(&name, message));
         }
+        let value = args.default.map_or(quote!(::std::default::Default::default()), |e| quote!(#e));
+        table.defaults.push(quote!(#name: #value));
+        if args.flatten {
+            table.rows.push(quote!(::toile_core::param::Params::docs(&default.#name)));
+            table.names.push(quote!(<#ty as ::toile_core::param::Params>::NAMES));
+            table.writes.push(quote!(::toile_core::param::Params::write(&self.#name, out)?;));
+            table.groups.push(name);
+            continue;
+        }
         if doc.is_empty() {
             return Err(syn::Error::new_spanned(&name, "a parameter needs a doc comment"));
         }
-        let value = args.default.map_or(quote!(::std::default::Default::default()), |e| quote!(#e));
+        table.names.push(quote!(&[#plain]));
+        table.reads.push(quote!(#plain => { self.#name = map.next_value()?; true }));
+        table.writes.push(quote!(out.serialize_field(#plain, &self.#name)?;));
         let bound = |e: Option<Expr>| {
             e.map_or(
                 quote!(::std::option::Option::None),
@@ -147,9 +275,8 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
             |way| quote!(::std::option::Option::Some(::toile_core::Finer::#way)),
         );
         let unit = args.unit.map_or_else(String::new, |u| u.value());
-        defaults.push(quote!(#name: #value));
-        docs.push(quote! {
-            ::toile_core::ParamDoc {
+        table.rows.push(quote! {
+            ::std::vec![::toile_core::ParamDoc {
                 name: #name_text,
                 doc: #doc,
                 kind: <#ty as ::toile_core::ParamType>::describe(),
@@ -161,10 +288,10 @@ fn fields(item: &mut ItemStruct) -> syn::Result<(Vec<TokenStream>, Vec<TokenStre
                 finer: #finer,
                 way: #way,
                 check: ::toile_core::param::Check::of::<#ty>(),
-            }
+            }]
         });
     }
-    Ok((defaults, docs))
+    Ok(table)
 }
 
 fn param_args(field: &mut syn::Field) -> syn::Result<ParamArgs> {
@@ -176,13 +303,14 @@ fn param_args(field: &mut syn::Field) -> syn::Result<ParamArgs> {
             match &meta {
                 Meta::Path(p) if p.is_ident("trades") => args.trades = true,
                 Meta::Path(p) if p.is_ident("way") => args.way = true,
+                Meta::Path(p) if p.is_ident("flatten") => args.flatten = true,
                 Meta::NameValue(nv) if nv.path.is_ident("default") => args.default = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("min") => args.min = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("max") => args.max = Some(nv.value.clone()),
                 Meta::NameValue(nv) if nv.path.is_ident("unit") => args.unit = Some(expr_str(&nv.value)?),
                 Meta::NameValue(nv) if nv.path.is_ident("finer") => args.finer = Some(way(&nv.value)?),
                 _ => {
-                    let known = "expected default, min, max, unit, trades, finer or way";
+                    let known = "expected default, min, max, unit, trades, finer, way or flatten";
                     return Err(syn::Error::new_spanned(meta, known));
                 }
             }
@@ -256,7 +384,7 @@ mod tests {
         assert_eq!(refused(quote!(default = 1.0, finer = "less")), trades);
         assert_eq!(
             refused(quote!(coarser = "less")),
-            "expected default, min, max, unit, trades, finer or way"
+            "expected default, min, max, unit, trades, finer, way or flatten"
         );
     }
 

@@ -1,7 +1,7 @@
 //! The body that wears the garment.
 
 use super::sound::{ensure, finite, finite_figure, indices};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
+use super::{Artifact, ArtifactType, Kind, Measures, Point3, Vector3};
 use std::collections::BTreeMap;
 
 /// A named point on the body's skin or skeleton.
@@ -77,19 +77,6 @@ impl ArtifactType for Body {
 impl Artifact for Body {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("body")
-            .count(self.positions.len())
-            .floats(self.positions.iter().flat_map(|p| [p.x, p.y, p.z]));
-        d.count(self.triangles.len()).indices(self.triangles.iter().flatten().copied());
-        for (name, p) in &self.landmarks {
-            d.text(name).floats([p.x, p.y, p.z]);
-        }
-        for (name, length) in &self.measurements {
-            d.text(name).floats([*length]);
-        }
     }
 
     fn measures(&self) -> Measures {

@@ -134,7 +134,10 @@ impl Artifact for Collider {
     }
 
     fn digest(&self, d: &mut Digester) {
-        d.text("collider").text(&self.signature);
+        let Collider { scheme, signature } = self;
+        let ColliderCard { thickness, friction, restitution, self_collision, penalty } = scheme.card();
+        d.text(Self::KIND.0).text(signature).floats([thickness, friction, restitution]);
+        d.count(usize::from(self_collision)).count(usize::from(penalty.is_some())).floats(penalty);
     }
 
     fn measures(&self) -> Measures {

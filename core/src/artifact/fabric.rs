@@ -1,7 +1,7 @@
 //! What a cloth is made of.
 
 use super::sound::{ensure, positive};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Kind, Measures};
 use serde::{Deserialize, Serialize};
 
 /// A piecewise-linear force-strain curve through the origin, per metre of width.
@@ -100,24 +100,6 @@ impl ArtifactType for Fabric {
 impl Artifact for Fabric {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("fabric").floats([
-            self.area_density,
-            self.bending_warp,
-            self.bending_weft,
-            self.thickness,
-            self.friction,
-            self.damping,
-        ]);
-        let friction = [self.bending_friction_warp, self.bending_friction_weft];
-        if friction != [0.0; 2] {
-            d.text("bending friction").floats(friction);
-        }
-        for curve in [&self.warp, &self.weft, &self.shear] {
-            d.count(curve.0.len()).floats(curve.0.iter().flat_map(|p| [p.0, p.1]));
-        }
     }
 
     fn measures(&self) -> Measures {

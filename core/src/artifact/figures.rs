@@ -1,7 +1,7 @@
 //! What a finished garment is judged by.
 
 use super::sound::finite_figure;
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Kind, Measures};
 use crate::ErrorCode;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -105,15 +105,6 @@ impl ArtifactType for Figures {
 impl Artifact for Figures {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("figures");
-        for (name, p) in &self.panels {
-            d.text(name).floats([p.area_error, p.outline_error]);
-        }
-        let g = &self.garment;
-        d.floats([g.seam_gap_max_m, g.edge_strain.p50, g.edge_strain.p99, g.edge_strain.max, g.energy_j]);
     }
 
     fn measures(&self) -> Measures {

@@ -1,6 +1,6 @@
 //! Finished files.
 
-use super::{Artifact, ArtifactType, Digester, Kind, Measures};
+use super::{Artifact, ArtifactType, Kind, Measures};
 use std::path::{Component, Path};
 
 /// One file to be written into the output folder.
@@ -40,13 +40,6 @@ impl ArtifactType for OutputFiles {
 impl Artifact for OutputFiles {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("files").count(self.0.len());
-        for file in &self.0 {
-            d.text(&file.path).count(file.bytes.len()).bytes(&file.bytes);
-        }
     }
 
     fn measures(&self) -> Measures {

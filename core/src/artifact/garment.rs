@@ -3,7 +3,7 @@
 use super::body::{obj_text, vertex_normals};
 use super::gathers;
 use super::sound::{alike, ensure, finite, indices, length};
-use super::{Artifact, ArtifactType, Digester, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
+use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
 use nalgebra::{Matrix2, Matrix3x2};
 use std::ops::Range;
 use std::sync::Arc;
@@ -287,27 +287,6 @@ impl ArtifactType for Garment {
 impl Artifact for Garment {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("garment").count(self.positions.len());
-        d.floats(self.positions.iter().flat_map(|p| [p.x, p.y, p.z]));
-        d.floats(self.velocities.iter().flat_map(|v| [v.x, v.y, v.z]));
-        d.floats(self.rest.iter().flat_map(|p| [p.x, p.y]));
-        d.count(self.triangles.len()).indices(self.triangles.iter().flatten().copied());
-        d.indices(self.weld.iter().copied());
-        d.count(self.pinned.len()).indices(self.pinned.iter().copied());
-        for seam in &self.seams {
-            d.text(&seam.name).indices(seam.pairs.iter().flatten().copied());
-            // A solver draws a gathered seam together and another not, so that the same pairs come to rest elsewhere. Matched seams are
-            // left out, so that what is kept of garments without others still holds.
-            if seam.kind != SeamKind::Matched {
-                seam.kind.digest(d);
-            }
-        }
-        let SolveStatus { steps, converged, energy, max_speed, on_body } = &self.status;
-        d.count(*steps).count(usize::from(*converged)).floats([*energy, *max_speed]);
-        d.count(on_body.len()).floats(on_body.iter().copied());
     }
 
     fn measures(&self) -> Measures {

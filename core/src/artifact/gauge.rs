@@ -7,7 +7,7 @@
 //! sag of both, so that both come to the same count without knowing each other.
 //! Cost: linear in the points of the edge times the points under the longest chord, once an edge.
 
-use super::{Digester, Point2, Vector2};
+use super::{Point2, Vector2};
 
 /// The share of the edge length by which a chord may leave the curve: outlines stay this true.
 pub const CHORD_TOLERANCE: f64 = 0.02;
@@ -102,10 +102,6 @@ impl Gauge {
     pub(super) fn is_sound(&self) -> bool {
         let sound = |x: &f64| x.is_finite() && *x >= 0.0;
         sound(&self.length) && self.sag.iter().all(sound)
-    }
-
-    pub(super) fn digest(&self, d: &mut Digester) {
-        d.floats([self.length]).floats(self.sag);
     }
 }
 

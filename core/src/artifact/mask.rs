@@ -1,7 +1,7 @@
 //! Which pixels of a photo belong to the garment.
 
 use super::sound::ensure;
-use super::{Artifact, ArtifactType, Digester, GrayImage, Kind, Measures, Shared};
+use super::{Artifact, ArtifactType, GrayImage, Kind, Measures, Shared};
 
 /// A binary picture in the frame of its photo: 255 on the garment, 0 off it, nothing else.
 #[derive(Debug, Clone)]
@@ -41,11 +41,6 @@ impl ArtifactType for Mask {
 impl Artifact for Mask {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        let (w, h) = self.pixels.dimensions();
-        d.text("mask").count(w as usize).count(h as usize).bytes(self.pixels.as_raw());
     }
 
     fn measures(&self) -> Measures {

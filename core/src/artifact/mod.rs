@@ -9,6 +9,8 @@
 mod body;
 mod collider;
 mod digest;
+#[cfg(test)]
+mod every_field;
 mod fabric;
 mod figures;
 mod files;
@@ -80,8 +82,14 @@ impl std::fmt::Display for Kind {
 pub trait Artifact: Any + Send + Sync + Debug {
     /// The artifact's kind.
     fn kind(&self) -> Kind;
-    /// Feeds everything that makes this artifact what it is, in a fixed order.
-    fn digest(&self, digester: &mut Digester);
+    /// Feeds everything that makes this artifact what it is, in a fixed order: its kind and its record. What has no record
+    /// says what makes it what it is.
+    fn digest(&self, digester: &mut Digester) {
+        digester.text(self.kind().0);
+        if let Some(record) = self.record() {
+            record.digest(digester);
+        }
+    }
     /// What is wrong with it, where no stage may give it: numbers that are not finite, indices beyond
     /// their lists, lists of unequal length. The runner asks after every stage.
     ///

@@ -2,7 +2,7 @@
 
 use super::body::obj_text;
 use super::sound::{ensure, finite, indices, length};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, RgbImage, Shared, Vector3};
+use super::{Artifact, ArtifactType, Kind, Measures, Point3, RgbImage, Shared, Vector3};
 
 /// A colour picture that materials refer to.
 #[derive(Debug, Clone)]
@@ -91,21 +91,6 @@ impl ArtifactType for Model {
 impl Artifact for Model {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("model").count(self.meshes.len());
-        for mesh in &self.meshes {
-            d.text(&mesh.name).floats(mesh.positions.iter().flat_map(|p| [p.x, p.y, p.z]));
-            d.floats(mesh.uv.iter().flat_map(|uv| uv.map(f64::from)));
-            d.count(mesh.triangles.len()).indices(mesh.triangles.iter().flatten().copied());
-        }
-        for texture in &self.textures {
-            d.text(&texture.name).bytes(texture.pixels.as_raw());
-            if texture.repeats {
-                d.text("repeats");
-            }
-        }
     }
 
     fn measures(&self) -> Measures {

@@ -3,7 +3,7 @@
 use nalgebra::Rotation2;
 
 use super::sound::{ensure, finite, positive};
-use super::{Artifact, ArtifactType, Digester, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
+use super::{Artifact, ArtifactType, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
 
 /// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
 /// clockwise (y up).
@@ -179,24 +179,6 @@ impl ArtifactType for Outline {
 impl Artifact for Outline {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("outline").count(1 + self.holes.len());
-        for lp in std::iter::once(&self.outer).chain(&self.holes) {
-            d.count(lp.points.len()).floats(lp.points.iter().flat_map(|p| [p.x, p.y]));
-            d.indices(lp.corners.iter().map(|&c| c as u32));
-        }
-        for e in &self.edges {
-            d.text(&e.name).count(e.start).count(e.end);
-            e.gauge.digest(d);
-        }
-        for line in &self.inner {
-            d.text(&line.name).floats(line.points.iter().flat_map(|p| [p.x, p.y]));
-            if let Some(gauge) = &line.gauge {
-                gauge.digest(d);
-            }
-        }
     }
 
     fn measures(&self) -> Measures {

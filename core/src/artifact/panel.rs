@@ -1,7 +1,7 @@
 //! A meshed piece of flat cloth.
 
 use super::sound::{alike, ensure, finite, finite_figure, indices, length};
-use super::{Artifact, ArtifactType, Digester, InnerKind, Kind, Measures, Point2, polygon_area};
+use super::{Artifact, ArtifactType, InnerKind, Kind, Measures, Point2, polygon_area};
 
 /// A named stretch of the panel's boundary.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,22 +132,6 @@ impl ArtifactType for Panel {
 impl Artifact for Panel {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("panel").count(self.positions.len()).floats(self.positions.iter().flat_map(|p| [p.x, p.y]));
-        d.count(self.triangles.len()).indices(self.triangles.iter().flatten().copied());
-        d.count(self.boundary.len()).indices(self.boundary.iter().copied());
-        for hole in &self.holes {
-            d.count(hole.len()).indices(hole.iter().copied());
-        }
-        for e in &self.edges {
-            d.text(&e.name).count(e.vertices.len()).indices(e.vertices.iter().copied());
-        }
-        for c in &self.inner {
-            d.text(&c.name).count(c.vertices.len()).indices(c.vertices.iter().copied());
-        }
-        d.floats(self.photo_px.iter().flat_map(|p| [p.x, p.y]));
     }
 
     fn measures(&self) -> Measures {

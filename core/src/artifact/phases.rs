@@ -1,7 +1,7 @@
 //! What acts on a garment, one span of time after the other.
 
 use super::sound::{ensure, finite_figure};
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Vector3};
+use super::{Artifact, ArtifactType, Kind, Measures, Vector3};
 
 /// What cloth moves in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,16 +60,6 @@ impl ArtifactType for Phases {
 impl Artifact for Phases {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("phases").count(self.0.len());
-        for p in &self.0 {
-            d.text(&p.name).floats([p.seconds, p.gravity.x, p.gravity.y, p.gravity.z]);
-        }
-        for (k, a) in self.0.iter().enumerate().filter_map(|(k, p)| Some((k, p.air?))) {
-            d.count(k).floats(a.figures());
-        }
     }
 
     fn measures(&self) -> Measures {

@@ -1,7 +1,7 @@
 //! A photo of a garment that lies flat.
 
 use super::sound::{ensure, positive};
-use super::{Artifact, ArtifactType, Digester, GrayImage, Kind, Measures, RgbImage, Shared};
+use super::{Artifact, ArtifactType, GrayImage, Kind, Measures, RgbImage, Shared};
 
 /// An upright sRGB photo with its scale.
 ///
@@ -44,20 +44,6 @@ impl ArtifactType for Photo {
 impl Artifact for Photo {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        let (w, h) = self.pixels.dimensions();
-        d.text("photo").count(w as usize).count(h as usize).bytes(self.pixels.as_raw());
-        d.count(usize::from(self.alpha.is_some())).count(usize::from(self.mirrored));
-        if let Some(alpha) = &self.alpha {
-            d.bytes(alpha.as_raw());
-        }
-        d.floats([self.px_per_metre.unwrap_or(0.0), self.garment_width.unwrap_or(0.0)]);
-        // Photos as they were read keep the digest that they had before pixels could be joined.
-        if self.joined != 1 {
-            d.text("joined").count(self.joined as usize);
-        }
     }
 
     fn measures(&self) -> Measures {

@@ -55,6 +55,41 @@ pub struct Failure {
     pub hint: Option<String>,
 }
 
+impl StageRecord {
+    /// Feeds what the stage was and made. What it took differs from run to run and does not count.
+    fn digest(&self, d: &mut Digester) {
+        let StageRecord {
+            id,
+            name,
+            role,
+            params,
+            outputs,
+            figures,
+            warnings,
+            wall_s: _,
+            used: _,
+            predicted: _,
+        } = self;
+        d.text(id).text(name).text(role.as_str()).text(params).count(outputs.len());
+        for (entry, artifact) in outputs.iter().flat_map(PortValue::entries) {
+            artifact.digest(d.text(entry));
+        }
+        d.count(figures.len());
+        for Measure { name, value, unit, tolerance } in figures {
+            d.text(name).text(unit).floats([*value, *tolerance]);
+        }
+        d.count(warnings.len());
+        warnings.iter().for_each(|w| {
+            d.text(w);
+        });
+    }
+}
+
+/// A text that may be missing.
+fn maybe(d: &mut Digester, text: Option<&str>) {
+    d.count(usize::from(text.is_some())).text(text.unwrap_or(""));
+}
+
 impl ArtifactType for RunLog {
     const KIND: Kind = Kind("run log");
     const IN_SETS: bool = false;
@@ -66,16 +101,18 @@ impl Artifact for RunLog {
     }
 
     fn digest(&self, d: &mut Digester) {
-        // Times differ from run to run, so only what was run counts.
-        d.text("run log").text(&self.pipeline);
-        if let Some(quality) = &self.quality {
-            d.text("quality").text(quality);
-        }
-        for s in &self.stages {
-            d.text(&s.id).text(&s.params);
-        }
-        if let Some(failure) = &self.failure {
-            d.text("failure").text(&failure.stage).text(&failure.message);
+        let RunLog { pipeline, quality, stages, skipped, failure } = self;
+        d.text(Self::KIND.0).text(pipeline);
+        maybe(d, quality.as_deref());
+        d.count(stages.len());
+        stages.iter().for_each(|s| s.digest(d));
+        d.count(skipped.len());
+        skipped.iter().for_each(|(stage, reason)| {
+            d.text(stage).text(reason);
+        });
+        d.count(usize::from(failure.is_some()));
+        if let Some(Failure { stage, message, hint }) = failure {
+            maybe(d.text(stage).text(message), hint.as_deref());
         }
     }
 

@@ -3,7 +3,6 @@
 //! A stage that acts on a kind matches it without a wildcard, so that a new kind is found by the compiler; one that cannot
 //! carry a kind out refuses it by [`SeamKind::word`].
 
-use super::Digester;
 use super::sound::{Sound, finite_figure, positive};
 
 /// How a pleat is laid.
@@ -97,19 +96,6 @@ impl SeamKind {
             true => Ok(kind),
             false => Err(format!("`kind` is \"{word}\", to which {} figures do not belong", figures.len())),
         }
-    }
-
-    /// Feeds what makes it what it is. The first two are numbers since before there were others, so that stored results keep.
-    pub(super) fn digest(self, d: &mut Digester) {
-        match self {
-            SeamKind::Matched => d.count(0),
-            SeamKind::Gathered => d.count(1),
-            SeamKind::Dart
-            | SeamKind::Pleat(_)
-            | SeamKind::Elastic { .. }
-            | SeamKind::Patch
-            | SeamKind::Folded { .. } => d.text(self.word()).floats(self.figures()),
-        };
     }
 
     /// Its figures can be.

@@ -1,7 +1,7 @@
 //! Which edges are sewn to which, and where each panel goes on the body.
 
 use super::sound::finite;
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, SeamKind};
+use super::{Artifact, ArtifactType, Kind, Measures, SeamKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -106,17 +106,6 @@ impl ArtifactType for SewingPlan {
 impl Artifact for SewingPlan {
     fn kind(&self) -> Kind {
         Self::KIND
-    }
-
-    fn digest(&self, d: &mut Digester) {
-        d.text("sewing").count(self.seams.len());
-        for s in &self.seams {
-            s.kind.digest(d.text(&s.name()));
-            d.count(usize::from(s.reversed));
-        }
-        for (name, p) in &self.placements {
-            d.text(name).text(p.landmark).count(usize::from(p.behind)).floats([p.anchor.x, p.anchor.y]);
-        }
     }
 
     fn measures(&self) -> Measures {

@@ -1,4 +1,4 @@
-//! What the crate refuses, each with the place and a remedy.
+//! What the crate refuses: each error says what and where, its `remedy` what can be done.
 
 use thiserror::Error;
 
@@ -8,10 +8,10 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SurfaceError {
     /// A mesh without triangles.
-    #[error("the mesh has no triangles; give at least one")]
+    #[error("the mesh has no triangles")]
     Empty,
     /// A list that is longer than 32-bit numbers can count.
-    #[error("the mesh has {count} {what}, more than {limit}; simplify it or split it")]
+    #[error("the mesh has {count} {what}, more than {limit}")]
     TooLarge {
         /// "vertices" or "triangles".
         what: &'static str,
@@ -21,13 +21,13 @@ pub enum SurfaceError {
         limit: usize,
     },
     /// NaN or infinity, or a number so large that its square overflows.
-    #[error("vertex {vertex} is not at a finite place; remove it or mend its coordinates")]
+    #[error("vertex {vertex} is not at a finite place")]
     NotFinite {
         /// The vertex.
         vertex: usize,
     },
     /// A corner that names no vertex.
-    #[error("triangle {triangle} names vertex {vertex}, but there are {vertices}; mend the index")]
+    #[error("triangle {triangle} names vertex {vertex}, but there are {vertices}")]
     IndexOutOfRange {
         /// The triangle.
         triangle: usize,
@@ -37,7 +37,7 @@ pub enum SurfaceError {
         vertices: usize,
     },
     /// A triangle without area.
-    #[error("triangle {triangle} has no area (height / longest edge {quality:.1e}); remesh or remove it")]
+    #[error("triangle {triangle} has no area (height / longest edge {quality:.1e})")]
     Degenerate {
         /// The triangle.
         triangle: usize,
@@ -45,9 +45,7 @@ pub enum SurfaceError {
         quality: f64,
     },
     /// An edge of three triangles or more.
-    #[error(
-        "the edge of vertices {a} and {b} belongs to {triangles} triangles; cut the mesh into pieces there"
-    )]
+    #[error("the edge of vertices {a} and {b} belongs to {triangles} triangles")]
     NonManifoldEdge {
         /// The lower vertex.
         a: u32,
@@ -57,21 +55,19 @@ pub enum SurfaceError {
         triangles: usize,
     },
     /// A surface with one side only, such as a Möbius strip.
-    #[error("triangle {triangle} cannot be turned to agree with its neighbours; cut the surface there")]
+    #[error("triangle {triangle} cannot be turned to agree with its neighbours")]
     NotOrientable {
         /// The triangle where the two directions meet.
         triangle: usize,
     },
     /// A surface without boundary.
-    #[error("the surface is closed (no edge at triangle {triangle} is free); cut it along a seam first")]
+    #[error("the surface is closed (no edge at triangle {triangle} is free)")]
     Closed {
         /// A triangle of the closed surface.
         triangle: usize,
     },
     /// Several components where one is wanted.
-    #[error(
-        "the mesh has {count} separate components, the second at triangle {triangle}; split it into pieces"
-    )]
+    #[error("the mesh has {count} separate components, the second at triangle {triangle}")]
     Disconnected {
         /// How many components.
         count: usize,
@@ -79,13 +75,13 @@ pub enum SurfaceError {
         triangle: usize,
     },
     /// A surface with handles (tunnels), which no plane drawing without overlap can show.
-    #[error("the surface has {count} handles, so it cannot lie in the plane; cut it along a seam first")]
+    #[error("the surface has {count} handles, so it cannot lie in the plane")]
     Handles {
         /// How many.
         count: usize,
     },
     /// Lists that must be equally long.
-    #[error("{what} has {found} entries, but {wanted} are wanted; give one for each")]
+    #[error("{what} has {found} entries, but {wanted} are wanted")]
     LengthMismatch {
         /// Which list.
         what: &'static str,
@@ -95,7 +91,7 @@ pub enum SurfaceError {
         wanted: usize,
     },
     /// A marked seam that is no edge of the mesh.
-    #[error("seam edge {index} joins vertices {a} and {b}, which no triangle does; mark edges of the mesh")]
+    #[error("seam edge {index} joins vertices {a} and {b}, which no triangle does")]
     NoSuchEdge {
         /// Its place in the list.
         index: usize,
@@ -104,6 +100,27 @@ pub enum SurfaceError {
         /// The other vertex.
         b: u32,
     },
+}
+
+impl SurfaceError {
+    /// What can be done about it.
+    #[must_use]
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Empty => "give at least one",
+            Self::TooLarge { .. } => "simplify it or split it",
+            Self::NotFinite { .. } => "remove it or mend its coordinates",
+            Self::IndexOutOfRange { .. } => "mend the index",
+            Self::Degenerate { .. } => "remesh or remove it",
+            Self::NonManifoldEdge { .. } => "cut the mesh into pieces there",
+            Self::NotOrientable { .. } => "cut the surface there",
+            Self::Closed { .. } => "cut it along a seam first",
+            Self::Disconnected { .. } => "split it into pieces",
+            Self::Handles { .. } => "cut it along a seam first",
+            Self::LengthMismatch { .. } => "give one for each",
+            Self::NoSuchEdge { .. } => "mark edges of the mesh",
+        }
+    }
 }
 
 /// Why a surface could not be flattened.
@@ -123,7 +140,7 @@ pub enum FlattenError {
         range: &'static str,
     },
     /// A matrix that has no Cholesky factor.
-    #[error("the system of {unknowns} unknowns could not be factored ({why}); look for slivers and remesh")]
+    #[error("the system of {unknowns} unknowns could not be factored ({why})")]
     Factorization {
         /// Its size.
         unknowns: usize,
@@ -131,9 +148,7 @@ pub enum FlattenError {
         why: String,
     },
     /// No start without flipped triangles was found.
-    #[error(
-        "no start without flipped triangles was found ({flips} are flipped); remesh slivers near triangle {triangle}"
-    )]
+    #[error("no start without flipped triangles was found ({flips} are flipped)")]
     NoStart {
         /// How many triangles are flipped in the best start.
         flips: usize,
@@ -141,13 +156,13 @@ pub enum FlattenError {
         triangle: usize,
     },
     /// A triangle so small beside the piece that the digits of its flat places do not keep its area.
-    #[error("triangle {triangle} is too small beside the piece for its flat places; remesh or remove it")]
+    #[error("triangle {triangle} is too small beside the piece for its flat places")]
     TooSmall {
         /// The triangle.
         triangle: usize,
     },
     /// A seam, chain or vertex that the piece does not have.
-    #[error("{what} names vertex {vertex}, but the piece has {vertices}; give vertices of the piece")]
+    #[error("{what} names vertex {vertex}, but the piece has {vertices}")]
     NoSuchVertex {
         /// What names it.
         what: &'static str,
@@ -156,4 +171,19 @@ pub enum FlattenError {
         /// How many there are.
         vertices: usize,
     },
+}
+
+impl FlattenError {
+    /// What can be done about it; none where the message says it.
+    #[must_use]
+    pub fn remedy(&self) -> Option<String> {
+        Some(match self {
+            Self::Surface(e) => e.remedy().into(),
+            Self::InvalidParameter { .. } => return None,
+            Self::Factorization { .. } => "look for slivers and remesh".into(),
+            Self::NoStart { triangle, .. } => format!("remesh slivers near triangle {triangle}"),
+            Self::TooSmall { .. } => "remesh or remove it".into(),
+            Self::NoSuchVertex { .. } => "give vertices of the piece".into(),
+        })
+    }
 }

@@ -16,6 +16,7 @@ mod xpbd;
 pub use central_differences::CentralDifferences;
 pub use implicit_euler::ImplicitEuler;
 pub use mixed_precision::Precision;
+pub use motion::InTime;
 pub use projective::Projective;
 pub use rest::{Proof, Rest};
 pub use spring::SpringDraper;

@@ -1,7 +1,9 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
 use crate::cloth::check_garment;
-use crate::engine::{self, SchemeSkin, Setting, cloth_error, only_joins, scene_error, scene_of, weld_seams};
+use crate::engine::{
+    self, SchemeSkin, Setting, cloth_error, only_joins, scene_error, scene_of, split, weld_seams,
+};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
@@ -11,18 +13,43 @@ use toile_cloth::rest::solve::Wearer;
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
 use toile_core::prelude::*;
 
-/// Settings that all of them share.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Course {
-    pub(super) method: Method,
-    pub(super) gravity: f64,
-    pub(super) air: EngineAir,
-    pub(super) dt: f64,
-    pub(super) drag: f64,
-    pub(super) speed: f64,
-    pub(super) longest: f64,
-    pub(super) join_gap: f64,
-    pub(super) time_limit: f64,
+/// What all of them share.
+#[params]
+#[derive(Copy)]
+pub struct InTime {
+    /// Downward acceleration; a scene's own phases come before it.
+    #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
+    pub gravity: f64,
+    /// Time between two looks at contacts.
+    #[param(default = 0.004, min = 1e-6, max = 0.1, unit = "s", trades, finer = "less")]
+    pub dt: f64,
+    /// Drag in proportion to mass, so that swinging dies out; 0 for a true fall.
+    #[param(default = 4.0, min = 0.0, max = 1000.0, unit = "1/s")]
+    pub drag: f64,
+    /// Density of the air, which slows every triangle and carries the wind: 1.2 at 20 degrees; a scene's phases may have their own.
+    #[param(default = 0.0, min = 0.0, max = 2000.0, unit = "kg/m3")]
+    pub air: f64,
+    /// Drag coefficient of the air across the cloth.
+    #[param(default = 1.17, min = 0.0, max = 100.0)]
+    pub air_normal: f64,
+    /// Drag coefficient of the air along the cloth, both sides together.
+    #[param(default = 0.008, min = 0.0, max = 100.0)]
+    pub air_tangential: f64,
+    /// Velocity of the air; still while seams are sewn.
+    #[param(default = (0.0, 0.0, 0.0), min = -500.0, max = 500.0, unit = "m/s")]
+    pub wind: (f64, f64, f64),
+    /// At rest, no vertex is faster, by its way in a sixtieth of a second.
+    #[param(default = 0.02, min = 1e-9, max = 10.0, unit = "m/s", trades, finer = "less")]
+    pub speed: f64,
+    /// Longest motion for sewing, and again for draping.
+    #[param(default = 6.0, min = 0.001, max = 1000.0, unit = "s", trades)]
+    pub longest: f64,
+    /// Gap below which a seam is joined.
+    #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
+    pub join_gap: Length,
+    /// Wall time after which it gives up. A run that meets it is not repeatable.
+    #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
+    pub time_limit: f64,
 }
 
 /// Distance at which cloth is held off itself where there is no collider, m.
@@ -32,7 +59,8 @@ const SETTLED: f64 = 1e-3;
 
 /// Sews the garment and lets it come to rest, or follows the phases of a scene.
 pub(super) fn drape(
-    course: &Course,
+    method: Method,
+    course: &InTime,
     garment: &Garment,
     collider: Option<&Collider>,
     phases: Option<&Phases>,
@@ -40,11 +68,12 @@ pub(super) fn drape(
 ) -> Result<Garment, StageError> {
     check_garment(garment)?;
     garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
-    check_wind(&course.air)?;
+    let air = course.air();
+    check_wind(&air)?;
     let card = collider.map(|c| c.scheme.card());
     let setting = Setting {
         gravity: Vector3::new(0.0, -course.gravity, 0.0),
-        air: Some(course.air).filter(EngineAir::acts),
+        air: Some(air).filter(EngineAir::acts),
         thickness: card.map_or(THICKNESS, |c| c.thickness),
         self_collision: card.is_none_or(|c| c.self_collision),
     };
@@ -57,10 +86,10 @@ pub(super) fn drape(
         None => Until::Rest { speed: course.speed, energy: SETTLED, longest: course.longest },
     };
     let motion = Motion {
-        method: course.method,
+        method,
         dt: course.dt,
         drag: course.drag,
-        join_gap: course.join_gap,
+        join_gap: course.join_gap.metres(),
         until,
         budget: Duration::from_secs_f64(course.time_limit),
         ..Motion::default()
@@ -101,9 +130,13 @@ fn unrest(moved: &Moved, wanted: f64) -> String {
     }
 }
 
-/// The air that a stage's parameters name.
-pub(super) fn air(density: f64, normal: f64, tangential: f64, wind: (f64, f64, f64)) -> EngineAir {
-    EngineAir { density, normal, tangential, wind: Vector3::new(wind.0, wind.1, wind.2) }
+impl InTime {
+    /// The air that the parameters name.
+    fn air(&self) -> EngineAir {
+        let (x, y, z) = self.wind;
+        let wind = Vector3::new(x, y, z);
+        EngineAir { density: self.air, normal: self.air_normal, tangential: self.air_tangential, wind }
+    }
 }
 
 pub(super) fn engine_air(a: Air) -> EngineAir {
@@ -155,8 +188,6 @@ fn finish(garment: &Garment, moved: &Moved) -> Garment {
 }
 
 pub(super) fn motion_error(error: &MotionError) -> StageError {
-    let message = error.to_string();
-    let (text, hint) = message.split_once("; ").map_or((&*message, None), |(t, h)| (t, Some(h)));
     let code = match error {
         MotionError::Cloth(e) => return cloth_error(e),
         MotionError::Scene(e) => return scene_error(e),
@@ -166,9 +197,5 @@ pub(super) fn motion_error(error: &MotionError) -> StageError {
         MotionError::Stopped => ErrorCode::Cancelled,
         MotionError::Start(_) | MotionError::Fabrics { .. } => ErrorCode::InvalidInput,
     };
-    let e = StageError::new(code, text);
-    match hint {
-        Some(hint) => e.hint(hint),
-        None => e,
-    }
+    split(code, &error.to_string())
 }

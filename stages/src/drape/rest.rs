@@ -5,13 +5,13 @@
 //! the way there is no motion: nothing of it may be shown as an animation; folds and friction have many states of rest, of
 //! which one is found.
 
-use super::ImplicitEuler;
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
 use super::mixed_precision::{self, Precision};
 use super::motion::engine_air;
+use super::{ImplicitEuler, InTime};
 use crate::cloth::check_garment;
-use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, weld_seams};
+use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, split, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -156,12 +156,11 @@ impl Rest {
         cx.check()?;
         if let (Err(RestError::Falls), Some(phases)) = (&result, phases) {
             cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
-            return ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(
-                garment,
-                collider,
-                Some(phases),
-                cx,
-            );
+            return ImplicitEuler {
+                motion: InTime { drag: 0.0, ..InTime::default() },
+                ..ImplicitEuler::default()
+            }
+            .run(garment, collider, Some(phases), cx);
         }
         let steps = progress.steps;
         if let Some(positions) = result.as_ref().err().and_then(RestError::so_far) {
@@ -272,11 +271,6 @@ impl Progress<'_> {
 }
 
 fn rest_error(error: &RestError) -> StageError {
-    let message = error.to_string();
-    let (text, hint) = match message.split_once("; ") {
-        Some((text, hint)) => (text.to_owned(), Some(hint.to_owned())),
-        None => (message, None),
-    };
     let code = match error {
         RestError::Cloth(e) => return cloth_error(e),
         RestError::Scene(e) => return scene_error(e),
@@ -288,9 +282,5 @@ fn rest_error(error: &RestError) -> StageError {
         RestError::Stopped => ErrorCode::Cancelled,
         _ => ErrorCode::StaticEquilibrium,
     };
-    let e = StageError::new(code, text);
-    match hint {
-        Some(hint) => e.hint(hint),
-        None => e,
-    }
+    split(code, &error.to_string())
 }

@@ -1,6 +1,7 @@
 //! A fall past the body, told of a garment that is on its way.
 
 use super::SchemeSkin;
+use super::fault::split;
 use super::pieces::pieces;
 use nalgebra::Vector3;
 use toile_cloth::contact::past::{BodyBox, Fallen, NO_PIECE, list};
@@ -51,7 +52,5 @@ impl<'g> FallWatch<'g> {
 
 /// Cloth that has fallen past the body.
 fn fall_error(fallen: &Fallen) -> StageError {
-    let text = fallen.to_string();
-    let (what, hint) = text.split_once("; ").unwrap_or((&text, ""));
-    StageError::new(ErrorCode::StaticEquilibrium, what).hint(hint)
+    split(ErrorCode::StaticEquilibrium, &fallen.to_string())
 }

@@ -55,8 +55,8 @@ pub fn scene_error(error: &SceneError) -> StageError {
 pub const OBJ_HINT: &str =
     "it must be a Wavefront OBJ with `v` and `f` lines; write it again from the program that made it";
 
-/// What stands behind the semicolon is the remedy.
-fn split(code: ErrorCode, text: &str) -> StageError {
+/// An error of the engine, whose remedy stands behind the semicolon of its words.
+pub fn split(code: ErrorCode, text: &str) -> StageError {
     match text.split_once("; ") {
         Some((text, hint)) => StageError::new(code, text).hint(hint),
         None => StageError::new(code, text),

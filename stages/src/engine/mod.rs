@@ -14,7 +14,7 @@ mod skin;
 
 pub use arithmetic::arithmetic;
 pub use fall::FallWatch;
-pub use fault::{OBJ_HINT, cloth_error, scene_error};
+pub use fault::{OBJ_HINT, cloth_error, scene_error, split};
 pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};

@@ -1,7 +1,6 @@
 //! `Arap`: as rigid as possible.
 
-use super::dart::Darts;
-use super::flattened::{Request, care};
+use super::flattened::{Care, Request};
 use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::flatteners::arap;
@@ -18,21 +17,9 @@ use toile_flatten::newton::NewtonOptions;
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
 )]
 pub struct Arap {
-    /// Make the two sides of each seam equally long.
-    #[param(default = true)]
-    pub seams: bool,
-    /// Make left and right pieces mirror images, and pieces that are their own mirror image so.
-    #[param(default = true)]
-    pub mirror: bool,
-    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for none.
-    #[param(default = 0.005, min = 0.0, max = 0.19)]
-    pub straight: f64,
-    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a knit that is worn 10 % longer and 20 % wider.
-    #[param(default = (0.0, 0.0), min = -0.8, max = 9.0)]
-    pub tension: (f64, f64),
-    /// What becomes of cloth that cannot lie flat.
-    #[param(default = Darts::None)]
-    pub darts: Darts,
+    /// Care of the pattern.
+    #[param(flatten)]
+    pub care: Care,
     /// Most steps of Newton's method a piece.
     #[param(default = 100, min = 1, max = 10_000, trades)]
     pub iterations: u32,
@@ -52,14 +39,14 @@ impl Arap {
         let options = toile_flatten::flatteners::ArapOptions { newton, ..Default::default() };
         let request = Request {
             method: &|surface, placement, _| arap(surface, options, placement),
-            care: Some((objective, care(self.seams, self.straight, self.mirror, newton))),
-            darts: self.darts,
-            tension: self.tension,
+            care: Some((objective, self.care.options(newton))),
+            darts: self.care.darts,
+            tension: self.care.tension,
         };
         request.run(garment, pattern, cx)
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        self.darts.checked().err().into_iter().collect()
+        self.care.darts.checked().err().into_iter().collect()
     }
 }

@@ -18,7 +18,7 @@ pub(super) fn surface_fault(e: SurfaceError, numbers: &[u32]) -> StageError {
         SurfaceError::Degenerate { .. } => ErrorCode::DegenerateTriangles,
         _ => ErrorCode::InvalidInput,
     };
-    split(code, &in_file.to_string(), "")
+    StageError::new(code, in_file.to_string()).hint(in_file.remedy())
 }
 
 /// The fault of flattening a piece.
@@ -28,14 +28,10 @@ pub(super) fn flatten_fault(e: &FlattenError, piece: &str) -> StageError {
         FlattenError::Surface(SurfaceError::Degenerate { .. }) => ErrorCode::DegenerateTriangles,
         _ => ErrorCode::InvalidInput,
     };
-    split(code, &e.to_string(), piece)
-}
-
-/// What stands behind the semicolon is the remedy.
-fn split(code: ErrorCode, text: &str, piece: &str) -> StageError {
     let of = if piece.is_empty() { String::new() } else { format!("piece \"{piece}\": ") };
-    match text.split_once("; ") {
-        Some((text, hint)) => StageError::new(code, format!("{of}{text}")).hint(hint),
-        None => StageError::new(code, format!("{of}{text}")),
+    let error = StageError::new(code, format!("{of}{e}"));
+    match e.remedy() {
+        Some(remedy) => error.hint(remedy),
+        None => error,
     }
 }

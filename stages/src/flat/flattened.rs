@@ -29,6 +29,27 @@ pub(super) struct Request<'a> {
     pub(super) tension: (f64, f64),
 }
 
+/// What flatteners care for beyond the shape of triangles.
+#[params]
+#[derive(Copy)]
+pub struct Care {
+    /// Make the two sides of each seam equally long.
+    #[param(default = true)]
+    pub seams: bool,
+    /// Make left and right pieces mirror images, and pieces that are their own mirror image so.
+    #[param(default = true)]
+    pub mirror: bool,
+    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for none.
+    #[param(default = 0.005, min = 0.0, max = 0.19)]
+    pub straight: f64,
+    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a knit that is worn 10 % longer and 20 % wider.
+    #[param(default = (0.0, 0.0), min = -0.8, max = 9.0)]
+    pub tension: (f64, f64),
+    /// What becomes of cloth that cannot lie flat.
+    #[param(default = Darts::None)]
+    pub darts: Darts,
+}
+
 /// Where the mean direction of the warp is shorter, it has none: the y of space is taken.
 const LEAST_GRAIN: f64 = 0.2;
 
@@ -177,21 +198,18 @@ fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
     }
 }
 
-/// The options of pattern care; a corner is what the drawing takes for one.
-pub(super) fn care(
-    seams: bool,
-    straight: f64,
-    mirror: bool,
-    newton: toile_flatten::newton::NewtonOptions,
-) -> CareOptions {
-    let defaults = CareOptions::default();
-    let on = |share: f64| if mirror { share } else { 0.0 };
-    CareOptions {
-        seams,
-        straight,
-        corner: CORNER,
-        mirror: on(defaults.mirror),
-        mirror_outline: on(defaults.mirror_outline),
-        newton,
+impl Care {
+    /// The options of pattern care; a corner is what the drawing takes for one.
+    pub(super) fn options(&self, newton: toile_flatten::newton::NewtonOptions) -> CareOptions {
+        let defaults = CareOptions::default();
+        let on = |share: f64| if self.mirror { share } else { 0.0 };
+        CareOptions {
+            seams: self.seams,
+            straight: self.straight,
+            corner: CORNER,
+            mirror: on(defaults.mirror),
+            mirror_outline: on(defaults.mirror_outline),
+            newton,
+        }
     }
 }

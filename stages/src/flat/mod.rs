@@ -31,6 +31,7 @@ mod woven;
 
 pub use arap::Arap;
 pub use dart::Darts;
+pub use flattened::Care;
 pub use garment3d::{FileUnit, FlatShape, Garment3d};
 pub use labels::PiecesBy;
 pub use lscm::Lscm;

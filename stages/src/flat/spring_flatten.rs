@@ -1,7 +1,6 @@
 //! `SpringFlatten`: the published method.
 
-use super::dart::Darts;
-use super::flattened::{Request, care};
+use super::flattened::{Care, Request};
 use toile_core::prelude::*;
 use toile_flatten::care::Objective;
 use toile_flatten::flatteners::springs;
@@ -19,21 +18,9 @@ use toile_flatten::newton::NewtonOptions;
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
 )]
 pub struct SpringFlatten {
-    /// Make the two sides of each seam equally long.
-    #[param(default = true)]
-    pub seams: bool,
-    /// Make left and right pieces mirror images, and pieces that are their own mirror image so.
-    #[param(default = true)]
-    pub mirror: bool,
-    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for none.
-    #[param(default = 0.005, min = 0.0, max = 0.19)]
-    pub straight: f64,
-    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a knit that is worn 10 % longer and 20 % wider.
-    #[param(default = (0.0, 0.0), min = -0.8, max = 9.0)]
-    pub tension: (f64, f64),
-    /// What becomes of cloth that cannot lie flat.
-    #[param(default = Darts::None)]
-    pub darts: Darts,
+    /// Care of the pattern.
+    #[param(flatten)]
+    pub care: Care,
     /// The energy by area that one more step may still save; 0.0002 is about a strain of one per cent everywhere.
     #[param(default = 1e-9, min = 1e-14, max = 1e-2, trades)]
     pub settled: f64,
@@ -54,14 +41,14 @@ impl SpringFlatten {
         let newton = NewtonOptions { iterations: self.iterations as usize, tolerance: self.settled };
         let request = Request {
             method: &|surface, placement, _| springs(surface, newton, placement),
-            care: Some((Objective::Springs, care(self.seams, self.straight, self.mirror, newton))),
-            darts: self.darts,
-            tension: self.tension,
+            care: Some((Objective::Springs, self.care.options(newton))),
+            darts: self.care.darts,
+            tension: self.care.tension,
         };
         request.run(garment, pattern, cx)
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        self.darts.checked().err().into_iter().collect()
+        self.care.darts.checked().err().into_iter().collect()
     }
 }

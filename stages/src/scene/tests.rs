@@ -3,7 +3,7 @@
 
 use super::Scene;
 use crate::collide::body_crossings;
-use crate::drape::{CentralDifferences, ImplicitEuler, Projective, Rest, SpringDraper, Xpbd};
+use crate::drape::{CentralDifferences, ImplicitEuler, InTime, Projective, Rest, SpringDraper, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
 use toile_cloth::force::Air;
@@ -24,6 +24,11 @@ fn through_files(scene: &toile_cloth::scene::Scene) -> Result<Made, StageError> 
 fn read(folder: &Path, file: &str) -> Result<Made, StageError> {
     let cx = Context::new("Scene", folder, Cancel::new(), Arc::new(()));
     Scene { file: file.into(), ..Scene::default() }.run(&cx)
+}
+
+/// A motion that nothing slows but the air.
+fn falling() -> InTime {
+    InTime { drag: 0.0, ..InTime::default() }
 }
 
 #[test]
@@ -131,10 +136,10 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
     let way = 0.5 * 9.81 * seconds * seconds;
     let fallen = [
         Rest::default().run(&g, c, p, &cx).unwrap(),
-        ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
-        Xpbd { drag: 0.0, ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
-        Projective { drag: 0.0, ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
-        CentralDifferences { drag: 0.0, ..CentralDifferences::default() }.run(&g, c, p, &cx).unwrap(),
+        ImplicitEuler { motion: falling(), ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
+        Xpbd { motion: falling(), ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
+        Projective { motion: falling(), ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
+        CentralDifferences { motion: falling() }.run(&g, c, p, &cx).unwrap(),
     ];
     for (k, f) in fallen.iter().enumerate() {
         let fell = g.positions[5].y - f.positions[5].y;
@@ -161,14 +166,17 @@ fn in_air(air: Option<Air>) -> toile_cloth::scene::Scene {
 #[test]
 fn the_wind_of_a_scene_and_that_of_a_stage_blow_alike_and_the_scenes_comes_first() {
     let wind = (0.0, 6.0, 0.0);
-    let stage = ImplicitEuler { drag: 0.0, air: 1.2, wind, ..ImplicitEuler::default() };
+    let stage = ImplicitEuler { motion: InTime { air: 1.2, wind, ..falling() }, ..ImplicitEuler::default() };
     let run = |stage: &ImplicitEuler, scene: &toile_cloth::scene::Scene| {
         let (g, _, c, p) = through_files(scene).unwrap();
         stage.run(&g, Some(&c), Some(&p), &Context::quiet()).unwrap().velocities
     };
     let blown = Air { wind: nalgebra::Vector3::new(0.0, 6.0, 0.0), ..Air::still(1.2) };
     let by_stage = run(&stage, &in_air(None));
-    assert_eq!(run(&ImplicitEuler { drag: 0.0, ..ImplicitEuler::default() }, &in_air(Some(blown))), by_stage);
+    assert_eq!(
+        run(&ImplicitEuler { motion: falling(), ..ImplicitEuler::default() }, &in_air(Some(blown))),
+        by_stage
+    );
     let k = 0.5 * 1.2 * 1.17 / in_air(None).material.density;
     let exact = 6.0 - 6.0 / (1.0 + k * 6.0 * 0.2);
     assert!(by_stage.iter().all(|v| (v.y - exact).abs() < 1e-5), "{} against {exact}", by_stage[0].y);
@@ -190,13 +198,17 @@ fn rest_names_the_stages_that_rest_in_wind_and_wind_needs_air() {
             "take ImplicitEuler, CentralDifferences, Xpbd or Projective, which move the cloth until it rests"
         )
     );
-    let e = Xpbd { wind: (1.0, 0.0, 0.0), ..Xpbd::default() }.run(&g, Some(&c), Some(&p), &cx).unwrap_err();
+    let windy = InTime { wind: (1.0, 0.0, 0.0), ..InTime::default() };
+    let e = Xpbd { motion: windy, ..Xpbd::default() }.run(&g, Some(&c), Some(&p), &cx).unwrap_err();
     assert_eq!(
         (e.code, &*e.message),
         (ErrorCode::InvalidParameter, "there is wind, but no air that could blow")
     );
     assert_eq!(e.hint.as_deref(), Some("write `air: 1.2`"));
-    let gale = Projective { air: 1.2, wind: (0.0, 2000.0, 0.0), ..Projective::default() };
+    let gale = Projective {
+        motion: InTime { air: 1.2, wind: (0.0, 2000.0, 0.0), ..InTime::default() },
+        ..Projective::default()
+    };
     let (g, _, c, p) = through_files(&in_air(None)).unwrap();
     let e = gale.run(&g, Some(&c), Some(&p), &cx).unwrap_err();
     assert_eq!(e.message, "wind speed = 2000 is out of range: at most 1000 m/s");

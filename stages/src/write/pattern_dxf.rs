@@ -1,7 +1,7 @@
 //! `PatternDxf`: the sewing pattern for programs of the trade.
 
 use super::names::check_name;
-use super::pattern_file::{WIDEST, files, options};
+use super::pattern_file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::dxf::{Standard, to_dxf};
 
@@ -31,12 +31,8 @@ pub struct PatternDxf {
     /// Which standard's layers.
     #[param(default = DxfStandard::Aama)]
     standard: DxfStandard,
-    /// Seam allowance of edges that are sewn.
-    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
-    seam_allowance: Length,
-    /// Allowance of edges that are not sewn, such as hems.
-    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
-    hem_allowance: Length,
+    #[param(flatten)]
+    around: SeamAllowances,
     /// The size that the pattern is for, such as `M`.
     #[param(default = String::new())]
     size: String,
@@ -45,7 +41,7 @@ pub struct PatternDxf {
 #[stage]
 impl PatternDxf {
     pub(super) fn run(&self, pattern: &Pattern, cx: &Context) -> Result<OutputFiles, StageError> {
-        let options = options(self.seam_allowance, self.hem_allowance, &self.size);
+        let options = self.around.options(&self.size);
         let standard = match self.standard {
             DxfStandard::Aama => Standard::Aama,
             DxfStandard::Astm => Standard::Astm,

@@ -6,12 +6,30 @@ use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::{Options, WriteError, Written};
 
 /// The widest seam allowance, metres.
-pub(super) const WIDEST: f64 = 0.2;
+const WIDEST: f64 = 0.2;
 
-/// The options of a drawing with these allowances.
-pub(super) fn options(seam: Length, hem: Length, size: &str) -> Options {
-    let allowances = Allowances { sewn: seam.metres(), free: hem.metres(), ..Allowances::default() };
-    Options { allowances, size: size.to_owned(), ..Options::default() }
+/// Cloth beyond the lines that are sewn.
+#[params]
+#[derive(Copy)]
+pub(super) struct SeamAllowances {
+    /// Seam allowance of edges that are sewn.
+    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
+    pub(super) seam_allowance: Length,
+    /// Allowance of edges that are not sewn, such as hems.
+    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
+    pub(super) hem_allowance: Length,
+}
+
+impl SeamAllowances {
+    /// The options of a drawing with these allowances.
+    pub(super) fn options(&self, size: &str) -> Options {
+        let (sewn, free) = (self.seam_allowance.metres(), self.hem_allowance.metres());
+        Options {
+            allowances: Allowances { sewn, free, ..Allowances::default() },
+            size: size.to_owned(),
+            ..Options::default()
+        }
+    }
 }
 
 /// The file and the file of its seams; what it does not hold is told.

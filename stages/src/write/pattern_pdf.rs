@@ -1,7 +1,7 @@
 //! `PatternPdf`: the sewing pattern to print.
 
 use super::names::check_name;
-use super::pattern_file::{WIDEST, files, options};
+use super::pattern_file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::pdf::{Paper, to_pdf};
 
@@ -32,18 +32,14 @@ pub struct PatternPdf {
     /// What it is printed on.
     #[param(default = PatternPaper::A4)]
     paper: PatternPaper,
-    /// Seam allowance of edges that are sewn.
-    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
-    seam_allowance: Length,
-    /// Allowance of edges that are not sewn, such as hems.
-    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
-    hem_allowance: Length,
+    #[param(flatten)]
+    around: SeamAllowances,
 }
 
 #[stage]
 impl PatternPdf {
     pub(super) fn run(&self, pattern: &Pattern, cx: &Context) -> Result<OutputFiles, StageError> {
-        let options = options(self.seam_allowance, self.hem_allowance, "");
+        let options = self.around.options("");
         let paper = match self.paper {
             PatternPaper::A4 => Paper::A4,
             PatternPaper::Letter => Paper::Letter,

@@ -1,7 +1,7 @@
 //! `PatternSvg`: the sewing pattern as a drawing.
 
 use super::names::check_name;
-use super::pattern_file::{WIDEST, files, options};
+use super::pattern_file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::svg;
 
@@ -18,18 +18,14 @@ pub struct PatternSvg {
     /// The file's name without extension.
     #[param(default = "pattern".to_owned())]
     name: String,
-    /// Seam allowance of edges that are sewn.
-    #[param(default = Length::mm(10.0), min = 0.0, max = WIDEST)]
-    seam_allowance: Length,
-    /// Allowance of edges that are not sewn, such as hems.
-    #[param(default = Length::mm(20.0), min = 0.0, max = WIDEST)]
-    hem_allowance: Length,
+    #[param(flatten)]
+    around: SeamAllowances,
 }
 
 #[stage]
 impl PatternSvg {
     pub(super) fn run(&self, pattern: &Pattern, cx: &Context) -> Result<OutputFiles, StageError> {
-        let options = options(self.seam_allowance, self.hem_allowance, "");
+        let options = self.around.options("");
         files(&self.name, ".svg", svg::to_svg(pattern, &options), cx)
     }
 

@@ -19,7 +19,7 @@ pub use lower::{Lowered, LoweringError};
 pub use piece::{BodyPart, LinePurpose, Notch, PatternLoop, Piece, PieceEdge, PieceLine, Pose};
 pub use seam::{EdgeUse, PatternSeam};
 
-use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point2};
+use super::{Artifact, ArtifactType, Kind, Measures};
 
 /// The pieces of a garment and the seams between them; lengths in metres.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -55,22 +55,6 @@ impl Artifact for Pattern {
         Self::KIND
     }
 
-    fn digest(&self, d: &mut Digester) {
-        d.text("pattern").text(&self.name).count(self.pieces.len());
-        self.pieces.iter().for_each(|p| digest_piece(p, d));
-        d.count(self.seams.len());
-        for s in &self.seams {
-            s.kind.digest(d.text(&s.name));
-            d.count(s.sides.len());
-            for side in &s.sides {
-                d.count(side.len());
-                for u in side {
-                    d.text(&u.edge.panel).text(&u.edge.edge).count(usize::from(u.reversed));
-                }
-            }
-        }
-    }
-
     fn measures(&self) -> Measures {
         let mut m = Measures::new();
         m.count("pieces", self.pieces.len()).count("seams", self.seams.len());
@@ -96,33 +80,4 @@ impl Artifact for Pattern {
     fn export(&self) -> Vec<(&'static str, Vec<u8>)> {
         vec![("svg", svg::svg(self).into_bytes())]
     }
-}
-
-fn digest_piece(p: &Piece, d: &mut Digester) {
-    d.text(&p.name).count(1 + p.holes.len());
-    for l in std::iter::once(&p.outer).chain(&p.holes) {
-        digest_points(&l.corners, d);
-        for e in &l.edges {
-            digest_points(e.curve.points(), d.text(&e.name).text(e.curve.word()));
-            if let EdgeCurve::Arc { bulge } = e.curve {
-                d.floats([bulge]);
-            }
-        }
-    }
-    d.count(p.lines.len());
-    p.lines.iter().for_each(|l| digest_points(&l.points, d.text(&l.name).count(l.purpose as usize)));
-    d.count(p.notches.len());
-    for n in &p.notches {
-        d.text(&n.edge).floats([n.along, n.depth]);
-    }
-    digest_points(&p.drill_holes, d);
-    digest_points(p.grain.as_ref().map_or(&[][..], |g| g), d);
-    d.count(p.body_part.map_or(0, |b| 1 + b as usize)).count(p.layer as usize);
-    if let Some(pose) = &p.pose {
-        d.floats(pose.origin.coords.iter().chain(&pose.across).chain(&pose.along).copied());
-    }
-}
-
-fn digest_points(points: &[Point2], d: &mut Digester) {
-    d.count(points.len()).floats(points.iter().flat_map(|p| [p.x, p.y]));
 }

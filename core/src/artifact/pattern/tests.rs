@@ -1,6 +1,7 @@
 //! Patterns through records, checks and lowering.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+use super::super::Point2;
 use super::*;
 use crate::artifact::stored::{decode, encode};
 use crate::artifact::{EdgeRef, Point3, SeamKind, Vector3, polyline_length};

@@ -1,6 +1,6 @@
 //! Records and their fields.
 
-use super::super::{Point2, Point3, Vector3};
+use super::super::{Digester, Point2, Point3, Vector3};
 use crate::plugin::Lending;
 use bytemuck::{Pod, cast_slice};
 use std::any::Any;
@@ -125,6 +125,26 @@ impl<'a> Record<'a> {
     /// No fields.
     pub fn new() -> Self {
         Self::default()
+    }
+
+    /// Feeds every field: its name, how many it holds, and those.
+    pub(in crate::artifact) fn digest(&self, d: &mut Digester) {
+        d.count(self.fields.len());
+        for field in &self.fields {
+            d.text(&field.name).count(field.data.len());
+            match &field.data {
+                Data::U8(x) => d.bytes(x),
+                Data::U32(x) => d.bytes(cast_slice(x)),
+                Data::U64(x) => d.bytes(cast_slice(x)),
+                Data::F32(x) => d.bytes(cast_slice(x)),
+                Data::F64(x) => d.bytes(cast_slice(x)),
+                Data::Text(x) => d.bytes(x.as_bytes()),
+                Data::Records(x) => x.iter().fold(&mut *d, |d, record| {
+                    record.digest(d);
+                    d
+                }),
+            };
+        }
     }
 
     /// Adds a list.

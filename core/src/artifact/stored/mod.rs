@@ -15,7 +15,7 @@ mod plan;
 mod read;
 mod solid;
 #[cfg(test)]
-mod tests;
+pub(super) mod tests;
 
 pub use list::{Data, Field, Listed, Owner, Record};
 pub use read::Reader;

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-fn photo() -> Photo {
+pub(in crate::artifact) fn photo() -> Photo {
     Photo {
         pixels: Shared::new(image::RgbImage::from_fn(3, 2, |x, y| image::Rgb([x as u8, y as u8, 7]))),
         alpha: Some(Shared::new(image::GrayImage::from_pixel(3, 2, image::Luma([9])))),
@@ -18,7 +18,7 @@ fn photo() -> Photo {
     }
 }
 
-fn outline() -> Outline {
+pub(in crate::artifact) fn outline() -> Outline {
     let points = vec![Point2::new(0.0, 0.0), Point2::new(0.1, 0.0), Point2::new(0.0, 0.2)];
     let gauge = Gauge::of(&points[..2], &[]);
     let edge = |name: &str, start, end| Edge { name: name.into(), start, end, gauge };
@@ -42,7 +42,7 @@ fn outline() -> Outline {
     }
 }
 
-fn panel() -> Panel {
+pub(in crate::artifact) fn panel() -> Panel {
     Panel {
         positions: vec![Point2::new(0.0, 0.0), Point2::new(0.1, 0.0), Point2::new(0.0, 0.2)],
         triangles: vec![[0, 1, 2]],
@@ -56,7 +56,7 @@ fn panel() -> Panel {
     }
 }
 
-fn fabric() -> Fabric {
+pub(in crate::artifact) fn fabric() -> Fabric {
     Fabric {
         name: "poplin".into(),
         area_density: 0.12,
@@ -74,7 +74,7 @@ fn fabric() -> Fabric {
     }
 }
 
-fn garment() -> Garment {
+pub(in crate::artifact) fn garment() -> Garment {
     let at = |p: &Point2| Point3::new(p.x, p.y, 0.0);
     let flat = panel();
     Garment {
@@ -102,7 +102,7 @@ fn garment() -> Garment {
     }
 }
 
-fn body() -> Body {
+pub(in crate::artifact) fn body() -> Body {
     Body {
         positions: vec![
             Point3::origin(),
@@ -116,7 +116,7 @@ fn body() -> Body {
     }
 }
 
-fn model() -> Model {
+pub(in crate::artifact) fn model() -> Model {
     Model {
         meshes: vec![Mesh {
             name: "front".into(),
@@ -138,7 +138,7 @@ fn model() -> Model {
     }
 }
 
-fn plan() -> SewingPlan {
+pub(in crate::artifact) fn plan() -> SewingPlan {
     let edge = |text: &str| EdgeRef::try_from(text.to_owned()).unwrap();
     let placement = PanelPlacement {
         limb: Limb::LeftArm,
@@ -157,7 +157,7 @@ fn plan() -> SewingPlan {
     }
 }
 
-fn figures() -> Figures {
+pub(in crate::artifact) fn figures() -> Figures {
     Figures {
         panels: BTreeMap::from([(
             "front".to_owned(),
@@ -177,7 +177,7 @@ fn figures() -> Figures {
     }
 }
 
-fn phases() -> Phases {
+pub(in crate::artifact) fn phases() -> Phases {
     let gravity = Vector3::new(0.0, -9.81, 0.0);
     let air = Air { density: 1.2, normal: 1.17, tangential: 0.01, wind: Vector3::new(3.0, 0.0, -0.5) };
     let phase = |name: &str, air| Phase { name: name.into(), seconds: 0.5, gravity, air };

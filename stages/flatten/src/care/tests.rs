@@ -246,10 +246,10 @@ fn what_is_out_of_range_is_refused() {
     let report =
         refine(&garment, &mut flat[..1], &Objective::Arap, &defaults(&garment), CareOptions::default());
     let text = report.map_or_else(|e| e.to_string(), |_| String::new());
-    assert_eq!(text, "flat pieces has 1 entries, but 2 are wanted; give one for each");
+    assert_eq!(text, "flat pieces has 1 entries, but 2 are wanted");
     let report = refine(&garment, &mut flat, &Objective::Arap, &[], CareOptions::default());
     let text = report.map_or_else(|e| e.to_string(), |_| String::new());
-    assert_eq!(text, "placements has 0 entries, but 2 are wanted; give one for each");
+    assert_eq!(text, "placements has 0 entries, but 2 are wanted");
     let s = &garment.pieces[0].surface;
     let darts = |options| {
         let darts = propose_darts(s, &Objective::Arap, &Placement::default(), options);

@@ -55,7 +55,7 @@ fn flips_and_crossings_are_counted() {
 fn lists_that_do_not_fit_are_refused() {
     let s = surface(bump(2, 2, 0.1));
     let text = |flat: &[Point2<f64>]| distortion(&s, flat).map_or_else(|e| e.to_string(), |_| String::new());
-    assert_eq!(text(&[]), "flat places has 0 entries, but 9 are wanted; give one for each");
+    assert_eq!(text(&[]), "flat places has 0 entries, but 9 are wanted");
     let nan = vec![Point2::new(f64::NAN, 0.0); 9];
-    assert_eq!(text(&nan), "vertex 0 is not at a finite place; remove it or mend its coordinates");
+    assert_eq!(text(&nan), "vertex 0 is not at a finite place");
 }

@@ -142,10 +142,7 @@ fn what_is_out_of_range_is_refused() {
     let nowhere = Placement { grain: Grain::Direction(Vector3::zeros()), ..Placement::default() };
     assert_eq!(refused(nowhere)[1], "grain = 0 is out of range: a finite direction other than zero");
     let beyond = Placement { grain: Grain::Edge([0, 99]), ..Placement::default() };
-    assert_eq!(
-        refused(beyond)[2],
-        "the grain names vertex 99, but the piece has 25; give vertices of the piece"
-    );
+    assert_eq!(refused(beyond)[2], "the grain names vertex 99, but the piece has 25");
     let at = Grain::At { triangle: 77, direction: Vector3::x() };
     let nothing = Placement { grain: at, ..Placement::default() };
     assert_eq!(refused(nothing)[3], "grain.triangle = 77 is out of range: a triangle of the piece");

@@ -76,41 +76,29 @@ fn a_bow_tie_between_arms_of_one_piece_is_split() {
 #[test]
 fn every_fault_is_named_with_its_place() {
     let sheet = vec![[0, 1, 2], [0, 2, 3]];
-    assert_eq!(refused(corners(), vec![]), "the mesh has no triangles; give at least one");
-    assert_eq!(
-        refused(corners(), vec![[0, 1, 9]]),
-        "triangle 0 names vertex 9, but there are 5; mend the index"
-    );
+    assert_eq!(refused(corners(), vec![]), "the mesh has no triangles");
+    assert_eq!(refused(corners(), vec![[0, 1, 9]]), "triangle 0 names vertex 9, but there are 5");
     let mut places = corners();
     places[2].y = f64::NAN;
-    assert_eq!(
-        refused(places, sheet.clone()),
-        "vertex 2 is not at a finite place; remove it or mend its coordinates"
-    );
+    assert_eq!(refused(places, sheet.clone()), "vertex 2 is not at a finite place");
     let mut places = corners();
     places[3].x = 1e300;
-    assert_eq!(
-        refused(places, sheet.clone()),
-        "vertex 3 is not at a finite place; remove it or mend its coordinates"
-    );
+    assert_eq!(refused(places, sheet.clone()), "vertex 3 is not at a finite place");
     assert_eq!(
         refused(corners(), vec![[0, 1, 2], [0, 2, 2]]),
-        "triangle 1 has no area (height / longest edge 0.0e0); remesh or remove it"
+        "triangle 1 has no area (height / longest edge 0.0e0)"
     );
     assert_eq!(
         refused(corners(), vec![[0, 1, 2], [0, 2, 3], [2, 0, 4]]),
-        "the edge of vertices 0 and 2 belongs to 3 triangles; cut the mesh into pieces there"
+        "the edge of vertices 0 and 2 belongs to 3 triangles"
     );
     let tetrahedron = vec![[0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 0, 4]];
-    assert_eq!(
-        refused(corners(), tetrahedron),
-        "the surface is closed (no edge at triangle 0 is free); cut it along a seam first"
-    );
+    assert_eq!(refused(corners(), tetrahedron), "the surface is closed (no edge at triangle 0 is free)");
     let far = points(&[[5.0, 0.0, 0.0], [6.0, 0.0, 0.0], [5.0, 1.0, 0.0]]);
     let two = [corners(), far].concat();
     assert_eq!(
         refused(two, vec![[0, 1, 2], [0, 2, 3], [5, 6, 7]]),
-        "the mesh has 2 separate components, the second at triangle 2; split it into pieces"
+        "the mesh has 2 separate components, the second at triangle 2"
     );
 }
 
@@ -124,10 +112,7 @@ fn a_moebius_strip_and_a_handle_are_refused() {
     // The end meets the beginning the other way up.
     let weld = |v: u32| if v % 10 == 9 { if v == 9 { 10 } else { 0 } } else { v };
     let strip: Vec<[u32; 3]> = triangles.iter().map(|t| t.map(weld)).collect();
-    assert!(
-        refused(places, strip)
-            .ends_with("cannot be turned to agree with its neighbours; cut the surface there")
-    );
+    assert!(refused(places, strip).ends_with("cannot be turned to agree with its neighbours"));
 
     let (places, triangles) = grid(9, 9, |u, v| {
         let (a, b) = (std::f64::consts::TAU * u, std::f64::consts::TAU * v);
@@ -135,10 +120,7 @@ fn a_moebius_strip_and_a_handle_are_refused() {
     });
     let weld = |v: u32| (v / 10 % 9) * 10 + v % 10 % 9;
     let torus: Vec<[u32; 3]> = triangles.iter().skip(1).map(|t| t.map(weld)).collect();
-    assert_eq!(
-        refused(places, torus),
-        "the surface has 1 handles, so it cannot lie in the plane; cut it along a seam first"
-    );
+    assert_eq!(refused(places, torus), "the surface has 1 handles, so it cannot lie in the plane");
 }
 
 #[test]
@@ -147,7 +129,7 @@ fn places_can_be_exchanged_but_not_their_number() {
     let flat = s.positions().iter().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
     assert!(s.with_positions(flat).is_ok());
     let e = s.with_positions(vec![]).map_err(|e| e.to_string());
-    assert_eq!(e.err().as_deref(), Some("positions has 0 entries, but 25 are wanted; give one for each"));
+    assert_eq!(e.err().as_deref(), Some("positions has 0 entries, but 25 are wanted"));
 }
 
 proptest! {
