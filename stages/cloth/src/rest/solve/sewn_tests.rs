@@ -283,7 +283,7 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
 
 #[test]
 fn a_share_of_the_vertices_may_still_move() {
-    // One level, so that both runs go the same way until one of them stops.
+    // A small mesh: on large ones both runs go other ways from the coarser levels on.
     let scene = generate::drape(10);
     let steps = |rest: Rest| {
         let state =
@@ -292,8 +292,7 @@ fn a_share_of_the_vertices_may_still_move() {
         if rest.non_static == 0.0 {
             assert_eq!(state.outcome.speed, state.outcome.fastest);
         }
-        assert_eq!(state.levels.len(), 1);
-        state.levels[0].outcome.steps
+        state.levels.iter().map(|l| l.outcome.steps).sum::<usize>()
     };
     let (all, most) = (steps(Rest::default()), steps(Rest { non_static: 0.2, ..Rest::default() }));
     assert!(most < all, "{most} {all}");
