@@ -4,14 +4,12 @@
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
 
 pub mod bench;
-pub mod bending;
 pub mod constraint;
 pub mod contact;
+pub mod energy;
 pub mod error;
 pub mod fabric;
-pub mod force;
 pub mod linear;
-pub mod membrane;
 pub mod mesh;
 pub mod motion;
 pub mod rest;

@@ -3,6 +3,7 @@
 //! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops a vertex and step, but some
 //! thousand steps a second. Limit: stiff or fine cloth makes steps tiny.
 
+use super::models::{Bending, Membrane, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
@@ -17,12 +18,18 @@ use toile_core::prelude::*;
 /// the body is an error.
 #[stage(
     role = Draper,
-    version = 5,
+    version = 6,
     source = "Fan et al. 1999; Desbrun et al. 1999",
     example = "CentralDifferences(drag: 4.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct CentralDifferences {
+    /// What cloth resists in its plane.
+    #[param(default = Membrane::Woven)]
+    pub membrane: Membrane,
+    /// What cloth resists when it is folded.
+    #[param(default = Bending::Hinge)]
+    pub bending: Bending,
     /// The motion.
     #[param(flatten)]
     pub motion: InTime,
@@ -38,6 +45,7 @@ impl CentralDifferences {
         phases: Option<&Phases>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        drape(Method::CentralDifferences, &self.motion, garment, collider, phases, cx)
+        let models = models(self.membrane, self.bending);
+        drape(Method::CentralDifferences, models, &self.motion, garment, collider, phases, cx)
     }
 }

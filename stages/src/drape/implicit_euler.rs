@@ -3,6 +3,7 @@
 //! Method: each step minimises inertia and energy by Newton's method with line search. Cost: a few factorizations a step.
 //! Limit: contacts act after the step, so `dt` above 8 ms lets tight garments slip.
 
+use super::models::{Bending, Membrane, models};
 use super::motion::{InTime, drape};
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
@@ -17,12 +18,18 @@ use toile_core::prelude::*;
 /// the body is an error.
 #[stage(
     role = Draper,
-    version = 5,
+    version = 6,
     source = "Baraff and Witkin 1998; Martin et al. 2011",
     example = "ImplicitEuler(tolerance: 1e-4)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct ImplicitEuler {
+    /// What cloth resists in its plane.
+    #[param(default = Membrane::Woven)]
+    pub membrane: Membrane,
+    /// What cloth resists when it is folded.
+    #[param(default = Bending::Hinge)]
+    pub bending: Bending,
     /// Force that a step leaves on a vertex.
     #[param(default = 1e-4, min = 1e-12, max = 1.0, unit = "N", trades, finer = "less")]
     pub tolerance: f64,
@@ -46,6 +53,7 @@ impl ImplicitEuler {
     ) -> Result<Garment, StageError> {
         drape(
             Method::ImplicitEuler { tolerance: self.tolerance, relative: self.conjugate_gradients },
+            models(self.membrane, self.bending),
             &self.motion,
             garment,
             collider,

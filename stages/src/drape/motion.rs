@@ -7,7 +7,7 @@ use crate::engine::{
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
-use toile_cloth::force::Air as EngineAir;
+use toile_cloth::energy::{Air as EngineAir, Models};
 use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Until};
 use toile_cloth::rest::solve::Wearer;
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
@@ -60,6 +60,7 @@ const SETTLED: f64 = 1e-3;
 /// Sews the garment and lets it come to rest, or follows the phases of a scene.
 pub(super) fn drape(
     method: Method,
+    models: Models,
     course: &InTime,
     garment: &Garment,
     collider: Option<&Collider>,
@@ -87,6 +88,7 @@ pub(super) fn drape(
     };
     let motion = Motion {
         method,
+        models,
         dt: course.dt,
         drag: course.drag,
         join_gap: course.join_gap.metres(),

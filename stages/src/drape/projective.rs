@@ -4,6 +4,7 @@
 //! Limit: isotropic, converges slowly for stiff cloth and long steps.
 
 use super::motion::{InTime, drape};
+use toile_cloth::energy::Models;
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
 
@@ -41,6 +42,7 @@ impl Projective {
         phases: Option<&Phases>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        drape(Method::Projective { iterations: self.iterations }, &self.motion, garment, collider, phases, cx)
+        let method = Method::Projective { iterations: self.iterations };
+        drape(method, Models::DEFAULT, &self.motion, garment, collider, phases, cx)
     }
 }

@@ -8,6 +8,7 @@
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
 use super::mixed_precision::{self, Precision};
+use super::models::{Bending, Membrane, models};
 use super::motion::engine_air;
 use super::{ImplicitEuler, InTime};
 use crate::cloth::check_garment;
@@ -46,7 +47,7 @@ pub enum Proof {
 /// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
 #[stage(
     role = Draper,
-    version = 19,
+    version = 20,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "Rest(speed: 0.001)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -55,6 +56,12 @@ pub struct Rest {
     /// Downward acceleration; a scene's own phases come before it.
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
+    /// What cloth resists in its plane.
+    #[param(default = Membrane::Woven)]
+    pub membrane: Membrane,
+    /// What cloth resists when it is folded.
+    #[param(default = Bending::Quadratic)]
+    pub bending: Bending,
     /// At rest, no vertex but the share `non_static` gains more than this in a step that proves rest (see `proof`).
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
@@ -194,6 +201,7 @@ impl Rest {
 
     fn solver(&self) -> Solver {
         Solver {
+            models: models(self.membrane, self.bending),
             speed: self.speed,
             non_static: self.non_static,
             coarsest: self.coarsest,

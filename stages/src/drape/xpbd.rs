@@ -4,6 +4,7 @@
 //! Limit: too soft where `substeps` are few, most of all in long, stiff pieces.
 
 use super::motion::{InTime, drape};
+use toile_cloth::energy::Models;
 use toile_cloth::motion::Method;
 use toile_core::prelude::*;
 
@@ -42,6 +43,7 @@ impl Xpbd {
         phases: Option<&Phases>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        drape(Method::Xpbd { substeps: self.substeps }, &self.motion, garment, collider, phases, cx)
+        let method = Method::Xpbd { substeps: self.substeps };
+        drape(method, Models::DEFAULT, &self.motion, garment, collider, phases, cx)
     }
 }

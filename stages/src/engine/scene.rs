@@ -4,9 +4,9 @@ use super::cloth_error;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use toile_cloth::energy::Air;
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric as engine;
-use toile_cloth::force::Air;
 use toile_cloth::scene::{Band, Panel, Phase, Scene, Seam};
 use toile_core::StageError;
 use toile_core::artifact::{

@@ -163,7 +163,7 @@ impl Unread {
     }
 }
 
-fn air(a: toile_cloth::force::Air) -> Air {
+fn air(a: toile_cloth::energy::Air) -> Air {
     Air { density: a.density, normal: a.normal, tangential: a.tangential, wind: a.wind }
 }
 

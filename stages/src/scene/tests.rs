@@ -6,7 +6,7 @@ use crate::collide::body_crossings;
 use crate::drape::{CentralDifferences, ImplicitEuler, InTime, Projective, Rest, SpringDraper, Xpbd};
 use std::path::Path;
 use std::sync::Arc;
-use toile_cloth::force::Air;
+use toile_cloth::energy::Air;
 use toile_cloth::scene::{body_to_obj, generate, to_json};
 use toile_core::Cancel;
 use toile_core::prelude::*;

@@ -8,9 +8,10 @@ use std::ops::ControlFlow;
 
 use serde::Serialize;
 
-use super::score::{Models, Score, Test, run};
+use super::score::{Score, Test, run};
 use super::table::Table;
 use super::{Layout, Progress};
+use crate::energy::Models;
 
 /// What to run.
 #[derive(Debug, Clone, PartialEq)]

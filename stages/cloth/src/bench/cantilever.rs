@@ -2,10 +2,10 @@
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::{Held, Models};
+use crate::energy::Vec3;
+use crate::energy::{Clamp, Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::solver::{Model, Solver, State, Static};
 
 const GAMMAS: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];
@@ -32,8 +32,10 @@ fn tip_drop(models: Models, mesh: &Rectangle, gamma: f64) -> Result<f64, ClothEr
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, LEAST_STIFFNESS.max(STIFFNESS_OVER_WEIGHT * gamma), 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v)).under(Vec3::new(0.0, -gamma, 0.0));
-    let held = Held { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
-    model.energies = models.energies_held(&sheet, &fabric, &model.fixed, Some(&held))?;
+    let held = Clamp { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
+    let fixed = model.fixed.clone();
+    model = model
+        .made_of(models, &Cloth { fixed: &fixed, clamp: Some(held), ..Cloth::of(&sheet, &[&fabric]) })?;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, 0.0, p.x)).collect());
     Static::to(1e-7 * gamma).advance(&model, &mut state)?;
     let tip: Vec<f64> = (0..mesh.uv.len()).filter(|&v| mesh.at_top(v)).map(|v| -state.x[v].y).collect();

@@ -2,10 +2,10 @@
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::{Membrane, Models};
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Membrane, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::solver::{Model, Solver, State, Static};
 
 const SPANS: [f64; 4] = [0.5, 0.8, 0.95, 0.99];
@@ -36,7 +36,8 @@ fn hang(models: Models, mesh: &Rectangle, span: f64, beta: f64) -> Result<(f64, 
     let fabric = Fabric::isotropic(1.0, 1.0 / beta, 0.0, RIGIDITY);
     let held = |v: usize| mesh.at_bottom(v) || mesh.at_top(v);
     let mut model = Model::of(&sheet).pinned(held).under(Vec3::new(0.0, -1.0, 0.0));
-    model.energies = models.energies(&sheet, &fabric, &model.fixed)?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(models, &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&fabric]) })?;
     let depth = reference::catenary(span, 0.0).sag;
     let start = |p: &nalgebra::Vector2<f64>| Vec3::new(span * p.y, -4.0 * depth * p.y * (1.0 - p.y), p.x);
     let mut state = State::at_rest(mesh.uv.iter().map(start).collect());

@@ -11,13 +11,12 @@ use std::time::Instant;
 use serde::Serialize;
 
 use super::layout::{Layout, Rectangle, disc};
-use super::score::{Bending, Held, Membrane};
 use super::table::Table;
 use super::{Models, Progress, reference};
-use crate::bending::Rigidity;
+use crate::energy::{Bending, Clamp, Cloth, Membrane, Projection, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::{Projection, Vec3};
+use crate::fabric::Rigidity;
 use crate::linear::Cholesky;
 use crate::rest::solve::{Rest, RestError};
 use crate::scene::{Scene, generate};
@@ -97,11 +96,7 @@ impl Task {
     }
 }
 
-const WITH_HINGES: [Models; 3] = [
-    Models::DEFAULT,
-    Models { membrane: Membrane::Woven, bending: Bending::Quadratic },
-    Models { membrane: Membrane::Woven, bending: Bending::LoneHinge },
-];
+const WITH_HINGES: [Models; 2] = [Models::DEFAULT, Models::STATIC];
 
 fn tasks() -> Vec<Task> {
     let mut tasks = Vec::new();
@@ -169,11 +164,13 @@ fn text<T>(result: Result<T, ClothError>) -> Result<T, String> {
 fn buckling(models: Models) -> Result<f64, ClothError> {
     let mesh = Rectangle::new(Layout::Equilateral, 0.1, 1.0, 60);
     let sheet = mesh.sheet(1.0)?;
-    let held = Held { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
+    let held = Clamp { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
     let stable = |gamma: f64| -> Result<bool, ClothError> {
         let fabric = Fabric::isotropic(1.0, 1e6, 0.0, 1.0);
         let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v)).under(Vec3::new(0.0, -gamma, 0.0));
-        model.energies = models.energies_held(&sheet, &fabric, &model.fixed, Some(&held))?;
+        let fixed = model.fixed.clone();
+        model = model
+            .made_of(models, &Cloth { fixed: &fixed, clamp: Some(held), ..Cloth::of(&sheet, &[&fabric]) })?;
         let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, p.x, 0.0)).collect());
         Static::to(1e-6 * gamma).advance(&model, &mut state)?;
         let mut stiffness = model.stiffness(&state.x, Projection::Exact);
@@ -198,10 +195,14 @@ fn pressed(shortening: f64) -> Result<f64, ClothError> {
         let [down, aside] = curve.at(p.y);
         Vec3::new(aside, -down, p.x)
     };
-    let held = Held { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| Vec3::y() };
+    let held = Clamp { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| Vec3::y() };
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v) || mesh.at_top(v)).under(Vec3::zeros());
     let fabric = Fabric::isotropic(1.0, 1e5, 0.0, 1.0);
-    model.energies = Models::DEFAULT.energies_held(&sheet, &fabric, &model.fixed, Some(&held))?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(
+        Models::DEFAULT,
+        &Cloth { fixed: &fixed, clamp: Some(held), ..Cloth::of(&sheet, &[&fabric]) },
+    )?;
     let mut state = State::at_rest(mesh.uv.iter().map(place).collect());
     Static::to(1e-6).advance(&model, &mut state)?;
     let force = model.forces(&state.x);
@@ -220,10 +221,14 @@ fn heart(gamma: f64) -> Result<f64, ClothError> {
         Vec3::new(x, y, p.x)
     };
     let end = |v: usize| mesh.at_bottom(v) || mesh.at_top(v);
-    let held = Held { chosen: &|v| end(v as usize), outward: &|_| -Vec3::y() };
+    let held = Clamp { chosen: &|v| end(v as usize), outward: &|_| -Vec3::y() };
     let mut model = Model::of(&sheet).pinned(end).under(Vec3::new(0.0, -gamma, 0.0));
     let fabric = Fabric::isotropic(1.0, 1e5_f64.max(2e3 * gamma), 0.0, 1.0);
-    model.energies = Models::DEFAULT.energies_held(&sheet, &fabric, &model.fixed, Some(&held))?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(
+        Models::DEFAULT,
+        &Cloth { fixed: &fixed, clamp: Some(held), ..Cloth::of(&sheet, &[&fabric]) },
+    )?;
     let mut state = State::at_rest(mesh.uv.iter().map(place).collect());
     Static::to(1e-6 * gamma.max(1.0)).advance(&model, &mut state)?;
     let low = state.x.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
@@ -237,7 +242,7 @@ fn frame(models: Models, degrees: f64) -> Result<f64, ClothError> {
     let g = 40.0;
     let mut fabric = Fabric::isotropic(1.0, 2.6 * g, 0.3, 0.0);
     fabric.shear = crate::fabric::Curve::linear(g);
-    let membrane = models.membrane_energy(&sheet, &fabric)?;
+    let membrane = models.membrane(&Cloth::of(&sheet, &[&fabric]))?;
     let energy = |angle: f64| {
         let place = |p: &nalgebra::Vector2<f64>| Vec3::new(p.x + p.y * angle.sin(), p.y * angle.cos(), 0.0);
         membrane.value(&mesh.uv.iter().map(place).collect::<Vec<_>>())
@@ -272,7 +277,8 @@ fn swing(solver: usize) -> Result<[f64; 2], ClothError> {
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, 2e3, 0.0, 50.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_bottom(v)).under(Vec3::new(0.0, -1.0, 0.0));
-    model.energies = Models::DEFAULT.energies(&sheet, &fabric, &model.fixed)?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(Models::DEFAULT, &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&fabric]) })?;
     let dt = reference::plate_pendulum(FRAC_PI_3) / 200.0;
     let mut solver: Box<dyn Solver> = match solver {
         0 => Box::new(CentralDifferences::adaptive(dt)),

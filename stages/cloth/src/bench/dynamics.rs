@@ -2,10 +2,10 @@
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::Models;
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::solver::{CentralDifferences, ImplicitEuler, Model, Solver, State, Static, lowest_modes};
 
 /// Greatest displacement of the motion, in lengths.
@@ -36,7 +36,11 @@ fn hanging_sheet(models: Models, layout: Layout, along: usize) -> Result<(Model,
     let mesh = Rectangle::new(layout, WIDTH, 1.0, along);
     let sheet = mesh.sheet(1.0)?;
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(Vec3::new(0.0, -1.0, 0.0));
-    model.energies = models.energies(&sheet, &Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5), &model.fixed)?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(
+        models,
+        &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&Fabric::isotropic(1.0, 2000.0, 0.0, 1e-5)]) },
+    )?;
     let shape = shape(&model, mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect(), |p| 1.0 - p.y)?;
     Ok((model, shape, reference::hanging_omega(1)))
 }
@@ -47,7 +51,11 @@ fn drumhead(models: Models, layout: Layout, along: usize) -> Result<(Model, Shap
     let sheet = mesh.sheet(1.0)?;
     let k = 1000.0;
     let mut model = Model::of(&sheet).pinned(|v| mesh.on_border(v)).under(Vec3::zeros());
-    model.energies = models.energies(&sheet, &Fabric::isotropic(1.0, k, 0.0, 1e-9), &model.fixed)?;
+    let fixed = model.fixed.clone();
+    model = model.made_of(
+        models,
+        &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&Fabric::isotropic(1.0, k, 0.0, 1e-9)]) },
+    )?;
     let side = 1.0 + PRESTRAIN;
     let start = mesh.uv.iter().map(|p| Vec3::new(side * p.x, side * p.y, 0.0)).collect();
     let shape = shape(&model, start, |p| {

@@ -1,11 +1,11 @@
 //! E5: when a belt slips round a drum, when a sheet slips on an incline, and how far it creeps before.
 
 use super::layout::{Layout, Rectangle};
-use super::score::Models;
 use crate::constraint::{Cylinder, Plane};
+use crate::energy::{Cloth, Models};
+use crate::energy::{DeadLoad, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::{DeadLoad, Vec3};
 use crate::solver::{CentralDifferences, Model, Solver, State};
 
 const FRICTIONS: [f64; 3] = [0.1, 0.3, 0.5];
@@ -42,7 +42,8 @@ fn slipping_pull(models: Models, layout: Layout, along: usize, mu: f64) -> Resul
     let mesh = Rectangle::new(layout, length / segments as f64 * 2.0, length, segments);
     let sheet = mesh.sheet(DENSITY)?;
     let mut model = Model::of(&sheet).under(Vec3::zeros());
-    model.energies = vec![models.membrane_energy(&sheet, &Fabric::isotropic(DENSITY, STIFFNESS, 0.0, 0.0))?];
+    model = model
+        .with_membrane(models, &Cloth::of(&sheet, &[&Fabric::isotropic(DENSITY, STIFFNESS, 0.0, 0.0)]))?;
     model.obstacles = vec![Box::new(Cylinder::new(Vec3::zeros(), RADIUS, mu)?)];
     model.drag = 300.0;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| wrapped(p.x, p.y, leg, arc)).collect());
@@ -132,7 +133,8 @@ fn slide(models: Models, layout: Layout, mu: f64, slope: f64, seconds: f64) -> R
     let normal = Vec3::new(-slope.sin(), slope.cos(), 0.0);
     let down = Vec3::new(-slope.cos(), -slope.sin(), 0.0);
     let mut model = Model::of(&sheet);
-    model.energies = vec![models.membrane_energy(&sheet, &Fabric::isotropic(DENSITY, 100.0, 0.0, 0.0))?];
+    model =
+        model.with_membrane(models, &Cloth::of(&sheet, &[&Fabric::isotropic(DENSITY, 100.0, 0.0, 0.0)]))?;
     model.obstacles = vec![Box::new(Plane::new(Vec3::zeros(), normal, mu)?)];
     let mut state = State::at_rest(mesh.uv.iter().map(|p| down * p.y + Vec3::z() * p.x).collect());
     let mut solver = CentralDifferences::adaptive(1e-3);

@@ -3,9 +3,9 @@
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
+use crate::energy::Vec3;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use crate::solver::Model;

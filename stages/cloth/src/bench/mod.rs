@@ -29,10 +29,11 @@ mod tests;
 
 use std::ops::ControlFlow;
 
+pub use crate::energy::{Bending, Membrane, Models};
 pub use accuracy::accuracy;
 pub use diagnostics::diagnostics;
 pub use layout::Layout;
-pub use score::{Bending, Membrane, Models, Score, Test, run};
+pub use score::{Score, Test, run};
 pub use solvers::solvers;
 pub use stability::stability;
 

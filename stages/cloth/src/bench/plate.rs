@@ -4,10 +4,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use super::score::{Held, Models};
+use crate::energy::Vec3;
+use crate::energy::{Clamp, Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::solver::{Model, Solver, State, Static};
 
 /// Centre deflection in plate sides: so small that the membrane stays idle.
@@ -28,8 +28,12 @@ fn deflection(models: Models, mesh: &Rectangle, clamped: bool, coefficient: f64)
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, 1e4, 0.0, 1.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.on_border(v)).under(Vec3::new(0.0, 0.0, -load));
-    let held = Held { chosen: &|v| mesh.on_border(v as usize), outward: &|v| outward(mesh, v as usize) };
-    model.energies = models.energies_held(&sheet, &fabric, &model.fixed, clamped.then_some(&held))?;
+    let held = Clamp { chosen: &|v| mesh.on_border(v as usize), outward: &|v| outward(mesh, v as usize) };
+    let fixed = model.fixed.clone();
+    model = model.made_of(
+        models,
+        &Cloth { fixed: &fixed, clamp: clamped.then_some(held), ..Cloth::of(&sheet, &[&fabric]) },
+    )?;
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     Static::to(1e-7 * load).advance(&model, &mut state)?;
     Ok(centre(mesh, &state.x) / DEFLECTION)

@@ -14,10 +14,10 @@ use serde::Serialize;
 use super::layout::{Layout, Rectangle};
 use super::table::Table;
 use super::{Models, Progress, reference};
-use crate::bending::Rigidity;
+use crate::energy::{Cloth, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
+use crate::fabric::Rigidity;
 use crate::mesh::Sheet;
 use crate::rest::solve::Rest;
 use crate::scene::Scene;
@@ -184,7 +184,9 @@ impl Problem {
         let sheet = Sheet::flat(&self.rest, &self.triangles, self.fabric.density)?;
         let mut model =
             Model::of(&sheet).pinned(|v| self.pinned[v]).under(Vec3::new(0.0, -self.gravity, 0.0));
-        model.energies = Models::DEFAULT.energies(&sheet, &self.fabric, &model.fixed)?;
+        let fixed = model.fixed.clone();
+        model =
+            model.made_of(Models::DEFAULT, &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&self.fabric]) })?;
         model.drag = 2.0 * self.rate;
         let weight = self.gravity * model.masses.iter().sum::<f64>();
         let (tolerance, dt) = (1e-7 * weight, 1.0 / (STEPS_PER_RADIAN * self.rate));

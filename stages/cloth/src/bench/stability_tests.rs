@@ -3,10 +3,10 @@ use std::ops::ControlFlow;
 
 use super::layout::{Layout, Rectangle};
 use super::stability::{Case, Options, Verdict, axes, stability};
-use crate::bending::{Hinge, Rigidity};
+
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Models};
 use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{Triangles, Woven};
 use crate::solver::{ImplicitEuler, Model, Solver, State, Static};
 
 fn all_sound(cases: impl Iterator<Item = (String, Case)>, cells: usize) {
@@ -101,8 +101,8 @@ fn shapes_scale() {
         let sheet = mesh.sheet(density).unwrap();
         let fabric = Fabric::isotropic(density, 300.0 * scale, 0.1, 2e-4 * scale.powi(3));
         let model = Model::of(&sheet)
-            .with(Triangles::new(&sheet, Woven::new(&fabric).unwrap()))
-            .with(Hinge::new(&sheet, &Rigidity::of(&fabric)).unwrap())
+            .made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric]))
+            .unwrap()
             .pinned(|v| mesh.at_bottom(v));
         let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, 0.02 * p.y, p.x)).collect());
         Static::to(1e-9 * scale.powi(2)).advance(&model, &mut state).unwrap();
@@ -125,8 +125,8 @@ fn rigid_motion_of_the_scene_moves_the_result() {
         let fabric = Fabric::isotropic(0.2, 100.0, 0.1, 1e-4);
         let gravity = Vec3::new(0.0, -9.81, 0.0);
         let model = Model::of(&sheet)
-            .with(Triangles::new(&sheet, Woven::new(&fabric).unwrap()))
-            .with(Hinge::new(&sheet, &Rigidity::of(&fabric)).unwrap())
+            .made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric]))
+            .unwrap()
             .pinned(|v| mesh.at_bottom(v))
             .under(if moved { turn * gravity } else { gravity });
         let mut state = State::at_rest(mesh.uv.iter().map(|p| place(Vec3::new(p.y, 0.0, p.x))).collect());

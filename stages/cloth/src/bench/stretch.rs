@@ -4,11 +4,11 @@ use nalgebra::{Rotation2, Vector2};
 
 use super::layout::{Layout, Rectangle};
 use super::reference::{self, Orthotropic};
-use super::score::{Membrane, Models};
-use crate::bending::{LoneHinge, Rigidity};
+use crate::energy::bending::Hinge;
+use crate::energy::{Cloth, Membrane, Models};
+use crate::energy::{DeadLoad, Vec3};
 use crate::error::ClothError;
 use crate::fabric::{Curve, Fabric};
-use crate::force::{DeadLoad, Energy, Vec3};
 use crate::mesh::Sheet;
 use crate::solver::{Model, Solver, State, Static};
 
@@ -48,16 +48,17 @@ fn hanging_tip(models: Models, layout: Layout, along: usize, alpha: f64) -> Resu
     let sheet = mesh.sheet(1.0)?;
     let fabric = Fabric::isotropic(1.0, 1.0, 0.0, 0.0);
     let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(Vec3::new(0.0, -alpha, 0.0));
-    model.energies = vec![models.membrane_energy(&sheet, &fabric)?, steadying(&sheet)?];
+    model = steadied(model.with_membrane(models, &Cloth::of(&sheet, &[&fabric]))?, &sheet);
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     Static::to(1e-9 * alpha).advance(&model, &mut state)?;
     let tip: Vec<f64> = (0..mesh.uv.len()).filter(|&v| mesh.at_bottom(v)).map(|v| -state.x[v].y).collect();
     Ok(tip.iter().sum::<f64>() / tip.len() as f64)
 }
 
-/// A trace of bending, so that the plane is not left where nothing pulls.
-fn steadying(sheet: &Sheet) -> Result<Box<dyn Energy>, ClothError> {
-    Ok(Box::new(LoneHinge::with_factor(sheet, &Rigidity::uniform(1e-8), 1.0)?))
+/// The same with a trace of bending, so that the plane is not left where nothing pulls.
+fn steadied(model: Model, sheet: &Sheet) -> Model {
+    let trace = Fabric::isotropic(1.0, 1.0, 0.0, 1e-8);
+    model.with(Hinge::new(&Cloth::of(sheet, &[&trace])))
 }
 
 /// Force per width over mean strain of a strip whose length runs at `angle` to the warp, its ends free to shear.
@@ -81,11 +82,8 @@ fn off_axis(
     }
     let force = o.stiffness_at(angle) * STRAIN;
     let mut model = Model::of(&sheet).pinned(|v| v == 0).under(Vec3::zeros());
-    model.energies = vec![
-        models.membrane_energy(&sheet, &fabric)?,
-        steadying(&sheet)?,
-        Box::new(pull(&mesh, &sheet, force)),
-    ];
+    model = steadied(model.with_membrane(models, &Cloth::of(&sheet, &[&fabric]))?, &sheet);
+    model = model.with(pull(&mesh, &sheet, force));
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     Static::to(1e-8 * force * WIDTH).advance(&model, &mut state)?;
     Ok(force / mean_strain(&mesh, &sheet, &state.x))

@@ -4,8 +4,8 @@
 //! coefficient, is what the tangential part may lose at most: Coulomb's law for one vertex in one step, exactly. A vertex whose
 //! tangential velocity is used up stands still, without creep.
 
+use crate::energy::Vec3;
 use crate::error::{ClothError, check_parameter};
-use crate::force::Vec3;
 
 /// A body given by its distance.
 pub trait Obstacle: Send + Sync {

@@ -7,8 +7,8 @@
 
 use nalgebra::Matrix3x2;
 
+use crate::energy::Vec3;
 use crate::error::{ClothError, check_parameter};
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 
 /// The edge-wise correction.

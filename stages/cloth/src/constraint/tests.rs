@@ -2,7 +2,7 @@
 use nalgebra::Vector2;
 
 use super::*;
-use crate::force::Vec3;
+use crate::energy::Vec3;
 use crate::mesh::Sheet;
 
 #[test]

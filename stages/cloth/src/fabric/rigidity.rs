@@ -31,6 +31,10 @@ impl Rigidity {
         self.weft * direction.x * direction.x + self.warp * direction.y * direction.y
     }
 
+    pub(crate) fn is_zero(&self) -> bool {
+        self.warp == 0.0 && self.weft == 0.0
+    }
+
     pub(crate) fn check(&self) -> Result<(), ClothError> {
         for (name, value) in [("bending_warp", self.warp), ("bending_weft", self.weft)] {
             check_parameter(name, value, |v| v >= 0.0, "0 or more N m")?;

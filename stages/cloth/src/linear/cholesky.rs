@@ -15,8 +15,8 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRe
 use faer::{Conj, MatMut, Par, Side};
 
 use super::{BlockMatrix, leave_vectors};
+use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::force::Vec3;
 
 /// A factor that can be renewed for other values of the same pattern.
 pub struct Cholesky {

@@ -3,6 +3,7 @@
 
 mod block;
 mod cholesky;
+mod pattern;
 mod pcg;
 mod probe;
 mod vectors;
@@ -12,6 +13,7 @@ mod tests;
 
 pub use block::BlockMatrix;
 pub use cholesky::Cholesky;
+pub use pattern::{Pattern, Slot, add_at};
 pub use pcg::{PcgReport, conjugate_gradients};
 pub use probe::probe;
 pub(crate) use vectors::leave_vectors;

@@ -4,7 +4,7 @@
 use nalgebra::Matrix3;
 
 use super::BlockMatrix;
-use crate::force::Vec3;
+use crate::energy::Vec3;
 
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq)]

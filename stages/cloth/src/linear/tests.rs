@@ -2,7 +2,7 @@
 use nalgebra::Matrix3;
 
 use super::*;
-use crate::force::Vec3;
+use crate::energy::Vec3;
 
 #[test]
 fn a_block_counts_on_both_sides_of_the_diagonal() {

@@ -178,6 +178,22 @@ impl Sheet {
         nalgebra::Matrix3x2::from_columns(&[b - a, c - a]) * self.inverse_rest[t]
     }
 
+    /// Greatest excess of a triangle over the strain limits of weft and warp: the triangle, its strain along that yarn and the limit.
+    #[must_use]
+    pub fn over(&self, x: &[Vector3<f64>], limits: [f64; 2]) -> Option<(usize, f64, f64)> {
+        let mut worst: Option<(usize, f64, f64)> = None;
+        for t in 0..self.triangles.len() {
+            let f = self.deformation(t, x);
+            for (k, limit) in limits.into_iter().enumerate() {
+                let strain = f.column(k).norm() - 1.0;
+                if strain > limit && worst.is_none_or(|(_, s, l)| strain / limit > s / l) {
+                    worst = Some((t, strain, limit));
+                }
+            }
+        }
+        worst
+    }
+
     /// Refuses a state in which some triangle is stretched beyond `limit` (engineering strain).
     ///
     /// # Errors

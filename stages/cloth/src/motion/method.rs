@@ -1,9 +1,8 @@
 //! The solvers that step, made for one sheet.
 
-use crate::bending::Rigidity;
+use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::fabric::Fabric;
-use crate::force::Vec3;
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
 

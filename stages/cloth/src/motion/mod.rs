@@ -19,9 +19,8 @@ mod tests;
 pub use error::MotionError;
 pub use method::Method;
 
-use crate::bench::Models;
+use crate::energy::{Air, Models};
 use crate::fabric::Fabric;
-use crate::force::Air;
 use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
 use crate::rest::start::check;

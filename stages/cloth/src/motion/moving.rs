@@ -3,8 +3,8 @@
 use super::contact::{off_itself, off_the_body, stop_short};
 use super::seams::Seams;
 use super::{Motion, MotionError, Progress, Run, Vec3};
+use crate::energy::{Air, AirDrag, Cloth};
 use crate::error::ClothError;
-use crate::force::{Air, AirDrag};
 use crate::mesh::Sheet;
 use crate::rest::solve::Wearer;
 use crate::rest::start::{check_lying, crossing, crossings};
@@ -81,8 +81,9 @@ impl Moving {
 
     fn new(run: &Run<'_>, sheet: Sheet, fixed: &[bool], state: State) -> Result<Self, MotionError> {
         let settings = run.settings;
+        let fabrics = [run.fabric];
         let mut model = Model::of(&sheet).pinned(|v| fixed[v]);
-        model.energies = settings.models.energies(&sheet, run.fabric, &model.fixed)?;
+        model = model.made_of(settings.models, &Cloth { fixed, ..Cloth::of(&sheet, &fabrics) })?;
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
         let solver = settings.method.solver(&sheet, &model, &state.x, run.fabric, settings.dt)?;
         let inverse =
@@ -125,7 +126,7 @@ impl Moving {
 
     /// Elastic and gravitational energy, J.
     pub(super) fn energy(&self) -> f64 {
-        use crate::force::Energy as _;
+        use crate::energy::Energy as _;
         self.model.elastic_energy(&self.state.x) + self.model.weight().value(&self.state.x)
     }
 

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::{Method, Motion, MotionError, Moved, Until};
 use crate::contact::body::Body;
-use crate::force::Air;
+use crate::energy::Air;
 use crate::rest::solve::{Rest, Wearer};
 use crate::scene::{Phase, Scene, generate};
 use nalgebra::Vector3;

@@ -8,6 +8,7 @@ use super::support::Support;
 use super::system::System;
 use super::thread::Thread;
 use crate::contact::skin::Skin;
+use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
@@ -41,6 +42,7 @@ pub(super) fn assemble<'a>(
     pieces: &Pieces,
     sheet: &Sheet,
     open: bool,
+    models: Models,
 ) -> Result<System<'a>, ClothError> {
     let cloths = cloths(scene);
     let n = sheet.vertex_count();
@@ -103,12 +105,16 @@ pub(super) fn assemble<'a>(
         ..Layers::default()
     });
     let uncut = pieces.uncut().transpose()?;
-    let elastic =
-        Elastic::calibrated_on(uncut.as_ref().unwrap_or(sheet), sheet, &cloths, scene.strain_limit, |t| {
-            pieces.cloth(t)
-        })
-        .with(pieces.springs(open))
-        .creased(if open { Vec::new() } else { pieces.creases(sheet) });
+    let one = [&scene.material];
+    let cloth = Cloth {
+        cut: uncut.as_ref().unwrap_or(sheet),
+        fabrics: &cloths,
+        fabric: &|t| pieces.cloth(t),
+        limit: scene.strain_limit,
+        ..Cloth::of(sheet, &one)
+    };
+    let creases = if open { Vec::new() } else { pieces.creases(sheet) };
+    let elastic = Elastic::new(models, &cloth, pieces.springs(open), &creases)?;
     Ok(System {
         elastic,
         masses: sheet.masses().to_vec(),

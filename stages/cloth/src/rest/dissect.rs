@@ -7,7 +7,7 @@
 
 mod halve;
 
-use super::pattern::Pattern;
+use crate::linear::Pattern;
 use halve::Halves;
 use nalgebra::Vector3;
 

@@ -62,7 +62,7 @@ impl<'a> Work<'a> {
             }
             if k == 0 {
                 self.check_kept(&level.x)?;
-                self.check_strain(&level.system, &level.x)?;
+                self.check_strain(&level.sheet, &level.x)?;
                 return Ok(Draped::Rested(Box::new(self.finish(level.system, &level.sheet, level.x)?)));
             }
             slides = plan.finer(k, &level.system.held_back(&level.x));
@@ -184,7 +184,7 @@ impl<'a> Work<'a> {
         pace: Pace,
         progress: &mut Progress<'_>,
     ) -> Result<(), RestError> {
-        level.system.elastic.stiffen(stiff);
+        level.system.elastic.scale_bending(stiff);
         let offsets = level.system.support.as_mut().filter(|_| self.plan.rest.graded).map(|s| {
             s.grows = true;
             s.offsets.clone()
@@ -194,7 +194,7 @@ impl<'a> Work<'a> {
         if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
             (s.grows, s.offsets) = (false, offsets);
         }
-        level.system.elastic.stiffen(1.0 / stiff);
+        level.system.elastic.scale_bending(1.0 / stiff);
         self.reports.push(run?);
         Ok(())
     }

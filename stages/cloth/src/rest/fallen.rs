@@ -13,9 +13,7 @@ type Vec3 = Vector3<f64>;
 
 /// The piece of cloth that each node of a system belongs to.
 pub(super) fn pieces_of(system: &System<'_>) -> Vec<u32> {
-    let threads = system.threads.iter().map(|t| &t.nodes[..]);
-    let links = system.elastic.couplings().chain(threads).flat_map(|n| n.windows(2).map(|w| [w[0], w[1]]));
-    let (mut piece, _) = groups(system.masses.len(), links);
+    let (mut piece, _) = groups(system.masses.len(), system.links().into_iter());
     piece.iter_mut().zip(&system.masses).filter(|(_, m)| **m == 0.0).for_each(|(p, _)| *p = NO_PIECE);
     piece
 }

@@ -5,8 +5,8 @@
 //! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
 use super::grip::{Grip, Memory, between};
-use super::pattern::{Pattern, add_at};
 use super::press::Press;
+use crate::linear::{Pattern, add_at};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::closest::Feature;

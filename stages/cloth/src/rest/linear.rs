@@ -4,9 +4,9 @@ use super::dissect::smoothed;
 use super::layers::Layers;
 use super::mixed::{Matrix, Mixed};
 use super::multifrontal::{Halt, Stop, Symbolic};
-use super::pattern::Pattern;
 use super::real::Precision;
 use super::system::System;
+use crate::linear::Pattern;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::BTreeMap;
 
@@ -130,13 +130,14 @@ impl Linear {
 
 /// The pattern of a sheet and of what touches, and where the sheet's slots are in it.
 fn widened(own: &Pattern, touched: &BTreeMap<[u32; 4], u32>) -> (Pattern, Vec<u32>) {
-    own.with(touched.keys().map(|g| &g[..]))
+    own.with(|visit| touched.keys().for_each(|g| visit(g)))
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::energy::Models;
     use crate::rest::assemble::{assemble, cloths};
     use crate::rest::pieces::Pieces;
     use crate::scene::generate;
@@ -148,7 +149,7 @@ mod tests {
         let scene = generate::stack(2, 4);
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-        let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+        let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
         let mut x = scene.positions.clone();
         let n = (x.len() / 2) as u32;
         let [a, b, c] = scene.triangles[0];

@@ -58,7 +58,7 @@ impl<'a> Live<'a> {
         }
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene))?;
-        let mut system = assemble(&scene, wearer, &pieces, &sheet, false)?;
+        let mut system = assemble(&scene, wearer, &pieces, &sheet, false, rest.models)?;
         system.threads = kept_threads(&scene, &pieces, rest.join_gap);
         let even = vec![1.0; scene.rest.len()];
         let x = pieces.sew(&state.positions, &even);
@@ -139,7 +139,7 @@ impl<'a> Live<'a> {
         self.pieces.pinned.fill(false);
         self.scene.pinned.iter().for_each(|&p| self.pieces.pinned[p as usize] = true);
         self.sheet = self.pieces.sewn_sheet(&cloths(&self.scene))?;
-        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false)?;
+        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false, self.rest.models)?;
         new.threads = kept_threads(&self.scene, &self.pieces, self.rest.join_gap);
         let old = &mut self.system;
         new.elastic.hold(&self.x, false);

@@ -6,8 +6,8 @@
 //! bits do not depend on threads.
 
 use super::multifrontal::{Factor, Halt, Stop, Symbolic};
-use super::pattern::Pattern;
 use super::real::Precision;
+use crate::linear::Pattern;
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
@@ -104,7 +104,7 @@ mod tests {
     fn chain(stiff: f64, hold: f64) -> (Pattern, Symbolic, Vec<Matrix3<f64>>) {
         let n = 40;
         let links: Vec<[u32; 2]> = (1..n).map(|i| [i - 1, i]).collect();
-        let pattern = Pattern::new(n as usize, links.iter().map(|l| &l[..]));
+        let pattern = Pattern::new(n as usize, |visit| links.iter().for_each(|l| visit(l)));
         let layout: Vec<Vec3> = (0..n).map(|i| Vec3::x() * f64::from(i)).collect();
         let mut values = vec![Matrix3::zeros(); pattern.blocks()];
         for [i, j] in links {

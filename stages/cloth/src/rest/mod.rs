@@ -27,7 +27,6 @@ mod nearby;
 pub mod newton;
 mod part;
 mod patience;
-pub mod pattern;
 pub mod pieces;
 mod pierce;
 mod pile;

@@ -14,8 +14,8 @@ mod substitute;
 use super::dense::join_if;
 use super::dissect::{Part, dissect};
 use super::front::{Dense, Run};
-use super::pattern::Pattern;
 use super::real::Real;
+use crate::linear::Pattern;
 use nalgebra::{Matrix3, Vector3};
 use std::sync::Mutex;
 

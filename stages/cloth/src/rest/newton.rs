@@ -324,7 +324,7 @@ impl Descent {
         });
         let way = start.map(|start| descend(system, x, &g, &mut moves, start, &mut self.heights));
         self.outcome.share = way.as_ref().map_or(1.0, |w| w.share);
-        system.elastic.foretell(x, &moves);
+        system.elastic.predict(x, &moves);
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let end = way.and_then(|w| w.end);
         self.moves = moves;
@@ -478,6 +478,7 @@ fn greatest_but(v: &[Vec3], share: f64) -> f64 {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
+    use crate::energy::Models;
     use crate::rest::assemble::{assemble, cloths};
     use crate::rest::pieces::Pieces;
     use crate::rest::thread::Thread;
@@ -488,7 +489,7 @@ mod tests {
         let scene = generate::hang(3);
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-        let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+        let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
         let x = scene.positions.clone();
         let descent = Descent::new(&mut system, &x, None, &x, 0.05);
         let g = system.gradient(&x);
@@ -505,7 +506,7 @@ mod tests {
         let scene = generate::hang(3);
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-        let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+        let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
         let x = scene.positions.clone();
         let mut descent = Descent::new(&mut system, &x, None, &x, 0.05);
         let g = system.gradient(&x);

@@ -10,14 +10,12 @@ use super::layers::Layers;
 use super::support::Support;
 use super::system::System;
 use super::thread::Thread;
+use crate::energy::Subset;
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
-
-/// Marks a node that has no part.
-pub(super) const NONE: u32 = u32::MAX;
 
 /// Some nodes of a system as a system of their own.
 pub(super) struct Part<'a> {
@@ -25,39 +23,16 @@ pub(super) struct Part<'a> {
     pub(super) system: System<'a>,
     /// Which nodes these are of the whole, ascending.
     nodes: Vec<u32>,
-    cut: Cut,
+    cut: Subset,
     /// How many such parts, one on the other, it stands for.
     bundle: f64,
-}
-
-/// Which nodes are awake, and where each node of the part comes in it.
-pub(super) struct Cut {
-    awake: Vec<bool>,
-    index: Vec<u32>,
-}
-
-impl Cut {
-    /// Whether an element has an awake node.
-    pub(super) fn wakes(&self, nodes: &[u32]) -> bool {
-        nodes.iter().any(|&i| self.awake[i as usize])
-    }
-
-    /// Whether the part has all of an element's nodes.
-    pub(super) fn knows(&self, nodes: &[u32]) -> bool {
-        nodes.iter().all(|&i| self.index[i as usize] != NONE)
-    }
-
-    /// The element's nodes in the part.
-    pub(super) fn renamed<const N: usize>(&self, nodes: [u32; N]) -> [u32; N] {
-        nodes.map(|i| self.index[i as usize])
-    }
 }
 
 /// Widens a set of nodes by the elements they are in, so many times.
 pub(super) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
     for _ in 0..rings {
         let was = awake.to_vec();
-        for nodes in system.elastic.faces().filter(|t| t.iter().any(|&i| was[i as usize])) {
+        for nodes in system.elastic.faces().iter().filter(|t| t.iter().any(|&i| was[i as usize])) {
             nodes.iter().for_each(|&i| awake[i as usize] = true);
         }
     }
@@ -72,14 +47,15 @@ impl<'a> Part<'a> {
 
     /// The same with all that is `seen` from them besides: what they may meet on their way.
     pub(super) fn beside(system: &System<'a>, awake: Vec<bool>, mut seen: Vec<bool>) -> Self {
-        let mut cut = Cut { index: vec![NONE; awake.len()], awake };
-        let threads = system.threads.iter().map(|t| &t.nodes[..]);
-        let pairs = system.layers.iter().flat_map(|l| l.pairs.iter().map(|p| &p.nodes[..]));
-        for nodes in system.elastic.couplings().chain(threads).chain(pairs).filter(|n| cut.wakes(n)) {
-            nodes.iter().for_each(|&i| seen[i as usize] = true);
-        }
-        let nodes: Vec<u32> = (0..seen.len() as u32).filter(|&i| seen[i as usize]).collect();
-        nodes.iter().enumerate().for_each(|(k, &i)| cut.index[i as usize] = k as u32);
+        let mut see = |nodes: &[u32]| {
+            if nodes.iter().any(|&i| awake[i as usize]) {
+                nodes.iter().for_each(|&i| seen[i as usize] = true);
+            }
+        };
+        system.elastic.couplings(&mut see);
+        system.threads.iter().for_each(|t| see(&t.nodes));
+        system.layers.iter().flat_map(|l| &l.pairs).for_each(|p| see(&p.nodes));
+        let (cut, nodes) = Subset::new(awake, &seen);
         Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
     }
 
@@ -90,8 +66,8 @@ impl<'a> Part<'a> {
 
     /// The tree of its triangles, of which only those of awake nodes look for what they may meet. `layout` is that of the part.
     pub(super) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
-        let awake: Vec<bool> = self.pick(&self.cut.awake);
-        whole.part(&self.nodes, &self.cut.index, layout).with_active(&awake)
+        let awake: Vec<bool> = self.pick(self.cut.active());
+        whole.part(&self.nodes, self.cut.index(), layout).with_active(&awake)
     }
 
     /// This part, to stand for so many of one shape, one on the other, of which it is the lowest: what lies under it carries
@@ -137,7 +113,7 @@ impl<'a> Part<'a> {
         }
         if let (Some(from), Some(to)) = (&self.system.layers, &mut system.layers) {
             let grip = |g: &Grip| Grip { nodes: g.nodes.map(|i| self.nodes[i as usize]), ..*g };
-            to.take_over(|g| self.cut.wakes(&g.nodes), from.grips.iter().map(grip));
+            to.take_over(|g| self.cut.touches(&g.nodes), from.grips.iter().map(grip));
         }
         if let (Some(from), Some(to)) = (&self.system.ridges, &mut system.ridges) {
             to.learn(&self.cut, &self.nodes, from);
@@ -154,9 +130,9 @@ fn put<T: Clone>(nodes: &[u32], from: &[T], to: &mut [T]) {
     nodes.iter().zip(from).for_each(|(&i, v)| to[i as usize] = v.clone());
 }
 
-fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
-    let asleep = |&i: &u32| system.pinned[i as usize] || !cut.awake[i as usize];
-    let thread = |t: &Thread| Thread { nodes: cut.renamed(t.nodes), ..*t };
+fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
+    let asleep = |&i: &u32| system.pinned[i as usize] || !cut.active()[i as usize];
+    let thread = |t: &Thread| Thread { nodes: cut.renumbered(t.nodes), ..*t };
     System {
         elastic: system.elastic.part(cut),
         masses: pick(nodes, &system.masses),
@@ -168,7 +144,7 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
             ..*h
         }),
         pinned: nodes.iter().map(asleep).collect(),
-        threads: system.threads.iter().filter(|t| cut.wakes(&t.nodes)).map(thread).collect(),
+        threads: system.threads.iter().filter(|t| cut.touches(&t.nodes)).map(thread).collect(),
         support: system.support.as_ref().map(|s| support(s, cut, nodes)),
         ridges: system.ridges.as_ref().map(|r| r.part(cut, nodes)),
         layers: system.layers.as_ref().map(|l| layers(l, cut, nodes)),
@@ -182,15 +158,15 @@ fn cut_out<'a>(system: &System<'a>, cut: &Cut, nodes: &[u32]) -> System<'a> {
     }
 }
 
-fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
-    let edges = whole.edges.iter().filter(|(e, _)| cut.wakes(e) && cut.knows(e));
+fn support<'a>(whole: &Support<'a>, cut: &Subset, nodes: &[u32]) -> Support<'a> {
+    let edges = whole.edges.iter().filter(|(e, _)| cut.touches(e) && cut.has_all(e));
     Support {
         body: whole.body,
         friction: pick(nodes, &whole.friction),
         offsets: pick(nodes, &whole.offsets),
         offset: whole.offset,
         depth: whole.depth,
-        edges: edges.map(|(e, l)| (cut.renamed(*e), *l)).collect(),
+        edges: edges.map(|(e, l)| (cut.renumbered(*e), *l)).collect(),
         clear: whole.clear,
         grows: whole.grows,
         hard: whole.hard,
@@ -202,9 +178,9 @@ fn support<'a>(whole: &Support<'a>, cut: &Cut, nodes: &[u32]) -> Support<'a> {
     }
 }
 
-fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
-    let pair = |p: &Pair| Pair { nodes: cut.renamed(p.nodes), ..*p };
-    let grip = |g: &Grip| Grip { nodes: cut.renamed(g.nodes), ..*g };
+fn layers(whole: &Layers, cut: &Subset, nodes: &[u32]) -> Layers {
+    let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
+    let grip = |g: &Grip| Grip { nodes: cut.renumbered(g.nodes), ..*g };
     Layers {
         #[cfg(toile_without = "self_contact")]
         never: whole.never,
@@ -217,12 +193,17 @@ fn layers(whole: &Layers, cut: &Cut, nodes: &[u32]) -> Layers {
         friction: pick(nodes, &whole.friction),
         away: pick(nodes, &whole.away),
         // A grip outlives its pair by the step that parts them.
-        grips: whole.grips.iter().filter(|g| cut.wakes(&g.nodes) && cut.knows(&g.nodes)).map(grip).collect(),
-        pairs: whole.pairs.iter().filter(|p| cut.wakes(&p.nodes)).map(pair).collect(),
+        grips: whole
+            .grips
+            .iter()
+            .filter(|g| cut.touches(&g.nodes) && cut.has_all(&g.nodes))
+            .map(grip)
+            .collect(),
+        pairs: whole.pairs.iter().filter(|p| cut.touches(&p.nodes)).map(pair).collect(),
         held: whole
             .held
             .as_ref()
-            .map(|h| sorted(h.iter().filter(|p| cut.wakes(&p.nodes) && cut.knows(&p.nodes)).map(pair))),
+            .map(|h| sorted(h.iter().filter(|p| cut.touches(&p.nodes) && cut.has_all(&p.nodes)).map(pair))),
         contacts: Vec::new(),
         tangles: Vec::new(),
         tangled: Vec::new(),

@@ -1,11 +1,11 @@
 //! The cut pieces of a garment, flat: what one level of the solver works on.
 
-use super::elastic::Spring;
-use super::pattern::Pattern;
 use super::support::Support;
 use super::system::System;
+use crate::energy::Band as Piece;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
+use crate::linear::Pattern;
 use crate::mesh::{Sheet, Side};
 use crate::scene::{Band, Scene};
 use nalgebra::{Vector2, Vector3};
@@ -167,14 +167,14 @@ impl Pieces {
 
     /// Pieces of the bands between two nodes: vertices where seams are open, else nodes.
     #[must_use]
-    pub fn springs(&self, open: bool) -> Vec<Spring> {
+    pub fn springs(&self, open: bool) -> Vec<Piece> {
         let mut springs = Vec::new();
         for band in &self.bands {
             for (w, &length) in band.vertices.windows(2).zip(&band.lengths) {
                 let one = self.piece[w[0] as usize] == self.piece[w[1] as usize];
                 let nodes = [w[0], w[1]].map(|v| if open { v } else { self.node[v as usize] });
                 if length > 0.0 && nodes[0] != nodes[1] && (one || !open) {
-                    springs.push(Spring::new(nodes, length, band.stiffness));
+                    springs.push(Piece { nodes, length, stiffness: band.stiffness });
                 }
             }
         }
@@ -269,7 +269,7 @@ impl Pieces {
     pub fn neighbours(&self) -> Pattern {
         let groups: Vec<[u32; 3]> =
             self.triangles.iter().map(|t| t.map(|v| self.point[v as usize])).collect();
-        Pattern::new(self.points, groups.iter().map(|g| &g[..]))
+        Pattern::new(self.points, |visit| groups.iter().for_each(|g| visit(g)))
     }
 }
 

@@ -77,9 +77,7 @@ pub(super) fn lay(
 
 /// The cloth that each node belongs to, and how many there are.
 fn cloths(system: &System<'_>) -> (Vec<u32>, usize) {
-    let threads = system.threads.iter().map(|t| &t.nodes[..]);
-    let links = system.elastic.couplings().chain(threads).flat_map(|n| n.windows(2).map(|w| [w[0], w[1]]));
-    groups(system.masses.len(), links)
+    groups(system.masses.len(), system.links().into_iter())
 }
 
 /// The cloths with triangles, from the innermost: by layer, then by mean distance from the body, or by height where there is none.
@@ -91,7 +89,7 @@ fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u3
         let m = &mut mean[c as usize];
         *m = (m.0.max(layer), m.1 + far[i], m.2 + 1);
     }
-    let mut known: Vec<u32> = system.elastic.faces().map(|t| of[t[0] as usize]).collect();
+    let mut known: Vec<u32> = system.elastic.faces().iter().map(|t| of[t[0] as usize]).collect();
     known.sort_unstable();
     known.dedup();
     let key = |c: u32| (mean[c as usize].0, mean[c as usize].1 / mean[c as usize].2 as f64);

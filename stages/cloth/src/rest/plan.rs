@@ -114,7 +114,7 @@ impl<'a> Plan<'a> {
         let pieces = &self.pieces[k];
         let sheet = pieces.sewn_sheet(&self.cloths)?;
         let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-        let mut system = assemble(self.scene, self.body, pieces, &sheet, false)?;
+        let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.rest.models)?;
         system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
         system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
         if let (true, true, Some(s)) = (self.rest.graded, k > 0, &mut system.support) {

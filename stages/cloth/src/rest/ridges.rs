@@ -9,11 +9,11 @@
 //!
 //! Cost: a look for pairs where the cloth has moved by more than a thickness; none for a body without sharp features.
 
-use super::part::Cut;
-use super::pattern::{Pattern, add_at};
 use super::press::Press;
 use super::rub::{Rub, SOFT};
 use super::support::{NUDGE, Support};
+use crate::energy::Subset;
+use crate::linear::{Pattern, add_at};
 use crate::mesh::Sheet;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
@@ -472,16 +472,16 @@ impl Ridges {
     }
 
     /// What a part of the cloth has of it.
-    pub(super) fn part(&self, cut: &Cut, nodes: &[u32]) -> Self {
+    pub(super) fn part(&self, cut: &Subset, nodes: &[u32]) -> Self {
         let pick = |of: &[f64]| nodes.iter().map(|&i| of[i as usize]).collect::<Vec<f64>>();
-        let knows = |of: &[u32]| cut.wakes(of) && cut.knows(of);
-        let pair = |p: &Pair| Pair { nodes: cut.renamed(p.nodes), ..*p };
+        let knows = |of: &[u32]| cut.touches(of) && cut.has_all(of);
+        let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
         let mut pierced: Vec<Pair> = self.pierced.iter().filter(|p| knows(&p.nodes)).map(pair).collect();
         pierced.sort_unstable();
         Self {
             sharp: self.sharp.clone(),
-            edges: self.edges.iter().filter(|e| knows(&e[..])).map(|e| cut.renamed(*e)).collect(),
-            triangles: self.triangles.iter().filter(|t| knows(&t[..])).map(|t| cut.renamed(*t)).collect(),
+            edges: self.edges.iter().filter(|e| knows(&e[..])).map(|e| cut.renumbered(*e)).collect(),
+            triangles: self.triangles.iter().filter(|t| knows(&t[..])).map(|t| cut.renumbered(*t)).collect(),
             thickness: self.thickness,
             longest: self.longest,
             stiffness: pick(&self.stiffness),
@@ -502,9 +502,9 @@ impl Ridges {
     }
 
     /// Takes back what a part has learnt; its node `k` is the node `nodes[k]` of the whole.
-    pub(super) fn learn(&mut self, cut: &Cut, nodes: &[u32], part: &Self) {
+    pub(super) fn learn(&mut self, cut: &Subset, nodes: &[u32], part: &Self) {
         let whole = |p: &Pair| Pair { nodes: p.nodes.map(|i| nodes[i as usize]), ..*p };
-        let knows = |p: &Pair| cut.wakes(&p.nodes) && cut.knows(&p.nodes);
+        let knows = |p: &Pair| cut.touches(&p.nodes) && cut.has_all(&p.nodes);
         self.contacts.retain(|c| !knows(&c.pair));
         self.contacts.extend(part.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
         self.contacts.sort_by_key(|c| c.pair);

@@ -231,7 +231,8 @@ impl Work<'_> {
         let mut panel = vec![0; pieces.nodes];
         pieces.node.iter().zip(&pieces.panel).for_each(|(n, p)| panel[*n as usize] = *p);
         let mut x = std::mem::take(&mut self.x);
-        let mut system = assemble(self.plan.scene, Some(solid), pieces, &sheet, false)?;
+        let mut system =
+            assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.rest.models)?;
         system.gravity = Vec3::zeros();
         system.ridges = None;
         system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
@@ -303,9 +304,10 @@ impl Work<'_> {
     /// Weightless cloth before it is sewn, so many times stiffer.
     fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, RestError> {
         let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
-        let mut system = assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true)?;
+        let mut system =
+            assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.rest.models)?;
         if self.plan.rest.graded {
-            system.elastic.stiffen(stiff);
+            system.elastic.scale_bending(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);
         }
         Ok(system)

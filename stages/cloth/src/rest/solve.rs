@@ -35,6 +35,7 @@ use super::unrest::Unbalanced;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
 use crate::contact::skin::Skin;
+use crate::energy::Models;
 use crate::scene::{Panel, Scene};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
@@ -45,6 +46,8 @@ type Vec3 = Vector3<f64>;
 /// Settings of the rest solver.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rest {
+    /// Membrane and bending.
+    pub models: Models,
     /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
     pub speed: f64,
     /// The share of the vertices that may gain more: some never come to rest where the skin of a body folds.
@@ -78,6 +81,7 @@ pub struct Rest {
 impl Default for Rest {
     fn default() -> Self {
         Self {
+            models: Models::STATIC,
             speed: 1e-3,
             non_static: 0.0,
             coarsest: 200,

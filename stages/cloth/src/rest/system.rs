@@ -8,11 +8,11 @@
 use super::elastic::Elastic;
 use super::height_springs::HeightSprings;
 use super::layers::Layers;
-use super::pattern::Pattern;
 use super::ridges::Ridges;
 use super::rub::Rub;
 use super::support::{NEAR, NUDGE, Seen, Sight, Support};
 use super::thread::Thread;
+use crate::linear::Pattern;
 use nalgebra::{Matrix3, Vector3};
 use toile_geometry::signed_distance::Nearest;
 
@@ -85,8 +85,20 @@ impl System<'_> {
     /// The pattern of its matrix without contacts of cloth with cloth.
     #[must_use]
     pub fn pattern(&self) -> Pattern {
-        let threads = self.threads.iter().map(|t| &t.nodes[..]);
-        Pattern::holding(&self.pinned, self.elastic.couplings().chain(threads))
+        Pattern::holding(&self.pinned, |visit| {
+            self.elastic.couplings(visit);
+            self.threads.iter().for_each(|t| visit(&t.nodes));
+        })
+    }
+
+    /// Nodes that elements or threads hold together, two by two.
+    #[must_use]
+    pub fn links(&self) -> Vec<[u32; 2]> {
+        let mut links = Vec::new();
+        let mut link = |nodes: &[u32]| links.extend(nodes.windows(2).map(|w| [w[0], w[1]]));
+        self.elastic.couplings(&mut link);
+        self.threads.iter().for_each(|t| link(&t.nodes));
+        links
     }
 
     /// The body nearest to each node, if it presses there; remembers what was seen, now or by who came here before.

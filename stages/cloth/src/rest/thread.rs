@@ -1,6 +1,6 @@
 //! Seams that still pull, while a garment is sewn.
 
-use super::pattern::{Pattern, add_at};
+use crate::linear::{Pattern, add_at};
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;

@@ -5,6 +5,7 @@ use super::assemble::{Wearer, assemble, cloths};
 use super::pieces::Pieces;
 use super::system::System;
 use crate::contact::body::Body;
+use crate::energy::Models;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 
@@ -14,6 +15,6 @@ pub(super) fn on_its_body(scene: &Scene, check: impl FnOnce(System<'_>, &Body, &
     let wearer = Wearer { skin: &body, friction: worn.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
-    let system = assemble(scene, Some(wearer), &pieces, &sheet, false).unwrap();
+    let system = assemble(scene, Some(wearer), &pieces, &sheet, false, Models::STATIC).unwrap();
     check(system, &body, &sheet);
 }

@@ -268,8 +268,8 @@ impl<'a> Work<'a> {
     }
 
     /// Refuses cloth that the strain limit could not hold.
-    pub(super) fn check_strain(&self, system: &System<'_>, x: &[Vec3]) -> Result<(), RestError> {
-        match self.plan.scene.strain_limit.and_then(|l| system.elastic.over(x, &l)) {
+    pub(super) fn check_strain(&self, sheet: &Sheet, x: &[Vec3]) -> Result<(), RestError> {
+        match self.plan.scene.strain_limit.and_then(|l| sheet.over(x, [l.weft, l.warp])) {
             Some((index, strain, limit)) => {
                 Err(ClothError::StrainLimitExceeded { index, strain, limit }.into())
             }

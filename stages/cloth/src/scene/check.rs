@@ -1,9 +1,9 @@
 //! What a scene must satisfy before a solver sees it. O(n log n).
 
 use super::{Scene, SceneError};
+use crate::energy::Air;
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
-use crate::force::Air;
 use nalgebra::Vector3;
 
 /// Checks that every index points at something and every coordinate is finite.

@@ -21,9 +21,9 @@ pub use read::{Load, Loaded, Options, check_form, parse, read};
 pub use strict::FieldFault;
 pub use write::{body_to_obj, to_json};
 
+use crate::energy::Air;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Air;
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! The fields of the JSON form as they stand in the file.
 
-use crate::force::Air;
+use crate::energy::Air;
 use serde::{Deserialize, de};
 
 #[derive(Deserialize)]

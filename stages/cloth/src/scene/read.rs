@@ -3,9 +3,9 @@
 use super::check::{check, check_lists};
 use super::raw::{RawAir, RawBand, RawBody, RawCurve, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
 use super::{Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, mend, strict, units};
+use crate::energy::Air;
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::{Curve, Fabric};
-use crate::force::Air;
 use nalgebra::{Vector2, Vector3};
 use serde::Deserialize;
 use std::path::Path;

@@ -2,10 +2,10 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{Hinge, Rigidity};
-use crate::fabric::Fabric;
-use crate::force::{Air, AirDrag, Vec3};
-use crate::membrane::{Triangles, Woven};
+
+use crate::energy::{Air, AirDrag, Vec3};
+use crate::energy::{Cloth, Models};
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use proptest::prelude::*;
 
@@ -27,8 +27,8 @@ fn flown(stretch: f64, n: usize, air: Air) -> Flown {
     let mesh = Rectangle::new(Layout::Alternating, 0.5, 0.5, n);
     let sheet = mesh.sheet(SIGMA).unwrap();
     let model = Model::of(&sheet)
-        .with(Triangles::new(&sheet, Woven::new(&fabric).unwrap()))
-        .with(Hinge::new(&sheet, &Rigidity::of(&fabric)).unwrap())
+        .made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric]))
+        .unwrap()
         .in_air(air, &sheet);
     let state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     Flown { mesh, sheet, fabric, model, state }

@@ -6,8 +6,8 @@
 //! limit to `(2/w)(sqrt(1 + z²) - z)`, `z = viscosity w / 2`. Obstacles act on velocities, with Coulomb friction that really sticks.
 
 use super::{Model, Report, Solver, State, omega_max};
+use crate::energy::{Projection, Vec3, carried, mobility};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{Projection, Vec3, carried, mobility};
 
 /// The step is this share of the limit: headroom for stiffening until the next look.
 const SAFETY: f64 = 0.9;

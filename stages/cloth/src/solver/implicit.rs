@@ -5,9 +5,10 @@
 //! motion that must survive. Velocities are those of the middle of a step, as with central differences, so free fall is exact.
 
 use super::{Model, Newton, NewtonReport, Report, Solver, State};
+use crate::energy::{AirStep, Energy, Places, Projection, Vec3, total_value};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{AirStep, Energy, Projection, Vec3, total_value};
-use crate::linear::BlockMatrix;
+use crate::linear::{BlockMatrix, Pattern};
+use nalgebra::Matrix3;
 
 /// Pseudo-time step of a hard step, as a share of the step.
 const PSEUDO_SHARE: f64 = 0.1;
@@ -55,10 +56,9 @@ impl Energy for Inertia<'_> {
         }
     }
 
-    fn couplings(&self, _: &mut dyn FnMut(&[u32])) {}
-
-    fn add_hessian(&self, _: &[Vec3], _: Projection, hessian: &mut BlockMatrix) {
-        hessian.add_diagonal(self.masses.iter().map(|m| m * self.scale));
+    fn add_matrix(&self, _: &[Vec3], _: Projection, _: &Places, values: &mut [Matrix3<f64>]) {
+        let terms = values.iter_mut().zip(self.masses);
+        terms.for_each(|(v, m)| *v += Matrix3::identity() * (m * self.scale));
     }
 }
 
@@ -91,11 +91,19 @@ impl Energy for Viscous {
     }
 
     fn couplings(&self, visit: &mut dyn FnMut(&[u32])) {
-        self.stiffness.couplings(visit);
+        self.stiffness.pattern().upper().for_each(|(i, j, _)| visit(&[i, j]));
     }
 
-    fn add_hessian(&self, _: &[Vec3], _: Projection, hessian: &mut BlockMatrix) {
-        hessian.add_matrix(self.scale, &self.stiffness);
+    fn places(&self, pattern: &Pattern) -> Places {
+        let rows = (0..self.stiffness.rows() as u32).map(|i| (i, i));
+        let upper = self.stiffness.pattern().upper().map(|(i, j, _)| (i, j));
+        let slots = rows.chain(upper).filter_map(|(i, j)| pattern.slot(i, j)).map(|s| s.index);
+        Places::at_slots(slots.collect())
+    }
+
+    fn add_matrix(&self, _: &[Vec3], _: Projection, places: &Places, values: &mut [Matrix3<f64>]) {
+        let blocks = places.slots().iter().zip(self.stiffness.values());
+        blocks.for_each(|(&slot, block)| values[slot as usize] += block * self.scale);
     }
 }
 

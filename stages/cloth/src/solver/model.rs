@@ -1,8 +1,10 @@
 //! The mechanical system that solvers solve, and its state.
 
 use crate::constraint::Obstacle;
+use crate::energy::{
+    Air, AirDrag, Cloth, Energy, Gravity, Models, Projection, Vec3, matrix_of, write_matrix,
+};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{Air, AirDrag, Energy, Gravity, Projection, Vec3};
 use crate::linear::BlockMatrix;
 use crate::mesh::{Sheet, check_finite};
 
@@ -73,6 +75,26 @@ impl Model {
     pub fn with(mut self, energy: impl Energy + 'static) -> Self {
         self.energies.push(Box::new(energy));
         self
+    }
+
+    /// Adds the models of a cloth.
+    ///
+    /// # Errors
+    /// What the models find in a fabric.
+    pub fn made_of(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
+        // What holds folds has nothing to hold in a motion.
+        let energies = models.energies(cloth)?.into_iter().filter(|e| !e.is_hysteretic());
+        self.energies.extend(energies.map(|e| e as Box<dyn Energy>));
+        Ok(self)
+    }
+
+    /// Adds the membrane alone.
+    ///
+    /// # Errors
+    /// What it finds in a fabric.
+    pub fn with_membrane(mut self, models: Models, cloth: &Cloth<'_>) -> Result<Self, ClothError> {
+        self.energies.push(models.membrane(cloth)?);
+        Ok(self)
     }
 
     /// Holds every vertex that `chosen` picks.
@@ -158,8 +180,8 @@ impl Model {
     #[must_use]
     pub fn stiffness(&self, x: &[Vec3], projection: Projection) -> BlockMatrix {
         let internal = self.internal();
-        let mut h = crate::force::matrix_of(x.len(), &internal);
-        internal.iter().for_each(|e| e.add_hessian(x, projection, &mut h));
-        h
+        let (mut matrix, places) = matrix_of(x.len(), &internal);
+        write_matrix(&internal, &places, x, projection, &mut matrix);
+        matrix
     }
 }

@@ -5,8 +5,8 @@
 //! continuation; Kelley and Keyes, 1998): large far from equilibrium, where a Newton step would fling a soft strip across
 //! the room, and zero near it. Cost: one factor and a handful of energy evaluations an iteration.
 
+use crate::energy::{Energy, Projection, Vec3, matrix_of, total_gradient, total_value, write_matrix};
 use crate::error::ClothError;
-use crate::force::{Energy, Projection, Vec3, total_gradient, total_value};
 use crate::linear::{BlockMatrix, Cholesky, conjugate_gradients};
 
 /// Share of the predicted fall of energy that a step must reach.
@@ -88,7 +88,7 @@ impl Newton {
         fixed: &[bool],
         x: &mut Vec<Vec3>,
     ) -> Result<NewtonReport, ClothError> {
-        let mut hessian = crate::force::matrix_of(x.len(), energies);
+        let (mut hessian, places) = matrix_of(x.len(), energies);
         let mut value = total_value(energies, x);
         let first_shift = self.pseudo_step.powi(-2);
         let (mut shift, mut exact) = (if self.cautious { first_shift } else { 0.0 }, false);
@@ -106,8 +106,7 @@ impl Newton {
                 break;
             }
             let projection = if exact { Projection::Exact } else { Projection::PositiveSemiDefinite };
-            hessian.clear();
-            energies.iter().for_each(|e| e.add_hessian(x, projection, &mut hessian));
+            write_matrix(energies, &places, x, projection, &mut hessian);
             let direction = match self.direction(&mut hessian, shift, masses, fixed, &gradient, exact)? {
                 Some(d) => d,
                 None => {

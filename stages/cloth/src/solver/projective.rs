@@ -10,9 +10,10 @@ use nalgebra::{Matrix3, Matrix3x2, Vector2};
 use rayon::prelude::*;
 
 use super::{Model, Report, Solver, State};
-use crate::bending::{Rigidity, hinge_terms};
+use crate::energy::bending::folds_of;
+use crate::energy::{AirDrag, Vec3};
 use crate::error::{ClothError, check_parameter};
-use crate::force::{AirDrag, Vec3};
+use crate::fabric::Rigidity;
 use crate::linear::{BlockMatrix, Cholesky};
 use crate::mesh::Sheet;
 
@@ -51,10 +52,10 @@ impl Projective {
         check_parameter("dt", dt, |dt| dt > 0.0, "above 0 s")?;
         check_parameter("stiffness", k, |k| k >= 0.0, "0 or more N/m")?;
         let triangles: Vec<Triangle> = (0..sheet.triangles().len()).map(|t| triangle(sheet, t, k)).collect();
-        let hinges = hinge_terms(sheet, rigidity)?;
+        let hinges = folds_of(sheet, rigidity)?;
         let mut full = BlockMatrix::with_couplings(sheet.vertex_count(), |visit| {
             sheet.triangles().iter().for_each(|t| visit(t));
-            hinges.iter().for_each(|h| visit(&h.vertices));
+            hinges.iter().for_each(|h| visit(&h.nodes));
         });
         for (t, corners) in triangles.iter().zip(sheet.triangles()) {
             let g = &t.shape;
@@ -68,7 +69,7 @@ impl Projective {
             let block =
                 |a: usize, b: usize| Matrix3::identity() * (h.stiffness * h.weights[a] * h.weights[b]);
             full.add_element(
-                &h.vertices,
+                &h.nodes,
                 &std::array::from_fn::<_, 4, _>(|a| std::array::from_fn(|b| block(a, b))),
             );
         }

@@ -6,8 +6,8 @@
 use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::Model;
+use crate::energy::{Projection, Vec3};
 use crate::error::ClothError;
-use crate::force::{Projection, Vec3};
 use crate::linear::{BlockMatrix, Cholesky};
 
 /// Lanczos vectors: the greatest frequency of a mesh of 10,000 vertices is then good to 0.1 %.

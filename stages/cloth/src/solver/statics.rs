@@ -4,8 +4,8 @@
 //! to either side needs a nudge. Cost: one sparse factor an iteration, 10 to 60 iterations from a flat start.
 
 use super::{Model, Newton, Report, Solver, State};
+use crate::energy::Energy;
 use crate::error::ClothError;
-use crate::force::Energy;
 
 /// First pseudo-time step, s: about how long a piece of cloth takes to fall its own size.
 const PSEUDO_STEP: f64 = 0.1;
@@ -48,7 +48,7 @@ impl Solver for Static {
                 wanted: self.newton.tolerance,
             });
         }
-        state.v.fill(crate::force::Vec3::zeros());
+        state.v.fill(crate::energy::Vec3::zeros());
         Ok(Report {
             advanced: 0.0,
             iterations: report.iterations,

@@ -1,12 +1,15 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{Hinge, Rigidity};
+
 use crate::constraint::Plane;
-use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{StVenantKirchhoff, Triangles, Woven};
+use crate::energy::Vec3;
+use crate::energy::bending::Hinge;
+use crate::energy::membrane::{StVenantKirchhoff, Triangles};
+use crate::energy::{Blocks, Cloth, Models, Projection, Subset, add_block_of};
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
+use nalgebra::Matrix3;
 
 const G: f64 = 9.81;
 
@@ -18,10 +21,7 @@ fn fabric() -> Fabric {
 fn square(layout: Layout, n: usize) -> (Rectangle, Sheet, Model, State) {
     let mesh = Rectangle::new(layout, 0.5, 0.5, n);
     let sheet = mesh.sheet(0.15).unwrap();
-    let d = Rigidity::of(&fabric());
-    let model = Model::of(&sheet)
-        .with(Triangles::new(&sheet, Woven::new(&fabric()).unwrap()))
-        .with(Hinge::new(&sheet, &d).unwrap());
+    let model = Model::of(&sheet).made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric()])).unwrap();
     let state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
     (mesh, sheet, model, state)
 }
@@ -59,9 +59,7 @@ fn free_fall_is_exact_in_every_solver() {
 fn one_triangle_falls_exactly() {
     let mesh = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|p| nalgebra::Vector2::new(p[0], p[1]));
     let sheet = Sheet::flat(&mesh, &[[0, 1, 2]], 0.15).unwrap();
-    let model = Model::of(&sheet)
-        .with(Triangles::new(&sheet, Woven::new(&fabric()).unwrap()))
-        .with(Hinge::new(&sheet, &Rigidity::uniform(1e-5)).unwrap());
+    let model = Model::of(&sheet).made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric()])).unwrap();
     for mut solver in steppers(&sheet, &model, 0.01) {
         let mut s = State::at_rest(mesh.iter().map(|p| Vec3::new(p.x, 0.0, p.y)).collect());
         run(&mut *solver, &model, &mut s, 0.1);
@@ -133,7 +131,7 @@ fn an_unstable_step_is_refused_and_the_limit_is_the_measured_one() {
     let error = CentralDifferences::fixed(1.01 * limit).advance(&model, &mut state.clone()).unwrap_err();
     assert!(matches!(error, crate::error::ClothError::TimeStepUnstable { .. }), "{error}");
     // The small-motion blow-up, by running the linearised sheet.
-    let k = model.stiffness(&state.x, crate::force::Projection::Exact);
+    let k = model.stiffness(&state.x, crate::energy::Projection::Exact);
     let grows = |dt: f64| {
         let mut u: Vec<Vec3> = mesh
             .uv
@@ -165,15 +163,17 @@ fn an_unstable_step_is_refused_and_the_limit_is_the_measured_one() {
 #[test]
 fn limits_of_springs_are_those_of_the_books() {
     // One spring, two masses of ratio 1e4: omega² = k (1/m1 + 1/m2).
+    #[derive(Clone)]
     struct Spring;
-    impl crate::force::Element<2> for Spring {
+    impl crate::energy::Element<2> for Spring {
+        type State = Blocks<2>;
         fn name(&self) -> &'static str {
             "spring"
         }
         fn count(&self) -> usize {
             1
         }
-        fn vertices(&self, _: usize) -> [u32; 2] {
+        fn nodes(&self, _: usize) -> [u32; 2] {
             [0, 1]
         }
         fn value(&self, _: usize, x: &[Vec3; 2]) -> f64 {
@@ -184,18 +184,19 @@ fn limits_of_springs_are_those_of_the_books() {
             let pull = d.normalize() * (1000.0 * (d.norm() - 0.1));
             [-pull, pull]
         }
-        fn hessian(
-            &self,
-            _: usize,
-            _: &[Vec3; 2],
-            _: crate::force::Projection,
-        ) -> [[nalgebra::Matrix3<f64>; 2]; 2] {
-            let h = nalgebra::Matrix3::from_diagonal(&Vec3::new(1000.0, 0.0, 0.0));
+        fn state(&self, _: usize, _: &[Vec3; 2], _: Projection) -> Blocks<2> {
+            let h = Matrix3::from_diagonal(&Vec3::new(1000.0, 0.0, 0.0));
             [[h, -h], [-h, h]]
+        }
+        fn add_block(&self, _: usize, of: &Blocks<2>, row: usize, column: usize, sum: &mut Matrix3<f64>) {
+            add_block_of(of, row, column, sum);
+        }
+        fn part(&self, _: &[usize], _: &Subset) -> Self {
+            self.clone()
         }
     }
     let sheet = Rectangle::new(Layout::OneDiagonal, 0.1, 0.1, 1).sheet(1.0).unwrap();
-    let mut model = Model::of(&sheet).with(crate::force::Assembled::<2, _>(Spring)).under(Vec3::zeros());
+    let mut model = Model::of(&sheet).with(crate::energy::Assembled::<2, _>(Spring)).under(Vec3::zeros());
     model.masses = vec![1e-2, 1e-6, 1.0, 1.0];
     let x: Vec<Vec3> = [0.0, 0.1, 0.2, 0.3].map(|x| Vec3::new(x, 0.0, 0.0)).to_vec();
     let wanted = (1000.0_f64 * (1e2 + 1e6)).sqrt();
@@ -282,7 +283,7 @@ fn st_venant_kirchhoff_hangs_by_its_own_law() {
     let k = 0.15 * G * 0.5 / alpha;
     let mut model = Model::of(&sheet)
         .with(Triangles::new(&sheet, StVenantKirchhoff::new(k, 0.0).unwrap()))
-        .with(Hinge::new(&sheet, &Rigidity::uniform(1e-8)).unwrap())
+        .with(Hinge::new(&Cloth::of(&sheet, &[&Fabric::isotropic(0.15, k, 0.0, 1e-8)])))
         .pinned(|v| mesh.at_top(v));
     model.viscosity = 0.0;
     let mut s = state;

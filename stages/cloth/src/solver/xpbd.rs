@@ -9,11 +9,11 @@
 use nalgebra::Matrix3;
 
 use super::{Model, Report, Solver, State};
-use crate::bending::{HingeTerm, Rigidity, hinge_terms};
+use crate::energy::bending::{Fold, folds_of};
+use crate::energy::membrane::Woven;
+use crate::energy::{Vec3, carried, mobility};
 use crate::error::{ClothError, check_parameter};
-use crate::fabric::Fabric;
-use crate::force::{Vec3, carried, mobility};
-use crate::membrane::Woven;
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 
 struct StrainTerm {
@@ -32,7 +32,7 @@ pub struct Xpbd {
     strains: Vec<StrainTerm>,
     /// Strains per tension, m/N.
     compliance: Matrix3<f64>,
-    hinges: Vec<HingeTerm>,
+    hinges: Vec<Fold>,
 }
 
 impl Xpbd {
@@ -58,7 +58,7 @@ impl Xpbd {
             substeps,
             strains: strains.collect(),
             compliance: inverse,
-            hinges: hinge_terms(sheet, &Rigidity::of(fabric))?,
+            hinges: folds_of(sheet, &Rigidity::of(fabric))?,
         })
     }
 
@@ -175,12 +175,12 @@ impl StrainTerm {
     }
 }
 
-fn project_hinge<W: Answer>(hinge: &HingeTerm, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
+fn project_hinge<W: Answer>(hinge: &Fold, x: &mut [Vec3], inverse_mass: &[W], h: f64) {
     if hinge.stiffness <= 0.0 {
         return;
     }
-    let vertices = hinge.vertices.map(|v| v as usize);
-    let (angle, gradient) = hinge.fold(&vertices.map(|v| x[v]));
+    let vertices = hinge.nodes.map(|v| v as usize);
+    let (angle, gradient) = hinge.angle(&vertices.map(|v| x[v]));
     let sum: f64 = (0..4).map(|k| inverse_mass[vertices[k]].between(&gradient[k], &gradient[k])).sum();
     let pull = -angle / (sum + 1.0 / (hinge.stiffness * h * h));
     for k in 0..4 {

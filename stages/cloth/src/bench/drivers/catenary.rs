@@ -5,9 +5,9 @@ use super::{Options, Ran, Run, Solve, go_on};
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::map::{Cloth, Scheme};
 use crate::bench::reference;
+use crate::energy::{self, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 use crate::rest::solve::{Rest, RestError};
 use crate::solver::{Model, Solver, State, Static};
@@ -45,7 +45,11 @@ impl Problem {
         let fabric = Fabric::isotropic(1.0, 1.0 / BETA, 0.0, BENDING);
         let held = |v: usize| mesh.at_bottom(v) || mesh.at_top(v);
         let mut model = Model::of(&sheet).pinned(held).under(Vec3::new(0.0, -1.0, 0.0));
-        model.energies = way.models().energies(&sheet, &fabric, &model.fixed)?;
+        let fixed = model.fixed.clone();
+        model = model.made_of(
+            way.models(),
+            &energy::Cloth { fixed: &fixed, ..energy::Cloth::of(&sheet, &[&fabric]) },
+        )?;
         model.drag = 2.0 * RATE;
         let depth = reference::catenary(SPAN, 0.0).sag;
         let start = |p: &nalgebra::Vector2<f64>| Vec3::new(SPAN * p.y, -4.0 * depth * p.y * (1.0 - p.y), p.x);

@@ -5,9 +5,9 @@ use super::{Options, Ran, Run, Solve, go_on};
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::map::Cloth;
 use crate::bench::reference::{HangingSwing, hanging_swing};
+use crate::energy::{self, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 use crate::solver::{Model, Solver, State, Static};
 
@@ -38,7 +38,11 @@ impl Problem {
         let sheet = mesh.sheet(1.0)?;
         let fabric = Fabric::isotropic(1.0, 1.0 / ALPHA, 0.0, BENDING);
         let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(Vec3::new(0.0, -1.0, 0.0));
-        model.energies = way.models().energies(&sheet, &fabric, &model.fixed)?;
+        let fixed = model.fixed.clone();
+        model = model.made_of(
+            way.models(),
+            &energy::Cloth { fixed: &fixed, ..energy::Cloth::of(&sheet, &[&fabric]) },
+        )?;
         let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
         Static::to(1e-10).advance(&model, &mut state)?;
         Ok(Self { mesh, sheet, fabric, model, rest: state.x, exact: hanging_swing(ALPHA) })

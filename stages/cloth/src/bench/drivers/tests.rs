@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::super::map::Scheme;
-use super::super::score::Membrane;
 use super::*;
+use crate::energy::Membrane;
 
 const WOVEN: Membrane = Membrane::Woven;
 

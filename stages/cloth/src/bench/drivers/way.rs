@@ -1,7 +1,7 @@
 //! A solver with the membrane that it is given.
 
 use crate::bench::map::{Cloth, Scheme};
-use crate::bench::score::{Bending, Membrane, Models};
+use crate::energy::{Bending, Membrane, Models};
 use crate::error::ClothError;
 use crate::solver::Solver;
 

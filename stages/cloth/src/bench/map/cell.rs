@@ -3,8 +3,8 @@
 use super::Options;
 use super::hung::{Hung, SIDE, farthest};
 use super::scheme::{Cloth, Scheme};
+use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::force::Vec3;
 use crate::rest::solve::{Rest, RestError};
 use crate::scene::Scene;
 use crate::solver::{Solver, State};

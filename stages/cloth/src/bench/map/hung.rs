@@ -3,9 +3,9 @@
 use super::scheme::Scheme;
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::{Models, reference};
+use crate::energy::{Cloth, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, Model, Solver, State, Static};
 
@@ -51,7 +51,8 @@ impl Hung {
         let fabric = Fabric::isotropic(DENSITY, stiffness, 0.0, BENDING);
         let gravity = Vec3::new(0.0, -GRAVITY, 0.0);
         let mut model = Model::of(&sheet).pinned(|v| mesh.at_top(v)).under(gravity);
-        model.energies = Models::DEFAULT.energies(&sheet, &fabric, &model.fixed)?;
+        let fixed = model.fixed.clone();
+        model = model.made_of(Models::DEFAULT, &Cloth { fixed: &fixed, ..Cloth::of(&sheet, &[&fabric]) })?;
         let rate = reference::hanging_omega(1) * (GRAVITY / SIDE).sqrt();
         model.drag = 2.0 * rate;
         let mut hanging = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y - SIDE, 0.0)).collect());

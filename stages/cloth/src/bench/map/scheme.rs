@@ -1,8 +1,8 @@
 //! The solvers of a map.
 
-use crate::bending::Rigidity;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
+use crate::fabric::Rigidity;
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, Xpbd};
 use serde::{Serialize, Serializer};

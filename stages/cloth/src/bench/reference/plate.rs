@@ -2,8 +2,8 @@
 
 use nalgebra::Matrix3;
 
+use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::force::Vec3;
 use crate::linear::{BlockMatrix, Cholesky};
 
 /// C of a plate simply supported on all sides, by Navier's series.

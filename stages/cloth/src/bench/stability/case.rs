@@ -4,11 +4,11 @@
 
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{Hinge, Rigidity};
+
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Models};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{Triangles, Woven};
 use crate::mesh::Sheet;
 use crate::solver::{ImplicitEuler, Model, Solver, State};
 
@@ -169,8 +169,7 @@ impl Case {
     fn model(&self, mesh: &Rectangle, sheet: &Sheet) -> Result<Model, ClothError> {
         let fabric = Fabric::isotropic(self.density, self.stiffness, 0.0, self.bending);
         Ok(Model::of(sheet)
-            .with(Triangles::new(sheet, Woven::new(&fabric)?))
-            .with(Hinge::new(sheet, &Rigidity::of(&fabric))?)
+            .made_of(Models::DEFAULT, &Cloth::of(sheet, &[&fabric]))?
             .pinned(|v| mesh.at_top(v))
             .under(Vec3::new(0.0, -9.81 * self.gravity, 0.0)))
     }

@@ -6,8 +6,8 @@ use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::stability::Case;
 use crate::constraint::Plane;
+use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::force::Vec3;
 use crate::mesh::Sheet;
 use crate::solver::{ImplicitEuler, Model, Solver, State};
 

@@ -3,11 +3,11 @@
 use super::strip::judged;
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{Hinge, Rigidity};
+
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{Triangles, Woven};
 use crate::rest::solve::{Precision, Rest, RestError};
 use crate::scene::Scene;
 use crate::solver::{Model, Solver, State, Static};
@@ -51,10 +51,8 @@ fn rounded() -> Result<(bool, String), ClothError> {
         }
         let sheet = mesh.sheet(if narrow { f64::from(DENSITY as f32) } else { DENSITY })?;
         let top: Vec<bool> = mesh.uv.iter().map(|p| p.y > LENGTH - 1e-6).collect();
-        let model = Model::of(&sheet)
-            .with(Triangles::new(&sheet, Woven::new(&fabric())?))
-            .with(Hinge::new(&sheet, &Rigidity::of(&fabric()))?)
-            .pinned(|v| top[v]);
+        let model =
+            Model::of(&sheet).made_of(Models::DEFAULT, &Cloth::of(&sheet, &[&fabric()]))?.pinned(|v| top[v]);
         let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect());
         Static::to(1e-10).advance(&model, &mut state)?;
         Ok(state.x)

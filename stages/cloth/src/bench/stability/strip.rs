@@ -5,11 +5,11 @@ use nalgebra::Vector2;
 use super::{Case, Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::reference;
-use crate::bending::{Hinge, Rigidity};
+
+use crate::energy::Vec3;
+use crate::energy::{Clamp, Cloth, Models};
 use crate::error::ClothError;
-use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{Triangles, Woven};
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Static, Xpbd};
 
@@ -71,9 +71,7 @@ fn flat_start(mesh: &Rectangle) -> State {
 }
 
 fn cloth(sheet: &Sheet, fabric: &Fabric) -> Result<Model, ClothError> {
-    Ok(Model::of(sheet)
-        .with(Triangles::new(sheet, Woven::new(fabric)?))
-        .with(Hinge::new(sheet, &Rigidity::of(fabric))?))
+    Ok(Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[fabric]))?)
 }
 
 /// Tip displacement over length of a strip of 0.2 m under its own weight, with the sheet and the state.
@@ -111,11 +109,9 @@ fn cantilever(d: f64) -> Result<(bool, String), ClothError> {
     let mesh = Rectangle::new(Layout::Equilateral, 0.02, 0.1, 20);
     let sheet = mesh.sheet(DENSITY)?;
     let fabric = fabric(2e3_f64.max(1e7 * d), d);
-    let held =
-        |[a, b]: [u32; 2]| (mesh.at_bottom(a as usize) && mesh.at_bottom(b as usize)).then(|| -Vec3::x());
+    let clamp = Clamp { chosen: &|v| mesh.at_bottom(v as usize), outward: &|_| -Vec3::x() };
     let model = Model::of(&sheet)
-        .with(Triangles::new(&sheet, Woven::new(&fabric)?))
-        .with(Hinge::clamped(&sheet, &Rigidity::of(&fabric), held)?)
+        .made_of(Models::DEFAULT, &Cloth { clamp: Some(clamp), ..Cloth::of(&sheet, &[&fabric]) })?
         .pinned(|v| mesh.at_bottom(v));
     let mut state = State::at_rest(mesh.uv.iter().map(|p| Vec3::new(p.y, 0.0, p.x)).collect());
     Static::to(1e-9).advance(&model, &mut state)?;

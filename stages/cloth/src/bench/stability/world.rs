@@ -5,12 +5,12 @@ use std::time::Instant;
 use super::strip::judged;
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-use crate::bending::{Hinge, Rigidity};
+
 use crate::constraint::{Plane, Sphere};
+use crate::energy::Vec3;
+use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
-use crate::fabric::Fabric;
-use crate::force::Vec3;
-use crate::membrane::{Triangles, Woven};
+use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use crate::solver::{CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Xpbd};
 
@@ -49,9 +49,7 @@ fn fabric() -> Fabric {
 }
 
 fn cloth(sheet: &Sheet) -> Result<Model, ClothError> {
-    Ok(Model::of(sheet)
-        .with(Triangles::new(sheet, Woven::new(&fabric())?))
-        .with(Hinge::new(sheet, &Rigidity::of(&fabric()))?))
+    Ok(Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[&fabric()]))?)
 }
 
 /// A square thrown at a ball: no vertex may get into it or past it, with any solver that knows obstacles.

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::linear::Pattern;
 use crate::rest::layers::Layers;
-use crate::rest::pattern::Pattern;
 use nalgebra::{DMatrix, Matrix3};
 use toile_geometry::pair::{Kind, Pair};
 
@@ -96,7 +96,7 @@ fn the_anchor_is_dragged_only_behind_what_slides_on() {
 #[test]
 fn force_and_matrix_are_derivatives_and_the_matrix_never_softens() {
     let (layers, mut x) = slid(Vec3::new(0.7e-4, 0.0, 0.4e-4));
-    let pattern = Pattern::new(5, layers.groups().map(|g| &g[..]));
+    let pattern = Pattern::new(5, |visit| layers.groups().for_each(|g| visit(g)));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     layers.add_matrix(&x, &pattern, &mut values);
     let gradient = |x: &[Vec3]| {

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::*;
 use crate::contact::body::Body;
+use crate::energy::Air;
 use crate::fabric::{Curve, Fabric};
-use crate::force::Air;
 use crate::scene::{Phase, generate};
 use std::ops::ControlFlow;
 

@@ -1,7 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr)]
 use super::*;
+use crate::linear::add_at;
 use crate::rest::dissect::smoothed;
-use crate::rest::pattern::add_at;
 
 /// A sheet of `n` by `n` nodes, every cell's four nodes coupled, and a matrix that is positive definite.
 fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
@@ -10,7 +10,7 @@ fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
         .map(|c| (c % (n - 1), c / (n - 1)))
         .map(|(i, j)| [id(i, j), id(i + 1, j), id(i, j + 1), id(i + 1, j + 1)])
         .collect();
-    let pattern = Pattern::new(n * n, cells.iter().map(|c| &c[..]));
+    let pattern = Pattern::new(n * n, |visit| cells.iter().for_each(|c| visit(c)));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     for (k, cell) in cells.iter().enumerate() {
         let v: Vec<Vector3<f64>> = (0..4)
@@ -90,7 +90,7 @@ fn held_nodes_take_no_part() {
     let n = 20;
     let cells: Vec<[u32; 2]> = (0..n - 1).map(|i| [i, i + 1]).collect();
     let held: Vec<bool> = (0..n).map(|i| i == 0 || i == 9).collect();
-    let pattern = Pattern::holding(&held, cells.iter().map(|c| &c[..]));
+    let pattern = Pattern::holding(&held, |visit| cells.iter().for_each(|c| visit(c)));
     let mut values = vec![Matrix3::zeros(); pattern.blocks()];
     for [i, j] in cells {
         values[i as usize] += Matrix3::identity();
@@ -181,7 +181,7 @@ fn speed() {
             .collect();
         let across: Vec<[u32; 6]> =
             groups.iter().map(|g| g.map(|k| id(k as usize / n, k as usize % n))).collect();
-        let pattern = Pattern::new(n * n, groups.iter().chain(&across).map(|c| &c[..]));
+        let pattern = Pattern::new(n * n, |visit| groups.iter().chain(&across).for_each(|c| visit(c)));
         let mut values = vec![Matrix3::from_element(-0.01); pattern.blocks()];
         (0..n * n).for_each(|i| values[i] = Matrix3::identity() * 10.0);
         let t = std::time::Instant::now();

@@ -1,5 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::energy::Models;
 use crate::rest::assemble::{assemble, cloths};
 use crate::rest::pieces::Pieces;
 use crate::scene::generate;
@@ -10,7 +11,7 @@ fn with_sheets(check: impl FnOnce(System<'_>, ClothTree, Vec<Vec3>)) {
     let scene = generate::stack(3, 8);
     let pieces = Pieces::new(&scene);
     let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
-    let mut system = assemble(&scene, None, &pieces, &sheet, false).unwrap();
+    let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
     let layers = system.layers.as_mut().unwrap();
     layers.thickness = 2e-3;
     let each = scene.positions.len() / 3;

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
+use crate::linear::Pattern;
 use crate::mesh::Sheet;
 use crate::rest::nearby::Nearby;
-use crate::rest::pattern::Pattern;
 use crate::rest::trial::on_its_body;
 use crate::scene::{Scene, generate};
 use toile_geometry::cloth_tree::ClothTree;
@@ -62,8 +62,10 @@ fn awake_nodes_feel_what_they_feel_in_the_whole() {
 fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
     let own = system.pattern();
     system.elastic.bind(&own);
-    let contacts = system.layers.iter().flat_map(|l| l.groups());
-    let (pattern, slots): (Pattern, _) = own.with(contacts.map(|g| &g[..]));
+    let contacts = |visit: &mut dyn FnMut(&[u32])| {
+        system.layers.iter().flat_map(|l| l.groups()).for_each(|g| visit(g));
+    };
+    let (pattern, slots): (Pattern, _) = own.with(contacts);
     system.elastic.follow(&pattern, &slots);
     let mut values = Vec::new();
     system.matrix(x, &pattern, 1.0, 0.0, &mut values);
@@ -77,7 +79,7 @@ fn awake_nodes_are_as_stiff_as_in_the_whole() {
     with_part(|mut system, x, awake| {
         let way = |i: usize| Vec3::new((3 * i) as f64, (5 * i) as f64, (7 * i) as f64).map(f64::sin);
         let ways: Vec<Vec3> = (0..x.len()).map(|i| if awake[i] { way(i) } else { Vec3::zeros() }).collect();
-        system.elastic.foretell(&x, &ways.iter().map(|w| w * 1e-4).collect::<Vec<_>>());
+        system.elastic.predict(&x, &ways.iter().map(|w| w * 1e-4).collect::<Vec<_>>());
         let mut part = Part::of(&system, awake.clone());
         let (own, own_ways) = (part.pick(&x), part.pick(&ways));
         part.system.touch(&own);
@@ -94,7 +96,7 @@ fn awake_nodes_are_as_stiff_as_in_the_whole() {
 fn what_a_part_found_comes_back_to_its_nodes_alone() {
     with_part(|mut system, x, awake| {
         let mut whole = x.clone();
-        system.elastic.foretell(&x, &vec![Vec3::zeros(); x.len()]);
+        system.elastic.predict(&x, &vec![Vec3::zeros(); x.len()]);
         let before = (system.loads.clone(), system.layers.as_ref().unwrap().grips.clone());
         let mut part = Part::of(&system, awake.clone());
         let held = system.elastic.held().to_vec();

@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 use super::*;
 use crate::contact::body::Body;
+use crate::energy::Models;
 use crate::rest::assemble::{Wearer, assemble, cloths as fabrics};
 use crate::rest::newton::Outcome;
 use crate::rest::pieces::Pieces;
@@ -20,7 +21,7 @@ fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec
     let wearer = Wearer { skin: &body, friction: ball.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&fabrics(scene)).unwrap();
-    let mut system = assemble(scene, Some(wearer), &pieces, &sheet, false).unwrap();
+    let mut system = assemble(scene, Some(wearer), &pieces, &sheet, false, Models::STATIC).unwrap();
     system.layers.iter_mut().for_each(|l| l.crowded = true);
     check(system, &ClothTree::new(sheet.triangles(), &scene.positions), scene.positions.clone());
 }

@@ -1,0 +1,34 @@
+//! What a sheet resists when it is folded.
+//!
+//! | model | promises | costs |
+//! |---|---|---|
+//! | [`Hinge`] | rigidity D in every direction on every mesh but alternating squares, at any fold, at free edges | three angles a triangle |
+//! | [`Quadratic`] | the same for a sheet that hardly stretches; its matrix never changes | a fixed product an edge |
+//! | [`SkipOne`] | the classic spring over every second vertex: nothing against a small fold | one square root an edge |
+//!
+//! Beside them: [`FreeEdge`] for the borders of quadratic hinges, [`ClampedEdge`] for a slope that is held, [`Creases`] for pressed
+//! folds, [`Hysteresis`] for the friction between yarns.
+
+mod angle;
+mod calibrate;
+mod clamp;
+mod crease;
+mod flap;
+mod free_edge;
+mod hinge;
+mod hysteresis;
+mod patch;
+mod quadratic;
+mod skip;
+
+#[cfg(test)]
+mod tests;
+
+pub(crate) use calibrate::Calibration;
+pub use clamp::ClampedEdge;
+pub use crease::Creases;
+pub use free_edge::FreeEdge;
+pub use hinge::Hinge;
+pub use hysteresis::Hysteresis;
+pub use quadratic::{Fold, Quadratic, folds_of};
+pub use skip::SkipOne;

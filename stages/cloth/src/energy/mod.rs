@@ -1,0 +1,40 @@
+//! Energies: what every solver asks of a model, the models, and their sums over a mesh.
+//!
+//! | file | energy |
+//! |---|---|
+//! | `membrane/` | what a sheet resists in its plane |
+//! | `bending/` | what it resists when it is folded |
+//! | `band` | elastic bands |
+//! | `gravity`, `load`, `air` | weight, dead loads, one step of the air's drag |
+//!
+//! Contact with the body and of cloth with cloth, friction and seams that pull depend on the solver's state and live beside it
+//! (`rest`).
+
+mod air;
+mod band;
+pub mod bending;
+mod check;
+mod element;
+mod gravity;
+mod load;
+pub mod membrane;
+mod models;
+mod places;
+mod potential;
+mod subset;
+
+#[cfg(test)]
+mod tests;
+
+pub use air::{Air, AirDrag, AirStep, carried, mobility};
+pub use band::{Band, Bands};
+pub use check::{gradient_error, hessian_error};
+pub use element::{Assembled, Blocks, Element, add_block_of};
+pub use gravity::Gravity;
+pub use load::DeadLoad;
+pub use models::{Bending, Clamp, Cloth, Membrane, Models};
+pub use places::Places;
+pub use potential::{
+    Energy, Projection, Resistance, Vec3, matrix_of, total_gradient, total_value, write_matrix,
+};
+pub use subset::Subset;

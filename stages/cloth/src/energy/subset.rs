@@ -1,0 +1,46 @@
+//! The active subset of a mesh: some of its nodes move, the elements about them are a smaller mesh of their own.
+
+/// Marks a node that is not in the subset.
+pub(crate) const NONE: u32 = u32::MAX;
+
+/// Which nodes are active, and the number that each node of the subset has in it.
+#[derive(Debug, Clone)]
+pub struct Subset {
+    active: Vec<bool>,
+    index: Vec<u32>,
+}
+
+impl Subset {
+    /// The `active` nodes and all that are `included` beside them, numbered in their order; and which nodes these are.
+    pub(crate) fn new(active: Vec<bool>, included: &[bool]) -> (Self, Vec<u32>) {
+        let nodes: Vec<u32> = (0..active.len() as u32).filter(|&i| included[i as usize]).collect();
+        let mut index = vec![NONE; active.len()];
+        nodes.iter().zip(0u32..).for_each(|(&i, k)| index[i as usize] = k);
+        (Self { active, index }, nodes)
+    }
+
+    /// Which nodes are active.
+    pub(crate) fn active(&self) -> &[bool] {
+        &self.active
+    }
+
+    /// The number of each node in the subset; [`NONE`] where it is not in it.
+    pub(crate) fn index(&self) -> &[u32] {
+        &self.index
+    }
+
+    /// Whether an element has an active node.
+    pub(crate) fn touches(&self, nodes: &[u32]) -> bool {
+        nodes.iter().any(|&i| self.active[i as usize])
+    }
+
+    /// Whether the subset has all of an element's nodes.
+    pub(crate) fn has_all(&self, nodes: &[u32]) -> bool {
+        nodes.iter().all(|&i| self.index[i as usize] != NONE)
+    }
+
+    /// The element's nodes in the subset.
+    pub(crate) fn renumbered<const N: usize>(&self, nodes: [u32; N]) -> [u32; N] {
+        nodes.map(|i| self.index[i as usize])
+    }
+}
