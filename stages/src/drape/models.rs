@@ -23,6 +23,9 @@ pub enum Bending {
     Quadratic,
     /// Coupled hinges by their angles (Grinspun et al. 2003, 2006): right at any fold.
     Hinge,
+    /// Hinges each by itself, by `2 tan(theta / 2)` of their angle (Grinspun et al. 2003; Tamstorf, Grinspun 2013): cloth never
+    /// folds through itself.
+    DiscreteShell,
     /// Springs over every second vertex, as the classic systems have them: nothing against a small fold.
     SkipOne,
 }
@@ -37,6 +40,7 @@ pub(super) fn models(membrane: Membrane, bending: Bending) -> Models {
     let bending = match bending {
         Bending::Quadratic => EngineBending::Quadratic,
         Bending::Hinge => EngineBending::Hinge,
+        Bending::DiscreteShell => EngineBending::DiscreteShell,
         Bending::SkipOne => EngineBending::SkipOne,
     };
     Models { membrane, bending }

@@ -139,7 +139,7 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
         ImplicitEuler { motion: falling(), ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
         Xpbd { motion: falling(), ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
         Projective { motion: falling(), ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
-        CentralDifferences { motion: falling() }.run(&g, c, p, &cx).unwrap(),
+        CentralDifferences { motion: falling(), ..Default::default() }.run(&g, c, p, &cx).unwrap(),
     ];
     for (k, f) in fallen.iter().enumerate() {
         let fell = g.positions[5].y - f.positions[5].y;

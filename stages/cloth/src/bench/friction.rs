@@ -2,8 +2,7 @@
 
 use super::layout::{Layout, Rectangle};
 use crate::constraint::{Cylinder, Plane};
-use crate::energy::{Cloth, Models};
-use crate::energy::{DeadLoad, Vec3};
+use crate::energy::{Cloth, DeadLoad, Models, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::solver::{CentralDifferences, Model, Solver, State};

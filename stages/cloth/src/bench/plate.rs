@@ -4,8 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::layout::{Layout, Rectangle};
 use super::reference;
-use crate::energy::Vec3;
-use crate::energy::{Clamp, Cloth, Models};
+use crate::energy::{Clamp, Cloth, Models, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::solver::{Model, Solver, State, Static};

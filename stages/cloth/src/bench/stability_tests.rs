@@ -4,8 +4,7 @@ use std::ops::ControlFlow;
 use super::layout::{Layout, Rectangle};
 use super::stability::{Case, Options, Verdict, axes, stability};
 
-use crate::energy::Vec3;
-use crate::energy::{Cloth, Models};
+use crate::energy::{Cloth, Models, Vec3};
 use crate::fabric::Fabric;
 use crate::solver::{ImplicitEuler, Model, Solver, State, Static};
 

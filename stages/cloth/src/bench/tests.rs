@@ -20,6 +20,20 @@ fn e1_cantilever() {
     worst(Test::Cantilever, 40);
 }
 
+/// Models for which every direction of a mesh is alike bend a strip as it should be bent, on meshes that a garment has; E1 is what holds a
+/// new model of bending to account.
+#[test]
+fn e1_with_every_model_of_bending() {
+    // The quadratic model counts an angle as 2 sin(theta / 2).
+    for (bending, most) in [(Bending::Quadratic, 0.01), (Bending::DiscreteShell, Test::Cantilever.limit())] {
+        let models = Models { bending, ..Models::DEFAULT };
+        for layout in GOOD {
+            let score = run(Test::Cantilever, models, layout, 40).unwrap();
+            assert!(score.error() <= most, "{}: {:?}", models.name(), score.parts);
+        }
+    }
+}
+
 /// Under a thousand times its stiffness a strip turns down within a thirtieth of its length. What it errs there on a coarse mesh is what
 /// rigid links of that length must err, which falls with their square, and what its weight stretches it: half a two-thousandth.
 #[test]

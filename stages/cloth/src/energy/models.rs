@@ -1,7 +1,9 @@
 //! Which membrane and which bending a sheet has: a new model is one file and one line in each place here that the compiler names.
 
 use super::Vec3;
-use super::bending::{Calibration, ClampedEdge, FreeEdge, Hinge, Hysteresis, Quadratic, SkipOne};
+use super::bending::{
+    Calibration, ClampedEdge, DiscreteShell, FreeEdge, Hinge, Hysteresis, Quadratic, SkipOne,
+};
 use super::membrane::{Springs, StVenantKirchhoff, Triangles, Woven};
 use super::potential::Resistance;
 use crate::error::ClothError;
@@ -101,6 +103,8 @@ pub enum Bending {
     Quadratic,
     /// Coupled hinges, at any fold.
     Hinge,
+    /// Hinges each by itself, by `2 tan(theta / 2)` of their angle.
+    DiscreteShell,
     /// Skip-one springs.
     SkipOne,
 }
@@ -122,10 +126,11 @@ impl Models {
     pub const STATIC: Self = Self { membrane: Membrane::Woven, bending: Bending::Quadratic };
 
     /// What the scoreboard compares.
-    pub const ALL: [Self; 4] = [
+    pub const ALL: [Self; 5] = [
         Self::DEFAULT,
         Self { membrane: Membrane::StVenantKirchhoff, bending: Bending::Hinge },
         Self::STATIC,
+        Self { membrane: Membrane::Woven, bending: Bending::DiscreteShell },
         Self { membrane: Membrane::Springs, bending: Bending::SkipOne },
     ];
 
@@ -140,6 +145,7 @@ impl Models {
         let bending = match self.bending {
             Bending::Hinge => "hinge",
             Bending::Quadratic => "quadratic",
+            Bending::DiscreteShell => "discrete shell",
             Bending::SkipOne => "skip-one",
         };
         format!("{membrane} + {bending}")
@@ -153,7 +159,11 @@ impl Models {
         cloth.fabrics.iter().try_for_each(|f| f.check())?;
         if let (Some(limit), false) = (cloth.limit, self.membrane == Membrane::Woven) {
             let (name, value) = ("strain limit", limit.warp.min(limit.weft));
-            return Err(ClothError::InvalidParameter { name, value, range: "of a woven membrane alone" });
+            return Err(ClothError::InvalidParameter {
+                name,
+                value,
+                range: "only the membrane Woven keeps one",
+            });
         }
         let of = |t| cloth.index(t);
         Ok(match self.membrane {
@@ -182,12 +192,13 @@ impl Models {
         match self.bending {
             Bending::Hinge => energies.push(Box::new(Hinge::new(cloth))),
             Bending::Quadratic => energies.push(Box::new(Quadratic::new(cloth))),
+            Bending::DiscreteShell => energies.push(Box::new(DiscreteShell::new(cloth))),
             Bending::SkipOne => energies.push(Box::new(SkipOne::new(cloth))),
         }
         if let Some(hysteresis) = Hysteresis::new(cloth) {
             energies.push(Box::new(hysteresis));
         }
-        if self.bending == Bending::Quadratic {
+        if matches!(self.bending, Bending::Quadratic | Bending::DiscreteShell) {
             energies.push(Box::new(FreeEdge::new(cloth)));
         }
         if self.bending != Bending::Hinge && cloth.clamp.is_some() {

@@ -260,6 +260,8 @@ mod held_tests;
 #[cfg(test)]
 mod layer_friction_tests;
 #[cfg(test)]
+mod models_tests;
+#[cfg(test)]
 mod sewn_tests;
 #[cfg(test)]
 mod sharp_tests;

@@ -2,9 +2,7 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
-
-use crate::energy::{Air, AirDrag, Vec3};
-use crate::energy::{Cloth, Models};
+use crate::energy::{Air, AirDrag, Cloth, Models, Vec3};
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use proptest::prelude::*;

@@ -1,12 +1,10 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::bench::layout::{Layout, Rectangle};
-
 use crate::constraint::Plane;
-use crate::energy::Vec3;
 use crate::energy::bending::Hinge;
 use crate::energy::membrane::{StVenantKirchhoff, Triangles};
-use crate::energy::{Blocks, Cloth, Models, Projection, Subset, add_block_of};
+use crate::energy::{Blocks, Cloth, Models, Projection, Subset, Vec3, add_block_of};
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
 use nalgebra::Matrix3;

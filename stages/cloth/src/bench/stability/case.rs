@@ -4,9 +4,7 @@
 
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-
-use crate::energy::Vec3;
-use crate::energy::{Cloth, Models};
+use crate::energy::{Cloth, Models, Vec3};
 use crate::error::{ClothError, check_parameter};
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;

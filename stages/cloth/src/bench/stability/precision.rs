@@ -3,9 +3,7 @@
 use super::strip::judged;
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-
-use crate::energy::Vec3;
-use crate::energy::{Cloth, Models};
+use crate::energy::{Cloth, Models, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::rest::solve::{Precision, Rest, RestError};

@@ -6,8 +6,7 @@ use super::{Case, Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
 use crate::bench::reference;
 
-use crate::energy::Vec3;
-use crate::energy::{Clamp, Cloth, Models};
+use crate::energy::{Clamp, Cloth, Models, Vec3};
 use crate::error::ClothError;
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
@@ -71,7 +70,7 @@ fn flat_start(mesh: &Rectangle) -> State {
 }
 
 fn cloth(sheet: &Sheet, fabric: &Fabric) -> Result<Model, ClothError> {
-    Ok(Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[fabric]))?)
+    Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[fabric]))
 }
 
 /// Tip displacement over length of a strip of 0.2 m under its own weight, with the sheet and the state.

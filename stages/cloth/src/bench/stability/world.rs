@@ -5,10 +5,8 @@ use std::time::Instant;
 use super::strip::judged;
 use super::{Check, Must, Verdict};
 use crate::bench::layout::{Layout, Rectangle};
-
 use crate::constraint::{Plane, Sphere};
-use crate::energy::Vec3;
-use crate::energy::{Cloth, Models};
+use crate::energy::{Cloth, Models, Vec3};
 use crate::error::ClothError;
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
@@ -49,7 +47,7 @@ fn fabric() -> Fabric {
 }
 
 fn cloth(sheet: &Sheet) -> Result<Model, ClothError> {
-    Ok(Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[&fabric()]))?)
+    Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[&fabric()]))
 }
 
 /// A square thrown at a ball: no vertex may get into it or past it, with any solver that knows obstacles.

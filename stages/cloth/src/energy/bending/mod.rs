@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | [`Hinge`] | rigidity D in every direction on every mesh but alternating squares, at any fold, at free edges | three angles a triangle |
 //! | [`Quadratic`] | the same for a sheet that hardly stretches; its matrix never changes | a fixed product an edge |
+//! | [`DiscreteShell`] | rigidity D on the mean of all directions, and never folds through itself | one angle an edge |
 //! | [`SkipOne`] | the classic spring over every second vertex: nothing against a small fold | one square root an edge |
 //!
 //! Beside them: [`FreeEdge`] for the borders of quadratic hinges, [`ClampedEdge`] for a slope that is held, [`Creases`] for pressed
@@ -19,6 +20,7 @@ mod hinge;
 mod hysteresis;
 mod patch;
 mod quadratic;
+mod shell;
 mod skip;
 
 #[cfg(test)]
@@ -31,4 +33,5 @@ pub use free_edge::FreeEdge;
 pub use hinge::Hinge;
 pub use hysteresis::Hysteresis;
 pub use quadratic::{Fold, Quadratic, folds_of};
+pub use shell::DiscreteShell;
 pub use skip::SkipOne;

@@ -10,7 +10,7 @@
 use super::angle::{Leaf, angle};
 use super::calibrate::Calibration;
 use super::flap::{Flap, flaps};
-use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
+use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3};
 use crate::error::ClothError;
 use crate::fabric::Rigidity;
 use crate::mesh::{Edge, Sheet, Side};
@@ -36,6 +36,16 @@ impl Fold {
         let (left, right) = (Leaf::new(&x[0], &x[1], &x[2], false), Leaf::new(&x[0], &x[1], &x[3], true));
         let (l, r) = (left.gradient(), right.gradient());
         (angle(&x[0], &x[1], &x[2], &x[3]), [l[0] + r[0], l[1] + r[1], l[2], r[2]])
+    }
+
+    /// Adds so many times the second derivative of the fold angle.
+    pub(super) fn add_hessian_of_angle(&self, x: &[Vec3; 4], times: f64, blocks: &mut Blocks<4>) {
+        let leaves = [Leaf::new(&x[0], &x[1], &x[2], false), Leaf::new(&x[0], &x[1], &x[3], true)];
+        for (leaf, at) in leaves.iter().zip([[0, 1, 2], [0, 1, 3]]) {
+            for (row, i) in leaf.hessian().iter().zip(at) {
+                row.iter().zip(at).for_each(|(block, j)| blocks[i][j] += block * times);
+            }
+        }
     }
 
     /// The angle times the normal of a flat sheet.

@@ -28,7 +28,12 @@ fn free_models() -> Vec<Box<dyn Energy>> {
     let (s, f) = (sheet(), fabric(2e-5, 1e-5));
     let fabrics = [&f];
     let cloth = Cloth::of(&s, &fabrics);
-    vec![Box::new(Hinge::new(&cloth)), Box::new(Quadratic::new(&cloth)), Box::new(SkipOne::new(&cloth))]
+    vec![
+        Box::new(Hinge::new(&cloth)),
+        Box::new(Quadratic::new(&cloth)),
+        Box::new(DiscreteShell::new(&cloth)),
+        Box::new(SkipOne::new(&cloth)),
+    ]
 }
 
 /// Models with a rest shape or a direction of their own.
