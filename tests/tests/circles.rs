@@ -28,15 +28,6 @@ const LEFT: &[&[&str]] = &[
     &["core/src/context.rs", "core/src/files.rs"],
     &["core/src/param/check.rs", "core/src/param/doc.rs", "core/src/param/words.rs"],
     &[
-        "stages/cloth/src/bench/cantilever.rs",
-        "stages/cloth/src/bench/catenary.rs",
-        "stages/cloth/src/bench/dynamics.rs",
-        "stages/cloth/src/bench/friction.rs",
-        "stages/cloth/src/bench/plate.rs",
-        "stages/cloth/src/bench/score.rs",
-        "stages/cloth/src/bench/stretch.rs",
-    ],
-    &[
         "stages/cloth/src/rest/error.rs",
         "stages/cloth/src/rest/fallen.rs",
         "stages/cloth/src/rest/level.rs",
@@ -49,7 +40,6 @@ const LEFT: &[&[&str]] = &[
     ],
     &["stages/cloth/src/rest/grip.rs", "stages/cloth/src/rest/layers.rs"],
     &["stages/cloth/src/rest/newton.rs", "stages/cloth/src/rest/pile.rs", "stages/cloth/src/rest/search.rs"],
-    &["stages/cloth/src/rest/part.rs", "stages/cloth/src/rest/ridges.rs", "stages/cloth/src/rest/system.rs"],
     &["stages/src/cloth/frequency.rs", "stages/src/cloth/model.rs"],
     &["stages/src/photo/expected.rs", "stages/src/photo/photos.rs"],
 ];

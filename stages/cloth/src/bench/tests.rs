@@ -20,16 +20,15 @@ fn e1_cantilever() {
     worst(Test::Cantilever, 40);
 }
 
-/// Models for which every direction of a mesh is alike bend a strip as it should be bent, on meshes that a garment has; E1 is what holds a
-/// new model of bending to account.
+/// E1 holds every model of bending to account. Hinges each by itself err by up to 0.009 on a coarse mesh, and by less on a finer one.
 #[test]
 fn e1_with_every_model_of_bending() {
-    // The quadratic model counts an angle as 2 sin(theta / 2).
-    for (bending, most) in [(Bending::Quadratic, 0.01), (Bending::DiscreteShell, Test::Cantilever.limit())] {
+    for bending in [Bending::Quadratic, Bending::DiscreteShell] {
         let models = Models { bending, ..Models::DEFAULT };
         for layout in GOOD {
-            let score = run(Test::Cantilever, models, layout, 40).unwrap();
-            assert!(score.error() <= most, "{}: {:?}", models.name(), score.parts);
+            let [coarse, fine] = [40, 80].map(|along| run(Test::Cantilever, models, layout, along).unwrap());
+            assert!(coarse.error() < 0.01, "{}: {:?}", models.name(), coarse.parts);
+            assert!(fine.error() < 0.8 * coarse.error(), "{}: {:?}", models.name(), fine.parts);
         }
     }
 }

@@ -14,6 +14,7 @@ mod air;
 mod band;
 pub mod bending;
 mod check;
+mod cloth;
 mod element;
 mod gravity;
 mod load;
@@ -29,10 +30,11 @@ mod tests;
 pub use air::{Air, AirDrag, AirStep, carried, mobility};
 pub use band::{Band, Bands};
 pub use check::{gradient_error, hessian_error};
+pub use cloth::{Clamp, Cloth};
 pub use element::{Assembled, Blocks, Element, add_block_of};
 pub use gravity::Gravity;
 pub use load::DeadLoad;
-pub use models::{Bending, Clamp, Cloth, Membrane, Models};
+pub use models::{Bending, Membrane, Models};
 pub use places::Places;
 pub use potential::{
     Energy, Projection, Resistance, Vec3, matrix_of, total_gradient, total_value, write_matrix,

@@ -1,89 +1,11 @@
 //! Which membrane and which bending a sheet has: a new model is one file and one line in each place here that the compiler names.
 
-use super::Vec3;
-use super::bending::{
-    Calibration, ClampedEdge, DiscreteShell, FreeEdge, Hinge, Hysteresis, Quadratic, SkipOne,
-};
+use super::bending::{ClampedEdge, DiscreteShell, FreeEdge, Hinge, Hysteresis, Quadratic, SkipOne};
+use super::cloth::Cloth;
 use super::membrane::{Springs, StVenantKirchhoff, Triangles, Woven};
 use super::potential::Resistance;
 use crate::error::ClothError;
-use crate::fabric::{Fabric, Rigidity};
-use crate::mesh::Sheet;
-use crate::scene::StrainLimit;
-use std::cell::OnceCell;
-
-/// A sheet and what it is made of.
-#[derive(Clone)]
-pub struct Cloth<'a> {
-    /// The triangles, at rest.
-    pub sheet: &'a Sheet,
-    /// The same as it was cut, where `sheet` has rest shapes that do not fit together (gathers): bending is calibrated on it.
-    pub cut: &'a Sheet,
-    /// The fabrics.
-    pub fabrics: &'a [&'a Fabric],
-    /// Which fabric each triangle is of.
-    pub fabric: &'a dyn Fn(usize) -> usize,
-    /// What yarns must not exceed.
-    pub limit: Option<StrainLimit>,
-    /// Border edges that keep their slope.
-    pub clamp: Option<Clamp<'a>>,
-    /// Nodes that stay: the border is not free there. Empty where that does not matter.
-    pub fixed: &'a [bool],
-    /// What its hinges are, once somebody has asked.
-    pub(crate) calibration: OnceCell<Calibration>,
-}
-
-/// Border edges with a held slope; their nodes must be pinned as well.
-#[derive(Clone, Copy)]
-pub struct Clamp<'a> {
-    /// Whether a node is clamped; an edge is if both its ends are.
-    pub chosen: &'a dyn Fn(u32) -> bool,
-    /// The direction in which the sheet would go on beyond the edge.
-    pub outward: &'a dyn Fn(u32) -> Vec3,
-}
-
-impl<'a> Cloth<'a> {
-    /// A sheet of one fabric, free all around.
-    #[must_use]
-    pub fn of(sheet: &'a Sheet, fabrics: &'a [&'a Fabric; 1]) -> Self {
-        let (limit, clamp, calibration) = (None, None, OnceCell::new());
-        Self { sheet, cut: sheet, fabrics, fabric: &|_| 0, limit, clamp, fixed: &[], calibration }
-    }
-
-    /// What hinges on this mesh are, against the sheet that they stand for.
-    pub(crate) fn calibration(&self) -> &Calibration {
-        self.calibration.get_or_init(|| Calibration::of(self.cut))
-    }
-
-    /// The number of a triangle's fabric.
-    #[must_use]
-    pub fn index(&self, triangle: usize) -> usize {
-        (self.fabric)(triangle).min(self.fabrics.len().saturating_sub(1))
-    }
-
-    /// A triangle's fabric.
-    #[must_use]
-    pub fn fabric_of(&self, triangle: usize) -> &Fabric {
-        self.fabrics[self.index(triangle)]
-    }
-
-    /// A triangle's bending rigidity.
-    #[must_use]
-    pub fn rigidity(&self, triangle: usize) -> Rigidity {
-        Rigidity::of(self.fabric_of(triangle))
-    }
-
-    /// Beyond a border edge, the direction in which a clamp holds it.
-    #[must_use]
-    pub fn beyond(&self, [a, b]: [u32; 2]) -> Option<Vec3> {
-        self.clamp.filter(|c| (c.chosen)(a) && (c.chosen)(b)).map(|c| (c.outward)(a))
-    }
-
-    /// Whether nothing of it resists bending.
-    fn is_limp(&self) -> bool {
-        self.fabrics.iter().all(|f| Rigidity::of(f).is_zero())
-    }
-}
+use crate::fabric::Fabric;
 
 /// What a sheet resists in its plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -11,7 +11,7 @@ use nalgebra::{Matrix3, Vector2};
 
 use super::flap::{Flap, flaps};
 use super::patch::{Beyond, Patch, patches};
-use crate::energy::{Cloth, Vec3};
+use crate::energy::Vec3;
 use crate::fabric::Rigidity;
 use crate::linear::{BlockMatrix, Cholesky};
 use crate::mesh::Sheet;
@@ -149,9 +149,7 @@ fn find(parent: &mut [usize], mut t: usize) -> usize {
 }
 
 /// Rigidity by (kxx, kyy, kxy) to build the coupled hinges of each triangle with, so that its panel has the rigidity asked for.
-pub(super) fn calibrated(cloth: &Cloth<'_>) -> Vec<Matrix3<f64>> {
-    let sheet = cloth.sheet;
-    let rigidities: Vec<Rigidity> = (0..sheet.triangles().len()).map(|t| cloth.rigidity(t)).collect();
+pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<f64>> {
     let size = rigidities.iter().map(|r| r.warp.max(r.weft)).fold(0.0, f64::max);
     let mut wanted: Vec<Matrix3<f64>> = rigidities.iter().map(Rigidity::tensor).collect();
     if size <= 0.0 {

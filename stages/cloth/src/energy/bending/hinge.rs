@@ -11,6 +11,7 @@ use super::angle::{Leaf, angle};
 use super::calibrate::calibrated;
 use super::patch::{Beyond, Patch, patches};
 use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3, add_block_of};
+use crate::fabric::Rigidity;
 use nalgebra::Matrix3;
 
 #[derive(Debug, Clone, Copy)]
@@ -31,7 +32,9 @@ impl Hinge {
     /// Flat at rest, calibrated for the mesh; the cloth's clamp holds the slope over its edges.
     #[must_use]
     pub fn new(cloth: &Cloth<'_>) -> Assembled<6, Self> {
-        let d = calibrated(cloth);
+        let rigidities: Vec<Rigidity> =
+            (0..cloth.sheet.triangles().len()).map(|t| cloth.rigidity(t)).collect();
+        let d = calibrated(cloth.sheet, &rigidities);
         let bend = |(p, d): (Patch, &Matrix3<f64>)| Bend {
             nodes: p.vertices,
             beyond: p.beyond,
