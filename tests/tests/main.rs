@@ -17,6 +17,7 @@ mod decisions;
 mod docs;
 mod doctor;
 mod error_codes;
+mod every_parameter;
 mod falls;
 mod flat;
 mod goldens;

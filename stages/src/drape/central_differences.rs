@@ -25,10 +25,10 @@ use toile_core::prelude::*;
 )]
 pub struct CentralDifferences {
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven)]
+    #[param(default = Membrane::Woven, trades)]
     pub membrane: Membrane,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Hinge)]
+    #[param(default = Bending::Hinge, trades)]
     pub bending: Bending,
     /// The motion.
     #[param(flatten)]

@@ -25,10 +25,10 @@ use toile_core::prelude::*;
 )]
 pub struct ImplicitEuler {
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven)]
+    #[param(default = Membrane::Woven, trades)]
     pub membrane: Membrane,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Hinge)]
+    #[param(default = Bending::Hinge, trades)]
     pub bending: Bending,
     /// Force that a step leaves on a vertex.
     #[param(default = 1e-4, min = 1e-12, max = 1.0, unit = "N", trades, finer = "less")]

@@ -68,6 +68,7 @@ pub(super) fn drape(
     cx: &Context,
 ) -> Result<Garment, StageError> {
     check_garment(garment)?;
+    engine::check_response(collider, name(method))?;
     garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
     let air = course.air();
     check_wind(&air)?;
@@ -110,6 +111,16 @@ pub(super) fn drape(
         draped.status.on_body = engine::both(&garment.status.on_body, kept);
     }
     Ok(draped)
+}
+
+/// The stage that steps with a method.
+fn name(method: Method) -> &'static str {
+    match method {
+        Method::CentralDifferences => "CentralDifferences",
+        Method::ImplicitEuler { .. } => "ImplicitEuler",
+        Method::Xpbd { .. } => "Xpbd",
+        Method::Projective { .. } => "Projective",
+    }
 }
 
 /// Why a motion has not come to rest, whose speed is `wanted`, m/s.

@@ -57,10 +57,10 @@ pub struct Rest {
     #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
     pub gravity: f64,
     /// What cloth resists in its plane.
-    #[param(default = Membrane::Woven)]
+    #[param(default = Membrane::Woven, trades)]
     pub membrane: Membrane,
     /// What cloth resists when it is folded.
-    #[param(default = Bending::Quadratic)]
+    #[param(default = Bending::Quadratic, trades)]
     pub bending: Bending,
     /// At rest, no vertex but the share `non_static` gains more than this in a step that proves rest (see `proof`).
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
@@ -126,6 +126,7 @@ impl Rest {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         check_garment(garment)?;
+        engine::check_response(collider, "Rest")?;
         let gravity =
             phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
         let card = collider.map(|c| c.scheme.card());

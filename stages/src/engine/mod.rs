@@ -9,6 +9,7 @@ mod kinds;
 mod lost;
 mod on_body;
 mod pieces;
+mod response;
 mod scene;
 mod skin;
 
@@ -18,5 +19,6 @@ pub use fault::{OBJ_HINT, cloth_error, scene_error, split};
 pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};
+pub use response::check_response;
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSkin;
