@@ -2,13 +2,14 @@
 
 pub mod binarise;
 pub mod body;
-pub mod cloth;
 pub mod collide;
 pub mod denoise;
 pub mod drape;
 pub mod edges;
 pub mod engine;
 pub mod fabric;
+#[cfg(test)]
+mod fixtures;
 pub mod flat;
 pub mod measure;
 pub mod mesh;

@@ -46,6 +46,7 @@ impl CentralDifferences {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         let models = models(self.membrane, self.bending);
-        drape(Method::CentralDifferences, models, &self.motion, garment, collider, phases, cx)
+        let course = self.motion.course(Method::CentralDifferences, models);
+        drape(&course, garment, garment, collider, phases, cx)
     }
 }

@@ -51,14 +51,8 @@ impl ImplicitEuler {
         phases: Option<&Phases>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        drape(
-            Method::ImplicitEuler { tolerance: self.tolerance, relative: self.conjugate_gradients },
-            models(self.membrane, self.bending),
-            &self.motion,
-            garment,
-            collider,
-            phases,
-            cx,
-        )
+        let method = Method::ImplicitEuler { tolerance: self.tolerance, relative: self.conjugate_gradients };
+        let course = self.motion.course(method, models(self.membrane, self.bending));
+        drape(&course, garment, garment, collider, phases, cx)
     }
 }

@@ -9,6 +9,7 @@ mod models;
 mod motion;
 mod projective;
 mod rest;
+mod soften;
 mod spring;
 #[cfg(test)]
 mod tests;
@@ -19,10 +20,12 @@ pub use implicit_euler::ImplicitEuler;
 pub use mixed_precision::Precision;
 pub use models::{Bending, Membrane};
 pub use motion::InTime;
+pub(crate) use motion::{Course, moved};
 pub use projective::Projective;
 pub use rest::{Proof, Rest};
+pub(crate) use soften::{damping, softened, springs};
 pub use spring::SpringDraper;
-use toile_core::Registry;
+use toile_core::{Migration, Registry};
 pub use xpbd::Xpbd;
 
 /// Adds this folder's stages.
@@ -33,4 +36,10 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Projective>();
     registry.add::<CentralDifferences>();
     registry.add::<SpringDraper>();
+    for (parameter, why) in [
+        ("tolerance", "rest is a change of energy below 0.1 % in a sixtieth of a second"),
+        ("max_steps", "`time_limit` ends the motion"),
+    ] {
+        registry.migrate(Migration::removed("SpringDraper", parameter, why));
+    }
 }

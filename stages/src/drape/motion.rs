@@ -1,14 +1,14 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
-use crate::cloth::check_garment;
 use crate::engine::{
-    self, SchemeSkin, Setting, cloth_error, only_joins, scene_error, scene_of, split, weld_seams,
+    self, SchemeSkin, Setting, check_garment, cloth_error, only_joins, scene_error, scene_of, split,
+    weld_seams,
 };
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::energy::{Air as EngineAir, Models};
-use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Until};
+use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Response, Until};
 use toile_cloth::rest::solve::Wearer;
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
 use toile_core::prelude::*;
@@ -57,55 +57,26 @@ const THICKNESS: f64 = 1e-3;
 /// Change of energy in a sixtieth of a second at rest, as a share.
 const SETTLED: f64 = 1e-3;
 
-/// Sews the garment and lets it come to rest, or follows the phases of a scene.
+/// What a stage has a garment do in time.
+pub(crate) struct Course<'a> {
+    pub(crate) time: &'a InTime,
+    pub(crate) motion: Motion,
+}
+
+/// Sews the garment and lets it come to rest, or follows the phases of a scene; `soft` is the garment as the solver takes it.
 pub(super) fn drape(
-    method: Method,
-    models: Models,
-    course: &InTime,
+    course: &Course<'_>,
+    soft: &Garment,
     garment: &Garment,
     collider: Option<&Collider>,
     phases: Option<&Phases>,
     cx: &Context,
 ) -> Result<Garment, StageError> {
-    check_garment(garment)?;
-    engine::check_response(collider, name(method))?;
-    garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
-    let air = course.air();
-    check_wind(&air)?;
-    let card = collider.map(|c| c.scheme.card());
-    let setting = Setting {
-        gravity: Vector3::new(0.0, -course.gravity, 0.0),
-        air: Some(air).filter(EngineAir::acts),
-        thickness: card.map_or(THICKNESS, |c| c.thickness),
-        self_collision: card.is_none_or(|c| c.self_collision),
+    let mut draped = moved(course, soft, garment, collider, phases, cx)?;
+    let gravity = match phases.and_then(|p| p.0.last()) {
+        Some(last) => last.gravity,
+        None => Vector3::new(0.0, -course.time.gravity, 0.0),
     };
-    let scene = with_phases(scene_of(garment, &setting)?, phases);
-    let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
-    let friction = card.map_or(0.0, |c| c.friction);
-    let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
-    let until = match phases {
-        Some(_) => Until::Phases { longest: course.longest },
-        None => Until::Rest { speed: course.speed, energy: SETTLED, longest: course.longest },
-    };
-    let motion = Motion {
-        method,
-        models,
-        dt: course.dt,
-        drag: course.drag,
-        join_gap: course.join_gap.metres(),
-        until,
-        budget: Duration::from_secs_f64(course.time_limit),
-        ..Motion::default()
-    };
-    let moved = motion.run(&scene, wearer, &mut |p| tell(p, course.longest, cx));
-    cx.check()?;
-    let moved = moved.map_err(|e| motion_error(&e))?;
-    if !moved.converged {
-        cx.warn(unrest(&moved, course.speed));
-    }
-    cx.figure("motion_time", moved.progress.time, "s");
-    let mut draped = finish(garment, &moved);
-    let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
     if let Some(collider) = collider {
         let kept = engine::on_body(garment, &draped.positions, collider.scheme.as_ref(), &gravity);
         draped.status.on_body = engine::both(&garment.status.on_body, kept);
@@ -113,14 +84,46 @@ pub(super) fn drape(
     Ok(draped)
 }
 
-/// The stage that steps with a method.
-fn name(method: Method) -> &'static str {
-    match method {
-        Method::CentralDifferences => "CentralDifferences",
-        Method::ImplicitEuler { .. } => "ImplicitEuler",
-        Method::Xpbd { .. } => "Xpbd",
-        Method::Projective { .. } => "Projective",
+/// The garment after the motion.
+pub(crate) fn moved(
+    course: &Course<'_>,
+    soft: &Garment,
+    garment: &Garment,
+    collider: Option<&Collider>,
+    phases: Option<&Phases>,
+    cx: &Context,
+) -> Result<Garment, StageError> {
+    let time = course.time;
+    check_garment(garment)?;
+    garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
+    let air = time.air();
+    check_wind(&air)?;
+    let card = collider.map(|c| c.scheme.card());
+    let setting = Setting {
+        gravity: Vector3::new(0.0, -time.gravity, 0.0),
+        air: Some(air).filter(EngineAir::acts),
+        thickness: card.map_or(THICKNESS, |c| c.thickness),
+        self_collision: card.is_none_or(|c| c.self_collision),
+    };
+    let scene = with_phases(scene_of(soft, &setting)?, phases);
+    let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
+    let friction = card.map_or(0.0, |c| c.friction);
+    let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
+    let until = match phases {
+        Some(_) => Until::Phases { longest: time.longest },
+        None => course.motion.until,
+    };
+    let response =
+        card.map_or(Response::default(), |c| Response { restitution: c.restitution, penalty: c.penalty });
+    let motion = Motion { until, response, ..course.motion };
+    let moved = motion.run(&scene, wearer, &mut |p| tell(p, time.longest, cx));
+    cx.check()?;
+    let moved = moved.map_err(|e| motion_error(&e))?;
+    if !moved.converged {
+        cx.warn(unrest(&moved, time.speed));
     }
+    cx.figure("motion_time", moved.progress.time, "s");
+    Ok(finish(garment, &moved))
 }
 
 /// Why a motion has not come to rest, whose speed is `wanted`, m/s.
@@ -144,6 +147,25 @@ fn unrest(moved: &Moved, wanted: f64) -> String {
 }
 
 impl InTime {
+    /// What a stage with these parameters does by a method with these models.
+    pub(super) fn course(&self, method: Method, models: Models) -> Course<'_> {
+        Course { time: self, motion: self.motion(method, models) }
+    }
+
+    /// The motion until rest, by a method with these models.
+    pub(crate) fn motion(&self, method: Method, models: Models) -> Motion {
+        Motion {
+            method,
+            models,
+            dt: self.dt,
+            drag: self.drag,
+            join_gap: self.join_gap.metres(),
+            until: Until::Rest { speed: self.speed, energy: SETTLED, longest: self.longest },
+            budget: Duration::from_secs_f64(self.time_limit),
+            ..Motion::default()
+        }
+    }
+
     /// The air that the parameters name.
     fn air(&self) -> EngineAir {
         let (x, y, z) = self.wind;

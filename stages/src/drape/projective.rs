@@ -43,6 +43,7 @@ impl Projective {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         let method = Method::Projective { iterations: self.iterations };
-        drape(method, Models::DEFAULT, &self.motion, garment, collider, phases, cx)
+        let course = self.motion.course(method, Models::DEFAULT);
+        drape(&course, garment, garment, collider, phases, cx)
     }
 }

@@ -11,7 +11,7 @@ use super::mixed_precision::{self, Precision};
 use super::models::{Bending, Membrane, models};
 use super::motion::engine_air;
 use super::{ImplicitEuler, InTime};
-use crate::cloth::check_garment;
+use crate::engine::check_garment;
 use crate::engine::{self, SchemeSkin, Setting, cloth_error, scene_error, scene_of, split, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::{Rest, SpringDraper};
-use crate::cloth::fixtures::{Capsules, hanging, plain, vest};
+use crate::fixtures::{Capsules, hanging, plain, vest};
 use crate::stitch::SpringStitcher;
 use toile_core::prelude::*;
 
@@ -37,8 +37,10 @@ fn cloth_in_the_air_falls_until_the_time_is_over_and_says_so() {
     assert!(!fallen.status.converged);
     let (_, warnings) = cx.take_notes();
     assert_eq!(warnings.len(), 1);
-    assert!(warnings[0].starts_with("the cloth still moves by 69"), "{warnings:?}");
-    assert!(warnings[0].ends_with(" mm/s after 0.1 s of drape"), "{warnings:?}");
+    assert_eq!(
+        warnings[0],
+        "the cloth still moves by 899.3 mm/s after 0.1 s, at rest it has less than 20.0 mm/s: allow a longer motion"
+    );
 }
 
 #[test]

@@ -44,6 +44,7 @@ impl Xpbd {
         cx: &Context,
     ) -> Result<Garment, StageError> {
         let method = Method::Xpbd { substeps: self.substeps };
-        drape(method, Models::DEFAULT, &self.motion, garment, collider, phases, cx)
+        let course = self.motion.course(method, Models::DEFAULT);
+        drape(&course, garment, garment, collider, phases, cx)
     }
 }

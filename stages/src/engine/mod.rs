@@ -3,7 +3,7 @@
 //! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
 
 mod arithmetic;
-mod fall;
+mod check;
 mod fault;
 mod kinds;
 mod lost;
@@ -14,7 +14,7 @@ mod scene;
 mod skin;
 
 pub use arithmetic::arithmetic;
-pub use fall::FallWatch;
+pub use check::check_garment;
 pub use fault::{OBJ_HINT, cloth_error, scene_error, split};
 pub(crate) use kinds::only_joins;
 pub use lost::lost;

@@ -1,4 +1,4 @@
-//! What a collider asks of its solver beside distance and friction: the solvers of the engine resolve contacts in one way alone.
+//! What a collider asks of its solver beside distance and friction, and a solver for rest has no use for.
 
 use toile_core::prelude::*;
 
@@ -12,14 +12,16 @@ pub fn check_response(collider: Option<&Collider>, solver: &str) -> Result<(), S
     };
     let message = format!("`{solver}` does not use the collider's `{unused}`");
     let e = StageError::new(ErrorCode::InvalidParameter, message).at("collider");
-    Err(e.hint(format!("take `{unused}` out of the collider, or drape with `SpringDraper`, which uses it")))
+    Err(e.hint(format!(
+        "take `{unused}` out of the collider, or drape in time with `ImplicitEuler`, which uses it"
+    )))
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::cloth::fixtures::Capsules;
+    use crate::fixtures::Capsules;
 
     fn collider(restitution: f64, penalty: Option<f64>) -> Collider {
         let plain = Capsules::torso();
@@ -35,9 +37,11 @@ mod tests {
         assert_eq!(e.message, "`Rest` does not use the collider's `restitution`");
         assert_eq!(
             e.hint.as_deref(),
-            Some("take `restitution` out of the collider, or drape with `SpringDraper`, which uses it")
+            Some(
+                "take `restitution` out of the collider, or drape in time with `ImplicitEuler`, which uses it"
+            )
         );
-        let e = check_response(Some(&collider(0.0, Some(100.0))), "Xpbd").unwrap_err();
-        assert_eq!(e.message, "`Xpbd` does not use the collider's `penalty`");
+        let e = check_response(Some(&collider(0.0, Some(100.0))), "Rest").unwrap_err();
+        assert_eq!(e.message, "`Rest` does not use the collider's `penalty`");
     }
 }

@@ -162,7 +162,7 @@ fn cut(garment: &Garment, t: [u32; 3], y: f64) -> Option<Cut> {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::cloth::fixtures::{Grid, garment, plain};
+    use crate::fixtures::{Grid, garment, plain};
     use std::f64::consts::TAU;
 
     const COLUMNS: usize = 200;

@@ -176,7 +176,7 @@ fn drawn_out(garment: &Garment) -> impl Iterator<Item = String> + '_ {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::fixtures::Capsules;
+    use crate::fixtures::Capsules;
     use crate::texture::fixture;
 
     fn told(garment: &Garment) -> Vec<String> {

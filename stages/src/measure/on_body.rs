@@ -26,7 +26,7 @@ pub(super) fn shortfall(garment: &Garment, limit: f64) -> Option<Shortfall> {
 mod tests {
     #![allow(clippy::unwrap_used)]
     use super::*;
-    use crate::cloth::fixtures::{Grid, garment, plain};
+    use crate::fixtures::{Grid, garment, plain};
 
     fn worn(on_body: Vec<f64>) -> Garment {
         let grid = || Grid { columns: 1, rows: 1, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };

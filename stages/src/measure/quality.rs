@@ -7,8 +7,8 @@
 
 use super::tight::Tight;
 use super::{girth, looks, on_body};
-use crate::cloth::check_garment;
 use crate::collide::body_crossings;
+use crate::engine::check_garment;
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{
     BodyContact, GarmentFigures, PanelFigures, PenetrationFigures, StrainFigures, quantile,

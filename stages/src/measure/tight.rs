@@ -176,7 +176,7 @@ fn length(garment: &Garment, [a, b]: [u32; 2]) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::cloth::fixtures::{Capsules, Grid, garment, plain};
+    use crate::fixtures::{Capsules, Grid, garment, plain};
 
     /// A sheet of 20 cm, stretched along x and a little narrower, so high above a round beam of 1 m radius that it lies on its top.
     fn sheet(stretch: f64, height: f64) -> (Garment, Collider) {

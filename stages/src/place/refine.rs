@@ -11,7 +11,7 @@ mod seams;
 #[cfg(test)]
 mod tests;
 
-use crate::cloth::check_garment;
+use crate::engine::check_garment;
 use cut::Cut;
 use edges::Edges;
 use toile_core::cost::{Quantity, Size};

@@ -72,7 +72,7 @@ const BANDS: f64 = 0.02;
 #[stage]
 impl FabricTexturer {
     fn run(&self, garment: &Garment, body: Option<&Body>, cx: &Context) -> Result<Model, StageError> {
-        crate::cloth::check_garment(garment)?;
+        crate::engine::check_garment(garment)?;
         self.fault().map_or(Ok(()), Err)?;
         let normals = garment.vertex_normals();
         let mut model = Model::default();

@@ -16,7 +16,7 @@ pub enum MotionError {
     Scene(#[from] SceneError),
     /// Panels of several fabrics.
     #[error(
-        "panel '{panel}' is of another fabric than the first; solvers in time take one, Rest takes any number"
+        "panel '{panel}' is of another fabric than the first; Xpbd and Projective take one, all others any number"
     )]
     Fabrics {
         /// The panel.

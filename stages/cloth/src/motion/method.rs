@@ -64,6 +64,11 @@ impl Method {
         })
     }
 
+    /// Whether all its cloth is of one fabric.
+    pub(super) fn takes_one_fabric(self) -> bool {
+        matches!(self, Self::Xpbd { .. } | Self::Projective { .. })
+    }
+
     /// Whether it takes shorter steps than it is given: an end in time is then met to one of them.
     pub(super) fn chooses_its_step(self) -> bool {
         matches!(self, Self::CentralDifferences)

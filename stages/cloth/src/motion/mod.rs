@@ -11,16 +11,17 @@ mod error;
 mod fall;
 mod method;
 mod moving;
+mod near;
 mod seams;
 
 #[cfg(test)]
 mod tests;
 
+pub use contact::Response;
 pub use error::MotionError;
 pub use method::Method;
 
 use crate::energy::{Air, Models};
-use crate::fabric::Fabric;
 use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
 use crate::rest::start::check;
@@ -36,6 +37,11 @@ type Vec3 = Vector3<f64>;
 /// When a motion ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Until {
+    /// When the seams are joined: without weight and without wind.
+    Sewn {
+        /// Longest time, s.
+        longest: f64,
+    },
     /// After the phases of the scene, each for its seconds. Seams are sewn first, without weight and wind, for as long as they take: the
     /// phases that have no weight and come first last so much less.
     Phases {
@@ -68,13 +74,48 @@ pub struct Motion {
     pub viscosity: f64,
     /// Speed at which the two sides of a seam are brought together, m/s.
     pub closing: f64,
+    /// Share of the friction with the body and among cloth that acts while seams close: hands that sew smooth the cloth.
+    pub sewing_friction: f64,
     /// Seams are joined when their gaps are below this, m.
     pub join_gap: f64,
+    /// How a drape is helped to rest.
+    pub calming: Calming,
+    /// No edge stays longer than its rest length by more than this share (Provot, 1995).
+    pub strain_limit: Option<f64>,
+    /// How the body answers cloth that touches it.
+    pub response: Response,
     /// When to end.
     pub until: Until,
     /// Wall time before giving up.
     pub budget: Duration,
 }
+
+/// How a drape is helped to rest: folds form freely first, and what swings dies out then.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Calming {
+    /// Time in which the drag doubles, s, up to 120 1/s; infinite where it stays.
+    pub doubling: f64,
+    /// Time in which friction grows to its full value, s: cloth slips into place as a wearer shakes it.
+    pub slip: f64,
+}
+
+impl Calming {
+    /// Nothing helps.
+    pub const NONE: Self = Self { doubling: f64::INFINITY, slip: 0.0 };
+
+    /// The drag after `time` s of draping, 1/s.
+    fn drag(&self, first: f64, time: f64) -> f64 {
+        (first * (time / self.doubling).exp2()).min(GREATEST_DRAG.max(first))
+    }
+
+    /// The share of friction that acts after `time` s of draping.
+    fn friction(&self, time: f64) -> f64 {
+        if time >= self.slip { 1.0 } else { time / self.slip }
+    }
+}
+
+/// Drag grows up to this, 1/s: above, cloth creeps.
+const GREATEST_DRAG: f64 = 120.0;
 
 impl Default for Motion {
     fn default() -> Self {
@@ -85,7 +126,11 @@ impl Default for Motion {
             drag: 0.0,
             viscosity: 0.0,
             closing: 0.5,
+            sewing_friction: 1.0,
             join_gap: 5e-4,
+            calming: Calming::NONE,
+            strain_limit: None,
+            response: Response::default(),
             until: Until::Phases { longest: LONGEST },
             budget: Duration::from_secs(600),
         }
@@ -153,26 +198,31 @@ impl Motion {
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
         scene.check()?;
-        let fabric = one_fabric(scene)?;
+        if self.method.takes_one_fabric() {
+            one_fabric(scene)?;
+        }
         let pieces = Pieces::new(scene);
         let start = check::<MotionError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
         let falls = Falls::of(scene, wearer, &pieces);
-        let mut run =
-            Run { settings: self, scene, wearer, fabric, pieces, falls, clock: Instant::now(), progress };
+        let mut run = Run { settings: self, scene, wearer, pieces, falls, clock: Instant::now(), progress };
         let open = Moving::open(&run, start)?;
         match self.until {
+            Until::Sewn { longest } => {
+                let sewn = run.sew(open, longest)?;
+                Ok(run.finish(&sewn, true))
+            }
             Until::Phases { longest } => run.phases(open, longest),
             Until::Rest { speed, energy, longest } => run.rest(open, speed, energy, longest),
         }
     }
 }
 
-/// The fabric of all panels.
-fn one_fabric(scene: &Scene) -> Result<&Fabric, MotionError> {
+/// Refuses a scene whose panels are of several fabrics.
+fn one_fabric(scene: &Scene) -> Result<(), MotionError> {
     let first = scene.fabric_of(0);
     match (0..scene.panels.len()).find(|&k| scene.fabric_of(k) != first) {
         Some(k) => Err(MotionError::Fabrics { panel: scene.panels[k].name.clone() }),
-        None => Ok(first),
+        None => Ok(()),
     }
 }
 
@@ -181,7 +231,6 @@ struct Run<'a> {
     settings: &'a Motion,
     scene: &'a Scene,
     wearer: Option<Wearer<'a>>,
-    fabric: &'a Fabric,
     pieces: Pieces,
     falls: Option<Falls>,
     clock: Instant,
@@ -191,6 +240,7 @@ struct Run<'a> {
 impl Run<'_> {
     fn phases(&mut self, moving: Moving, longest: f64) -> Result<Moved, MotionError> {
         let mut moving = self.sew(moving, longest)?;
+        moving.calm(self.settings.drag, 1.0);
         let mut sewn_for = moving.progress.time;
         for phase in &self.scene.phases {
             moving.set_gravity(phase.gravity);
@@ -209,6 +259,7 @@ impl Run<'_> {
     /// Closes the seams, if there are any, and joins them: without weight and without wind.
     fn sew(&mut self, mut moving: Moving, longest: f64) -> Result<Moving, MotionError> {
         moving.set_gravity(Vec3::zeros());
+        moving.calm(self.settings.drag, self.settings.sewing_friction);
         moving.set_air(self.scene.phases.last().and_then(|p| p.air).map(Air::calmed));
         let (mut widest, mut since) = (f64::INFINITY, moving.progress.time);
         while !moving.seams.is_empty() && moving.progress.time < longest {
@@ -232,9 +283,12 @@ impl Run<'_> {
         let mut moving = self.sew(moving, longest)?;
         moving.set_gravity(gravity);
         moving.set_air(air);
-        let end = moving.progress.time + longest;
+        let (began, calming, drag) = (moving.progress.time, self.settings.calming, self.settings.drag);
+        let end = began + longest;
         let mut stored = f64::INFINITY;
         while moving.progress.time < end {
+            let draped = moving.progress.time - began;
+            moving.calm(calming.drag(drag, draped), calming.friction(draped));
             let look = moving.progress.time + LOOK;
             let before = moving.state.x.clone();
             while look - moving.progress.time > SAME_TIME {
@@ -245,7 +299,7 @@ impl Run<'_> {
             let settled = (now - stored).abs() <= energy * now.abs().max(f64::MIN_POSITIVE);
             stored = now;
             moving.progress.speed = way / LOOK;
-            if moving.progress.speed < speed && settled && !moving.is_jammed {
+            if moving.progress.speed < speed && settled && !moving.is_jammed && draped >= calming.slip {
                 return Ok(self.finish(&moving, true));
             }
         }

@@ -1,14 +1,18 @@
 //! The sheet on its way: one step with all its corrections, and the join.
 
-use super::contact::{off_itself, off_the_body, stop_short};
+use super::contact::{Answer, off_itself, off_the_body, skin_near, stop_short};
+use super::near::Near;
 use super::seams::Seams;
 use super::{Motion, MotionError, Progress, Run, Vec3};
+use crate::constraint::Provot;
 use crate::energy::{Air, AirDrag, Cloth};
 use crate::error::ClothError;
+use crate::fabric::Fabric;
 use crate::mesh::Sheet;
+use crate::rest::assemble::cloths;
 use crate::rest::solve::Wearer;
 use crate::rest::start::{check_lying, crossing, crossings};
-use crate::solver::{Model, Solver, State};
+use crate::solver::{Model, Report, Solver, State};
 use toile_geometry::cloth_tree::ClothTree;
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
@@ -22,7 +26,15 @@ pub(super) struct Moving {
     model: Model,
     solver: Box<dyn Solver>,
     method: super::Method,
-    fabric: crate::fabric::Fabric,
+    /// Of the first panel: what solvers of one fabric take.
+    fabric: Fabric,
+    /// Distance at which cloth is held off the body and off itself, m.
+    offset: f64,
+    /// Friction of cloth on cloth, a node.
+    friction: Vec<f64>,
+    /// The share of all friction that acts.
+    rub: f64,
+    limit: Option<Provot>,
     dt: f64,
     tree: Option<ClothTree>,
     inverse: Vec<f64>,
@@ -38,8 +50,7 @@ pub(super) struct Moving {
 impl Moving {
     /// The panels apart.
     pub(super) fn open(run: &Run<'_>, start: Vec<Vec3>) -> Result<Self, MotionError> {
-        let cloths: Vec<_> = vec![run.fabric; run.scene.panels.len() + 1];
-        let sheet = run.pieces.open_sheet(&cloths)?;
+        let sheet = run.pieces.open_sheet(&cloths(run.scene))?;
         let pairs = run.pieces.seam_pairs();
         let fixed: Vec<bool> = run.pieces.pinned.clone();
         let mut moving = Self::new(run, sheet, &fixed, State::at_rest(start))?;
@@ -58,8 +69,7 @@ impl Moving {
 
     /// Pairs become single vertices at their common place, with their common momentum.
     pub(super) fn join(self, run: &Run<'_>) -> Result<Self, MotionError> {
-        let cloths: Vec<_> = vec![run.fabric; run.scene.panels.len() + 1];
-        let sheet = run.pieces.sewn_sheet(&cloths)?;
+        let sheet = run.pieces.sewn_sheet(&cloths(run.scene))?;
         let mut fixed = vec![false; run.pieces.points];
         for (v, &p) in run.pieces.pinned.iter().enumerate() {
             fixed[run.pieces.point[v] as usize] |= p;
@@ -81,20 +91,28 @@ impl Moving {
 
     fn new(run: &Run<'_>, sheet: Sheet, fixed: &[bool], state: State) -> Result<Self, MotionError> {
         let settings = run.settings;
-        let fabrics = [run.fabric];
+        let (fabrics, first) = (cloths(run.scene), [run.scene.fabric_of(0)]);
         let mut model = Model::of(&sheet).pinned(|v| fixed[v]);
-        model = model.made_of(settings.models, &Cloth { fixed, ..Cloth::of(&sheet, &fabrics) })?;
+        let cloth =
+            Cloth { fixed, fabrics: &fabrics, fabric: &|t| run.pieces.cloth(t), ..Cloth::of(&sheet, &first) };
+        model = model.made_of(settings.models, &cloth)?;
+        drop(cloth);
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
-        let solver = settings.method.solver(&sheet, &model, &state.x, run.fabric, settings.dt)?;
+        let solver = settings.method.solver(&sheet, &model, &state.x, first[0], settings.dt)?;
         let inverse =
             model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
         let tree = run.scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &state.x));
+        let friction = node_friction(run, &sheet, &fabrics);
         Ok(Self {
             sheet,
             model,
             solver,
             method: settings.method,
-            fabric: run.fabric.clone(),
+            fabric: first[0].clone(),
+            offset: fabrics.iter().skip(1).map(|f| f.thickness).fold(0.0, f64::max),
+            friction,
+            rub: 1.0,
+            limit: settings.strain_limit.map(|limit| Provot::new(limit, 1)).transpose()?,
             dt: settings.dt,
             tree,
             inverse,
@@ -105,6 +123,11 @@ impl Moving {
             joined_at: None,
             is_jammed: false,
         })
+    }
+
+    /// Another drag, 1/s, and the share of friction that acts.
+    pub(super) fn calm(&mut self, drag: f64, rub: f64) {
+        (self.model.drag, self.rub) = (drag, rub);
     }
 
     pub(super) fn set_gravity(&mut self, gravity: Vec3) {
@@ -137,17 +160,16 @@ impl Moving {
         wearer: Option<Wearer<'_>>,
         end: f64,
     ) -> Result<(), ClothError> {
-        self.aim(settings.dt.min(end - self.progress.time))?;
+        let dt = settings.dt.min(end - self.progress.time);
+        self.aim(dt)?;
         let start = self.state.x.clone();
-        let report = self.solver.advance(&self.model, &mut self.state)?;
-        let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
-        let mut moves = wanted.clone();
-        let (pushed, share) = self.correct(&start, &mut moves, report.advanced, settings.closing, wearer);
+        let (report, moves) = match self.method.chooses_its_step() {
+            true => self.many_steps(settings, wearer, dt)?,
+            false => self.one_step(settings, wearer)?,
+        };
         for (v, m) in moves.iter().enumerate() {
             self.state.x[v] = start[v] + m;
-            self.state.v[v] += (m - pushed[v] - wanted[v]) / report.advanced;
         }
-        self.is_jammed = share < JAMMED;
         let fastest = moves.iter().map(|m| m.norm()).fold(0.0, f64::max);
         self.progress = Progress {
             time: self.progress.time + report.advanced,
@@ -157,6 +179,63 @@ impl Moving {
             residual: report.residual,
         };
         Ok(())
+    }
+
+    /// One step of the solver, corrected as a whole; by how much each node moves.
+    fn one_step(
+        &mut self,
+        settings: &Motion,
+        wearer: Option<Wearer<'_>>,
+    ) -> Result<(Report, Vec<Vec3>), ClothError> {
+        let start = self.state.x.clone();
+        let report = self.solver.advance(&self.model, &mut self.state)?;
+        let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
+        let mut moves = wanted.clone();
+        let dt = report.advanced;
+        let (pushed, is_free) = self.respond(settings, wearer, None, dt, &start, &mut moves);
+        self.is_jammed = self.hold(wearer, is_free, &start, &mut moves) < JAMMED;
+        self.turn(&moves, &wanted, &pushed, dt);
+        Ok((report, moves))
+    }
+
+    /// As many of the solver's own steps as fill `dt`, each corrected by what was near at their start; by how much each node moves.
+    fn many_steps(
+        &mut self,
+        settings: &Motion,
+        wearer: Option<Wearer<'_>>,
+        dt: f64,
+    ) -> Result<(Report, Vec<Vec3>), ClothError> {
+        let start = self.state.x.clone();
+        let foretold: Vec<Vec3> = self.state.v.iter().map(|v| v * dt).collect();
+        let near = Near::of(self.tree.as_ref(), wearer, &start, &foretold, self.offset);
+        let (mut advanced, mut is_free) = (0.0, true);
+        let report = loop {
+            let before = self.state.x.clone();
+            let report = self.solver.advance(&self.model, &mut self.state)?;
+            let wanted: Vec<Vec3> = self.state.x.iter().zip(&before).map(|(x, s)| x - s).collect();
+            let mut moves = wanted.clone();
+            let (pushed, free) =
+                self.respond(settings, wearer, Some(&near), report.advanced, &before, &mut moves);
+            is_free &= free;
+            self.turn(&moves, &wanted, &pushed, report.advanced);
+            self.state.x.iter_mut().zip(before.iter().zip(&moves)).for_each(|(x, (b, m))| *x = b + m);
+            advanced += report.advanced;
+            if advanced >= (1.0 - SAME_STEP) * dt {
+                break Report { advanced, ..report };
+            }
+        };
+        let wanted: Vec<Vec3> = self.state.x.iter().zip(&start).map(|(x, s)| x - s).collect();
+        let mut moves = wanted.clone();
+        self.is_jammed = self.hold(wearer, is_free, &start, &mut moves) < JAMMED;
+        self.turn(&moves, &wanted, &vec![Vec3::zeros(); moves.len()], advanced);
+        Ok((report, moves))
+    }
+
+    /// Velocities after `wanted` moves have become `moves`, of which `pushed` is no velocity.
+    fn turn(&mut self, moves: &[Vec3], wanted: &[Vec3], pushed: &[Vec3], dt: f64) {
+        for (v, m) in moves.iter().enumerate() {
+            self.state.v[v] += (m - pushed[v] - wanted[v]) / dt;
+        }
     }
 
     /// Another solver where the step must be another: the last one before an end.
@@ -169,34 +248,65 @@ impl Moving {
         Ok(())
     }
 
-    /// All corrections; how much of each move is a push, no velocity, and to what share all of the cloth was held back.
-    fn correct(
+    /// How limits, seams, cloth and body change the moves from `x`; how much of each is a push, no velocity, and whether the body
+    /// and pins leave all of the cloth alone. What is near is sought where it is not given.
+    fn respond(
         &self,
-        start: &[Vec3],
-        moves: &mut [Vec3],
-        dt: f64,
-        closing: f64,
+        settings: &Motion,
         wearer: Option<Wearer<'_>>,
-    ) -> (Vec<Vec3>, f64) {
-        let offset = self.fabric.thickness;
-        self.seams.close(start, moves, &self.model.masses, &self.model.fixed, closing * dt);
+        near: Option<&Near>,
+        dt: f64,
+        x: &[Vec3],
+        moves: &mut [Vec3],
+    ) -> (Vec<Vec3>, bool) {
+        let offset = self.offset;
+        if let Some(limit) = &self.limit {
+            let mut ends: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(x, m)| x + m).collect();
+            limit.apply(&self.sheet, &self.model.fixed, &mut ends);
+            moves.iter_mut().zip(ends.iter().zip(x)).for_each(|(m, (e, x))| *m = e - x);
+        }
+        self.seams.close(x, moves, &self.model.masses, &self.model.fixed, settings.closing * dt);
         if let Some(tree) = &self.tree {
-            let pairs = tree.pairs(start, moves, offset);
-            off_itself(&pairs, start, moves, &self.inverse, offset, self.fabric.friction);
+            let found = near.is_none().then(|| tree.pairs(x, moves, offset));
+            let pairs = found.as_ref().or(near.map(|n| &n.pairs)).map_or(&[][..], |p| p);
+            off_itself(pairs, x, moves, &self.inverse, offset, &self.friction, self.rub);
         }
         let before = moves.to_vec();
         let pushed = match wearer {
-            Some(wearer) => off_the_body(wearer, start, moves, offset),
+            Some(wearer) => {
+                let skin = near.map_or_else(|| skin_near(wearer, x, moves, offset), |n| n.skin(x));
+                let friction = wearer.friction * self.rub;
+                let answer = Answer { response: settings.response, inverse: &self.inverse, dt, friction };
+                off_the_body(&skin, &answer, moves, offset)
+            }
             None => vec![Vec3::zeros(); moves.len()],
         };
         let is_free = !self.model.fixed.contains(&true) && moves == before;
         moves.iter_mut().zip(&self.model.fixed).filter(|(_, f)| **f).for_each(|(m, _)| *m = Vec3::zeros());
+        (pushed, is_free)
+    }
+
+    /// Ends moves where they would lead into the body or through cloth; to what share all of the cloth was held back.
+    fn hold(&self, wearer: Option<Wearer<'_>>, is_free: bool, start: &[Vec3], moves: &mut [Vec3]) -> f64 {
+        let (offset, before) = (self.offset, moves.to_vec());
+        if let Some(wearer) = wearer {
+            wearer.skin.guard(start, moves, &vec![0.5 * offset; start.len()]);
+        }
+        let is_free = is_free && moves == before;
         let short = |moves: &mut [Vec3]| {
             self.tree.as_ref().map_or(1.0, |tree| stop_short(tree, start, moves, offset))
         };
-        let share = if is_free { among_themselves(&self.model.masses, moves, short) } else { short(moves) };
-        (pushed, share)
+        if is_free { among_themselves(&self.model.masses, moves, short) } else { short(moves) }
     }
+}
+
+/// The friction of cloth on cloth at each node: that of a fabric of the triangles around it.
+fn node_friction(run: &Run<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> {
+    let mut friction = vec![0.0; sheet.vertex_count()];
+    for (t, corners) in sheet.triangles().iter().enumerate() {
+        corners.iter().for_each(|&v| friction[v as usize] = fabrics[run.pieces.cloth(t)].friction);
+    }
+    friction
 }
 
 /// Shortens the moves of what nothing else holds as `short` does, but against their common motion, which is kept: cloth that meets

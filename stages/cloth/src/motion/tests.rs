@@ -1,5 +1,5 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
-use super::{Method, Motion, MotionError, Moved, Until};
+use super::{Method, Motion, MotionError, Moved, Response, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
 use crate::rest::solve::{Rest, Wearer};
@@ -112,20 +112,91 @@ fn a_seam_that_cannot_close_is_named() {
     assert!(text.contains("stays open by") && text.contains("after 0.05 s"), "{text} {name}");
 }
 
-#[test]
-fn two_fabrics_are_refused_by_the_panel() {
+/// Two fabrics, the second twice as heavy.
+fn two_fabrics() -> Scene {
     let mut scene = generate::tube(4, 5);
     let mut other = scene.material.clone();
     other.density *= 2.0;
     scene.panels[1].material = Some(other);
-    let error = run(&Motion::default(), &scene).unwrap_err();
+    scene
+}
+
+#[test]
+fn two_fabrics_are_refused_by_the_panel_where_the_solver_takes_one() {
+    let scene = two_fabrics();
+    let method = Method::Xpbd { substeps: 4 };
+    let error = run(&Motion { method, ..Motion::default() }, &scene).unwrap_err();
     assert_eq!(
         error.to_string(),
         format!(
-            "panel '{}' is of another fabric than the first; solvers in time take one, Rest takes any number",
+            "panel '{}' is of another fabric than the first; Xpbd and Projective take one, all others any number",
             scene.panels[1].name
         )
     );
+}
+
+#[test]
+fn panels_of_two_fabrics_are_sewn_and_come_to_rest() {
+    let until = Until::Rest { speed: 0.02, energy: 1e-3, longest: 6.0 };
+    let method = Method::ImplicitEuler { tolerance: 1e-3, relative: None };
+    let moved = run(&Motion { method, until, drag: 4.0, ..Motion::default() }, &two_fabrics()).unwrap();
+    assert!(moved.converged, "{:?}", moved.progress);
+}
+
+#[test]
+fn a_sewn_motion_ends_when_the_seams_are_joined() {
+    let motion = Motion { until: Until::Sewn { longest: 3.0 }, ..Motion::default() };
+    let moved = run(&motion, &generate::tube(4, 5)).unwrap();
+    assert!(moved.converged && moved.joined_at.unwrap() < 5e-4);
+}
+
+/// The height of a small sheet let go 0.2 m above a floor of a great box, at its highest after it has met it.
+fn bounce(response: Response) -> f64 {
+    let mut scene = falling(2);
+    // Flat, so that all of it meets the floor at once.
+    scene.positions = scene.rest.iter().map(|p| Vector3::new(p.x, 0.2, p.y)).collect();
+    scene.phases[0].seconds = 0.2 + 0.15;
+    let (floor, sides) = floor();
+    let skin = Body::new(floor, &sides);
+    let motion = Motion { response, dt: 1e-3, ..Motion::default() };
+    let moved = motion
+        .run(&scene, Some(Wearer { skin: &skin, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
+        .unwrap();
+    moved.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// A box of 8 m whose top is the plane y = 0.
+fn floor() -> (Vec<Vector3<f64>>, Vec<[u32; 3]>) {
+    let corner = |i: u32| {
+        let side = |bit: u32| if i & bit == 0 { -4.0 } else { 4.0 };
+        Vector3::new(side(1), side(2) - 4.0, side(4))
+    };
+    let quads = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+    let sides = quads.iter().flat_map(|q| [[q[0], q[1], q[2]], [q[0], q[2], q[3]]]);
+    ((0..8).map(corner).collect(), sides.collect())
+}
+
+#[test]
+fn restitution_gives_back_its_share_of_the_speed() {
+    let offset = falling(2).material.thickness;
+    let meets = (2.0 * (0.2 - offset) / 9.81f64).sqrt();
+    let speed = 9.81 * meets;
+    let left = 0.35 - meets;
+    for e in [0.5, 1.0] {
+        let height = bounce(Response { restitution: e, penalty: None });
+        let exact = offset + e * speed * left - 0.5 * 9.81 * left * left;
+        assert!((height - exact).abs() < 0.01, "{e}: {height} m, by the formula {exact} m");
+    }
+    assert!((bounce(Response::default()) - offset).abs() < 1e-4);
+}
+
+#[test]
+fn a_penalty_lets_cloth_sink_by_its_weight_over_the_stiffness() {
+    // Where it is as stiff as steps allow it holds like a floor that gives way by no more than cloth is thick.
+    let offset = falling(2).material.thickness;
+    let soft = bounce(Response { restitution: 0.0, penalty: Some(1e9) });
+    assert!(soft > -0.5 * offset && soft < 0.2, "{soft}");
+    assert_ne!(soft, bounce(Response::default()));
 }
 
 /// A square metre of 0.1 kg/m2 hung by its upper edge, in this air.

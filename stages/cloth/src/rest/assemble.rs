@@ -143,7 +143,7 @@ pub(super) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = u
 }
 
 /// What no panel and what each panel is made of.
-pub(super) fn cloths(scene: &Scene) -> Vec<&Fabric> {
+pub(crate) fn cloths(scene: &Scene) -> Vec<&Fabric> {
     std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
 }
 

@@ -1,6 +1,6 @@
 //! Straight to static equilibrium, coarse to fine.
 
-mod assemble;
+pub(crate) mod assemble;
 mod awake;
 pub mod clear;
 pub mod coarsen;

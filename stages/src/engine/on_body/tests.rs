@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::cloth::fixtures::{Capsules, hanging, plain, vest};
+use crate::fixtures::{Capsules, hanging, plain, vest};
 use toile_core::artifact::Vector3;
 
 const GRAVITY: Vector3 = Vector3::new(0.0, -9.81, 0.0);

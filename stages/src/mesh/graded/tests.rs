@@ -188,7 +188,7 @@ fn rolled(radius: f64, half: f64) -> Garment {
         triangles: 0..triangles.len(),
         boundary: vec![at(0, 0), at(columns, 0), at(columns, rows), at(0, rows)],
         photo_px: vec![],
-        fabric: crate::cloth::fixtures::plain(1000.0, 100.0, 1e-5),
+        fabric: crate::fixtures::plain(1000.0, 100.0, 1e-5),
     };
     Garment {
         velocities: vec![Vector3::zeros(); n],

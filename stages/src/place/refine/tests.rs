@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::Refine;
-use crate::cloth::fixtures::{Grid, garment, hanging, plain, vest};
+use crate::fixtures::{Grid, garment, hanging, plain, vest};
 use crate::texture::fixture;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
