@@ -209,7 +209,7 @@ impl Motion {
         match self.until {
             Until::Sewn { longest } => {
                 let sewn = run.sew(open, longest)?;
-                Ok(run.finish(&sewn, true))
+                Ok(run.finish(sewn, true))
             }
             Until::Phases { longest } => run.phases(open, longest),
             Until::Rest { speed, energy, longest } => run.rest(open, speed, energy, longest),
@@ -253,7 +253,8 @@ impl Run<'_> {
                 self.step(&mut moving, end)?;
             }
         }
-        Ok(self.finish(&moving, !moving.is_jammed))
+        let converged = !moving.is_jammed;
+        Ok(self.finish(moving, converged))
     }
 
     /// Closes the seams, if there are any, and joins them: without weight and without wind.
@@ -300,10 +301,10 @@ impl Run<'_> {
             stored = now;
             moving.progress.speed = way / LOOK;
             if moving.progress.speed < speed && settled && !moving.is_jammed && draped >= calming.slip {
-                return Ok(self.finish(&moving, true));
+                return Ok(self.finish(moving, true));
             }
         }
-        Ok(self.finish(&moving, false))
+        Ok(self.finish(moving, false))
     }
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
@@ -333,7 +334,10 @@ impl Run<'_> {
         }
     }
 
-    fn finish(&self, moving: &Moving, converged: bool) -> Moved {
+    fn finish(&self, mut moving: Moving, converged: bool) -> Moved {
+        if let Some(wearer) = self.wearer {
+            moving.clear(wearer);
+        }
         let spread = |values: &[Vec3]| match moving.is_joined {
             true => self.pieces.spread(values),
             false => values.to_vec(),

@@ -10,13 +10,21 @@ use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::rest::assemble::cloths;
+use crate::rest::clear::clearance;
 use crate::rest::solve::Wearer;
 use crate::rest::start::{check_lying, crossing, crossings};
 use crate::solver::{Model, Report, Solver, State};
 use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::signed_distance::Nearest;
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
 const SAME_STEP: f64 = 1e-6;
+
+/// Rounds in which triangles are lifted off the body.
+const CLEAR_ROUNDS: usize = 10;
+
+/// The body is looked for so far from a vertex whose triangle dips into it, m.
+const FAR: f64 = 0.05;
 
 /// Contacts that leave less than this share of a step to all of the cloth hold it in the air.
 const JAMMED: f64 = 0.5;
@@ -229,6 +237,26 @@ impl Moving {
         self.is_jammed = self.hold(wearer, is_free, &start, &mut moves) < JAMMED;
         self.turn(&moves, &wanted, &vec![Vec3::zeros(); moves.len()], advanced);
         Ok((report, moves))
+    }
+
+    /// Lifts what dips into the body between its vertices: triangles that are wider than the body is flat.
+    pub(super) fn clear(&mut self, wearer: Wearer<'_>) {
+        for _ in 0..CLEAR_ROUNDS {
+            let start = self.state.x.clone();
+            let clearance = clearance(&self.sheet, wearer.skin, &start);
+            if clearance.triangles == 0 {
+                return;
+            }
+            let within: Vec<f64> = clearance.lacks.iter().map(|l| if *l > 0.0 { FAR } else { 0.0 }).collect();
+            let skin = wearer.skin.nearest(&start, &within);
+            let lift = |(n, lack): (&Option<Nearest>, &f64)| {
+                n.as_ref().map_or(Vec3::zeros(), |n| n.normal * lack.min(self.offset))
+            };
+            let mut moves: Vec<Vec3> = skin.iter().zip(&clearance.lacks).map(lift).collect();
+            moves.iter_mut().zip(&self.model.fixed).filter(|(_, f)| **f).for_each(|(m, _)| *m = Vec3::zeros());
+            self.hold(Some(wearer), false, &start, &mut moves);
+            self.state.x.iter_mut().zip(&moves).for_each(|(x, m)| *x += m);
+        }
     }
 
     /// Velocities after `wanted` moves have become `moves`, of which `pushed` is no velocity.
