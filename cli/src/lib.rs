@@ -7,14 +7,12 @@ mod ablate;
 mod apart;
 mod args;
 mod at_hand;
-mod bench;
 mod bench_costs;
 mod cache;
 mod cards;
 mod contracts;
 mod costs;
 mod doctor;
-mod drivers;
 mod explain;
 mod explain_json;
 mod explained;
@@ -32,7 +30,6 @@ mod reads;
 mod run;
 mod schema;
 mod shell;
-mod stability_map;
 mod stdin;
 mod streams;
 mod threads;
@@ -216,13 +213,7 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
         Command::Tune(args) => tune::run(&args, registry, streams),
         Command::RunApart => apart::run(registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
-        Command::Bench { what: Bench::Accuracy(args) } => bench::accuracy(&args, streams),
-        Command::Bench { what: Bench::Solvers { json } } => bench::solvers(json, streams),
-        Command::Bench { what: Bench::Diagnostics { json } } => bench::diagnostics(json, streams),
         Command::Bench { what: Bench::Costs(args) } => bench_costs::costs(&args, registry, streams),
-        Command::Bench { what: Bench::Drivers(args) } => drivers::run(&args, streams),
-        Command::Bench { what: Bench::Stability(args) } if args.map => stability_map::run(&args, streams),
-        Command::Bench { what: Bench::Stability(args) } => bench::stability(&args, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }
 }

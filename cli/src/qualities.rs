@@ -4,7 +4,7 @@ use crate::args::TuneArgs;
 use crate::measuring::{bench, failed};
 use crate::progress::with_budget;
 use crate::tuned::{front, target, write};
-use crate::{Streams, bench as bench_words, exit};
+use crate::{Streams, exit};
 use serde_json::{Value, json};
 use std::path::Path;
 use toile_core::StageError;
@@ -24,7 +24,7 @@ pub(crate) fn run(
     streams: &mut Streams<'_>,
 ) -> u8 {
     if let Some(name) = given_twice(&args.qualities) {
-        return bench_words::usage(&format!("the quality `{name}` is given twice"), streams);
+        return streams.misused(&format!("the quality `{name}` is given twice"));
     }
     match tuned(args, source, pipeline, streams) {
         Ok(code) => code,

@@ -20,7 +20,7 @@ pub(crate) fn man(names: &[String], streams: &mut Streams<'_>) -> u8 {
     let mut title = String::from("toile");
     for name in names {
         let Some(sub) = command.find_subcommand(name).cloned() else {
-            return crate::bench::usage(&format!("`{title}` has no command `{name}`"), streams);
+            return streams.misused(&format!("`{title}` has no command `{name}`"));
         };
         title = format!("{title}-{name}");
         command = sub;

@@ -78,6 +78,12 @@ impl<'a> Streams<'a> {
         let _ = writeln!(self.err, "{line}");
     }
 
+    /// Says what is wrong with the arguments; the exit code for that.
+    pub(crate) fn misused(&mut self, message: &str) -> u8 {
+        self.tell(format!("error: {message}"));
+        exit::USAGE
+    }
+
     /// Tells the person at the terminal how work goes.
     pub(crate) fn notice(&mut self, line: impl std::fmt::Display) {
         if !self.quiet {

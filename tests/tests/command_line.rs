@@ -126,27 +126,3 @@ fn a_scene_named_from_the_current_folder_is_brought_to_rest() {
     let vertices = text.lines().filter(|l| l.starts_with("v ")).count();
     assert_eq!(vertices as u64, g["vertices"].as_u64().unwrap());
 }
-
-#[test]
-fn the_engine_is_held_against_references_and_extremes() {
-    let answer = toile(&["bench", "accuracy", "E4", "--mesh", "equilateral", "--along", "40", "--json"]);
-    assert_eq!(answer.code, 0, "{}", answer.err);
-    let report: Value = serde_json::from_str(&answer.out).unwrap();
-    assert!(report["rows"][0]["error"].as_f64().unwrap() < 0.002, "{report}");
-    let answer = toile(&["bench", "stability", "one_triangle_panel"]);
-    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
-    assert!(answer.out.contains("one_triangle_panel"));
-}
-
-#[test]
-fn an_unknown_test_or_axis_is_named_with_those_that_there_are() {
-    let answer = toile(&["bench", "accuracy", "E9"]);
-    assert_eq!(answer.code, 2);
-    assert!(
-        answer.err.starts_with("error: there is no `E9`; there are E1 cantilever, E2 stretch, "),
-        "{}",
-        answer.err
-    );
-    let answer = toile(&["bench", "stability", "luck"]);
-    assert!(answer.err.starts_with("error: there is no `luck`; there are "), "{}", answer.err);
-}

@@ -7,7 +7,6 @@
 mod ablation;
 mod bad_input;
 mod before_run;
-mod benches;
 mod cache;
 mod catalogue;
 mod circles;

@@ -1,7 +1,7 @@
 //! Numbers to so many digits: nobody reads more, and what is alike becomes equal.
 
 /// A number to so many significant digits, at least one.
-pub(crate) fn to_digits(x: f64, digits: usize) -> f64 {
+pub fn to_digits(x: f64, digits: usize) -> f64 {
     format!("{x:.*e}", digits.saturating_sub(1)).parse().unwrap_or(x)
 }
 

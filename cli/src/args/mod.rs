@@ -6,7 +6,7 @@ mod file;
 mod run;
 mod trade;
 
-pub(crate) use bench::{AccuracyArgs, Bench, CostsArgs, DriversArgs, StabilityArgs};
+pub(crate) use bench::{Bench, CostsArgs};
 pub(crate) use file::{
     AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides, ValidateArgs, Verb,
 };
@@ -99,7 +99,7 @@ pub(crate) enum Command {
         /// The command
         command: Vec<String>,
     },
-    /// Hold the cloth engine against exact references and extremes
+    /// Measure what stages take
     Bench {
         #[command(subcommand)]
         what: Bench,

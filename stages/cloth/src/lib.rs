@@ -3,7 +3,6 @@
 //!
 //! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres, kilograms and seconds.
 
-pub mod bench;
 pub mod constraint;
 pub mod contact;
 pub mod energy;

@@ -3,30 +3,64 @@
 use crate::digits::to_digits;
 
 /// Size of a picture, px.
-pub(crate) const SIZE: [u32; 2] = [960, 640];
+pub const SIZE: [u32; 2] = [960, 640];
 /// Grey of axes and text.
-pub(crate) const INK: [u8; 3] = [52, 56, 64];
+pub const INK: [u8; 3] = [52, 56, 64];
 /// Grey of the grid.
-pub(crate) const GRID: [u8; 3] = [226, 229, 233];
+pub const GRID: [u8; 3] = [226, 229, 233];
 /// Grey of what does not count.
-pub(crate) const PALE: [u8; 3] = [150, 156, 164];
+pub const PALE: [u8; 3] = [150, 156, 164];
 
 /// Something drawn.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Mark {
+pub enum Mark {
     /// A line; dashed or not.
-    Line { ends: [[f64; 2]; 2], width: f64, colour: [u8; 3], dashed: bool },
+    Line {
+        /// px.
+        ends: [[f64; 2]; 2],
+        /// px.
+        width: f64,
+        /// Red, green, blue.
+        colour: [u8; 3],
+        /// Whether it is dashed.
+        dashed: bool,
+    },
     /// A filled rectangle: two opposite corners.
-    Rect { corners: [[f64; 2]; 2], colour: [u8; 3] },
+    Rect {
+        /// px.
+        corners: [[f64; 2]; 2],
+        /// Red, green, blue.
+        colour: [u8; 3],
+    },
     /// A dot; a ring where it is hollow.
-    Dot { at: [f64; 2], radius: f64, colour: [u8; 3], hollow: bool },
+    Dot {
+        /// px.
+        at: [f64; 2],
+        /// px.
+        radius: f64,
+        /// Red, green, blue.
+        colour: [u8; 3],
+        /// Whether it is a ring.
+        hollow: bool,
+    },
     /// A text whose left end, middle or right end is at a place.
-    Text { at: [f64; 2], anchor: Anchor, text: String, colour: [u8; 3], large: bool },
+    Text {
+        /// px.
+        at: [f64; 2],
+        /// What of the text is there.
+        anchor: Anchor,
+        /// The words.
+        text: String,
+        /// Red, green, blue.
+        colour: [u8; 3],
+        /// Whether it is a title.
+        large: bool,
+    },
 }
 
 /// Which part of a text is at its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Anchor {
+pub enum Anchor {
     /// Its left end.
     Start,
     /// Its middle.
@@ -36,16 +70,16 @@ pub(crate) enum Anchor {
 }
 
 /// A line.
-pub(crate) fn line(a: [f64; 2], b: [f64; 2], width: f64, colour: [u8; 3], dashed: bool) -> Mark {
+pub fn line(a: [f64; 2], b: [f64; 2], width: f64, colour: [u8; 3], dashed: bool) -> Mark {
     Mark::Line { ends: [a, b], width, colour, dashed }
 }
 
 /// A text of the usual size.
-pub(crate) fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) -> Mark {
+pub fn text(at: [f64; 2], anchor: Anchor, text: &str, colour: [u8; 3]) -> Mark {
     Mark::Text { at, anchor, text: text.to_owned(), colour, large: false }
 }
 
 /// A tick's number without needless digits.
-pub(crate) fn plain(t: f64) -> String {
+pub fn plain(t: f64) -> String {
     format!("{}", to_digits(t, 3))
 }

@@ -1,13 +1,11 @@
 //! Pictures: a list of marks becomes an SVG and a PNG, so that both show the same.
 
-mod axis;
+pub mod axis;
 mod front;
-mod mark;
+pub mod mark;
 mod png;
-mod stability;
 mod svg;
 
 pub(crate) use front::marks;
-pub(crate) use png::png;
-pub use stability::pictures;
-pub(crate) use svg::svg;
+pub use png::png;
+pub use svg::svg;

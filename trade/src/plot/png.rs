@@ -15,7 +15,7 @@ const SHARP: f64 = 3.0;
 const DASH: [f64; 2] = [6.0, 5.0];
 
 /// The file; empty where it cannot be encoded.
-pub(crate) fn png(marks: &[Mark]) -> Vec<u8> {
+pub fn png(marks: &[Mark]) -> Vec<u8> {
     let large = SIZE.map(|s| (f64::from(s) * SHARP) as u32);
     let mut picture = RgbImage::from_pixel(large[0], large[1], Rgb([255; 3]));
     marks.iter().for_each(|m| shape(&mut picture, m));

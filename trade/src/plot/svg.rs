@@ -3,7 +3,7 @@
 use super::mark::{Anchor, Mark, SIZE};
 
 /// The document.
-pub(crate) fn svg(marks: &[Mark]) -> String {
+pub fn svg(marks: &[Mark]) -> String {
     let [w, h] = SIZE;
     let mut s = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \

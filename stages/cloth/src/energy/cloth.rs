@@ -45,6 +45,18 @@ impl<'a> Cloth<'a> {
         Self { sheet, cut: sheet, fabrics, fabric: &|_| 0, limit, clamp, fixed: &[], calibration }
     }
 
+    /// The same with nodes that stay.
+    #[must_use]
+    pub fn holding(self, fixed: &'a [bool]) -> Self {
+        Self { fixed, ..self }
+    }
+
+    /// The same with border edges that keep their slope, if there are any.
+    #[must_use]
+    pub fn clamped(self, clamp: impl Into<Option<Clamp<'a>>>) -> Self {
+        Self { clamp: clamp.into(), ..self }
+    }
+
     /// What hinges on this mesh are, against the sheet that they stand for.
     pub(crate) fn calibration(&self) -> &Calibration {
         self.calibration.get_or_init(|| Calibration::of(self.cut))

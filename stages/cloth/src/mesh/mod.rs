@@ -4,6 +4,7 @@
 //! two panels share after sewing, need nothing special. Masses are lumped by area: a third of each triangle to each corner.
 //! Building is linear in the triangles; everything is checked here, so that the models downstream need not check again.
 
+pub mod layout;
 mod topology;
 
 #[cfg(test)]

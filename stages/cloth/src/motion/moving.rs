@@ -104,7 +104,6 @@ impl Moving {
         let cloth =
             Cloth { fixed, fabrics: &fabrics, fabric: &|t| run.pieces.cloth(t), ..Cloth::of(&sheet, &first) };
         model = model.made_of(settings.models, &cloth)?;
-        drop(cloth);
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
         let solver = settings.method.solver(&sheet, &model, &state.x, first[0], settings.dt)?;
         let inverse =
@@ -253,7 +252,11 @@ impl Moving {
                 n.as_ref().map_or(Vec3::zeros(), |n| n.normal * lack.min(self.offset))
             };
             let mut moves: Vec<Vec3> = skin.iter().zip(&clearance.lacks).map(lift).collect();
-            moves.iter_mut().zip(&self.model.fixed).filter(|(_, f)| **f).for_each(|(m, _)| *m = Vec3::zeros());
+            moves
+                .iter_mut()
+                .zip(&self.model.fixed)
+                .filter(|(_, f)| **f)
+                .for_each(|(m, _)| *m = Vec3::zeros());
             self.hold(Some(wearer), false, &start, &mut moves);
             self.state.x.iter_mut().zip(&moves).for_each(|(x, m)| *x += m);
         }

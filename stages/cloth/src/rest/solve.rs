@@ -268,6 +268,5 @@ mod sharp_tests;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
-mod truth_tests;
 #[cfg(test)]
 mod worn_tests;

@@ -1,10 +1,10 @@
 //! Air against what can be written down: terminal speeds, a sheet that the wind carries off, a flap in the wind, energy.
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::bench::layout::{Layout, Rectangle};
 use crate::energy::{Air, AirDrag, Cloth, Models, Vec3};
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
+use crate::mesh::layout::{Layout, Rectangle};
 use proptest::prelude::*;
 
 const G: f64 = 9.81;

@@ -1,8 +1,8 @@
 //! Cloth whose yarns rub on each other keeps a part of its folds.
 #![allow(clippy::unwrap_used)]
 use super::*;
-use crate::bench::layout::{Layout, Rectangle};
 use crate::fabric::Fabric;
+use crate::mesh::layout::{Layout, Rectangle};
 
 /// Curvature that the strip is bent to, 1/m.
 const BENT: f64 = 60.0;

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
-use crate::bench::layout::{Layout, Rectangle};
 use crate::fabric::Fabric;
+use crate::mesh::layout::{Layout, Rectangle};
 use crate::scene::{SceneBody, generate};
 use nalgebra::{Rotation3, Vector2};
 
