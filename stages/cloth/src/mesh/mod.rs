@@ -141,6 +141,12 @@ impl Sheet {
         &self.inverse_rest
     }
 
+    /// The root of its area, m.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.areas().iter().sum::<f64>().sqrt()
+    }
+
     /// Rest areas in m².
     #[must_use]
     pub fn areas(&self) -> &[f64] {

@@ -3,7 +3,8 @@
 use super::Vec3;
 use super::moving::Moving;
 use crate::contact::past::{BodyBox, Fallen, NO_PIECE};
-use crate::rest::fallen::{list_of, pieces_of_scene};
+use crate::rest::cloths::pieces_of_scene;
+use crate::rest::fallen::list_of;
 use crate::rest::pieces::Pieces;
 use crate::rest::solve::Wearer;
 use crate::scene::Scene;

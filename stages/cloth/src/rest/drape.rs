@@ -1,9 +1,10 @@
 //! The sewn garment comes to rest, level by level and from stiff to limp.
 
+use super::error::RestError;
 use super::graded::stages;
 use super::level::Level;
 use super::newton::Pace;
-use super::solve::{Progress, RestError};
+use super::rested::Progress;
 use super::tangled::entangled;
 use super::work::{Draped, Work};
 use crate::error::ClothError;

@@ -1,9 +1,9 @@
 //! Why `Rest` finds no garment at rest, in words that say what to change.
 
+use super::load::Load;
 use super::multifrontal::NotPositive;
-use super::solve::Rested;
+use super::rested::Rested;
 use super::start::StartError;
-use super::tangled::Load;
 use super::unrest::unrest;
 use super::words::{both, list, place};
 use crate::contact::past::Fallen;

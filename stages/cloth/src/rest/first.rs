@@ -8,10 +8,11 @@
 //! turned back to how it was placed, and finds its place under a small turning force first, as structures that may buckle
 //! either way are computed with a small flaw (Koiter 1945, "On the stability of elastic equilibrium"); then without it.
 
+use super::error::RestError;
 use super::graded::stages;
 use super::level::{Level, apart};
 use super::newton::Pace;
-use super::solve::{Progress, RestError};
+use super::rested::Progress;
 use super::work::Work;
 
 /// Steps of the first state: a skirt that nothing holds may turn about its body for ever.

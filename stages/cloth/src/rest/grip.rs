@@ -5,7 +5,7 @@
 //! every rounding. So what is remembered is how far the two have slid, not where: a contact goes on from the way of the last step,
 //! and a new one takes over from contacts of the same two places, which share a node on either side with it.
 
-use super::layers::Contact;
+use super::contact::Contact;
 use super::rub::{Rub, SOFT};
 use nalgebra::Vector3;
 

@@ -4,6 +4,7 @@
 //! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
 //! that nothing is counted twice. What touches rubs, by Coulomb's law (see `grip`).
 
+use super::contact::Contact;
 use super::grip::{Grip, Memory, between};
 use super::press::Press;
 use crate::linear::{Pattern, add_at};
@@ -60,21 +61,6 @@ impl Default for Layers {
     fn default() -> Self {
         std::process::abort()
     }
-}
-
-/// Two features that touch.
-#[derive(Debug, Clone, Copy)]
-pub struct Contact {
-    /// Nodes.
-    pub nodes: [u32; 4],
-    /// Weights of the nodes in the distance.
-    pub weights: [f64; 4],
-    /// Unit direction from the second to the first.
-    pub normal: Vec3,
-    /// Stiffness where they begin to touch, N/m.
-    pub stiffness: f64,
-    /// How hard they press.
-    pub press: Press,
 }
 
 impl Layers {

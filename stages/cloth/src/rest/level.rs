@@ -1,6 +1,5 @@
 //! One level of a sewn garment on its way to rest.
 
-use super::sew::size;
 use super::system::System;
 use crate::mesh::Sheet;
 use nalgebra::{Rotation3, Vector3};
@@ -51,7 +50,7 @@ impl Level<'_> {
 
     /// The root of its area, m.
     pub(super) fn size(&self) -> f64 {
-        size(&self.sheet)
+        self.sheet.size()
     }
 
     /// Its centre of mass, m.

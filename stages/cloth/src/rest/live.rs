@@ -13,7 +13,7 @@ use super::newton::{Descent, Outcome, Pace, greatest};
 use super::pieces::Pieces;
 use super::solve::{LevelReport, Progress, Rest, RestError, Rested};
 use super::system::System;
-use super::unrest::unbalanced;
+use super::unbalanced::unbalanced;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
 use nalgebra::Vector3;

@@ -21,16 +21,16 @@
 //! row has its own; the cloth moves so little in them that it serves the others. What the search along a step has looked
 //! up at its end is not looked up again where the next step starts.
 
+use super::descent::Before;
+pub use super::descent::{Descent, Outcome, Pace, Watch, greatest};
 use super::linear::Linear;
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
 use super::pile::{Around, lay};
 use super::real::Precision;
 use super::search::{descend, shorten};
-use super::support::Sight;
 use super::system::System;
 use nalgebra::Vector3;
-use std::ops::ControlFlow;
 use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
@@ -75,98 +75,6 @@ const MOST_KEPT: f64 = 0.9;
 
 /// See [`LEAST_KEPT`].
 const RETRY: f64 = 0.3;
-
-/// When to stop, and how fast to go.
-#[derive(Debug, Clone, Copy)]
-pub struct Pace {
-    /// First step of pseudo-time, s.
-    pub first: f64,
-    /// Longest step of pseudo-time, s.
-    pub longest: f64,
-    /// Steps at most.
-    pub steps: usize,
-    /// Speed below which the cloth is at rest, m/s.
-    pub speed: f64,
-    /// The share of its nodes that may be faster.
-    pub non_static: f64,
-    /// Farthest that a node may move in a step, m.
-    pub farthest: f64,
-    /// Whether rest must be proved by a step of [`REST_STEP`].
-    pub prove: bool,
-    /// Whether a whole step of [`SLOW_STEP`] and more in which nothing is fast proves rest, too.
-    pub long_proof: bool,
-    /// Whether steps are taken without a search along them: the cloth gets about in rough ground, where some nodes never come to rest.
-    pub rough: bool,
-    /// Whether a step that raises the potential, because some of its nodes are stopped, is sought again with these held still.
-    pub yields: bool,
-    /// How precise the factor of each step is.
-    pub precision: Precision,
-    /// Whether cloths are laid down one by one before all move together.
-    pub one_by_one: bool,
-    /// Whether what rests sleeps while few nodes move, which settle by themselves.
-    pub asleep: bool,
-}
-
-/// How a level stands after a step.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Outcome {
-    /// Steps made.
-    pub steps: usize,
-    /// Whether the cloth is at rest.
-    pub at_rest: bool,
-    /// Greatest speed gained in the last step of time, m/s, but for the share of nodes that may be faster.
-    pub speed: f64,
-    /// Greatest speed gained in it, m/s.
-    pub fastest: f64,
-    /// The share of nodes that were faster than the cloth at rest is.
-    pub non_static: f64,
-    /// Greatest force left over on a node before that step, N.
-    pub residual: f64,
-    /// Share of the step that was taken.
-    pub share: f64,
-    /// The step of pseudo-time, s.
-    pub dt: f64,
-    /// Greatest speed gained in the last step of [`REST_STEP`], m/s: what says how far from rest the cloth is. Nothing before the first.
-    pub gained: Option<f64>,
-}
-
-/// What a caller learns after each step; it may stop the level.
-pub type Watch<'w> = dyn FnMut(&System<'_>, &[Vec3], &Outcome) -> ControlFlow<()> + 'w;
-
-/// Newton's method under way: what is kept from step to step.
-pub struct Descent {
-    pub(super) nearby: Nearby,
-    pub(super) linear: Linear,
-    outcome: Outcome,
-    /// The potentials of the last steps.
-    heights: Vec<f64>,
-    /// Whether the next step is to prove rest.
-    proves: bool,
-    /// Steps of it made in a row.
-    proofs: usize,
-    /// Whether the factor is that of such a step.
-    serves: bool,
-    /// Slow steps since the last of it.
-    calm: usize,
-    /// Whether a proof has failed.
-    failed: bool,
-    pub(super) dt: f64,
-    /// How far the last step wanted to go, m.
-    last: f64,
-    /// What the last step found where it ended.
-    before: Option<Before>,
-    /// The last step.
-    pub(super) moves: Vec<Vec3>,
-    /// Whether a step was cut short where the pairs of a part end.
-    pub(super) left: bool,
-}
-
-/// What a step found where it ended.
-struct Before {
-    at: Vec<Vec3>,
-    lasting: f64,
-    sight: Vec<Sight>,
-}
 
 impl Descent {
     /// Starts at `x`. `layout` orders the elimination, `tree` finds cloth near cloth.
@@ -455,12 +363,6 @@ fn next_dt(dt: f64, share: f64, kept: f64, pace: &Pace) -> f64 {
         1.0 if kept >= MOST_KEPT => (dt * GROWTH).min(pace.longest),
         _ => dt,
     }
-}
-
-/// Greatest length.
-#[must_use]
-pub fn greatest(v: &[Vec3]) -> f64 {
-    v.iter().map(Vec3::norm_squared).fold(0.0, f64::max).sqrt()
 }
 
 /// The greatest length of all but a share of the vectors, the longest.

@@ -8,9 +8,9 @@
 //! What a cloth may meet is cut out with it (see `part`) and known within a reach of where it is; beyond that it is cut out anew.
 //! Cost: for each cloth O(n) a cut, and steps of its own and its neighbours' size.
 
+use super::descent::{Descent, Pace, Watch};
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
-use super::newton::{Descent, Pace, Watch};
 use super::part::Part;
 use super::pieces::count_cloths;
 use super::system::System;

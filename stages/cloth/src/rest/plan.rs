@@ -7,7 +7,7 @@ use super::graded::{EDGES, EDGES_THROUGH, Grade};
 use super::level::Level;
 use super::pieces::Pieces;
 use super::pile::pile_of;
-use super::solve::Rest;
+use super::settings::Rest;
 use super::start::{crossing, crossings_at_start};
 use crate::contact::past::BodyBox;
 use crate::contact::skin::Skin;

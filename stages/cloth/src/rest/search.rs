@@ -1,6 +1,6 @@
 //! How much of a step is taken: the potential must fall below the highest of the last few (Grippo, Lampariello, Lucidi 1986).
 
-use super::newton::greatest;
+use super::descent::greatest;
 use super::system::{System, Visit};
 use nalgebra::Vector3;
 

@@ -3,14 +3,15 @@
 use super::assemble::{Wearer, assemble, gravity, spacing, strongest};
 use super::contour::uncross;
 use super::error::MOST_EDGES;
+use super::error::RestError;
 use super::graded::stages;
 use super::height_springs::HeightSprings;
 use super::newton::Pace;
 use super::patience::Patience;
-use super::solve::{Progress, RestError};
+use super::rested::Progress;
 use super::start::probably_reversed;
 use super::system::System;
-use super::thread::Thread;
+use super::thread::{Thread, widest};
 use super::work::Work;
 use crate::contact::skin::Skin;
 use crate::mesh::Sheet;
@@ -127,7 +128,7 @@ impl Work<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<f64, RestError> {
-        let grade = self.plan.grade(size(sheet)).filter(|_| self.plan.around.is_empty());
+        let grade = self.plan.grade(sheet.size()).filter(|_| self.plan.around.is_empty());
         let first = grade.map_or(1.0, |g| g.first());
         let mut force = 0.0;
         let start = x.to_vec();
@@ -284,7 +285,7 @@ impl Work<'_> {
 
     /// Lets stiff cloth without seams forget its unevenness before it has weight.
     fn press(&mut self, sheet: &Sheet, x: &mut [Vec3], progress: &mut Progress<'_>) -> Result<(), RestError> {
-        let Some(grade) = self.plan.grade(size(sheet)) else { return Ok(()) };
+        let Some(grade) = self.plan.grade(sheet.size()) else { return Ok(()) };
         let (_, first, farthest) = SEWING;
         let pace = Pace { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
         let layout = x.to_vec();
@@ -333,20 +334,10 @@ fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
     rounds > 1 && MORE_THAN_LINEAR * more < after
 }
 
-/// The root of a sheet's area, m.
-pub(super) fn size(sheet: &Sheet) -> f64 {
-    sheet.areas().iter().sum::<f64>().sqrt()
-}
-
 /// How deep a vertex lies in a solid at most, m.
 fn depth(skin: &dyn Skin, x: &[Vec3]) -> f64 {
     let near = skin.nearest(x, &vec![DEEPEST; x.len()]);
     near.iter().flatten().map(|n| -n.distance).fold(0.0, f64::max)
-}
-
-/// The widest gap of pairs of vertices, m.
-pub(super) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
-    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -21,130 +21,25 @@ pub use super::assemble::Wearer;
 use super::assemble::gravity;
 pub use super::error::RestError;
 use super::graded::COARSEST;
-use super::grip::Grip;
-use super::newton::Outcome;
+pub use super::load::Load;
 use super::pieces::Pieces;
 use super::pile::pile_of;
 use super::plan::Plan;
 pub use super::real::Precision;
+pub use super::rested::{LevelReport, Progress, Rested};
+pub use super::settings::Rest;
 pub use super::start::StartError;
 use super::start::{check, check_lying, moved_out};
-pub use super::tangled::Load;
 use super::tangled::tangled;
-use super::unrest::Unbalanced;
 use super::work::{Draped, Work};
 use crate::contact::body::Body;
 use crate::contact::skin::Skin;
-use crate::energy::Models;
 use crate::scene::{Panel, Scene};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
 type Vec3 = Vector3<f64>;
-
-/// Settings of the rest solver.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rest {
-    /// Membrane and bending.
-    pub models: Models,
-    /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
-    pub speed: f64,
-    /// The share of the vertices that may gain more: some never come to rest where the skin of a body folds.
-    pub non_static: f64,
-    /// The coarsest level has at most about this many nodes.
-    pub coarsest: usize,
-    /// Steps on each level but the finest.
-    pub coarse_steps: usize,
-    /// Steps on the finest level before giving up.
-    pub finest_steps: usize,
-    /// Seams are joined when their gaps are below this, m.
-    pub join_gap: f64,
-    /// Wall time before giving up.
-    pub budget: Duration,
-    /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
-    /// cloth began.
-    pub graded: bool,
-    /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a coarser mesh keeps its folds.
-    pub from_here: bool,
-    /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep them open, and the sewn
-    /// garment is taken out of itself.
-    pub sew_through: bool,
-    /// Whether a step of a tenth of a second and more in which nothing is faster than `speed` proves rest, too.
-    pub long_proof: bool,
-    /// How precise the factor of each step is.
-    pub precision: Precision,
-    /// Whether what rests sleeps while few nodes move, which settle by themselves.
-    pub asleep: bool,
-}
-
-impl Default for Rest {
-    fn default() -> Self {
-        Self {
-            models: Models::STATIC,
-            speed: 1e-3,
-            non_static: 0.0,
-            coarsest: 200,
-            coarse_steps: 30,
-            finest_steps: 500,
-            join_gap: 5e-4,
-            budget: Duration::from_secs(600),
-            graded: false,
-            from_here: false,
-            sew_through: false,
-            long_proof: false,
-            precision: Precision::default(),
-            asleep: true,
-        }
-    }
-}
-
-/// What one level did.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LevelReport {
-    /// Its nodes.
-    pub nodes: usize,
-    /// Whether seams were open.
-    pub sewing: bool,
-    /// How it ended.
-    pub outcome: Outcome,
-    /// Wall time, s.
-    pub seconds: f64,
-}
-
-/// A garment at rest.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Rested {
-    /// Position of every vertex of the scene, m.
-    pub positions: Vec<Vec3>,
-    /// How the finest level ended.
-    pub outcome: Outcome,
-    /// Greatest force left on a node, N.
-    pub residual: f64,
-    /// Where that is, and what the cloth meets there.
-    pub unbalanced: Unbalanced,
-    /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
-    pub slides: Vec<Vec3>,
-    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what `Live` goes on from.
-    pub folds: Vec<f64>,
-    /// Friction of every contact of cloth with cloth, by sewn points: what `Live` goes on from.
-    pub grips: Vec<Grip>,
-    /// Distance at which the body begins to press on each vertex, m; none without a body.
-    pub offsets: Vec<f64>,
-    /// Elastic and gravitational energy, J.
-    pub energy: f64,
-    /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than the mesh can follow.
-    pub dip: f64,
-    /// Widest seam when it was joined, m; nothing where there are none.
-    pub joined_at: Option<f64>,
-    /// Every level, coarse to fine, of the try that came to its end.
-    pub levels: Vec<LevelReport>,
-    /// How often the garment was begun again, each time on a finer coarsest mesh, or once without grading.
-    pub restarts: usize,
-}
-
-/// What a caller learns while solving; it may stop the solver.
-pub type Progress<'p> = dyn FnMut(&LevelReport) -> ControlFlow<()> + 'p;
 
 impl Rest {
     /// Solves `scene`; `progress` hears of every step.

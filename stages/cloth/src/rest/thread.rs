@@ -45,3 +45,8 @@ impl Thread {
         }
     }
 }
+
+/// The widest gap of pairs of vertices, m.
+pub(super) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
+    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}

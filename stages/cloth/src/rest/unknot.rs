@@ -5,9 +5,10 @@
 //! that is knotted flat. Then cloth comes to rest from there. Each try takes more rings. Cost: one more run from near rest a try.
 
 use super::contour::uncross;
+use super::error::RestError;
 use super::newton::Pace;
 use super::patience::Patience;
-use super::solve::{LevelReport, Progress, RestError};
+use super::rested::{LevelReport, Progress};
 use super::system::System;
 use super::work::Work;
 use crate::mesh::Sheet;

@@ -2,17 +2,18 @@
 
 use super::assemble::{KEPT_PULL, strongest};
 use super::clear::{Clearance, clearance};
-use super::fallen::pieces_of;
+use super::cloths::pieces_of;
+use super::error::RestError;
 use super::multifrontal::Halt;
 use super::newton::{Outcome, Pace, relax};
 use super::pieces::Pieces;
 use super::pierce::pierced;
 use super::plan::Plan;
-use super::sew::widest;
-use super::solve::{LevelReport, Progress, RestError, Rested};
+use super::rested::{LevelReport, Progress, Rested};
 use super::system::System;
 use super::tangled::{Entangled, unsolvable};
-use super::unrest::unbalanced;
+use super::thread::widest;
+use super::unbalanced::unbalanced;
 use crate::error::ClothError;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 use super::tests::deepest;
 use super::*;
+use crate::energy::Models;
 use crate::energy::{Bending, Membrane};
 use crate::scene::{StrainLimit, generate};
 
