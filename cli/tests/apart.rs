@@ -20,7 +20,7 @@ use toile_trade::record::{Clock, Outcome, Trade};
 use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 
-const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
+const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [StaticEquilibrium(speed: 0.01)])";
 
 fn folder() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
@@ -37,7 +37,7 @@ const TRADE: [&str; 10] = [
     "trade",
     "sheet.ron",
     "--knob",
-    "Rest.speed=0.001..0.1",
+    "StaticEquilibrium.speed=0.001..0.1",
     "--repeats",
     "2",
     "--starts",
@@ -137,7 +137,7 @@ fn through_a_shell(dir: &Path, out: &str, kills: usize) -> (Trade, usize) {
         clock: Clock::Cpu,
         bench: Bench { until: None, cancel: Cancel::new(), listener: Arc::new(()), apart },
     };
-    let knobs = ["Rest.speed=0.001..0.1".parse().unwrap()];
+    let knobs = ["StaticEquilibrium.speed=0.001..0.1".parse().unwrap()];
     let trade = study(&source, &source.load(&[]).unwrap(), &knobs, &options, &mut |_| ()).unwrap();
     (trade, counted(&counter))
 }
@@ -162,7 +162,7 @@ fn an_ablation_that_the_user_ends_goes_on_from_the_runs_that_were_done() {
     let dir = folder();
     let (dir, counter) = (dir.path(), dir.path().join("count"));
     let registry = toile::registry();
-    let text = "(scene: Scene(file: \"sheet.json\"), fabric: Preset(\"cotton poplin\"), stages: [Rest(speed: 0.01, precision: Double, asleep: false)])";
+    let text = "(scene: Scene(file: \"sheet.json\"), fabric: Preset(\"cotton poplin\"), stages: [StaticEquilibrium(speed: 0.01, precision: Double, asleep: false)])";
     let (text, file, base) = (text.to_owned(), "sheet.ron".to_owned(), dir.to_owned());
     let source = Source { text, file, base, quality: None, set: Vec::new(), registry: &registry };
     // A run that hangs is ended by the user.

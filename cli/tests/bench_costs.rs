@@ -6,7 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-const PIPELINE: &str = "(name: \"sheet\", scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
+const PIPELINE: &str =
+    "(name: \"sheet\", scene: Scene(file: \"sheet.json\"), stages: [StaticEquilibrium(speed: 0.01)])";
 
 fn measured(dir: &Path, more: &[&str]) -> Output {
     fs::write(dir.join("sheet.ron"), PIPELINE).unwrap();
@@ -23,8 +24,10 @@ fn lines(path: &Path) -> Vec<Value> {
 fn each_run_has_a_process_of_its_own_and_of_three_the_shortest_counts() {
     let dir = tempfile::tempdir().unwrap();
     fs::write(dir.path().join("sheet.json"), sheet().to_string()).unwrap();
-    let answer =
-        measured(dir.path(), &["--repeats", "3", "--threads", "1", "--set", "stages.Rest.speed=0.02"]);
+    let answer = measured(
+        dir.path(),
+        &["--repeats", "3", "--threads", "1", "--set", "stages.StaticEquilibrium.speed=0.02"],
+    );
     let (out, err) = (String::from_utf8_lossy(&answer.stdout), String::from_utf8_lossy(&answer.stderr));
     assert!(answer.status.success(), "{err}");
     assert!(out.starts_with("4 runs of stages on "), "{out}");

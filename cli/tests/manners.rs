@@ -6,7 +6,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-const PIPELINE: &str = "(name: \"sheet\", scene: Scene(file: \"sheet.json\"), stages: [Rest(speed: 0.01)])";
+const PIPELINE: &str =
+    "(name: \"sheet\", scene: Scene(file: \"sheet.json\"), stages: [StaticEquilibrium(speed: 0.01)])";
 
 fn folder() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
@@ -223,7 +224,7 @@ fn a_pipeline_comes_from_standard_input() {
     let (code, out, err) = piped(dir.path(), &["explain", "-", "--no-cache"], PIPELINE);
     assert!(code == Some(0) && out.starts_with("sheet: "), "{out}{err}");
     let (code, out, err) = piped(dir.path(), &["why", "-"], PIPELINE);
-    assert!(code == Some(0) && out.contains("Rest"), "{out}{err}");
+    assert!(code == Some(0) && out.contains("StaticEquilibrium"), "{out}{err}");
     for (arguments, why) in [
         (&["run", "-", "--watch"][..], "cannot be watched"),
         (&["run", "-", "--locked"], "has no lock beside it"),
@@ -256,7 +257,7 @@ fn pipes_and_devices_are_no_inputs() {
             assert!(code == Some(3) && err.contains(what), "{command} {name}: {err}");
         }
         let sources = [
-            format!("(scene: Scene(file: {name:?}), stages: [Rest()])"),
+            format!("(scene: Scene(file: {name:?}), stages: [StaticEquilibrium()])"),
             format!("(photos: {{\"front\": (file: {name:?}, width: \"5 cm\")}}, stages: [Otsu()])"),
             format!("(body: BodyObj(file: {name:?}), stages: [BvhCollider()])"),
         ];
@@ -312,6 +313,9 @@ fn what_a_killed_run_left_behind_is_swept_by_the_next() {
         shelf.join(".tmpa1B2c3"),
     ];
     left.iter().for_each(|path| fs::write(path, "half").unwrap());
-    assert_eq!(said(dir.path(), &["run", "sheet.ron", "--set", "stages.Rest.speed=0.02"]).0, Some(0));
+    assert_eq!(
+        said(dir.path(), &["run", "sheet.ron", "--set", "stages.StaticEquilibrium.speed=0.02"]).0,
+        Some(0)
+    );
     assert!(left.iter().all(|path| !path.exists()));
 }

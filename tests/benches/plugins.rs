@@ -60,7 +60,7 @@ fn collider(c: &mut Criterion) {
 /// The time of the solve alone.
 fn solve(registry: &Registry) -> Duration {
     let done = vest_on_sdf(registry).unwrap();
-    let rest = done.log.stages.iter().find(|s| s.id == "Rest").unwrap();
+    let rest = done.log.stages.iter().find(|s| s.id == "StaticEquilibrium").unwrap();
     Duration::from_secs_f64(rest.wall_s)
 }
 

@@ -54,7 +54,7 @@ fn kept(text: &str) -> &str {
 fn branch(until: &str, fine: &str) -> String {
     format!(
         "GridMesher(id: \"Fine\", edge: \"{fine}\"), Carry(id: \"Carried\", from: [\"Fine\", \"{until}\"]), \
-         Rest(id: \"Settled\", from: \"Carried\", coarsest: 100000, steps: 2000)])"
+         StaticEquilibrium(id: \"Settled\", from: \"Carried\", coarsest: 100000, steps: 2000)])"
     )
 }
 

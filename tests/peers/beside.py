@@ -6,7 +6,7 @@
 
 FOLDER/bench holds make_scenes.py, metrics.py, peer_blender.py and peer_newton.py; PYTHON has numpy, libigl and bpy, and that
 of --newton numpy, libigl, warp-lang and newton (its Style3D solver, 20 iterations, seams welded before the start). Scenes are made in
-out/scenes. Our time is that of the stage `Rest` in `toile run pipelines/scene.ron`, without a cache, the best of the runs; a peer's is that of
+out/scenes. Our time is that of the stage `StaticEquilibrium` in `toile run pipelines/scene.ron`, without a cache, the best of the runs; a peer's is that of
 its simulation alone. Without the folder it says "skipped".
 """
 import argparse, json, os, pathlib, subprocess, sys
@@ -31,7 +31,7 @@ def ours(scene, runs):
         text = call(ROOT / "target/release/toile", "run", ROOT / "pipelines/scene.ron",
                     "--set", f"scene.file={OUT / scene}.json", "--out", out, "--json", "--no-cache")
         metrics = json.loads(text)
-        wall = next(s["wall_s"] for s in metrics["stages"] if s["id"] == "Rest")
+        wall = next(s["wall_s"] for s in metrics["stages"] if s["id"] == "StaticEquilibrium")
         if best is None or wall < best[0]:
             best = (wall, metrics["garment"], out / "result.obj")
     return best

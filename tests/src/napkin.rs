@@ -9,7 +9,7 @@ pub const PIPELINE: &str = r#"// A napkin held at two corners.
     name: "napkin",
     scene: Scene(file: "napkin.json"),
     stages: [
-        Rest(speed: 0.01),  // mine
+        StaticEquilibrium(speed: 0.01),  // mine
     ],
 )
 "#;

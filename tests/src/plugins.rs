@@ -25,7 +25,7 @@ pub fn vest_on_sdf(registry: &Registry) -> Result<RunResult, Box<dyn Error>> {
     let base = Path::new(&file).parent().unwrap_or(Path::new("."));
     let swapped: Override = "stages.BvhCollider=SdfCollider()".parse()?;
     let pipeline = load(&std::fs::read_to_string(&file)?, &file, base, registry, &[swapped])?;
-    let options = RunOptions { until: Some("Rest".into()), ..RunOptions::default() };
+    let options = RunOptions { until: Some("StaticEquilibrium".into()), ..RunOptions::default() };
     let listener: Arc<dyn Listener> = Arc::new(());
     Ok(run(&pipeline, &options, &Cancel::new(), &listener)?)
 }

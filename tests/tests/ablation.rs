@@ -16,7 +16,7 @@ const PIPELINE: &str = r#"(
     scene: Scene(file: "napkin.json"),
     body: Mannequin(edge: "22 mm"),
     fabric: Preset("cotton poplin"),
-    stages: [ Rest(speed: 0.01, precision: Double, asleep: false), GarmentObj() ],
+    stages: [ StaticEquilibrium(speed: 0.01, precision: Double, asleep: false), GarmentObj() ],
 )
 "#;
 

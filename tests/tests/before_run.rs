@@ -134,7 +134,10 @@ fn what_cannot_be_read_of_scenes_and_bodies_comes_out_with_all_other_faults() {
         ("scene: Scene(file: \"bad_body.json\")", "line 1 of the OBJ: a vertex needs three numbers"),
         ("scene: Scene(file: \"no_body.json\")", "none.obj"),
     ] {
-        write("p.ron", &format!("(name: \"p\", {stages}, stages: [Rest(), GarmentObj(name: \"a/b\")])"));
+        write(
+            "p.ron",
+            &format!("(name: \"p\", {stages}, stages: [StaticEquilibrium(), GarmentObj(name: \"a/b\")])"),
+        );
         let answer = toile(&["validate", &file]);
         assert_eq!(answer.code, 3, "{}", answer.err);
         for text in [what, "the file name \"a/b\" has a character"] {

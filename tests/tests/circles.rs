@@ -27,20 +27,6 @@ const LEFT: &[&[&str]] = &[
     &["core/src/artifact/pattern/chain.rs", "core/src/artifact/pattern/lower.rs"],
     &["core/src/context.rs", "core/src/files.rs"],
     &["core/src/param/check.rs", "core/src/param/doc.rs", "core/src/param/words.rs"],
-    &[
-        "stages/cloth/src/rest/error.rs",
-        "stages/cloth/src/rest/fallen.rs",
-        "stages/cloth/src/rest/level.rs",
-        "stages/cloth/src/rest/plan.rs",
-        "stages/cloth/src/rest/sew.rs",
-        "stages/cloth/src/rest/solve.rs",
-        "stages/cloth/src/rest/tangled.rs",
-        "stages/cloth/src/rest/unrest.rs",
-        "stages/cloth/src/rest/work.rs",
-    ],
-    &["stages/cloth/src/rest/grip.rs", "stages/cloth/src/rest/layers.rs"],
-    &["stages/cloth/src/rest/newton.rs", "stages/cloth/src/rest/pile.rs", "stages/cloth/src/rest/search.rs"],
-    &["stages/src/cloth/frequency.rs", "stages/src/cloth/model.rs"],
     &["stages/src/photo/expected.rs", "stages/src/photo/photos.rs"],
 ];
 

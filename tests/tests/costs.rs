@@ -76,7 +76,7 @@ fn a_refined_garment_is_foreseen_to_the_triangle() {
     for (stage, fact) in made(&pipeline, "Settle") {
         assert_eq!(triangles(&stage), fact.get(Quantity::Triangles), "{stage}");
     }
-    assert_eq!(triangles("GarmentObj"), Some(9.0 * triangles("Rest").unwrap()));
+    assert_eq!(triangles("GarmentObj"), Some(9.0 * triangles("StaticEquilibrium").unwrap()));
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_way_of_its_own_has_records_of_its_own() {
     let costs = run(&pipeline, &options, &Cancel::new(), &listener).unwrap().costs;
     let noted: Vec<String> =
         note(&pipeline, &costs, &Costs::default(), 1).into_iter().map(|r| r.stage).collect();
-    assert_eq!(noted[1..4], ["Rest", "Refine", "Rest(from_here: true)"]);
+    assert_eq!(noted[1..4], ["StaticEquilibrium", "Refine", "StaticEquilibrium(from_here: true)"]);
 }
 
 #[test]
@@ -208,6 +208,6 @@ fn springs_are_measured_on_garments_cut_along_their_outline() {
         let text = std::fs::read_to_string(root().join("tests/costs").join(&file)).unwrap();
         let springs = load(&text, &file, &root().join("tests/costs"), &toile::registry(), &[]).unwrap();
         assert!(springs.find("SpringDraper").is_some() && springs.find("Place").is_some(), "{file}");
-        assert!(springs.find("Rest").is_none(), "{file}");
+        assert!(springs.find("StaticEquilibrium").is_none(), "{file}");
     }
 }

@@ -79,17 +79,17 @@ fn the_reports_views_are_those_of_the_preview_where_there_is_one() {
 
 #[test]
 fn factors_are_of_single_precision_where_that_solves_the_step() {
-    let told = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.graded=false"]);
+    let told = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.graded=false"]);
     let words = "
   Rest                 simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
       by      about 1024 triangles, whose matrix tells at each step how well it is solved
       within  surface 20 mm
 ";
     assert!(told.contains(words), "{told}");
-    assert!(told.contains("      else    --set 'stages.Rest.precision=Double'"), "{told}");
+    assert!(told.contains("      else    --set 'stages.StaticEquilibrium.precision=Double'"), "{told}");
     let graded = decisions(&[&pipeline("scene.ron")]);
     assert!(graded.contains("      within  surface 8 mm\n"), "{graded}");
-    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.precision=Double"]);
+    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.precision=Double"]);
     assert!(!turned.contains("mixed-precision"), "{turned}");
 }
 
@@ -102,8 +102,8 @@ fn regions_at_rest_sleep_unless_they_may_not() {
       within  surface 8 mm
 ";
     assert!(told.contains(words), "{told}");
-    assert!(told.contains("      else    --set 'stages.Rest.asleep=false'"), "{told}");
-    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.Rest.asleep=false"]);
+    assert!(told.contains("      else    --set 'stages.StaticEquilibrium.asleep=false'"), "{told}");
+    let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.asleep=false"]);
     assert!(!turned.contains("regions-at-rest"), "{turned}");
 }
 
@@ -112,7 +112,7 @@ const SKIRT: &str = r#"(
     name: "skirt",
     scene: Scene(file: "FILE"),
     fabric: Preset("cotton poplin"),
-    stages: [ Rest(precision: Double, asleep: false), GarmentObj() ],
+    stages: [ StaticEquilibrium(precision: Double, asleep: false), GarmentObj() ],
 )
 "#;
 
@@ -181,7 +181,7 @@ fn each_decision_is_turned_round_and_held_to_its_tolerance() {
     explained_by(&file, &out);
     let csv = std::fs::read_to_string(out.join("ablation.csv")).unwrap();
     assert_eq!(csv.lines().count(), 3, "{csv}");
-    let both = toile(&["trade", &file, "--ablate", "--knob", "Rest.speed=1e-3..1e-2"]);
+    let both = toile(&["trade", &file, "--ablate", "--knob", "StaticEquilibrium.speed=1e-3..1e-2"]);
     assert!(both.err.contains("'--ablate' cannot be used with '--knob <KEY=VALUES>'"), "{}", both.err);
 }
 
@@ -211,7 +211,8 @@ fn explained_by(file: &str, ablation: &Path) {
     }
     let table = toile(&["explain", file, "--ablation", &folder]);
     assert!(table.out.contains(" s of processor time in one round, measured on 20"), "{}", table.out);
-    let other = toile(&["explain", file, "--ablation", &folder, "--set", "stages.Rest.speed=0.01"]);
+    let other =
+        toile(&["explain", file, "--ablation", &folder, "--set", "stages.StaticEquilibrium.speed=0.01"]);
     let words = "ablation.json\" is not taken: it is of another state of the pipeline\n  help: `toile trade PIPELINE --ablate` measures again\n";
     assert!(other.code == 3 && other.err.ends_with(words), "{}", other.err);
     let gone = toile(&["explain", file, "--ablation", "no/such/folder"]);
@@ -237,7 +238,7 @@ fn explain_gives_one_json_object() {
     assert_eq!(named, want);
     let stages = all["stages"].as_array().unwrap();
     let stage = |id: &str| stages.iter().find(|s| s["id"] == id).unwrap();
-    let (mesher, drape) = (stage("GridMesher"), stage("Rest"));
+    let (mesher, drape) = (stage("GridMesher"), stage("StaticEquilibrium"));
     assert_eq!((&mesher["runs"], mesher["role"].as_str()), (&Value::Bool(true), Some("mesher")));
     assert_eq!(
         (mesher["takes"][0]["kind"].as_str(), mesher["takes"][0]["from"].as_str()),
@@ -282,7 +283,11 @@ fn explain_gives_one_json_object() {
 
 #[test]
 fn a_pipeline_that_leaves_nothing_out_has_nothing_to_turn_round() {
-    let turned = ["scene.distances=Ahead", "stages.Rest.precision=Double", "stages.Rest.asleep=false"];
+    let turned = [
+        "scene.distances=Ahead",
+        "stages.StaticEquilibrium.precision=Double",
+        "stages.StaticEquilibrium.asleep=false",
+    ];
     let (scene, ahead) = (pipeline("scene.ron"), turned.map(|t| ["--set", t]).concat());
     assert_eq!(decisions(&[&[&*scene], &ahead[..]].concat()), "decisions: nothing is left out or simplified");
     let answer = toile(&[&["trade", &*scene, "--ablate"], &ahead[..]].concat());

@@ -164,7 +164,7 @@ fn pattern_loading() {
 
 #[test]
 fn timeout() {
-    let (code, said) = vest("stages.Rest.time_limit=0.001");
+    let (code, said) = vest("stages.StaticEquilibrium.time_limit=0.001");
     assert_eq!((code, &said["error"]), (5, &"timeout".into()));
     // The seconds are those of the machine.
     let message = said["message"].as_str().unwrap();

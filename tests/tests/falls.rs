@@ -74,7 +74,7 @@ const SKIRT: &str = "the cloth of 'front' and 'back'";
 
 #[test]
 fn a_skirt_that_misses_its_body_is_an_error_with_a_remedy() {
-    for draper in ["Rest()", "Rest(graded: false)"] {
+    for draper in ["StaticEquilibrium()", "StaticEquilibrium(graded: false)"] {
         for (aside, start, back) in [
             (
                 [0.6, 0.0, 0.0],
@@ -99,7 +99,7 @@ fn a_skirt_that_misses_its_body_is_an_error_with_a_remedy() {
 
 #[test]
 fn a_skirt_too_wide_is_an_error_with_a_remedy() {
-    let (answer, metrics) = Skirt::new().wider(1.4).run("Rest()");
+    let (answer, metrics) = Skirt::new().wider(1.4).run("StaticEquilibrium()");
     assert_eq!((answer.code, metrics), (4, None), "{}", answer.err);
     let words = words(&answer);
     for text in [SKIRT, "finds no hold on the body and falls past it", "cut it narrower"] {
@@ -109,7 +109,7 @@ fn a_skirt_too_wide_is_an_error_with_a_remedy() {
 
 #[test]
 fn a_body_in_centimetres_is_read_so_and_told() {
-    let (answer, _) = Skirt::new().scaled_body(100.0).run("Rest()");
+    let (answer, _) = Skirt::new().scaled_body(100.0).run("StaticEquilibrium()");
     assert_eq!(answer.code, 0, "{}", answer.err);
     assert!(words(&answer).contains("the body's OBJ is read in centimetres"), "{}", answer.err);
 }
@@ -125,11 +125,11 @@ fn solvers_in_time_tell_a_fall_as_well() {
 
 #[test]
 fn a_skirt_that_slides_some_centimetres_is_good_and_measured() {
-    let (answer, metrics) = Skirt::new().moved([0.0, 0.06, 0.02]).run("Rest(graded: false)");
+    let (answer, metrics) = Skirt::new().moved([0.0, 0.06, 0.02]).run("StaticEquilibrium(graded: false)");
     assert_eq!(answer.code, 0, "{}", answer.err);
     let share = metrics.unwrap()["garment"]["on_body"].as_f64().unwrap();
     assert!((0.7..1.0).contains(&share), "{share}");
-    let (answer, _) = Skirt::new().run("Rest(graded: false), Measure(least_on_body: 1.0)");
+    let (answer, _) = Skirt::new().run("StaticEquilibrium(graded: false), Measure(least_on_body: 1.0)");
     assert_eq!(answer.code, 4, "{}", answer.err);
     assert!(words(&answer).contains("panel \"front\" has slid down the body: 9"), "{}", answer.err);
 }
@@ -146,7 +146,7 @@ fn a_sewn_skirt_keeps_its_place_with_a_solver_in_time() {
 fn without_a_body_a_fall_is_followed() {
     let mut skirt = Skirt::new();
     skirt.scene["body"] = Value::Null;
-    let (answer, metrics) = skirt.run("Rest()");
+    let (answer, metrics) = skirt.run("StaticEquilibrium()");
     assert!(answer.err.contains("its fall is followed for the scene's phases"), "{}", answer.err);
     assert_eq!(metrics.unwrap()["garment"]["on_body"], Value::Null);
 }

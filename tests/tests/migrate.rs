@@ -20,7 +20,9 @@ const OLD: &str = r#"// My vest.
             tugs: 3,            // pull
             seam_distance: "1 mm",
         ),
+        Rest(graded: false),
     ],
+    qualities: [Quality(name: "Draft", set: ["stages.Rest.speed=0.01"])],
 )
 "#;
 
@@ -36,7 +38,7 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
     assert_eq!(refused.code, 3);
     for words in [
         "the stage `LaplacianEdges` is now called `Laplacian`",
-        "the parameter `tugs` was removed: seams that are stuck are pulled harder by themselves",
+        "the parameter `tugs` was removed: seams close at the speed `closing`",
         "`toile migrate` rewrites the file to the new names",
     ] {
         assert!(refused.out.contains(words), "{words} is missing in {}", refused.out);
@@ -44,7 +46,7 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
 
     let changes = format!(
         "{name}: line 9: stage LaplacianEdges -> Laplacian\n\
-         {name}: line 14: SpringStitcher: tugs removed: seams that are stuck are pulled harder by themselves\n"
+         {name}: line 14: SpringStitcher: tugs removed: seams close at the speed `closing`\n"
     );
     let check = toile(&["migrate", "--check", &name]);
     assert_eq!((check.code, check.out.as_str()), (4, changes.as_str()));

@@ -33,7 +33,7 @@ fn an_output_folder_that_cannot_be_is_refused_before_the_run() {
     let dir = tempfile::tempdir().unwrap();
     let ron = scene(dir.path(), "result", "result").display().to_string();
     // A run would end out of time.
-    let short = ["--set", "stages.Rest.time_limit=0.001", "--no-cache"];
+    let short = ["--set", "stages.StaticEquilibrium.time_limit=0.001", "--no-cache"];
     let taken = dir.path().join("taken");
     fs::write(&taken, "a file").unwrap();
     let out = taken.join("out").display().to_string();

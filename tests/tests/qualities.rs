@@ -16,7 +16,8 @@ fn on(dir: &Path, command: &str, file: &str, more: &[&str]) -> Answer {
 fn measured(dir: &Path) -> String {
     napkin::write(dir).unwrap();
     let out = dir.join("out").display().to_string();
-    let fixed = ["--knob", "Rest.speed=0.001..0.1", "--repeats", "1", "--starts", "1", "--points", "3"];
+    let fixed =
+        ["--knob", "StaticEquilibrium.speed=0.001..0.1", "--repeats", "1", "--starts", "1", "--points", "3"];
     let answer = on(dir, "trade", "napkin.ron", &[&["--out", &out, "--budget", "2m"], &fixed[..]].concat());
     assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
     out
@@ -44,7 +45,8 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
     let refused = "error: quality `Very fine`: an error of at most 0.000001 mm cannot be proved: the reference is known to ";
     assert!(answer.err.contains(refused), "{}", answer.err);
     assert!(
-        answer.out.contains("Rough (20 cm): Rest.speed ") && answer.out.contains("Mid (10 cm): "),
+        answer.out.contains("Rough (20 cm): StaticEquilibrium.speed ")
+            && answer.out.contains("Mid (10 cm): "),
         "{}",
         answer.out
     );
@@ -54,7 +56,7 @@ fn qualities_are_measured_once_proved_written_checked_and_run() {
     assert!(text.starts_with(PIPELINE.trim_end().trim_end_matches(')')), "all else stays as it was: {text}");
     assert!(
         text.contains(
-            "Quality(name: \"Rough\", max_error: \"20 cm\",\n            set: [\"stages.Rest.speed="
+            "Quality(name: \"Rough\", max_error: \"20 cm\",\n            set: [\"stages.StaticEquilibrium.speed="
         ),
         "{text}"
     );
@@ -83,7 +85,7 @@ fn metrics(dir: &Path, more: &[&str]) -> Value {
 
 fn run(dir: &Path) {
     assert_eq!(metrics(dir, &["--quality", "Rough"])["quality"], "Rough");
-    let changed = metrics(dir, &["--quality", "Rough", "--set", "stages.Rest.speed=0.02"]);
+    let changed = metrics(dir, &["--quality", "Rough", "--set", "stages.StaticEquilibrium.speed=0.02"]);
     assert_eq!(changed["quality"], "Rough, changed by --set");
     assert!(metrics(dir, &[]).get("quality").is_none());
     let shown = on(
@@ -136,7 +138,7 @@ fn edited(dir: &Path) {
     let copy = dir.join("copy.json").display().to_string();
     assert_eq!(with(&["--set", &format!("scene.file={copy:?}")]).err, "");
     assert!(
-        with(&["--set", "stages.Rest.steps=400"])
+        with(&["--set", "stages.StaticEquilibrium.steps=400"])
             .err
             .starts_with("warning: quality Mid: measured for another pipeline; ")
     );
@@ -263,12 +265,15 @@ fn a_setting_that_does_not_fit_is_a_fault_of_the_file() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     napkin::write(dir).unwrap();
-    let wrong = "    qualities: [Quality(name: \"A\", max_error: \"1 mm\", set: [\"stages.Rest.sped=1\"])],\n    stages";
+    let wrong = "    qualities: [Quality(name: \"A\", max_error: \"1 mm\", set: [\"stages.StaticEquilibrium.sped=1\"])],\n    stages";
     fs::write(dir.join("napkin.ron"), PIPELINE.replacen("    stages", wrong, 1)).unwrap();
     let answer = on(dir, "validate", "napkin.ron", &["--json"]);
     let faults: Value = serde_json::from_str(&answer.out).unwrap();
     let fault = &faults["faults"][0];
     assert_eq!((answer.code, &fault["line"], &fault["column"]), (3, &5.into(), &61.into()));
-    assert_eq!(fault["message"], "quality `A`: `stages.Rest.sped`: `Rest` has no parameter `sped`");
-    assert_eq!(fault["hint"], "did you mean `stages.Rest.speed`?");
+    assert_eq!(
+        fault["message"],
+        "quality `A`: `stages.StaticEquilibrium.sped`: `StaticEquilibrium` has no parameter `sped`"
+    );
+    assert_eq!(fault["hint"], "did you mean `stages.StaticEquilibrium.speed`?");
 }

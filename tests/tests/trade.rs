@@ -8,8 +8,18 @@ use toile_tests::{Answer, toile};
 
 fn trade(dir: &Path, more: &[&str]) -> Answer {
     let (file, out) = (dir.join("napkin.ron").display().to_string(), dir.join("out").display().to_string());
-    let fixed =
-        ["trade", &file, "--out", &out, "--knob", "Rest.speed=0.001..0.1", "--repeats", "1", "--starts", "1"];
+    let fixed = [
+        "trade",
+        &file,
+        "--out",
+        &out,
+        "--knob",
+        "StaticEquilibrium.speed=0.001..0.1",
+        "--repeats",
+        "1",
+        "--starts",
+        "1",
+    ];
     toile(&[&fixed, more].concat())
 }
 
@@ -83,10 +93,13 @@ fn faults_of_knobs_end_before_anything_runs() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();
     napkin::write(dir).unwrap();
-    let answer = trade(dir, &["--knob", "Rest.sped=1..2"]);
+    let answer = trade(dir, &["--knob", "StaticEquilibrium.sped=1..2"]);
     assert_eq!(
         (answer.code, answer.err.as_str()),
-        (3, "error: `Rest` has no parameter `sped`\n  help: did you mean `Rest.speed`?\n")
+        (
+            3,
+            "error: `StaticEquilibrium` has no parameter `sped`\n  help: did you mean `StaticEquilibrium.speed`?\n"
+        )
     );
     assert!(!dir.join("out").exists());
 }

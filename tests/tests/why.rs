@@ -32,7 +32,7 @@ fn the_cause_is_the_field_that_changed() {
     let unknown = why(&["Rost"]);
     assert_eq!(unknown.code, 3);
     let words = unknown.err.split_whitespace().collect::<Vec<_>>().join(" ");
-    let head = "× there is no stage `Rost` in this pipeline help: did you mean `Rest`? its stages are Photos, Mannequin, ";
+    let head = "× there is no stage `Rost` in this pipeline help: did you mean `StaticEquilibrium`? its stages are Photos, Mannequin, ";
     assert!(words.starts_with(head), "{words}");
 }
 

@@ -4,8 +4,8 @@
 //! of the stage itself, or with a parameter. Values are a range with a unit, or a list:
 //!
 //! ```text
-//! mesher.edge=6..24 mm        GridMesher.edge=6 mm..2.4 cm      Rest.speed=1e-4..1e-2
-//! BvhCollider.volume=Aabb,Obb,KDop(14)      solver=Rest,Xpbd      mesher.edge=8 mm,12 mm
+//! mesher.edge=6..24 mm        GridMesher.edge=6 mm..2.4 cm      StaticEquilibrium.speed=1e-4..1e-2
+//! BvhCollider.volume=Aabb,Obb,KDop(14)      solver=StaticEquilibrium,Xpbd      mesher.edge=8 mm,12 mm
 //! ```
 //!
 //! This file reads the text alone; `slot` holds it against a pipeline.
@@ -63,7 +63,7 @@ impl FromStr for KnobSpec {
     fn from_str(text: &str) -> Result<Self, StageError> {
         let no_knob = || {
             fault(format!("`{text}` is no knob"))
-                .hint("write KEY=VALUES, like `mesher.edge=6..24 mm` or `solver=Rest,Xpbd`")
+                .hint("write KEY=VALUES, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`")
         };
         let (key, values) = text.split_once('=').ok_or_else(no_knob)?;
         let (owner, param) = match key.trim().split_once('.') {
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(knob(" mesher.edge = 6 mm .. 2.4 cm ").values, six_to_24);
         assert_eq!(knob("mesher.edge=6..24 mm").key(), "mesher.edge");
         assert_eq!(
-            knob("Rest.speed=1e-4..1e-2").values,
+            knob("StaticEquilibrium.speed=1e-4..1e-2").values,
             Values::Range(Number::Plain(1e-4), Number::Plain(1e-2))
         );
     }
@@ -169,12 +169,12 @@ mod tests {
         let found = knob("collider.volume=Aabb, KDop(14),Aabb");
         assert_eq!((found.owner.as_str(), found.param.as_deref()), ("collider", Some("volume")));
         assert_eq!(found.values, Values::List(vec!["Aabb".into(), "KDop(14)".into()]));
-        assert_eq!(knob("solver=Rest,Xpbd").param, None);
+        assert_eq!(knob("solver=StaticEquilibrium,Xpbd").param, None);
     }
 
     #[test]
     fn faults_word_for_word() {
-        let write = "write KEY=VALUES, like `mesher.edge=6..24 mm` or `solver=Rest,Xpbd`";
+        let write = "write KEY=VALUES, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`";
         assert_eq!(refused("mesher"), ("`mesher` is no knob".into(), write.into()));
         assert_eq!(refused("mesher.=1,2"), ("`mesher.=1,2` is no knob".into(), write.into()));
         assert_eq!(
@@ -189,7 +189,7 @@ mod tests {
             )
         );
         assert_eq!(
-            refused("solver=Rest"),
+            refused("solver=StaticEquilibrium"),
             (
                 "`solver` has one value and cannot be turned".into(),
                 "give a range or two values, or fix it by `--set`, like `--set stages.solver=...`".into()

@@ -13,7 +13,7 @@ use toile_trade::slot::ReferenceValue;
 pub(crate) struct TradeArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
-    /// What to turn, like `mesher.edge=6..24 mm` or `solver=Rest,Xpbd`; may be given again [default: edge length, mesher and solver]
+    /// What to turn, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`; may be given again [default: edge length, mesher and solver]
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
     /// Folder for the results, and for going on with them [default: out/NAME-trade or, with --quality, out/NAME-QUALITY-trade; with --ablate -ablation]
@@ -55,7 +55,7 @@ pub(crate) struct StudyArgs {
     /// Root mean square move of a moved start
     #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = super::amounts::length)]
     pub(crate) jitter: Length,
-    /// Value of a knob for the reference alone, like `Rest.graded=true`; may be given again [default: the pipeline's own]
+    /// Value of a knob for the reference alone, like `StaticEquilibrium.graded=true`; may be given again [default: the pipeline's own]
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) reference: Vec<ReferenceValue>,
     /// Clock of the front; on a busy machine the processors' own is steadier

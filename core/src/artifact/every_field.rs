@@ -440,7 +440,7 @@ fn of_run_logs() {
         used: None,
         predicted: None,
     };
-    let failure = Failure { stage: "Rest".into(), message: "it hangs".into(), hint: None };
+    let failure = Failure { stage: "StaticEquilibrium".into(), message: "it hangs".into(), hint: None };
     let base = RunLog { stages: vec![stage.clone()], failure: Some(failure.clone()), ..RunLog::default() };
     let mut others = changed!(
         base.clone(),

@@ -3,13 +3,13 @@
 #![allow(clippy::print_stdout)]
 use std::error::Error;
 use std::ops::ControlFlow;
-use toile_cloth::rest::solve::Rest;
 use toile_cloth::scene::generate;
+use toile_cloth::statics::solve::StaticEquilibrium;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let cells: u32 = std::env::args().nth(1).map_or(Ok(24), |n| n.parse())?;
     let scene = generate::hang(cells);
-    let rested = Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
+    let rested = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
     // All bits of the answer, so that two builds can be told to have done the same.
     let bits = rested.positions.iter().flat_map(|p| [p.x, p.y, p.z]).map(f64::to_bits);
     let digest = bits.fold(0xcbf2_9ce4_8422_2325_u64, |d, b| (d ^ b).wrapping_mul(0x0100_0000_01b3));

@@ -7,9 +7,9 @@ use std::path::Path;
 use std::time::Instant;
 use toile_cloth::contact::body::Body;
 use toile_cloth::fabric::{Curve, Fabric};
-use toile_cloth::rest::live::Live;
-use toile_cloth::rest::solve::{Rest, Wearer};
 use toile_cloth::scene::{self, Scene};
+use toile_cloth::statics::live::Live;
+use toile_cloth::statics::solve::{Collider, StaticEquilibrium};
 
 /// Newton's steps for each state.
 const STEPS: usize = 2;
@@ -37,10 +37,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let states: usize = args.get(1).map_or(Ok(120), |n| n.parse())?;
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
-    let state = Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
+    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
+    let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(()))?;
     let (cloth, rub) = (scene.material.clone(), wearer.map_or(0.0, |w| w.friction));
-    let mut live = Live::new(Rest::default(), scene.clone(), wearer, &state)?;
+    let mut live = Live::new(StaticEquilibrium::default(), scene.clone(), wearer, &state)?;
     let (mut slowest, mut residual, mut speed) = (0.0f64, 0.0f64, 0.0f64);
     let mut change = 0.0;
     let clock = Instant::now();

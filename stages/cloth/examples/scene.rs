@@ -4,9 +4,9 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
-use toile_cloth::rest::solve::{Rest, RestError, Rested};
-use toile_cloth::rest::unrest::unrest;
 use toile_cloth::scene;
+use toile_cloth::statics::not_at_rest::unrest;
+use toile_cloth::statics::solve::{Equilibrium, StaticEquilibrium, StaticsError};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
@@ -20,24 +20,23 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let clock = Instant::now();
     let mut steps = 0;
-    let solved = Rest { graded: args.iter().any(|a| a == "--graded"), ..Rest::default() }.solve(
-        &scene,
-        &mut |level| {
-            steps += 1;
-            if trace {
-                let o = &level.outcome;
-                eprintln!(
-                    "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
-                    level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
-                );
-            }
-            ControlFlow::Continue(())
-        },
-    );
+    let solved =
+        StaticEquilibrium { graded: args.iter().any(|a| a == "--graded"), ..StaticEquilibrium::default() }
+            .solve(&scene, &mut |level| {
+                steps += 1;
+                if trace {
+                    let o = &level.outcome;
+                    eprintln!(
+                        "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
+                        level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
+                    );
+                }
+                ControlFlow::Continue(())
+            });
     let wall = clock.elapsed().as_secs_f64();
-    let (state, error): (Rested, Option<String>) = match solved {
+    let (state, error): (Equilibrium, Option<String>) = match solved {
         Ok(state) => (state, None),
-        Err(RestError::NotAtRest { wanted, panel, state }) => {
+        Err(StaticsError::NotAtRest { wanted, panel, state }) => {
             let why = unrest(&state, &panel, wanted);
             (*state, Some(why))
         }

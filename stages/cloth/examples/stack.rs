@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use toile_cloth::rest::solve::{LevelReport, Rest, RestError, Rested};
 use toile_cloth::scene::generate;
+use toile_cloth::statics::solve::{Equilibrium, LevelReport, StaticEquilibrium, StaticsError};
 
 const USAGE: &str = "stack SHEETS CELLS SECONDS [STATE.obj] [--trace]";
 
@@ -19,7 +19,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::env::args().skip(1).partition(|a| a.starts_with("--"));
     let [sheets, cells, seconds, file @ ..] = &words[..] else { return Err(USAGE.into()) };
     let scene = generate::stack(sheets.parse()?, cells.parse()?);
-    let rest = Rest { budget: Duration::from_secs(seconds.parse()?), ..Rest::default() };
+    let rest =
+        StaticEquilibrium { budget: Duration::from_secs(seconds.parse()?), ..StaticEquilibrium::default() };
     let (clock, trace, mut steps) = (Instant::now(), options.iter().any(|o| o == "--trace"), 0);
     let solved = rest.solve(&scene, &mut |level| {
         steps += 1;
@@ -55,12 +56,12 @@ fn tell(clock: Instant, level: &LevelReport) {
 }
 
 /// The state, at rest or not: then it says why.
-fn found(solved: Result<Rested, RestError>) -> Result<Rested, RestError> {
+fn found(solved: Result<Equilibrium, StaticsError>) -> Result<Equilibrium, StaticsError> {
     match solved {
-        Err(error @ (RestError::NotAtRest { .. } | RestError::Crossing { .. })) => {
+        Err(error @ (StaticsError::NotAtRest { .. } | StaticsError::Crossing { .. })) => {
             println!("{error}");
             match error {
-                RestError::NotAtRest { state, .. } | RestError::Crossing { state, .. } => Ok(*state),
+                StaticsError::NotAtRest { state, .. } | StaticsError::Crossing { state, .. } => Ok(*state),
                 other => Err(other),
             }
         }

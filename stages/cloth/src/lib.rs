@@ -11,6 +11,6 @@ pub mod fabric;
 pub mod linear;
 pub mod mesh;
 pub mod motion;
-pub mod rest;
 pub mod scene;
 pub mod solver;
+pub mod statics;

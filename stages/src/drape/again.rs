@@ -3,25 +3,25 @@
 use crate::body::grown;
 use toile_cloth::contact::body::Body as Solid;
 use toile_cloth::contact::past::Start;
-use toile_cloth::rest::solve::{RestError, Rested};
+use toile_cloth::statics::solve::{Equilibrium, StaticsError};
 use toile_core::prelude::*;
 
 /// Triangles may dip this deep into the body before it is said, m: the limit that vertices are judged by.
 pub(super) const MOST_DIP: f64 = 1e-4;
 
 /// Why a garment is sewn once more around a thin figure, in words; nothing where it came out well, or where that would not help.
-pub(super) fn why_again(result: &Result<Rested, RestError>) -> Option<&'static str> {
+pub(super) fn why_again(result: &Result<Equilibrium, StaticsError>) -> Option<&'static str> {
     match result {
-        Err(RestError::SeamNotClosed { .. }) => Some("the body keeps seams open"),
-        Err(RestError::Tangled { .. } | RestError::Crossing { .. }) => {
+        Err(StaticsError::SeamNotClosed { .. }) => Some("the body keeps seams open"),
+        Err(StaticsError::Tangled { .. } | StaticsError::Crossing { .. }) => {
             Some("cloth does not come out of cloth")
         }
         // What stands beside the body falls past the thin figure, too.
-        Err(RestError::FallsPast(fallen)) => {
+        Err(StaticsError::FallsPast(fallen)) => {
             (fallen.start == Start::Around).then_some("the cloth slides off the body")
         }
         Ok(state) => (state.dip > MOST_DIP).then_some("the body comes through the cloth"),
-        Err(RestError::NotAtRest { state, .. }) => {
+        Err(StaticsError::NotAtRest { state, .. }) => {
             (state.dip > MOST_DIP).then_some("the body comes through the cloth")
         }
         Err(_) => None,
@@ -29,11 +29,14 @@ pub(super) fn why_again(result: &Result<Rested, RestError>) -> Option<&'static s
 }
 
 /// Whether the second result of a garment is to be taken for its first. An error of the first tells more than one of the second.
-pub(super) fn is_better(second: &Result<Rested, RestError>, first: &Result<Rested, RestError>) -> bool {
-    let faults = |result: &Result<Rested, RestError>| match result {
+pub(super) fn is_better(
+    second: &Result<Equilibrium, StaticsError>,
+    first: &Result<Equilibrium, StaticsError>,
+) -> bool {
+    let faults = |result: &Result<Equilibrium, StaticsError>| match result {
         Ok(state) => usize::from(state.dip > MOST_DIP),
-        Err(RestError::NotAtRest { state, .. }) => 1 + usize::from(state.dip > MOST_DIP),
-        Err(RestError::Crossing { .. }) => 3,
+        Err(StaticsError::NotAtRest { state, .. }) => 1 + usize::from(state.dip > MOST_DIP),
+        Err(StaticsError::Crossing { .. }) => 3,
         Err(_) => 4,
     };
     faults(second) < faults(first)
@@ -51,10 +54,10 @@ pub(super) fn thin_of(collider: &Collider) -> Vec<Solid> {
 mod tests {
     use super::*;
     use toile_cloth::contact::past::Fallen;
-    use toile_cloth::rest::unrest::{Meets, Unbalanced};
+    use toile_cloth::statics::unbalanced::{Meets, Unbalanced};
 
-    fn state(dip: f64) -> Box<Rested> {
-        Box::new(Rested {
+    fn state(dip: f64) -> Box<Equilibrium> {
+        Box::new(Equilibrium {
             positions: vec![],
             outcome: Default::default(),
             residual: 0.0,
@@ -71,33 +74,33 @@ mod tests {
         })
     }
 
-    fn at_rest(dip: f64) -> Result<Rested, RestError> {
+    fn at_rest(dip: f64) -> Result<Equilibrium, StaticsError> {
         Ok(*state(dip))
     }
 
-    fn not_at_rest(dip: f64) -> Result<Rested, RestError> {
-        Err(RestError::NotAtRest { wanted: 1e-3, panel: "front".into(), state: state(dip) })
+    fn not_at_rest(dip: f64) -> Result<Equilibrium, StaticsError> {
+        Err(StaticsError::NotAtRest { wanted: 1e-3, panel: "front".into(), state: state(dip) })
     }
 
-    fn crossing() -> Result<Rested, RestError> {
-        Err(RestError::Crossing { pairs: 3, state: state(0.0) })
+    fn crossing() -> Result<Equilibrium, StaticsError> {
+        Err(StaticsError::Crossing { pairs: 3, state: state(0.0) })
     }
 
-    fn open() -> Result<Rested, RestError> {
+    fn open() -> Result<Equilibrium, StaticsError> {
         let (seam, reversed, positions) = ("side".into(), vec![], vec![]);
-        Err(RestError::SeamNotClosed { seam, gap: 0.1, force: 1.0, reversed, positions })
+        Err(StaticsError::SeamNotClosed { seam, gap: 0.1, force: 1.0, reversed, positions })
     }
 
-    fn fallen(start: Start) -> Result<Rested, RestError> {
+    fn fallen(start: Start) -> Result<Equilibrium, StaticsError> {
         let fallen = Fallen { cloth: "'front'".into(), start, body: 1.7, is_certain: true };
-        Err(RestError::FallsPast(Box::new(fallen)))
+        Err(StaticsError::FallsPast(Box::new(fallen)))
     }
 
     #[test]
     fn a_garment_is_sewn_again_where_another_way_may_help() {
         assert_eq!(why_again(&at_rest(0.0)), None);
         assert_eq!(why_again(&not_at_rest(0.0)), None, "more steps would help, another way would not");
-        assert_eq!(why_again(&Err(RestError::Stopped)), None);
+        assert_eq!(why_again(&Err(StaticsError::Stopped)), None);
         assert_eq!(why_again(&at_rest(1e-3)), Some("the body comes through the cloth"));
         assert_eq!(why_again(&not_at_rest(1e-3)), Some("the body comes through the cloth"));
         assert_eq!(why_again(&crossing()), Some("cloth does not come out of cloth"));
@@ -108,7 +111,7 @@ mod tests {
 
     #[test]
     fn the_second_result_is_taken_only_where_it_has_fewer_faults() {
-        let ranked: [fn() -> Result<Rested, RestError>; 5] =
+        let ranked: [fn() -> Result<Equilibrium, StaticsError>; 5] =
             [|| at_rest(0.0), || at_rest(1e-3), || not_at_rest(1e-3), crossing, open];
         for (k, better) in ranked.iter().enumerate() {
             for (l, worse) in ranked.iter().enumerate() {

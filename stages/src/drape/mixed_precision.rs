@@ -20,7 +20,7 @@ pub enum Precision {
     Double,
 }
 
-impl From<Precision> for toile_cloth::rest::solve::Precision {
+impl From<Precision> for toile_cloth::statics::solve::Precision {
     fn from(precision: Precision) -> Self {
         match precision {
             Precision::Mixed => Self::Mixed,

@@ -8,9 +8,9 @@ mod mixed_precision;
 mod models;
 mod motion;
 mod projective;
-mod rest;
 mod soften;
 mod spring;
+mod static_equilibrium;
 #[cfg(test)]
 mod tests;
 mod xpbd;
@@ -22,20 +22,21 @@ pub use models::{Bending, Membrane};
 pub use motion::InTime;
 pub(crate) use motion::{Course, moved};
 pub use projective::Projective;
-pub use rest::{Proof, Rest};
 pub(crate) use soften::{damping, softened, springs};
 pub use spring::SpringDraper;
+pub use static_equilibrium::{Proof, StaticEquilibrium};
 use toile_core::{Migration, Registry};
 pub use xpbd::Xpbd;
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
-    registry.add::<Rest>();
+    registry.add::<StaticEquilibrium>();
     registry.add::<ImplicitEuler>();
     registry.add::<Xpbd>();
     registry.add::<Projective>();
     registry.add::<CentralDifferences>();
     registry.add::<SpringDraper>();
+    registry.migrate(Migration::stage("Rest", "StaticEquilibrium"));
     for (parameter, why) in [
         ("tolerance", "rest is a change of energy below 0.1 % in a sixtieth of a second"),
         ("max_steps", "`time_limit` ends the motion"),

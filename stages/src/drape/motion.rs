@@ -1,7 +1,7 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
 use crate::engine::{
-    self, SchemeSkin, Setting, check_garment, cloth_error, only_joins, scene_error, scene_of, split,
+    self, SchemeSurface, Setting, check_garment, cloth_error, only_joins, scene_error, scene_of, split,
     weld_seams,
 };
 use nalgebra::Vector3;
@@ -9,8 +9,8 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::energy::{Air as EngineAir, Models};
 use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Response, Until};
-use toile_cloth::rest::solve::Wearer;
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
+use toile_cloth::statics::solve::Collider as EngineCollider;
 use toile_core::prelude::*;
 
 /// What all of them share.
@@ -106,9 +106,9 @@ pub(crate) fn moved(
         self_collision: card.is_none_or(|c| c.self_collision),
     };
     let scene = with_phases(scene_of(soft, &setting)?, phases);
-    let skin = collider.map(|c| SchemeSkin::new(c.scheme.as_ref()));
+    let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
     let friction = card.map_or(0.0, |c| c.friction);
-    let wearer = skin.as_ref().map(|skin| Wearer { skin, friction });
+    let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
     let until = match phases {
         Some(_) => Until::Phases { longest: time.longest },
         None => course.motion.until,

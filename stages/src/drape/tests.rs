@@ -1,7 +1,7 @@
 //! A sewn vest hangs; cloth comes to rest where it should.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::{Rest, SpringDraper};
+use super::{SpringDraper, StaticEquilibrium};
 use crate::fixtures::{Capsules, hanging, plain, vest};
 use crate::stitch::SpringStitcher;
 use toile_core::prelude::*;
@@ -62,7 +62,8 @@ fn a_sheet_on_a_ball_comes_to_rest_on_it() {
 fn rest_tells_what_force_is_left_and_how_often_it_began_again() {
     let cx = Context::quiet();
     let body = Capsules::torso().collider();
-    let draped = Rest::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, &cx).unwrap();
+    let draped =
+        StaticEquilibrium::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, &cx).unwrap();
     assert!(draped.status.converged);
     let figures = cx.take_notes().0;
     let told: Vec<(&str, &str)> = figures.iter().map(|f| (f.name.as_str(), f.unit)).collect();

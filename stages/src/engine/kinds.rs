@@ -13,7 +13,8 @@ pub(crate) fn only_joins(kind: SeamKind, name: &str) -> Result<(), StageError> {
                 "the seam {name} is of the kind \"{}\", which this solver does not carry out",
                 kind.word()
             );
-            Err(StageError::invalid(message).hint("sew and drape with `Rest()`, or make it a matched seam"))
+            Err(StageError::invalid(message)
+                .hint("sew and drape with `StaticEquilibrium()`, or make it a matched seam"))
         }
     }
 }
@@ -30,7 +31,7 @@ mod tests {
                 "the seam a.b + c.d is of the kind \"{}\", which this solver does not carry out",
                 kind.word()
             );
-            let hint = Some("sew and drape with `Rest()`, or make it a matched seam".to_owned());
+            let hint = Some("sew and drape with `StaticEquilibrium()`, or make it a matched seam".to_owned());
             assert_eq!(e, Some((message, hint)));
         }
         let joined = [

@@ -21,4 +21,4 @@ pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;
 pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
-pub use skin::SchemeSkin;
+pub use skin::SchemeSurface;

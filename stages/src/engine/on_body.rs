@@ -6,11 +6,11 @@
 //! slides 5 cm onto the hips by some hundredths, a skirt that lies about the feet by all. Cost: some hundred
 //! distances a piece. Limit: a body thinner than a ninth of the piece is not seen under it; then its start alone counts.
 
-use super::SchemeSkin;
+use super::SchemeSurface;
 use super::pieces::pieces;
 use nalgebra::Vector3;
 use toile_cloth::contact::past::BodyBox;
-use toile_cloth::contact::skin::Skin;
+use toile_cloth::contact::skin::CollisionSurface;
 use toile_core::artifact::{Collide, Garment, Point3};
 
 /// Points on a side of the raster in which the body under a piece is looked for.
@@ -28,7 +28,7 @@ const STEPS: usize = 400;
 /// For each panel the share of it that is still in its place, of its piece that has sunk farthest; 1 for what pins hold. `garment`
 /// stands where it starts, `end` is where its vertices have come to. Empty without a body or weight.
 pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity: &Vector3<f64>) -> Vec<f64> {
-    let skin = SchemeSkin::new(scheme);
+    let skin = SchemeSurface::new(scheme);
     let Some(body) = BodyBox::of(&skin, gravity) else { return Vec::new() };
     let up = -gravity.normalize();
     let pieces = pieces(garment);
@@ -59,7 +59,7 @@ pub fn both(before: &[f64], after: Vec<f64>) -> Vec<f64> {
 }
 
 /// The height at which a way straight down from `p` meets the body.
-fn down(skin: &SchemeSkin<'_>, p: &Vector3<f64>, up: &Vector3<f64>, body: &BodyBox) -> Option<f64> {
+fn down(skin: &SchemeSurface<'_>, p: &Vector3<f64>, up: &Vector3<f64>, body: &BodyBox) -> Option<f64> {
     let mut at = *p;
     for _ in 0..STEPS {
         let distance = skin.nearest(&[at], &[f64::INFINITY])[0]?.distance;

@@ -30,18 +30,18 @@ mod tests {
 
     #[test]
     fn what_the_solver_does_not_use_is_refused_by_name() {
-        assert!(check_response(None, "Rest").is_ok());
-        assert!(check_response(Some(&collider(0.0, None)), "Rest").is_ok());
-        let e = check_response(Some(&collider(0.5, None)), "Rest").unwrap_err();
+        assert!(check_response(None, "StaticEquilibrium").is_ok());
+        assert!(check_response(Some(&collider(0.0, None)), "StaticEquilibrium").is_ok());
+        let e = check_response(Some(&collider(0.5, None)), "StaticEquilibrium").unwrap_err();
         assert_eq!(e.code, ErrorCode::InvalidParameter);
-        assert_eq!(e.message, "`Rest` does not use the collider's `restitution`");
+        assert_eq!(e.message, "`StaticEquilibrium` does not use the collider's `restitution`");
         assert_eq!(
             e.hint.as_deref(),
             Some(
                 "take `restitution` out of the collider, or drape in time with `ImplicitEuler`, which uses it"
             )
         );
-        let e = check_response(Some(&collider(0.0, Some(100.0))), "Rest").unwrap_err();
-        assert_eq!(e.message, "`Rest` does not use the collider's `penalty`");
+        let e = check_response(Some(&collider(0.0, Some(100.0))), "StaticEquilibrium").unwrap_err();
+        assert_eq!(e.message, "`StaticEquilibrium` does not use the collider's `penalty`");
     }
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use std::sync::{Arc, OnceLock};
-use toile_cloth::contact::skin::Skin;
+use toile_cloth::contact::skin::CollisionSurface;
 use toile_core::artifact::{BodyContact, Collide, Point3};
 use toile_geometry::facets::Facets;
 use toile_geometry::sharp::Sharp;
@@ -13,14 +13,14 @@ type Corners<'a> = (Vec<Vector3<f64>>, &'a [[u32; 3]]);
 
 /// The body of a collision scheme: one call a question, whatever the number of points.
 #[derive(Debug, Clone)]
-pub struct SchemeSkin<'a> {
+pub struct SchemeSurface<'a> {
     scheme: &'a dyn Collide,
     /// Found when a solver first asks.
     sharp: OnceLock<Option<Arc<Sharp>>>,
     facets: OnceLock<Option<Facets>>,
 }
 
-impl<'a> SchemeSkin<'a> {
+impl<'a> SchemeSurface<'a> {
     /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where the scheme shows a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
@@ -28,7 +28,7 @@ impl<'a> SchemeSkin<'a> {
     }
 }
 
-impl SchemeSkin<'_> {
+impl SchemeSurface<'_> {
     /// Vertices and triangles of the body, where the scheme shows them.
     fn mesh(&self) -> Option<Corners<'_>> {
         let surface = self.scheme.surface()?;
@@ -46,7 +46,7 @@ const LOOKS: usize = 3;
 /// No garment is farther from its body, metres: stands for a reach without limit.
 const ANYWHERE: f64 = 100.0;
 
-impl Skin for SchemeSkin<'_> {
+impl CollisionSurface for SchemeSurface<'_> {
     fn nearest(&self, points: &[Vector3<f64>], within: &[f64]) -> Vec<Option<Nearest>> {
         let reach = within.iter().fold(0.0, |a: f64, b| a.max(*b)).min(ANYWHERE);
         let mut contacts = Vec::new();

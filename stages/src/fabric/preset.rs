@@ -24,7 +24,7 @@ pub struct Preset {
     #[param(default = "cotton poplin".into())]
     name: String,
     /// Whether bending has the friction that is typical of the cloth (its hysteresis 2HB): folds are held where they formed. Only
-    /// `Rest` knows it. How strongly is measured for cottons; for wool, filaments and knits it is assumed.
+    /// `StaticEquilibrium` knows it. How strongly is measured for cottons; for wool, filaments and knits it is assumed.
     #[param(default = false)]
     hysteresis: bool,
 }

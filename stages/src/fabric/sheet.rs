@@ -30,7 +30,7 @@ pub struct Cloth {
     /// Bending stiffness along warp and weft.
     #[param(default = (1.1e-5, 7e-6), min = 0.0, max = 1.0, unit = "N m")]
     bending: (f64, f64),
-    /// Friction of bending along warp and weft, half of the hysteresis 2HB; it holds folds, and only `Rest` knows it.
+    /// Friction of bending along warp and weft, half of the hysteresis 2HB; it holds folds, and only `StaticEquilibrium` knows it.
     #[param(default = (0.0, 0.0), min = 0.0, max = 1.0, unit = "N m/m")]
     bending_friction: (f64, f64),
     /// Thickness.

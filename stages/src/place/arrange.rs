@@ -6,7 +6,7 @@
 //! floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
 //!
 //! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk and legs keep the flat places of
-//! the file, from which `Rest(sew_through: true)` sews them.
+//! the file, from which `StaticEquilibrium(sew_through: true)` sews them.
 
 mod legs;
 mod limb;

@@ -25,7 +25,7 @@ const MOST_VERTICES: usize = 4_000_000;
 /// Every edge falls into `parts` equal parts and every triangle into `parts` squared ones of its own shape. No old
 /// vertex moves, and new ones lie on the flat triangles of the coarse mesh; seams, joined or still open, are sewn at
 /// every new vertex. It finds no folds and no rest by itself: put a draper behind it that goes on from where the cloth
-/// is, such as `Rest(from_here: true)`. The outline stays the polygon of the coarse mesh: where curves
+/// is, such as `StaticEquilibrium(from_here: true)`. The outline stays the polygon of the coarse mesh: where curves
 /// matter, mesh with shorter edges. Pins hold the old vertices alone. With one part the garment is left as it is.
 #[stage(
     role = Placement,

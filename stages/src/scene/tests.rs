@@ -3,7 +3,9 @@
 
 use super::Scene;
 use crate::collide::body_crossings;
-use crate::drape::{CentralDifferences, ImplicitEuler, InTime, Projective, Rest, SpringDraper, Xpbd};
+use crate::drape::{
+    CentralDifferences, ImplicitEuler, InTime, Projective, SpringDraper, StaticEquilibrium, Xpbd,
+};
 use std::path::Path;
 use std::sync::Arc;
 use toile_cloth::energy::Air;
@@ -61,7 +63,7 @@ fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
     let (garment, _, collider, phases) = through_files(&scene).unwrap();
     let cx = Context::quiet();
     // On edges of 13 cm a graded skirt slides lower, where it is strained by 7 %.
-    let rest = Rest { graded: false, ..Rest::default() };
+    let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
     let draped = rest.run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
     assert!(draped.status.converged && draped.status.max_speed < 1e-3, "{:?}", draped.status);
     assert_eq!(draped.seam_gap_max(), 0.0);
@@ -81,7 +83,7 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
     ];
     for (k, body) in bodies.into_iter().enumerate() {
         let (garment, body, collider, phases) = through_files(&generate::cover(body, 12, 0.3)).unwrap();
-        let rest = Rest { graded: false, ..Rest::default() };
+        let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
         let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
         // On the plate it is told as not at rest.
         assert!(draped.status.converged || k == 1, "{k}");
@@ -94,7 +96,7 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
 fn rest_holds_what_is_pinned() {
     let (garment, _, collider, phases) = through_files(&generate::hang(6)).unwrap();
     let cx = Context::quiet();
-    let draped = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
+    let draped = StaticEquilibrium::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
     for &p in &garment.pinned {
         assert_eq!(draped.positions[p as usize], garment.positions[p as usize]);
     }
@@ -119,7 +121,8 @@ fn a_pin_on_a_seam_stays_where_it_is_and_the_other_side_comes_to_it() {
     let [a, b] = scene.seams[0].pairs[0];
     scene.pinned = vec![a];
     let (garment, _, collider, phases) = through_files(&scene).unwrap();
-    let rest = Rest { join_gap: Length::mm(20.0), graded: false, ..Rest::default() };
+    let rest =
+        StaticEquilibrium { join_gap: Length::mm(20.0), graded: false, ..StaticEquilibrium::default() };
     let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
     assert_eq!(draped.positions[a as usize], garment.positions[a as usize]);
     assert_eq!(draped.positions[b as usize], garment.positions[a as usize]);
@@ -135,7 +138,7 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();
     let way = 0.5 * 9.81 * seconds * seconds;
     let fallen = [
-        Rest::default().run(&g, c, p, &cx).unwrap(),
+        StaticEquilibrium::default().run(&g, c, p, &cx).unwrap(),
         ImplicitEuler { motion: falling(), ..ImplicitEuler::default() }.run(&g, c, p, &cx).unwrap(),
         Xpbd { motion: falling(), ..Xpbd::default() }.run(&g, c, p, &cx).unwrap(),
         Projective { motion: falling(), ..Projective::default() }.run(&g, c, p, &cx).unwrap(),
@@ -189,7 +192,7 @@ fn rest_names_the_stages_that_rest_in_wind_and_wind_needs_air() {
     let mut scene = in_air(Some(Air { wind: nalgebra::Vector3::new(3.0, 0.0, 4.0), ..Air::still(1.2) }));
     scene.pinned = vec![0, 1];
     let (g, _, c, p) = through_files(&scene).unwrap();
-    let e = Rest::default().run(&g, Some(&c), Some(&p), &cx).unwrap_err();
+    let e = StaticEquilibrium::default().run(&g, Some(&c), Some(&p), &cx).unwrap_err();
     assert_eq!(e.code, ErrorCode::InvalidInput);
     assert_eq!(e.message, "wind of 5 m/s has no potential, so this solver finds no state of rest in it");
     assert_eq!(
@@ -260,8 +263,8 @@ fn a_stopped_rest_stops() {
     let (garment, _, collider, phases) = through_files(&generate::tube(6, 8)).unwrap();
     let cancel = Cancel::new();
     cancel.cancel();
-    let cx = Context::new("Rest", Path::new("."), cancel, Arc::new(()));
-    let error = Rest::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap_err();
+    let cx = Context::new("StaticEquilibrium", Path::new("."), cancel, Arc::new(()));
+    let error = StaticEquilibrium::default().run(&garment, Some(&collider), Some(&phases), &cx).unwrap_err();
     assert_eq!(error.code, ErrorCode::Cancelled);
 }
 
@@ -402,7 +405,9 @@ fn a_welded_mesh_drapes_as_one() {
     let read = |weld: bool, scene: &toile_cloth::scene::Scene| {
         std::fs::write(dir.path().join("scene.json"), to_json(scene, "")).unwrap();
         let (g, _, c, p) = Scene { file: "scene.json".into(), weld, ..Scene::default() }.run(&cx).unwrap();
-        Rest { graded: false, ..Rest::default() }.run(&g, Some(&c), Some(&p), &cx).unwrap()
+        StaticEquilibrium { graded: false, ..StaticEquilibrium::default() }
+            .run(&g, Some(&c), Some(&p), &cx)
+            .unwrap()
     };
     let (welded, whole) = (read(true, &scene), read(false, &clean));
     for (p, &v) in welded.positions.iter().zip(&corners) {
@@ -415,8 +420,10 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
     let scene = generate::curtain(4);
     let (g, _, c, p) = through_files(&scene).unwrap();
     let (cx, c, p) = (Context::quiet(), Some(&c), Some(&p));
-    let hung =
-        [Rest::default().run(&g, c, p, &cx).unwrap(), ImplicitEuler::default().run(&g, c, p, &cx).unwrap()];
+    let hung = [
+        StaticEquilibrium::default().run(&g, c, p, &cx).unwrap(),
+        ImplicitEuler::default().run(&g, c, p, &cx).unwrap(),
+    ];
     for h in hung {
         for &[corner, pin] in &scene.seams[0].pairs {
             assert_eq!(h.positions[corner as usize], h.positions[pin as usize]);
@@ -425,10 +432,10 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
     }
 }
 
-/// What `Rest` says of a scene that it cannot bring to rest.
+/// What `StaticEquilibrium` says of a scene that it cannot bring to rest.
 fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
     let (garment, _, collider, phases) = through_files(scene).unwrap();
-    let rest = Rest { graded: false, ..Rest::default() };
+    let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
     rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap_err()
 }
 

@@ -18,11 +18,11 @@ use toile_cloth::fabric::Fabric;
 use toile_cloth::fabric::Rigidity;
 use toile_cloth::linear::Cholesky;
 use toile_cloth::mesh::layout::{Layout, Rectangle, disc};
-use toile_cloth::rest::solve::{Rest, RestError};
 use toile_cloth::scene::{Scene, generate};
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Static, Xpbd,
 };
+use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -333,9 +333,9 @@ fn cusick(d: f64) -> Result<f64, String> {
     scene.pinned = (0..uv.len()).filter(|&v| uv[v].norm() < SUPPORT + 1e-9).map(|v| v as u32).collect();
     scene.self_collision = false;
     generate::jitter(&mut scene, 1e-4, 1);
-    let x = match Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(())) {
+    let x = match StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())) {
         Ok(state) => state.positions,
-        Err(RestError::NotAtRest { state, .. }) => state.positions,
+        Err(StaticsError::NotAtRest { state, .. }) => state.positions,
         Err(e) => return Err(e.to_string()),
     };
     let rim = &x[uv.len() - 6 * RINGS..];

@@ -19,11 +19,11 @@ use toile_cloth::fabric::Fabric;
 use toile_cloth::fabric::Rigidity;
 use toile_cloth::mesh::Sheet;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
-use toile_cloth::rest::solve::Rest;
 use toile_cloth::scene::Scene;
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, State, Static, Xpbd,
 };
+use toile_cloth::statics::solve::StaticEquilibrium;
 
 /// Triangles along a strip.
 const ALONG: usize = 20;
@@ -68,7 +68,7 @@ impl Way {
     pub fn name(self) -> &'static str {
         match self {
             Self::Static => "static Newton",
-            Self::Rest => "Rest",
+            Self::Rest => "StaticEquilibrium",
             Self::ImplicitEuler => "implicit Euler, factor",
             Self::ImplicitEulerGradients => "implicit Euler, gradients",
             Self::CentralDifferences => "central differences",
@@ -173,7 +173,7 @@ impl Problem {
         scene.pinned = (0..self.pinned.len() as u32).filter(|&v| self.pinned[v as usize]).collect();
         scene.phases.iter_mut().for_each(|p| p.gravity = Vec3::new(0.0, -self.gravity, 0.0));
         scene.self_collision = false;
-        let rest = Rest { speed: 1e-6 * self.gravity.sqrt(), ..Rest::default() };
+        let rest = StaticEquilibrium { speed: 1e-6 * self.gravity.sqrt(), ..StaticEquilibrium::default() };
         match rest.solve(&scene, &mut |_| ControlFlow::Continue(())) {
             Ok(state) => Ok(state.positions),
             Err(e) => Err(e.to_string()),
@@ -324,7 +324,7 @@ mod tests {
         assert_eq!(report.rows.len(), 12);
         for row in &report.rows {
             // Rest bends by lone hinges, which a mesh so coarse shows.
-            let limit = if row.solver == "Rest" { 2.0 * row.limit } else { row.limit };
+            let limit = if row.solver == "StaticEquilibrium" { 2.0 * row.limit } else { row.limit };
             assert!(row.error.is_some_and(|e| e.abs() <= limit), "{row:?}");
         }
     }

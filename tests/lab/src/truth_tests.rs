@@ -1,4 +1,4 @@
-//! What `Rest` reaches on problems with exact answers.
+//! What `StaticEquilibrium` reaches on problems with exact answers.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use crate::reference;
 use nalgebra::Vector2;
@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use toile_cloth::energy::Vec3;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
-use toile_cloth::rest::solve::{Precision, Rest};
 use toile_cloth::scene::Scene;
+use toile_cloth::statics::solve::{Precision, StaticEquilibrium};
 
 /// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level there.
 fn over_a_bar(layout: Layout, along: usize, gamma: f64) -> (Scene, Vec<usize>) {
@@ -41,8 +41,9 @@ fn over_a_bar(layout: Layout, along: usize, gamma: f64) -> (Scene, Vec<usize>) {
 fn tip_drop(layout: Layout, along: usize, gamma: f64, precision: Precision) -> f64 {
     let (scene, tips) = over_a_bar(layout, along, gamma);
     // A mesh coarser than the bend folds to a crease on the bar, which holds on finer ones: heavy cloth starts on the finest.
-    let coarsest = if gamma > 100.0 { usize::MAX } else { Rest::default().coarsest };
-    let rest = Rest { speed: 1e-6 * gamma.sqrt(), coarsest, precision, ..Rest::default() };
+    let coarsest = if gamma > 100.0 { usize::MAX } else { StaticEquilibrium::default().coarsest };
+    let rest =
+        StaticEquilibrium { speed: 1e-6 * gamma.sqrt(), coarsest, precision, ..StaticEquilibrium::default() };
     let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     -tips.iter().map(|&v| state.positions[v].y).sum::<f64>() / tips.len() as f64
 }

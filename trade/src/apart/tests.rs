@@ -18,7 +18,7 @@ fn ran() -> Ran {
         body: None,
         model: None,
         figures: Some(figures),
-        stages_s: BTreeMap::from([("Rest".to_owned(), 0.25)]),
+        stages_s: BTreeMap::from([("StaticEquilibrium".to_owned(), 0.25)]),
         wall_s: 1.5,
         cpu_s: 2.5,
         peak_memory_bytes: Some(123_456_789),

@@ -42,7 +42,7 @@ impl Board {
             (None, Values::List(names)) => Dial::Stage(self.stages(slot, names)?),
             (None, Values::Range(..)) => {
                 return Err(fault(format!("`{}` is a stage, which has no range", spec.owner)).hint(format!(
-                    "list stages, like `{}=Rest,Xpbd`, or name a parameter, like `{0}.edge=6..24 mm`",
+                    "list stages, like `{}=StaticEquilibrium,Xpbd`, or name a parameter, like `{0}.edge=6..24 mm`",
                     spec.owner
                 )));
             }

@@ -13,7 +13,7 @@ const FILE: &str = r#"(
     name: "scene",
     scene: Scene(file: "skirt.json"),
     stages: [
-        Rest(speed: 0.002),   // to rest
+        StaticEquilibrium(speed: 0.002),   // to rest
         GarmentObj(name: "result"),
     ],
 )"#;
@@ -24,7 +24,7 @@ const VEST: &str = r#"(
     body: Mannequin(edge: "14 mm"),
     fabric: Preset("cotton poplin"),
     stages: [
-        Otsu(), Canny(), GridMesher(edge: "16 mm"), Place(), BvhCollider(thickness: "2 mm"), Rest(),
+        Otsu(), Canny(), GridMesher(edge: "16 mm"), Place(), BvhCollider(thickness: "2 mm"), StaticEquilibrium(),
     ],
 )"#;
 
@@ -58,7 +58,10 @@ fn overrides(text: &str, knobs: &[&str], at: &[f64]) -> String {
 #[test]
 fn parts_of_an_edge_are_refined_by_what_they_are() {
     let registry = registry();
-    let text = VEST.replace("Rest(),", "Rest(), Refine(parts: 1), Rest(id: \"Settle\", from_here: true),");
+    let text = VEST.replace(
+        "StaticEquilibrium(),",
+        "StaticEquilibrium(), Refine(parts: 1), StaticEquilibrium(id: \"Settle\", from_here: true),",
+    );
     let source = source(&text, &registry);
     let board = board(&source, &["Refine.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
     let at = |power: i32| board.refined(f64::sqrt(2.0).powi(power));
@@ -74,11 +77,11 @@ fn parts_of_an_edge_are_refined_by_what_they_are() {
 fn one_number_written_twice_is_one_and_one_outside_a_range_is_near_nothing_in_it() {
     let registry = registry();
     let source = source(FILE, &registry);
-    let board = board(&source, &["Rest.speed=1e-3,3e-3,1e-2"]).unwrap();
+    let board = board(&source, &["StaticEquilibrium.speed=1e-3,3e-3,1e-2"]).unwrap();
     let dial = &board.knobs[0].dial;
     assert!(dial.is_near("0.001", "1e-3", 0.1) && !dial.is_near("0.002", "3e-3", 0.1));
     assert_eq!(dial.place("0.003"), Some(0.5));
-    let board = self::board(&source, &["Rest.speed=1e-2..1e-1"]).unwrap();
+    let board = self::board(&source, &["StaticEquilibrium.speed=1e-2..1e-1"]).unwrap();
     let dial = &board.knobs[0].dial;
     assert!(dial.is_near("0.0101", "0.01", 0.03) && !dial.is_near("0.002", "0.01", 0.03));
 }
@@ -120,8 +123,11 @@ fn stages_of_sections_lists_and_stages_brought_in_can_be_turned() {
         overrides(VEST, &["collider.volume=Aabb,KDop(14)"], &[0.9]),
         "stages.BvhCollider.volume=KDop(14)"
     );
-    let knobs = ["Xpbd.dt=0.002..0.008", "solver=Rest,Xpbd"];
-    assert_eq!(overrides(FILE, &knobs, &[0.9, 0.5]), "stages.Rest=Xpbd(dt: 0.004, speed: 0.002)");
+    let knobs = ["Xpbd.dt=0.002..0.008", "solver=StaticEquilibrium,Xpbd"];
+    assert_eq!(
+        overrides(FILE, &knobs, &[0.9, 0.5]),
+        "stages.StaticEquilibrium=Xpbd(dt: 0.004, speed: 0.002)"
+    );
     assert_eq!(overrides(FILE, &knobs, &[0.1, 0.5]), "");
     assert_eq!(overrides(VEST, &["mesher.edge=8 mm,12 mm"], &[0.9]), "stages.GridMesher.edge=\"12 mm\"");
 }
@@ -130,11 +136,17 @@ fn stages_of_sections_lists_and_stages_brought_in_can_be_turned() {
 fn the_own_setting_and_its_refinements() {
     let registry = registry();
     let source = source(VEST, &registry);
-    let board =
-        board(&source, &["mesher.edge=8..32 mm", "solver=Rest,Xpbd", "Rest.speed=1e-4..1e-2"]).unwrap();
+    let board = board(
+        &source,
+        &["mesher.edge=8..32 mm", "solver=StaticEquilibrium,Xpbd", "StaticEquilibrium.speed=1e-4..1e-2"],
+    )
+    .unwrap();
     let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
-    assert_eq!(words(board.own()), "Rest.speed 0.001, mesher.edge \"16 mm\", solver Rest");
-    assert_eq!(words(board.refined(2.0)), "Rest.speed 0.0005, mesher.edge \"8 mm\", solver Rest");
+    assert_eq!(words(board.own()), "StaticEquilibrium.speed 0.001, mesher.edge \"16 mm\", solver Rest");
+    assert_eq!(
+        words(board.refined(2.0)),
+        "StaticEquilibrium.speed 0.0005, mesher.edge \"8 mm\", solver Rest"
+    );
     let fine = board.refined(4.0);
     assert!(board.is_finer(&fine, 1.9) && !board.is_finer(&board.refined(2.0), 1.3));
     assert!(
@@ -149,15 +161,25 @@ fn the_own_setting_and_its_refinements() {
 fn the_reference_may_have_values_of_its_own() {
     let registry = registry();
     let source = source(&FILE.replace("0.002", "0.002, graded: false"), &registry);
-    let knobs = ["Rest.speed=1e-4..1e-2", "Rest.graded=true,false", "solver=Rest,Xpbd"];
+    let knobs = [
+        "StaticEquilibrium.speed=1e-4..1e-2",
+        "StaticEquilibrium.graded=true,false",
+        "solver=StaticEquilibrium,Xpbd",
+    ];
     let given = |reference: &[&str]| {
         let values: Vec<ReferenceValue> = reference.iter().map(|r| r.parse().unwrap()).collect();
         board(&source, &knobs).unwrap().with_reference(&values)
     };
     let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
-    let board = given(&["Rest.graded=true"]).unwrap();
-    assert_eq!(words(board.own()), "Rest.graded false, Rest.speed 0.002, solver Rest");
-    assert_eq!(words(board.refined(2.0)), "Rest.graded true, Rest.speed 0.001, solver Rest");
+    let board = given(&["StaticEquilibrium.graded=true"]).unwrap();
+    assert_eq!(
+        words(board.own()),
+        "StaticEquilibrium.graded false, StaticEquilibrium.speed 0.002, solver Rest"
+    );
+    assert_eq!(
+        words(board.refined(2.0)),
+        "StaticEquilibrium.graded true, StaticEquilibrium.speed 0.001, solver Rest"
+    );
     let refused = |reference: &str| {
         let e = given(&[reference]).unwrap_err();
         (e.message, e.hint.unwrap_or_default())
@@ -166,19 +188,23 @@ fn the_reference_may_have_values_of_its_own() {
         (
             "solver=Xpbd",
             "--reference `solver`: the reference keeps the pipeline's own stages",
-            "name a parameter, like `Rest.graded=true`",
+            "name a parameter, like `StaticEquilibrium.graded=true`",
         ),
         (
-            "Rest.steps=900",
-            "--reference `Rest.steps`: there is no such knob",
-            "add `--knob \"Rest.steps=...\"`, or give it by --set",
+            "StaticEquilibrium.steps=900",
+            "--reference `StaticEquilibrium.steps`: there is no such knob",
+            "add `--knob \"StaticEquilibrium.steps=...\"`, or give it by --set",
         ),
-        ("Rest.graded=yes", "`Rest.graded`: `graded` wants true | false, found `yes`", ""),
+        (
+            "StaticEquilibrium.graded=yes",
+            "`StaticEquilibrium.graded`: `graded` wants true | false, found `yes`",
+            "",
+        ),
     ] {
         assert_eq!(refused(reference), (message.to_owned(), hint.to_owned()));
     }
-    let form = Err("write KEY=VALUE, like `Rest.graded=true`".to_owned());
-    assert_eq!("Rest.graded=".parse::<ReferenceValue>(), form);
+    let form = Err("write KEY=VALUE, like `StaticEquilibrium.graded=true`".to_owned());
+    assert_eq!("StaticEquilibrium.graded=".parse::<ReferenceValue>(), form);
 }
 
 /// A stage as third parties write it, with names of its own.
@@ -206,7 +232,7 @@ impl Turner {
 fn a_stage_of_a_third_party_says_which_of_its_parameters_are_resolutions() {
     let mut registry = registry();
     registry.add::<Turner>();
-    let source = source(&FILE.replace("Rest(speed: 0.002)", "Turner(turns: 20)"), &registry);
+    let source = source(&FILE.replace("StaticEquilibrium(speed: 0.002)", "Turner(turns: 20)"), &registry);
     let knobs = ["Turner.turns=10..100", "Turner.cell=4..20 mm", "Turner.edge=1..5"];
     let board = board(&source, &knobs).unwrap();
     let words = |s: &Setting| s.iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
@@ -230,17 +256,20 @@ fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
     let registry = registry();
     let pipeline = source(VEST, &registry).load(&[]).unwrap();
     let found: Vec<String> = default_knobs(&pipeline, &registry).iter().map(KnobSpec::key).collect();
-    assert_eq!(found, ["mesher.edge", "mesher", "solver", "Rest.speed"]);
+    assert_eq!(found, ["mesher.edge", "mesher", "solver", "StaticEquilibrium.speed"]);
     let scene = source(FILE, &registry).load(&[]).unwrap();
     assert_eq!(
         default_knobs(&scene, &registry).iter().map(KnobSpec::key).collect::<Vec<_>>(),
-        ["solver", "Rest.speed"]
+        ["solver", "StaticEquilibrium.speed"]
     );
 }
 
 /// A vest whose folds one mesh finds and a finer one keeps.
 fn refined_vest() -> String {
-    VEST.replace("Rest(),", "Rest(), Refine(parts: 2), Rest(id: \"Settle\", from_here: true),")
+    VEST.replace(
+        "StaticEquilibrium(),",
+        "StaticEquilibrium(), Refine(parts: 2), StaticEquilibrium(id: \"Settle\", from_here: true),",
+    )
 }
 
 #[test]
@@ -282,11 +311,11 @@ fn faults_word_for_word() {
             "did you mean `DelaunayMesher`?",
         ),
         ("mesher.edge=6..24", "`mesher.edge` is a length", "write the unit, like `6..24 mm`"),
-        ("Rest.speed=1..2 mm", "`Rest.speed` is a number", "write bare numbers"),
+        ("StaticEquilibrium.speed=1..2 mm", "`StaticEquilibrium.speed` is a number", "write bare numbers"),
         (
             "solver=1..2",
             "`solver` is a stage, which has no range",
-            "list stages, like `solver=Rest,Xpbd`, or name a parameter, like `solver.edge=6..24 mm`",
+            "list stages, like `solver=StaticEquilibrium,Xpbd`, or name a parameter, like `solver.edge=6..24 mm`",
         ),
         (
             "collider.volume=1..2",
@@ -298,14 +327,17 @@ fn faults_word_for_word() {
         assert_eq!(refused(VEST, &[knob]), (message.to_owned(), hint.to_owned()));
     }
     assert_eq!(
-        refused(VEST, &["solver=Rest,Xpbd", "solver=Rest,Projective"]).0,
+        refused(VEST, &["solver=StaticEquilibrium,Xpbd", "solver=StaticEquilibrium,Projective"]).0,
         "there are two knobs `solver`"
     );
     for (knobs, message) in [
-        (["Rest=Rest,Xpbd", "solver=Rest,Projective"], "the knobs `Rest` and `solver` turn the same"),
         (
-            ["Rest.speed=1e-3..1e-2", "solver.speed=1e-2..1e-1"],
-            "the knobs `Rest.speed` and `solver.speed` turn the same",
+            ["StaticEquilibrium=StaticEquilibrium,Xpbd", "solver=StaticEquilibrium,Projective"],
+            "the knobs `StaticEquilibrium` and `solver` turn the same",
+        ),
+        (
+            ["StaticEquilibrium.speed=1e-3..1e-2", "solver.speed=1e-2..1e-1"],
+            "the knobs `StaticEquilibrium.speed` and `solver.speed` turn the same",
         ),
     ] {
         assert_eq!(refused(VEST, &knobs), (message.to_owned(), "leave one of them out".to_owned()));

@@ -63,7 +63,7 @@ fn a_measurement_of_another_state_is_refused() {
         toile_stages::register(&mut registry);
         registry
     };
-    let text = "(scene: Scene(file: \"a.json\"), stages: [Rest(), GarmentObj()])";
+    let text = "(scene: Scene(file: \"a.json\"), stages: [StaticEquilibrium(), GarmentObj()])";
     let pipeline = toile_pipeline::load(text, "a.ron", std::path::Path::new("."), &registry, &[]).unwrap();
     let refused = |trade: &Trade| check(trade, &pipeline).unwrap_err().message;
     let mut now = trade(None);

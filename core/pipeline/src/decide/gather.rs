@@ -21,7 +21,7 @@ pub struct Decided {
 }
 
 impl Decided {
-    /// What the user writes to turn it round, but for the option's own name: `stages.Rest.speed=0.01`.
+    /// What the user writes to turn it round, but for the option's own name: `stages.StaticEquilibrium.speed=0.01`.
     ///
     /// `path` is where overrides reach the stage.
     pub fn words(&self, path: &str) -> String {

@@ -175,21 +175,24 @@ mod tests {
         assert_eq!(on(GOLDEN, &here), Arithmetic::Unknown);
     }
 
-    const DRAPE: &str = "[Rest garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\npanel front\n\
+    const DRAPE: &str = "[StaticEquilibrium garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\npanel front\n\
                          1 2 10 20 30\n3 4 11 20 30\ndigest = bb\n";
 
     #[test]
     fn a_surface_that_moves_is_a_difference_of_its_stage() {
         let on = |now: &str| compare(&parse(DRAPE).unwrap(), &parse(now).unwrap());
-        assert_eq!(on(&DRAPE.replace("10 20 30", "10 20 30.15").replace("bb", "cc")).moved, ["Rest garment"]);
+        assert_eq!(
+            on(&DRAPE.replace("10 20 30", "10 20 30.15").replace("bb", "cc")).moved,
+            ["StaticEquilibrium garment"]
+        );
         let found = on(&DRAPE.replace("11 20 30", "11 20 33"));
-        assert_eq!(found.first_stage(), Some("Rest"));
+        assert_eq!(found.first_stage(), Some("StaticEquilibrium"));
         assert_eq!(
             found.differences[0].message,
             "its surface moved by 3.00 mm at 95 % (tolerance 0.2) and by 3.00 mm at most (tolerance 1): \
              panel \"front\" at (3, 4) mm was at (11.0, 20.0, 30.0) mm, is at (11.0, 20.0, 33.0) mm"
         );
-        let bare = "[Rest garment]\ndigest = bb\n";
+        let bare = "[StaticEquilibrium garment]\ndigest = bb\n";
         let blind = compare(&parse(bare).unwrap(), &parse(DRAPE).unwrap());
         assert_eq!(blind.differences[0].message, "its surface is not in the golden sheet");
         let gone = on(bare);

@@ -10,7 +10,7 @@
 //! area = 2412.31 cm2 +- 1
 //! digest = 5f2a90c4d1e8b377
 //!
-//! [Rest garment]
+//! [StaticEquilibrium garment]
 //! vertices = 2628 +- 26.28
 //! surface = 240 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most
 //! panel front

@@ -5,7 +5,7 @@
 //! could catch it: it falls for ever, and there is no need to follow it. Cost: O(n), a comparison a node while all of them are above the
 //! body's lowest point.
 
-use super::skin::Skin;
+use super::skin::CollisionSurface;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -81,7 +81,7 @@ impl std::fmt::Display for Fallen {
 
 impl BodyBox {
     /// The box of a body; nothing where there is no body or no weight.
-    pub fn of(skin: &dyn Skin, gravity: &Vec3) -> Option<Self> {
+    pub fn of(skin: &dyn CollisionSurface, gravity: &Vec3) -> Option<Self> {
         let up = -gravity.try_normalize(0.0)?;
         let least = up.iamin();
         let first = up.cross(&Vec3::ith(least, 1.0)).normalize();

@@ -1,6 +1,6 @@
 //! The body as a solver sees it: two questions, asked for many points at once.
 //!
-//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`Skin`].
+//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`CollisionSurface`].
 
 use super::body::Body;
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ type Vec3 = Vector3<f64>;
 const CHUNK: usize = 64;
 
 /// A solid that cloth stays outside of. The answers must not depend on the number of threads.
-pub trait Skin: Send + Sync + std::fmt::Debug {
+pub trait CollisionSurface: Send + Sync + std::fmt::Debug {
     /// For each point the surface nearest to it, where it is nearer than the point's `within` (m), inside or outside.
     fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>>;
 
@@ -37,7 +37,7 @@ pub trait Skin: Send + Sync + std::fmt::Debug {
     }
 }
 
-impl Skin for Body {
+impl CollisionSurface for Body {
     fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>> {
         let near = |(p, w): (&Vec3, &f64)| Body::nearest(self, p, *w);
         points.par_iter().zip(within).with_min_len(CHUNK).map(near).collect()

@@ -1,6 +1,6 @@
 //! Where cloth starts: outside the body.
 
-use super::skin::Skin;
+use super::skin::CollisionSurface;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
@@ -22,7 +22,7 @@ pub(crate) struct Sunk {
 /// The start with vertices that lie a little inside the body moved out to a distance, m; besides, whether there is a body.
 pub(crate) fn clear_start(
     positions: &[Vec3],
-    skin: &dyn Skin,
+    skin: &dyn CollisionSurface,
     distance: f64,
 ) -> Result<(Vec<Vec3>, bool), Sunk> {
     let mut start = positions.to_vec();

@@ -70,7 +70,7 @@ impl Curve {
         self.piece(strain).1
     }
 
-    /// Work per unit of rest area up to `strain`.
+    /// Solve per unit of rest area up to `strain`.
     #[inline]
     #[must_use]
     pub fn energy(&self, strain: f64) -> f64 {

@@ -33,7 +33,7 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending rigidity of a strip cut along the weft, N m.
     pub bending_weft: f64,
-    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. Only `Rest` knows it.
+    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. Only `StaticEquilibrium` knows it.
     pub bending_friction_warp: f64,
     /// The same of a strip cut along the weft, N m/m.
     pub bending_friction_weft: f64,

@@ -5,7 +5,7 @@
 //! versions of `exp`, `sin` and their kin where the processor has fused multiplication, and another release has other ones.
 //! Cost: some tens of milliseconds. Limit: two machines that agree here may differ where nothing was probed.
 
-use crate::rest::probe_factor;
+use crate::statics::probe_factor;
 
 /// Unknowns of the factor that is probed, and its rows: as large as the fronts of a fine mesh, so that its products are cut.
 const COLUMNS: usize = 512;

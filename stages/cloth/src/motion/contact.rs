@@ -1,7 +1,7 @@
 //! What cloth meets on its way: the body, and itself.
 
 use crate::contact::limit::hold_apart;
-use crate::rest::solve::Wearer;
+use crate::statics::solve::Collider;
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
@@ -59,7 +59,12 @@ impl Answer<'_> {
 }
 
 /// The skin near vertices that move.
-pub(super) fn skin_near(wearer: Wearer<'_>, x: &[Vec3], moves: &[Vec3], offset: f64) -> Vec<Option<Nearest>> {
+pub(super) fn skin_near(
+    wearer: Collider<'_>,
+    x: &[Vec3],
+    moves: &[Vec3],
+    offset: f64,
+) -> Vec<Option<Nearest>> {
     let within: Vec<f64> = moves.iter().map(|m| offset + m.norm()).collect();
     wearer.skin.nearest(x, &within)
 }
@@ -87,7 +92,7 @@ pub(super) fn off_the_body(
     pushed
 }
 
-/// Layers of cloth that come nearer than `thickness` are stopped, with friction, and pushed apart a little.
+/// SelfContact of cloth that come nearer than `thickness` are stopped, with friction, and pushed apart a little.
 pub(super) fn off_itself(
     pairs: &[Pair],
     x: &[Vec3],

@@ -2,8 +2,8 @@
 
 use crate::contact::past::Fallen;
 use crate::error::ClothError;
-use crate::rest::start::StartError;
 use crate::scene::SceneError;
+use crate::statics::start::StartError;
 
 /// Why a motion did not end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

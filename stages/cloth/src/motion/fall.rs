@@ -3,11 +3,11 @@
 use super::Vec3;
 use super::moving::Moving;
 use crate::contact::past::{BodyBox, Fallen, NO_PIECE};
-use crate::rest::cloths::pieces_of_scene;
-use crate::rest::fallen::list_of;
-use crate::rest::pieces::Pieces;
-use crate::rest::solve::Wearer;
 use crate::scene::Scene;
+use crate::statics::cloths::pieces_of_scene;
+use crate::statics::fallen::list_of;
+use crate::statics::pieces::Pieces;
+use crate::statics::solve::Collider;
 
 /// What a fall is told by.
 pub(super) struct Falls {
@@ -19,7 +19,7 @@ pub(super) struct Falls {
 
 impl Falls {
     /// Of a scene on a body; nothing where there is none, or no weight in the end: such a motion is followed.
-    pub(super) fn of(scene: &Scene, wearer: Option<Wearer<'_>>, pieces: &Pieces) -> Option<Self> {
+    pub(super) fn of(scene: &Scene, wearer: Option<Collider<'_>>, pieces: &Pieces) -> Option<Self> {
         let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
         let body = wearer.and_then(|w| BodyBox::of(w.skin, &gravity))?;
         let open = (pieces_of_scene(scene), pieces.pinned.clone());

@@ -22,10 +22,10 @@ pub use error::MotionError;
 pub use method::Method;
 
 use crate::energy::{Air, Models};
-use crate::rest::pieces::Pieces;
-use crate::rest::solve::Wearer;
-use crate::rest::start::check;
 use crate::scene::Scene;
+use crate::statics::pieces::Pieces;
+use crate::statics::solve::Collider;
+use crate::statics::start::check;
 use fall::Falls;
 use moving::Moving;
 use nalgebra::Vector3;
@@ -194,7 +194,7 @@ impl Motion {
     pub fn run(
         &self,
         scene: &Scene,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
         scene.check()?;
@@ -230,7 +230,7 @@ fn one_fabric(scene: &Scene) -> Result<(), MotionError> {
 struct Run<'a> {
     settings: &'a Motion,
     scene: &'a Scene,
-    wearer: Option<Wearer<'a>>,
+    wearer: Option<Collider<'a>>,
     pieces: Pieces,
     falls: Option<Falls>,
     clock: Instant,

@@ -9,11 +9,11 @@ use crate::energy::{Air, AirDrag, Cloth};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
-use crate::rest::assemble::cloths;
-use crate::rest::clear::clearance;
-use crate::rest::solve::Wearer;
-use crate::rest::start::{check_lying, crossing, crossings};
 use crate::solver::{Model, Report, Solver, State};
+use crate::statics::assemble::cloths;
+use crate::statics::clearance::clearance;
+use crate::statics::solve::Collider;
+use crate::statics::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
 
@@ -164,7 +164,7 @@ impl Moving {
     pub(super) fn step(
         &mut self,
         settings: &Motion,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
         end: f64,
     ) -> Result<(), ClothError> {
         let dt = settings.dt.min(end - self.progress.time);
@@ -192,7 +192,7 @@ impl Moving {
     fn one_step(
         &mut self,
         settings: &Motion,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
     ) -> Result<(Report, Vec<Vec3>), ClothError> {
         let start = self.state.x.clone();
         let report = self.solver.advance(&self.model, &mut self.state)?;
@@ -209,7 +209,7 @@ impl Moving {
     fn many_steps(
         &mut self,
         settings: &Motion,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
         dt: f64,
     ) -> Result<(Report, Vec<Vec3>), ClothError> {
         let start = self.state.x.clone();
@@ -239,7 +239,7 @@ impl Moving {
     }
 
     /// Lifts what dips into the body between its vertices: triangles that are wider than the body is flat.
-    pub(super) fn clear(&mut self, wearer: Wearer<'_>) {
+    pub(super) fn clear(&mut self, wearer: Collider<'_>) {
         for _ in 0..CLEAR_ROUNDS {
             let start = self.state.x.clone();
             let clearance = clearance(&self.sheet, wearer.skin, &start);
@@ -284,7 +284,7 @@ impl Moving {
     fn respond(
         &self,
         settings: &Motion,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
         near: Option<&Near>,
         dt: f64,
         x: &[Vec3],
@@ -318,7 +318,7 @@ impl Moving {
     }
 
     /// Ends moves where they would lead into the body or through cloth; to what share all of the cloth was held back.
-    fn hold(&self, wearer: Option<Wearer<'_>>, is_free: bool, start: &[Vec3], moves: &mut [Vec3]) -> f64 {
+    fn hold(&self, wearer: Option<Collider<'_>>, is_free: bool, start: &[Vec3], moves: &mut [Vec3]) -> f64 {
         let (offset, before) = (self.offset, moves.to_vec());
         if let Some(wearer) = wearer {
             wearer.skin.guard(start, moves, &vec![0.5 * offset; start.len()]);

@@ -1,7 +1,7 @@
 //! What is near cloth, found once and good for the small steps of a while.
 
 use super::Vec3;
-use crate::rest::solve::Wearer;
+use crate::statics::solve::Collider;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
 use toile_geometry::signed_distance::Nearest;
@@ -20,7 +20,7 @@ impl Near {
     /// What nodes at `x` may come nearer to than `offset` while they move about as `moves` foretell.
     pub(super) fn of(
         tree: Option<&ClothTree>,
-        wearer: Option<Wearer<'_>>,
+        wearer: Option<Collider<'_>>,
         x: &[Vec3],
         moves: &[Vec3],
         offset: f64,

@@ -2,8 +2,8 @@
 use super::{Method, Motion, MotionError, Moved, Response, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
-use crate::rest::solve::{Rest, Wearer};
 use crate::scene::{Phase, Scene, generate};
+use crate::statics::solve::{Collider, StaticEquilibrium};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 
@@ -16,7 +16,7 @@ const METHODS: [Method; 4] = [
 
 fn run(motion: &Motion, scene: &Scene) -> Result<Moved, MotionError> {
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
     motion.run(scene, wearer, &mut |_| ControlFlow::Continue(()))
 }
 
@@ -68,7 +68,7 @@ fn a_skirt_is_sewn_and_comes_to_rest_near_where_rest_puts_it() {
     let body = Body::new(body.vertices.clone(), &body.triangles);
     let inside = moved.positions.iter().filter_map(|p| body.nearest(p, 1.0)).filter(|n| n.distance < 0.0);
     assert_eq!(inside.count(), 0);
-    let rest = Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let rest = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let mean = |p: &[Vector3<f64>]| p.iter().map(|p| p.y).sum::<f64>() / p.len() as f64;
     let apart = mean(&moved.positions) - mean(&rest.positions);
     // It arrives with speed and slides further down than friction would let it from standstill.
@@ -160,7 +160,7 @@ fn bounce(response: Response) -> f64 {
     let skin = Body::new(floor, &sides);
     let motion = Motion { response, dt: 1e-3, ..Motion::default() };
     let moved = motion
-        .run(&scene, Some(Wearer { skin: &skin, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
+        .run(&scene, Some(Collider { skin: &skin, friction: 0.0 }), &mut |_| ControlFlow::Continue(()))
         .unwrap();
     moved.positions.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max)
 }
@@ -242,14 +242,15 @@ fn a_flag_in_the_wind_comes_to_rest_where_weight_and_wind_balance_and_rest_names
         let (out, down) = (p.z - s.z, scene.positions[scene.pinned[0] as usize].y - p.y);
         assert!((out / out.hypot(down) - sine).abs() < 5e-3, "{} against {sine}", out / out.hypot(down));
     }
-    let error = Rest::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    let error = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap_err();
     assert_eq!(
         error.to_string(),
         "wind of 2 m/s has no potential, so this solver finds no state of rest in it; take ImplicitEuler, \
          CentralDifferences, Xpbd or Projective, which move the cloth until it rests"
     );
     let calm = |air: Option<Air>| {
-        let rested = Rest::default().solve(&flag(5, air), &mut |_| ControlFlow::Continue(())).unwrap();
+        let rested =
+            StaticEquilibrium::default().solve(&flag(5, air), &mut |_| ControlFlow::Continue(())).unwrap();
         rested.positions
     };
     assert_eq!(calm(Some(air.calmed())), calm(None));
@@ -265,7 +266,7 @@ fn seams_are_sewn_without_wind() {
         scene.phases.iter_mut().for_each(|p| p.air = Some(air));
         let (mut last, mut seen) = (0.0, vec![]);
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-        let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+        let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
         let motion = Motion { until, ..Motion::default() };
         let ended = motion.run(&scene, wearer, &mut |p| {
             let sewn = last > 0.0 && p.gap == 0.0;
@@ -296,7 +297,7 @@ fn gravity_waits_for_the_seams() {
     let method = Method::Xpbd { substeps: 4 };
     let (mut sewn, mut time) = (0.0, 0.0);
     let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-    let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+    let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
     let moved = Motion { method, drag: 4.0, ..Motion::default() }
         .run(&scene, wearer, &mut |p| {
             sewn = if p.gap > 0.0 { p.time } else { sewn };
@@ -338,7 +339,7 @@ fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
     for method in METHODS {
         let mut end = 0.0;
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
-        let wearer = body.as_ref().map(|(skin, friction)| Wearer { skin, friction: *friction });
+        let wearer = body.as_ref().map(|(skin, friction)| Collider { skin, friction: *friction });
         let motion = Motion { method, ..Motion::default() };
         let error = motion.run(&scene, wearer, &mut |p| {
             end = p.time;

@@ -10,8 +10,8 @@ use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::Sheet;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
-use toile_cloth::rest::solve::{Rest, RestError};
 use toile_cloth::solver::{Model, Solver, State, Static};
+use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
 
 const WIDTH: f64 = 0.3;
 /// Between the supports, in lengths.
@@ -26,7 +26,7 @@ const RATE: f64 = 3.0;
 const DECAY: f64 = 12.0;
 /// Force that may be left, in weights.
 const TOLERANCE: f64 = 1e-7;
-/// Speed at which `Rest` is done.
+/// Speed at which `StaticEquilibrium` is done.
 const SPEED: f64 = 1e-6;
 
 /// The strip with its supports.
@@ -83,12 +83,12 @@ impl Problem {
 
     fn rest(&self, options: &Options) -> Ran {
         let scene = self.mesh.scene(&self.fabric, &self.model, &self.start);
-        let rest = Rest { speed: SPEED, ..Rest::default() };
+        let rest = StaticEquilibrium { speed: SPEED, ..StaticEquilibrium::default() };
         let mut listen =
             |_: &_| if (options.stop)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
         match rest.solve(&scene, &mut listen) {
             Ok(state) => Some(Ok(self.error(&state.positions))),
-            Err(RestError::Stopped) => None,
+            Err(StaticsError::Stopped) => None,
             Err(e) => Some(Err(e.to_string())),
         }
     }

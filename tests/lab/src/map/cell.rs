@@ -8,9 +8,9 @@ use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use toile_cloth::energy::Vec3;
 use toile_cloth::error::ClothError;
-use toile_cloth::rest::solve::{Rest, RestError};
 use toile_cloth::scene::Scene;
 use toile_cloth::solver::{Solver, State};
+use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
 
 /// Force that implicit steps may leave, in weights of the sheet.
 const TOLERANCE: f64 = 1e-6;
@@ -153,19 +153,22 @@ fn stepped(solver: &mut dyn Solver, hung: &Hung, steps: usize, options: &Options
 
 fn to_rest(hung: &Hung, options: &Options) -> Option<Ran> {
     let mut steps = 0;
-    let rest = Rest { budget: Duration::from_secs_f64(PATIENCE * options.longest), ..Rest::default() };
+    let rest = StaticEquilibrium {
+        budget: Duration::from_secs_f64(PATIENCE * options.longest),
+        ..StaticEquilibrium::default()
+    };
     let solved = rest.solve(&scene(hung), &mut |_| {
         steps += 1;
         if (options.stop)() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     });
     Some(match solved {
         Ok(state) => Ran::judged(hung, &state.positions, steps, None),
-        Err(RestError::NotAtRest { state, .. }) => {
+        Err(StaticsError::NotAtRest { state, .. }) => {
             let error = Some(hung.error(&state.positions));
             Ran { outcome: Outcome::Drifts, steps, error, speed: Some(state.outcome.speed) }
         }
-        Err(RestError::Timeout { .. }) => Ran::without_state(Outcome::TooLong, steps),
-        Err(RestError::Stopped) => return None,
+        Err(StaticsError::Timeout { .. }) => Ran::without_state(Outcome::TooLong, steps),
+        Err(StaticsError::Stopped) => return None,
         Err(e) => Ran::refused(&e, steps),
     })
 }

@@ -53,7 +53,7 @@ impl Scheme {
             Self::Gradients => "implicit Euler (gradients)",
             Self::Xpbd => "XPBD",
             Self::Projective => "projective dynamics (10 turns)",
-            Self::Rest => "Rest",
+            Self::Rest => "StaticEquilibrium",
         }
     }
 
@@ -115,7 +115,7 @@ impl Scheme {
         }
     }
 
-    /// The solver for steps of `dt` (s), implicit ones to this largest force (N); none for `Rest`.
+    /// The solver for steps of `dt` (s), implicit ones to this largest force (N); none for `StaticEquilibrium`.
     pub(crate) fn solver(
         self,
         cloth: &Cloth<'_>,

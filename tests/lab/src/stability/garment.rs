@@ -1,4 +1,4 @@
-//! Extremes of whole scenes through `Rest`: gaps, bodies in the way, seams, stacks, scenes that are none.
+//! Extremes of whole scenes through `StaticEquilibrium`: gaps, bodies in the way, seams, stacks, scenes that are none.
 
 use std::ops::ControlFlow;
 
@@ -7,8 +7,8 @@ use nalgebra::Vector3;
 use super::{Check, Must, Verdict};
 use toile_cloth::contact::body::Body;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::rest::solve::{Rest, RestError, Rested};
 use toile_cloth::scene::{Scene, SceneError, Seam, generate};
+use toile_cloth::statics::solve::{Equilibrium, StaticEquilibrium, StaticsError};
 use toile_geometry::cloth_tree::ClothTree;
 
 /// Widest seam at the end, m.
@@ -64,8 +64,8 @@ pub(super) fn checks(large: bool) -> Vec<Check> {
     checks
 }
 
-fn solve(scene: &Scene) -> Result<Rested, RestError> {
-    Rest::default().solve(scene, &mut |_| ControlFlow::Continue(()))
+fn solve(scene: &Scene) -> Result<Equilibrium, StaticsError> {
+    StaticEquilibrium::default().solve(scene, &mut |_| ControlFlow::Continue(()))
 }
 
 /// Two sheets that hang side by side, to be sewn, so far apart.
@@ -109,17 +109,17 @@ fn doubled() -> Scene {
 }
 
 /// The state with what to say of it: at rest, or still moving where an axis asks for no more than freedom from faults.
-fn state(solved: Result<Rested, RestError>) -> Result<(Rested, &'static str), Verdict> {
+fn state(solved: Result<Equilibrium, StaticsError>) -> Result<(Equilibrium, &'static str), Verdict> {
     match solved {
         Ok(state) => Ok((state, "at rest")),
-        Err(RestError::NotAtRest { state, .. }) => Ok((*state, "not at rest, as the error says")),
+        Err(StaticsError::NotAtRest { state, .. }) => Ok((*state, "not at rest, as the error says")),
         Err(
-            e @ (RestError::SeamNotClosed { .. }
-            | RestError::Start(_)
-            | RestError::Tangled { .. }
-            | RestError::Falls
-            | RestError::FallsPast(_)
-            | RestError::Timeout { .. }),
+            e @ (StaticsError::SeamNotClosed { .. }
+            | StaticsError::Start(_)
+            | StaticsError::Tangled { .. }
+            | StaticsError::Falls
+            | StaticsError::FallsPast(_)
+            | StaticsError::Timeout { .. }),
         ) => Err(Verdict::Refused(e.to_string())),
         Err(e) => Err(Verdict::Failed(e.to_string())),
     }

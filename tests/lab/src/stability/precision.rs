@@ -7,9 +7,9 @@ use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
-use toile_cloth::rest::solve::{Precision, Rest, RestError};
 use toile_cloth::scene::Scene;
 use toile_cloth::solver::{Model, Solver, State, Static};
+use toile_cloth::statics::solve::{Precision, StaticEquilibrium, StaticsError};
 
 const DENSITY: f64 = 0.15;
 /// Length of the strip, m.
@@ -59,8 +59,8 @@ fn rounded() -> Result<(bool, String), ClothError> {
     Ok((apart < ROUNDED, format!("rounding the input to f32 moves the answer by {apart:.0e} lengths")))
 }
 
-/// What single precision of factors changes in the answer of `Rest`: a strip held level that falls and hangs.
-fn factors() -> Result<(bool, String), RestError> {
+/// What single precision of factors changes in the answer of `StaticEquilibrium`: a strip held level that falls and hangs.
+fn factors() -> Result<(bool, String), StaticsError> {
     let mesh = strip();
     let level: Vec<Vec3> = mesh.uv.iter().map(|p| Vec3::new(p.x, 0.0, p.y)).collect();
     let mut scene = Scene::new("strip", fabric());
@@ -68,7 +68,7 @@ fn factors() -> Result<(bool, String), RestError> {
     scene.pinned = (0..mesh.uv.len() as u32).filter(|&v| mesh.uv[v as usize].y > LENGTH - 1e-6).collect();
     scene.self_collision = false;
     let rest = |precision| {
-        let rest = Rest { speed: 1e-6, precision, ..Rest::default() };
+        let rest = StaticEquilibrium { speed: 1e-6, precision, ..StaticEquilibrium::default() };
         rest.solve(&scene, &mut |_| ControlFlow::Continue(())).map(|state| state.positions)
     };
     let apart = apart(&rest(Precision::Double)?, &rest(Precision::Mixed)?);

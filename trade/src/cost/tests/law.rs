@@ -59,7 +59,7 @@ fn of_repeated_runs_each_stage_s_shortest_counts() {
     let run = |otsu: f64, rest: f64| {
         vec![
             record("a", "Otsu", "binariser", pixels(1e6), otsu),
-            record("a", "Rest", "draper", triangles(1e3), rest),
+            record("a", "StaticEquilibrium", "draper", triangles(1e3), rest),
         ]
     };
     let best = shortest(vec![run(0.03, 2.0), run(0.02, 3.0), run(0.05, 2.5)]);
@@ -70,12 +70,14 @@ fn of_repeated_runs_each_stage_s_shortest_counts() {
 
 #[test]
 fn a_solver_grows_faster_than_its_mesh() {
-    let run = |n: f64| record("a", "Rest", "draper", triangles(n), 1e-5 * n.powf(1.5));
+    let run = |n: f64| record("a", "StaticEquilibrium", "draper", triangles(n), 1e-5 * n.powf(1.5));
     let seen: Vec<CostRecord> = [500.0, 1e3, 2e3, 4e3].map(run).into();
     let costs = Costs::fit(&seen, &[], 2);
-    let far = costs.estimate(&place("a", "Rest", "draper"), &triangles(16e3), Figure::Wall).unwrap();
+    let far =
+        costs.estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(16e3), Figure::Wall).unwrap();
     assert!((far.value / (1e-5 * 16e3_f64.powf(1.5)) - 1.0).abs() < 0.05, "{far:?}");
-    let near = costs.estimate(&place("a", "Rest", "draper"), &triangles(3e3), Figure::Wall).unwrap();
+    let near =
+        costs.estimate(&place("a", "StaticEquilibrium", "draper"), &triangles(3e3), Figure::Wall).unwrap();
     assert!(far.high / far.value > near.high / near.value, "what was never measured is less sure");
 }
 
@@ -98,9 +100,9 @@ fn a_pipeline_that_was_never_run_is_less_sure() {
 #[test]
 fn a_slower_machine_is_known_by_other_stages() {
     let mut shipped = runs("a", 20, 0.05);
-    shipped.extend(
-        (1..20).map(|i| record("a", "Rest", "draper", triangles(f64::from(i) * 100.0), 1e-3 * f64::from(i))),
-    );
+    shipped.extend((1..20).map(|i| {
+        record("a", "StaticEquilibrium", "draper", triangles(f64::from(i) * 100.0), 1e-3 * f64::from(i))
+    }));
     let slow: Vec<CostRecord> = runs("b", 8, 0.05)
         .into_iter()
         .map(|mut r| {
@@ -108,7 +110,7 @@ fn a_slower_machine_is_known_by_other_stages() {
             r
         })
         .collect();
-    let at = place("b", "Rest", "draper");
+    let at = place("b", "StaticEquilibrium", "draper");
     let before = Costs::fit(&[], &shipped, 2).estimate(&at, &triangles(1e3), Figure::Wall).unwrap();
     let after = Costs::fit(&slow, &shipped, 2).estimate(&at, &triangles(1e3), Figure::Wall).unwrap();
     assert!((after.value / before.value / 3.0 - 1.0).abs() < 0.1, "{after:?} after {before:?}");
@@ -147,7 +149,7 @@ fn the_shipped_figures_are_whole_and_know_the_shipped_stages() {
         "GraphCut",
         "Canny",
         "GridMesher",
-        "Rest",
+        "StaticEquilibrium",
         "SpringDraper",
         "PhotoTexturer",
         "Glb",

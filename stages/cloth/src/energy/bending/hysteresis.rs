@@ -15,10 +15,10 @@ use rayon::prelude::*;
 
 /// The curvature over which friction comes up, as a share of the couple over the rigidity: at this way it is 0.7 of the
 /// couple, and a small fold is 1 / `SOFT` times stiffer on top of its rigidity.
-const SOFT: f64 = 0.4;
+const SLIP_TOLERANCE: f64 = 0.4;
 
 /// How far behind an angle is dragged, in soft ways: friction is then half of its couple, as on the body.
-const DRAG: f64 = 0.577;
+const SLIP_RETURN: f64 = 0.577;
 
 /// Hinges of one task.
 const TASK: usize = 4096;
@@ -61,7 +61,7 @@ impl Hysteresis {
         let both = |e: &Edge| Some(0.5 * (ratio(&e.sides.0) + ratio(&e.sides.1?)));
         let hold = |(fold, ratio): (Fold, f64)| {
             let couple = fold.stiffness * fold.span * ratio;
-            Hold { fold, couple, soft: SOFT * fold.span * ratio }
+            Hold { fold, couple, soft: SLIP_TOLERANCE * fold.span * ratio }
         };
         let holds: Vec<Hold> =
             folds(cloth).into_iter().zip(sheet.edges().iter().filter_map(both)).map(hold).collect();
@@ -170,7 +170,7 @@ impl Element<4> for Hysteresis {
     fn drag(&mut self, x: &[Vec3]) {
         let holds = self.holds.par_iter();
         self.held.par_iter_mut().zip(holds).with_min_len(TASK).for_each(|(held, h)| {
-            let most = DRAG * h.soft;
+            let most = SLIP_RETURN * h.soft;
             let way = h.angle(&h.fold.nodes.map(|i| x[i as usize])) - *held;
             *held += way - way.clamp(-most, most);
         });

@@ -69,7 +69,7 @@ fn the_couple_is_what_stiffness_makes_of_its_curvature() {
     // A diagonal of a square bends over half of the diagonal.
     let span = EDGE / 2.0_f64.sqrt();
     assert!((hold.couple / hold.fold.stiffness / (RATIO * span) - 1.0).abs() < 1e-9);
-    assert!((hold.soft / (SOFT * RATIO * span) - 1.0).abs() < 1e-9);
+    assert!((hold.soft / (SLIP_TOLERANCE * RATIO * span) - 1.0).abs() < 1e-9);
 }
 
 #[test]

@@ -1,0 +1,104 @@
+//! Nested dissection: an order of elimination that keeps the factor of a sheet's matrix sparse.
+//!
+//! The nodes are laid out in space (where the panels lay before sewing: flat), cut in two about the middle again and again
+//! (George 1973); the nodes of one half that are coupled to the other are the separator and come last. Of the cuts across
+//! each side that with the smallest separator is taken (see [`halve`]).
+//! Cost O(n log n). The order is only as good as the layout, but right for any.
+
+mod bisection;
+
+use crate::linear::Pattern;
+use bisection::Halves;
+use nalgebra::Vector3;
+
+/// Parts of at most this many nodes are not cut further: a dense block of some 50 unknowns is cheaper than more fronts.
+const LEAF_NODES: usize = 16;
+
+/// Rounds of [`smoothed`]: half a cell out of line becomes a twentieth.
+const ROUNDS: usize = 8;
+
+/// One part of the tree: the nodes eliminated there, after those of its children.
+#[derive(Debug, Clone, Default)]
+pub struct Part {
+    /// The nodes, in the order of elimination.
+    pub nodes: Vec<u32>,
+    /// Indices of the parts below, each smaller than this part's own.
+    pub children: Vec<usize>,
+}
+
+/// The parts, children before parents; the last is the root. Held nodes are in none.
+pub fn dissect(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Part> {
+    let n = pattern.nodes();
+    let neighbours = Neighbours::new(pattern);
+    let mut halves = Halves::new(layout, &neighbours);
+    let mut parts = Vec::new();
+    let all: Vec<u32> = (0..n as u32).filter(|&i| !pattern.is_held(i)).collect();
+    cut(all, &mut halves, &mut parts);
+    parts
+}
+
+/// The layout with each node moved to the middle of those that it is coupled to, a few times over: rows that stand out of line, and
+/// meshes without any, can then be cut straight.
+pub fn smoothed(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let neighbours = Neighbours::new(pattern);
+    let mut layout = layout.to_vec();
+    for _ in 0..ROUNDS {
+        layout = (0..layout.len() as u32).map(|i| middle(i, neighbours.of(i), &layout)).collect();
+    }
+    layout
+}
+
+/// The middle of a node and its neighbours.
+fn middle(i: u32, near: &[u32], layout: &[Vector3<f64>]) -> Vector3<f64> {
+    let sum = near.iter().fold(layout[i as usize], |sum, &j| sum + layout[j as usize]);
+    sum / (near.len() + 1) as f64
+}
+
+/// Both directions of the pattern.
+struct Neighbours {
+    starts: Vec<u32>,
+    of: Vec<u32>,
+}
+
+impl Neighbours {
+    fn new(pattern: &Pattern) -> Self {
+        let mut starts = vec![0u32; pattern.nodes() + 1];
+        for (i, j, _) in pattern.upper() {
+            starts[i as usize + 1] += 1;
+            starts[j as usize + 1] += 1;
+        }
+        for i in 0..pattern.nodes() {
+            starts[i + 1] += starts[i];
+        }
+        let mut fill = starts.clone();
+        let mut of = vec![0u32; 2 * (pattern.blocks() - pattern.nodes())];
+        for (i, j, _) in pattern.upper() {
+            for (a, b) in [(i, j), (j, i)] {
+                of[fill[a as usize] as usize] = b;
+                fill[a as usize] += 1;
+            }
+        }
+        Self { starts, of }
+    }
+
+    fn of(&self, i: u32) -> &[u32] {
+        &self.of[self.starts[i as usize] as usize..self.starts[i as usize + 1] as usize]
+    }
+}
+
+/// Adds the parts of `nodes` and returns the index of their root.
+fn cut(nodes: Vec<u32>, halves: &mut Halves<'_>, parts: &mut Vec<Part>) -> usize {
+    if nodes.len() <= LEAF_NODES {
+        parts.push(Part { nodes, children: Vec::new() });
+        return parts.len() - 1;
+    }
+    let [low, high, separator] = halves.of(nodes);
+    let mut children = Vec::new();
+    for half in [low, high] {
+        if !half.is_empty() {
+            children.push(cut(half, halves, parts));
+        }
+    }
+    parts.push(Part { nodes: separator, children });
+    parts.len() - 1
+}
