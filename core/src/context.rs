@@ -1,6 +1,7 @@
 //! What a running stage may ask of the outside world.
 
 use crate::artifact::{ArtifactType, Digest, Digester, Measure};
+use crate::files::MAX_FILE_BYTES;
 use crate::{ErrorCode, PortValue, StageError, parallel};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -78,9 +79,6 @@ pub trait Memo: Send + Sync {
     /// The part of the stage `id` under that key: as it was kept, else as it is made now.
     fn part(&self, id: &str, key: &Digester, make: Box<dyn FnOnce() -> Vec<u8> + '_>) -> Vec<u8>;
 }
-
-/// The largest file that a stage may read, bytes.
-pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// Handed to every run of a stage.
 pub struct Context {

@@ -3,10 +3,12 @@
 //! A pipe gives nothing until somebody writes into it, a device may give bytes for ever, and both may stand where a file is
 //! expected, as links too. So the kind is looked at before a file is opened, and no more is read than a file may hold.
 
-use crate::MAX_FILE_BYTES;
 use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
+
+/// The largest file that a stage may read, bytes.
+pub const MAX_FILE_BYTES: u64 = 1 << 30;
 
 /// What is said of a file that is none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -59,9 +59,9 @@ pub mod text;
 mod typed;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
-pub use context::{Cancel, Context, Event, Listener, MAX_FILE_BYTES, Memo};
+pub use context::{Cancel, Context, Event, Listener, Memo};
 pub use error::{ErrorCode, StageError};
-pub use files::{NoFile, ordinary, read_file, read_text};
+pub use files::{MAX_FILE_BYTES, NoFile, ordinary, read_file, read_text};
 pub use migration::{Change, Migration};
 pub use near::{hint, nearest, quoted};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};

@@ -3,7 +3,7 @@
 use std::fs;
 use toile_tests::{PIPELINES, pipeline, toile};
 
-/// As the first versions wrote it: LaplacianEdges is Laplacian now, `tugs` of the stitcher is gone.
+/// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium, `tugs` of the stitcher is gone.
 const OLD: &str = r#"// My vest.
 (
     photos: { "front": (file: "front.jpg", width: "52 cm"), "back": MirrorOf("front") },
@@ -59,6 +59,8 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
         new,
         OLD.replace("LaplacianEdges", "Laplacian")
             .replace("            tugs: 3,            // pull", "            // pull")
+            .replace("Rest(", "StaticEquilibrium(")
+            .replace("stages.Rest.speed", "stages.StaticEquilibrium.speed")
     );
     assert_eq!(toile(&["validate", &name]).code, 0, "{}", toile(&["validate", &name]).err);
     assert_eq!(toile(&["migrate", &name]).out, format!("{name}: up to date\n"));

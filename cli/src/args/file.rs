@@ -1,20 +1,8 @@
 //! Arguments of what is done to pipeline files, goldens and stages.
 
-use super::CacheChoice;
+use super::shared::{CacheChoice, Overrides};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
-use toile_pipeline::Override;
-
-/// Arguments that change a pipeline before it is loaded.
-#[derive(Debug, Args, Default, Clone)]
-pub(crate) struct Overrides {
-    /// Take the settings of a named quality of the pipeline, like Draft, before those of --set
-    #[arg(long, value_name = "NAME")]
-    pub(crate) quality: Option<String>,
-    /// Set a value of the pipeline, like `stages.GridMesher.edge="6 mm"`; may be given again
-    #[arg(long = "set", value_name = "PATH=VALUE", value_parser = <Override as std::str::FromStr>::from_str)]
-    pub(crate) set: Vec<Override>,
-}
 
 #[derive(Debug, Args)]
 pub(crate) struct ValidateArgs {

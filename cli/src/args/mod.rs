@@ -4,13 +4,15 @@ mod amounts;
 mod bench;
 mod file;
 mod run;
+mod shared;
 mod trade;
 
 pub(crate) use bench::{Bench, CostsArgs};
 pub(crate) use file::{
-    AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, Overrides, ValidateArgs, Verb,
+    AcceptArgs, CheckArgs, DoctorArgs, LockArgs, MigrateArgs, NewStageArgs, ValidateArgs, Verb,
 };
-pub(crate) use run::{CacheArgs, CacheChoice, ExplainArgs, RunArgs, WhyArgs};
+pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
+pub(crate) use shared::{CacheChoice, Overrides};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 
 use crate::streams::Color;

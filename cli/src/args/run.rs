@@ -1,6 +1,6 @@
 //! Arguments of runs and of what is said before and after them.
 
-use super::Overrides;
+use super::shared::{CacheChoice, Overrides};
 use clap::Args;
 use std::path::PathBuf;
 use toile_pipeline::cache::Bytes;
@@ -81,17 +81,6 @@ pub(crate) struct WhyArgs {
     /// Print one JSON object and nothing else
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// Which cache a command uses.
-#[derive(Debug, Args, Default)]
-pub(crate) struct CacheChoice {
-    /// Run every stage, and keep no results
-    #[arg(long, conflicts_with = "cache_dir")]
-    pub(crate) no_cache: bool,
-    /// Folder of the cache [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) cache_dir: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

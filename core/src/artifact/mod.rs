@@ -15,6 +15,7 @@ mod fabric;
 mod figures;
 mod files;
 mod garment;
+mod garment_sizes;
 mod gathers;
 mod gauge;
 mod geometry;

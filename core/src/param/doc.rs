@@ -1,6 +1,7 @@
 //! What is known of a parameter.
 
-use super::{Check, Length};
+use super::{Length, ParamFault};
+use std::sync::Arc;
 
 /// One parameter of a stage: the single source of its RON form, checks, card and schema.
 #[derive(Debug, Clone)]
@@ -59,5 +60,29 @@ impl Finer {
             Finer::Less => "less",
             Finer::More => "more",
         }
+    }
+}
+
+/// How a parameter's text is checked: by its own type, or by the plugin that knows the type.
+#[derive(Clone)]
+pub struct Check(Arc<CheckFn>);
+
+type CheckFn = dyn Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync;
+
+impl Check {
+    /// Checks by a function.
+    pub fn by(check: impl Fn(&str, &ParamDoc) -> Result<(), ParamFault> + Send + Sync + 'static) -> Self {
+        Check(Arc::new(check))
+    }
+
+    /// Checks a text as the value of that parameter.
+    pub fn run(&self, text: &str, doc: &ParamDoc) -> Result<(), ParamFault> {
+        (self.0)(text, doc)
+    }
+}
+
+impl std::fmt::Debug for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Check")
     }
 }

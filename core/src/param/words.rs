@@ -1,6 +1,6 @@
 //! What is wrong with a text, in words.
 
-use super::check::check_number;
+use super::range::check_number;
 use super::{ParamDoc, ParamFault};
 use crate::near;
 

@@ -64,7 +64,7 @@ mod tests {
             unbalanced: Unbalanced { vertex: 0, force: 0.0, meets: Meets::Nothing },
             slides: vec![],
             folds: vec![],
-            grips: vec![],
+            friction_contacts: vec![],
             offsets: vec![],
             energy: 0.0,
             dip,

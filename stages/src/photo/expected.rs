@@ -2,12 +2,11 @@
 
 use super::decode::upright_size;
 use super::resolve::resolve;
-use super::{PhotoEntry, PhotoFile, Photos};
+use super::{PhotoEntry, PhotoFile};
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use toile_core::cost::{Quantity, Size, garment_area};
-use toile_core::param::ron_options;
-use toile_core::{Context, Length, StageMeta};
+use toile_core::{Context, Length};
 
 /// Pixels of the photos and of the files, bytes of the files, and a guess at the garment's area; none where a photo cannot be read.
 ///
@@ -35,20 +34,8 @@ pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Opti
     Some(size.with(Quantity::Decoded, decoded).with(Quantity::Area, area))
 }
 
-/// Width and height of every photo, px, with the width of its frame, metres, the garment as wide as the frame where only its
-/// width is known; none where a photo cannot be read or the stage is none that reads photos.
-pub(crate) fn frames(stage: &str, params: &str, cx: &Context) -> Option<Vec<((u32, u32), f64)>> {
-    let photos: Photos = (stage == Photos::NAME).then(|| ron_options().from_str(params).ok()).flatten()?;
-    let frame = |name: &String| {
-        let (photo, _) = resolve(photos.entries(), name).ok()?;
-        let (w, h) = upright_size(&cx.read(&photo.file).ok()?)?;
-        Some(((w, h), width(photo, f64::from(w))))
-    };
-    photos.entries().keys().map(frame).collect()
-}
-
 /// The garment's width, metres; that of the frame where only the scale is known.
-fn width(photo: &PhotoFile, width_px: f64) -> f64 {
+pub(super) fn width(photo: &PhotoFile, width_px: f64) -> f64 {
     let by_scale = photo.px_per_metre.map(|scale| width_px / scale);
     photo.width.map(Length::metres).or(by_scale).unwrap_or(0.0)
 }

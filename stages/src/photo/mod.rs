@@ -14,6 +14,7 @@ mod decode;
 mod entry;
 mod expected;
 mod form;
+mod frames;
 mod header;
 mod photos;
 mod resolve;
@@ -24,7 +25,7 @@ mod tiff;
 
 pub use decode::{Decoded, MAX_DECODED_BYTES, MAX_PIXELS, MAX_SIDE_PX, decode};
 pub use entry::{MAX_PX_PER_METRE, MAX_WIDTH_M, MIN_PX_PER_METRE, MIN_WIDTH_M, PhotoEntry, PhotoFile};
-pub(crate) use expected::frames;
+pub(crate) use frames::frames;
 pub(crate) use photos::sides;
 pub use photos::{Photos, read_photos};
 pub use scale::ScaleObject;

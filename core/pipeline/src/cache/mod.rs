@@ -14,6 +14,7 @@
 //! that cannot be stored, is always run.
 
 mod causes;
+mod file_hash;
 mod key;
 mod manifest;
 mod size;
@@ -24,6 +25,7 @@ mod tests;
 
 pub use causes::Cause;
 pub(crate) use causes::{Last, RUN_SO_FAR};
+pub(crate) use file_hash::file_hash;
 pub(crate) use key::{Fed, Ingredients};
 pub(crate) use manifest::{Blob, Kept, Manifest};
 pub use size::Bytes;
@@ -35,7 +37,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use store::{Shelf, Store};
 use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
-use toile_core::{Card, Memo, PortValue, read_file};
+use toile_core::{Card, Memo, PortValue};
 
 /// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with photos
 /// of 12 megapixels.
@@ -298,11 +300,6 @@ impl Memo for Parts {
         d.text("toile part").bytes(&self.stage.0).bytes(&key.finish().0);
         self.cache.part(id, &d.finish(), make)
     }
-}
-
-/// The digest of a file's content; `None` where it cannot be read.
-pub(crate) fn file_hash(path: &Path) -> Option<Digest> {
-    read_file(path).ok().map(|bytes| Digest::of(&bytes))
 }
 
 /// The folder of the cache where nothing else is said: `XDG_CACHE_HOME`, else `.cache` in the home folder.

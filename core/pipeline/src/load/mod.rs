@@ -28,6 +28,7 @@ mod origin;
 mod overrides;
 mod parser;
 mod pick;
+mod pipeline;
 mod place;
 mod plugins;
 mod qualities;
@@ -45,6 +46,7 @@ pub use json::to_json;
 pub use migrate::{Migrated, migrate};
 use overrides::Given;
 pub use overrides::Override;
+pub use pipeline::Pipeline;
 pub use plugins::{PluginUse, asked as plugins_asked};
 pub use qualities::{
     Basis, MAX_QUALITIES, MAX_SETTINGS, Quality, Standing, fill as fill_qualities,
@@ -53,8 +55,8 @@ pub use qualities::{
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use toile_core::{Feed, Node, Registry, needed_for};
+use std::path::Path;
+use toile_core::{Feed, Registry};
 
 /// The largest pipeline file, bytes: a thousand times what a garment needs.
 pub const MAX_BYTES: usize = 4 << 20;
@@ -64,29 +66,6 @@ pub const MAX_FAULTS: usize = 200;
 
 /// The most stages that a pipeline may hold; bounds the work of the graph check.
 pub const MAX_STAGES: usize = 1000;
-
-/// A pipeline file that has passed every check.
-#[derive(Debug)]
-pub struct Pipeline {
-    /// Its `name`; the file's stem where it gives none.
-    pub name: String,
-    /// The file's name as the user gave it.
-    pub file: String,
-    /// The text that all places refer to (with overrides applied).
-    pub text: String,
-    /// The folder that paths in the file are relative to.
-    pub base: PathBuf,
-    /// Its stages; each stands after all that feed it.
-    pub nodes: Vec<Node>,
-    /// Plugins that the file asks for.
-    pub plugins: Vec<PluginUse>,
-    /// Its named qualities.
-    pub qualities: Vec<Quality>,
-    /// The quality that it is loaded with, for people: `Draft`, `Draft, changed by --set`.
-    pub quality: Option<String>,
-    /// The file's text as it stands, and where the parts of `text` come from.
-    written: (String, origin::Origin),
-}
 
 /// What a load changes in the file.
 #[derive(Debug, Clone, Copy, Default)]
@@ -250,34 +229,4 @@ fn refused_by_ron(text: &str) -> Option<Fault> {
     let from = text.len() - bare.len() + at.unwrap_or(0);
     let to = text[from..].chars().next().map_or(from, |c| from + c.len_utf8());
     Some(Fault::new("syntax", message).at(&(from..to), ""))
-}
-
-impl Pipeline {
-    /// The index of the stage with that id.
-    pub fn find(&self, id: &str) -> Option<usize> {
-        self.nodes.iter().position(|n| n.id == id)
-    }
-
-    /// The stages that read from a stage, in order.
-    pub fn consumers(&self, node: usize) -> Vec<usize> {
-        let reads =
-            |n: &Node| n.inputs.iter().any(|f| matches!(f, Feed::Node { node: from, .. } if *from == node));
-        self.nodes.iter().enumerate().filter(|(_, n)| reads(n)).map(|(i, _)| i).collect()
-    }
-
-    /// For each stage, whether it is one of `sinks` or feeds one, near or far.
-    pub fn needed_for(&self, sinks: &[usize]) -> Vec<bool> {
-        needed_for(&self.nodes, sinks)
-    }
-
-    /// The line of the file on which a stage stands, from 1.
-    pub fn line(&self, node: &Node) -> usize {
-        fault::Lines::of(&self.text).position(&self.text, node.place.start).0
-    }
-
-    /// Faults of the text with its overrides, shown where the user wrote what is wrong.
-    pub fn faults(&self, faults: Vec<Fault>) -> Faults {
-        let (text, origin) = &self.written;
-        Faults::new(&self.file, text, faults.into_iter().map(|f| origin.told(f)).collect())
-    }
 }

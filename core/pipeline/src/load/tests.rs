@@ -54,7 +54,7 @@ fn wiring(pipeline: &Pipeline) -> Vec<String> {
         Feed::Node { node, port: 0 } => pipeline.nodes[*node].id.clone(),
         Feed::Node { node, port } => format!("{}.{port}", pipeline.nodes[*node].id),
     };
-    let line = |n: &super::Node| {
+    let line = |n: &toile_core::Node| {
         let feeds: Vec<String> = n.inputs.iter().map(feed).collect();
         format!("{} < {}", n.id, feeds.join(", ")).trim_end_matches([' ', '<']).to_owned()
     };

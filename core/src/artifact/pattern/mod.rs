@@ -6,6 +6,7 @@ mod chain;
 mod check;
 mod curve;
 mod lower;
+mod lowering_error;
 mod piece;
 mod pleats;
 mod seam;
@@ -15,7 +16,8 @@ pub(in crate::artifact) mod tests;
 
 pub use chain::lacking_stops;
 pub use curve::{EdgeCurve, EdgePath};
-pub use lower::{Lowered, LoweringError};
+pub use lower::Lowered;
+pub use lowering_error::LoweringError;
 pub use piece::{BodyPart, LinePurpose, Notch, PatternLoop, Piece, PieceEdge, PieceLine, Pose};
 pub use seam::{EdgeUse, PatternSeam};
 

@@ -27,6 +27,18 @@ pub(crate) enum Command {
         #[arg(long)]
         json: bool,
     },
+    /// The own sparse factorization beside faer's, on matrices of cloth
+    Factors {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
+    /// Own kernels beside those of libraries: times and differences
+    Libraries {
+        /// Print one JSON object and nothing else
+        #[arg(long)]
+        json: bool,
+    },
     /// The two drivers of cost, particles and time step, against time and error for every solver
     Drivers(DriversArgs),
     /// Extreme parameters, sizes and inputs: each converges or is refused by name

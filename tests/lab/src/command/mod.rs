@@ -66,6 +66,8 @@ where
         Command::Accuracy(args) => accuracy(&args, &mut streams),
         Command::Solvers { json } => solvers(json, &mut streams),
         Command::Diagnostics { json } => diagnostics(json, &mut streams),
+        Command::Factors { json } => factors(json, &mut streams),
+        Command::Libraries { json } => libraries(json, &mut streams),
         Command::Drivers(args) => drivers::run(&args, &mut streams),
         Command::Stability(args) if args.map => stability_map::run(&args, &mut streams),
         Command::Stability(args) => stability(&args, &mut streams),
@@ -139,6 +141,37 @@ fn solvers(json: bool, streams: &mut Streams<'_>) -> u8 {
             streams.tell(format!("error: {e}"));
             exit::INVALID
         }
+    }
+}
+
+/// Measures factorizations.
+fn factors(json: bool, streams: &mut Streams<'_>) -> u8 {
+    let bar = bar();
+    let report = crate::factors::factors(&mut |share, what| tell(&bar, share, what));
+    bar.finish_and_clear();
+    match report {
+        Ok(report) => {
+            streams.say(if json { report.to_json() } else { report.to_string() });
+            verdict(is_stopped(), true)
+        }
+        Err(e) => {
+            streams.tell(format!("error: {e}"));
+            exit::INVALID
+        }
+    }
+}
+
+/// Measures kernels beside those of libraries.
+fn libraries(json: bool, streams: &mut Streams<'_>) -> u8 {
+    let bar = bar();
+    let report = crate::libraries::libraries(&mut |share, what| tell(&bar, share, what));
+    bar.finish_and_clear();
+    match report {
+        Ok(report) => {
+            streams.say(if json { report.to_json() } else { report.to_string() });
+            verdict(is_stopped(), true)
+        }
+        Err(e) => failed(&e, streams),
     }
 }
 
