@@ -22,7 +22,7 @@ const OLD: &str = r#"// My vest.
         ),
         Rest(graded: false),
     ],
-    qualities: [Quality(name: "Draft", set: ["stages.Rest.speed=0.01"])],
+    qualities: [Quality(name: "Draft", max_error: "20 mm", set: ["stages.Rest.speed=0.01"])],
 )
 "#;
 
@@ -46,7 +46,9 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
 
     let changes = format!(
         "{name}: line 9: stage LaplacianEdges -> Laplacian\n\
-         {name}: line 14: SpringStitcher: tugs removed: seams close at the speed `closing`\n"
+         {name}: line 14: SpringStitcher: tugs removed: seams close at the speed `closing`\n\
+         {name}: line 17: stage Rest -> StaticEquilibrium\n\
+         {name}: line 19: quality Draft: stages.Rest.speed=0.01 -> stages.StaticEquilibrium.speed=0.01\n"
     );
     let check = toile(&["migrate", "--check", &name]);
     assert_eq!((check.code, check.out.as_str()), (4, changes.as_str()));
@@ -79,8 +81,10 @@ fn what_validate_refuses_is_not_called_up_to_date() {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("new.ron");
     let name = file.display().to_string();
-    let new =
-        OLD.replace("LaplacianEdges", "Laplacian").replace("            tugs: 3,            // pull\n", "");
+    let new = OLD
+        .replace("LaplacianEdges", "Laplacian")
+        .replace("            tugs: 3,            // pull\n", "")
+        .replace("Rest", "StaticEquilibrium");
     fs::copy(pipeline("samples/vest/front.jpg"), dir.path().join("front.jpg")).unwrap();
     for (right, wrong, words) in [
         ("Otsu()", "Otzu()", "unknown stage `Otzu`"),
