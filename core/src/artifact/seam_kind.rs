@@ -71,31 +71,46 @@ impl SeamKind {
         }
     }
 
+    /// The kind after it in the order of declaration, with figures that are to be replaced: a new kind is named here by the compiler.
+    fn next(self) -> Option<Self> {
+        Some(match self {
+            SeamKind::Matched => SeamKind::Gathered,
+            SeamKind::Gathered => SeamKind::Dart,
+            SeamKind::Dart => SeamKind::Pleat(PleatFold::Knife),
+            SeamKind::Pleat(PleatFold::Knife) => SeamKind::Pleat(PleatFold::Box),
+            SeamKind::Pleat(PleatFold::Box) => SeamKind::Elastic { ratio: 1.0, stiffness: 1.0 },
+            SeamKind::Elastic { .. } => SeamKind::Patch,
+            SeamKind::Patch => SeamKind::Folded { angle: 1.0 },
+            SeamKind::Folded { .. } => return None,
+        })
+    }
+
+    /// The same kind with these figures; nothing where there are too many or too few.
+    fn with(self, figures: &[f64]) -> Option<Self> {
+        match (self, figures) {
+            (SeamKind::Elastic { .. }, [ratio, stiffness]) => {
+                Some(SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness })
+            }
+            (SeamKind::Folded { .. }, [angle]) => Some(SeamKind::Folded { angle: *angle }),
+            (kind, []) if kind.figures().is_empty() => Some(kind),
+            _ => None,
+        }
+    }
+
+    /// Every kind once.
+    fn all() -> impl Iterator<Item = Self> {
+        std::iter::successors(Some(SeamKind::Matched), |k| k.next())
+    }
+
     /// The kind of such a word and figures.
     ///
     /// Errors: one sentence on a word that is none, or a wrong number of figures.
     pub fn of(word: &str, figures: &[f64]) -> Result<Self, String> {
-        let kind = match (word, figures) {
-            ("matched", _) => SeamKind::Matched,
-            ("gathered", _) => SeamKind::Gathered,
-            ("dart", _) => SeamKind::Dart,
-            ("knife pleat", _) => SeamKind::Pleat(PleatFold::Knife),
-            ("box pleat", _) => SeamKind::Pleat(PleatFold::Box),
-            ("elastic", [ratio, stiffness]) => SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness },
-            ("patch", _) => SeamKind::Patch,
-            ("folded", [angle]) => SeamKind::Folded { angle: *angle },
-            ("elastic" | "folded", _) => {
-                return Err(format!(
-                    "`kind` is \"{word}\", to which {} figures do not belong",
-                    figures.len()
-                ));
-            }
-            _ => return Err(format!("`kind` is \"{word}\", which is none of its words")),
+        let Some(kind) = Self::all().find(|k| k.word() == word) else {
+            return Err(format!("`kind` is \"{word}\", which is none of its words"));
         };
-        match kind.figures().len() == figures.len() {
-            true => Ok(kind),
-            false => Err(format!("`kind` is \"{word}\", to which {} figures do not belong", figures.len())),
-        }
+        kind.with(figures)
+            .ok_or_else(|| format!("`kind` is \"{word}\", to which {} figures do not belong", figures.len()))
     }
 
     /// Its figures can be.
@@ -122,20 +137,11 @@ mod tests {
 
     #[test]
     fn every_kind_comes_back_from_its_word_and_figures() {
-        let kinds = [
-            SeamKind::Matched,
-            SeamKind::Gathered,
-            SeamKind::Dart,
-            SeamKind::Pleat(PleatFold::Knife),
-            SeamKind::Pleat(PleatFold::Box),
-            SeamKind::Elastic { ratio: 0.8, stiffness: 30.0 },
-            SeamKind::Patch,
-            SeamKind::Folded { angle: 1.5 },
-        ];
-        for kind in kinds {
+        for kind in SeamKind::all() {
             assert_eq!(SeamKind::of(kind.word(), &kind.figures()).unwrap(), kind);
             assert!(kind.check().is_ok());
         }
+        assert_eq!(SeamKind::all().count(), 8);
     }
 
     #[test]

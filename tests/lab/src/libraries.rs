@@ -3,8 +3,8 @@
 use crate::Progress;
 use image::{GrayImage, Luma, RgbImage};
 use parry3d_f64::math::{Pose, Vector};
-use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations;
+use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Segment, TriMesh, TriMeshFlags, Triangle};
 use serde::Serialize;
 use std::fmt;
