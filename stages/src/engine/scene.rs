@@ -92,7 +92,8 @@ fn seams(garment: &Garment) -> Vec<Seam> {
             | SeamKind::Dart
             | SeamKind::Pleat(_)
             | SeamKind::Elastic { .. }
-            | SeamKind::Patch => seam,
+            | SeamKind::Patch
+            | SeamKind::Lapped => seam,
             SeamKind::Folded { angle } => Seam { fold: Some(angle), ..seam },
             SeamKind::Gathered => Seam { gather: Some(gather(&seam.pairs, &garment.rest)), ..seam },
         }
@@ -112,6 +113,7 @@ fn bands(garment: &Garment) -> Vec<Band> {
         | SeamKind::Dart
         | SeamKind::Pleat(_)
         | SeamKind::Patch
+        | SeamKind::Lapped
         | SeamKind::Folded { .. } => None,
     };
     garment.seams.iter().filter_map(band).filter(|b| b.vertices.len() > 1).collect()
