@@ -36,8 +36,6 @@ pub enum SeamKind {
     },
     /// The edge of a piece that lies on another (the first side), sewn to a line inside that (the second).
     Patch,
-    /// Matched, one side laid over the other.
-    Lapped,
     /// Matched, and pressed to stay folded.
     Folded {
         /// The angle between the sides' outsides at rest, radians: pi lies flat, 0 face to face.
@@ -56,7 +54,6 @@ impl SeamKind {
             SeamKind::Pleat(PleatFold::Box) => "box pleat",
             SeamKind::Elastic { .. } => "elastic",
             SeamKind::Patch => "patch",
-            SeamKind::Lapped => "lapped",
             SeamKind::Folded { .. } => "folded",
         }
     }
@@ -68,8 +65,7 @@ impl SeamKind {
             | SeamKind::Gathered
             | SeamKind::Dart
             | SeamKind::Pleat(_)
-            | SeamKind::Patch
-            | SeamKind::Lapped => Vec::new(),
+            | SeamKind::Patch => Vec::new(),
             SeamKind::Elastic { ratio, stiffness } => vec![ratio, stiffness],
             SeamKind::Folded { angle } => vec![angle],
         }
@@ -84,8 +80,7 @@ impl SeamKind {
             SeamKind::Pleat(PleatFold::Knife) => SeamKind::Pleat(PleatFold::Box),
             SeamKind::Pleat(PleatFold::Box) => SeamKind::Elastic { ratio: 1.0, stiffness: 1.0 },
             SeamKind::Elastic { .. } => SeamKind::Patch,
-            SeamKind::Patch => SeamKind::Lapped,
-            SeamKind::Lapped => SeamKind::Folded { angle: 1.0 },
+            SeamKind::Patch => SeamKind::Folded { angle: 1.0 },
             SeamKind::Folded { .. } => return None,
         })
     }
@@ -125,8 +120,7 @@ impl SeamKind {
             | SeamKind::Gathered
             | SeamKind::Dart
             | SeamKind::Pleat(_)
-            | SeamKind::Patch
-            | SeamKind::Lapped => Ok(()),
+            | SeamKind::Patch => Ok(()),
             SeamKind::Elastic { ratio, stiffness } => {
                 positive("ratio of an elastic band", ratio)?;
                 positive("stiffness of an elastic band", stiffness)
@@ -147,7 +141,7 @@ mod tests {
             assert_eq!(SeamKind::of(kind.word(), &kind.figures()).unwrap(), kind);
             assert!(kind.check().is_ok());
         }
-        assert_eq!(SeamKind::all().count(), 9);
+        assert_eq!(SeamKind::all().count(), 8);
     }
 
     #[test]

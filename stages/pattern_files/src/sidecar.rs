@@ -85,7 +85,6 @@ pub fn kind_word(kind: SeamKind) -> String {
             format!("Elastic(ratio: {ratio:?}, stiffness: {stiffness:?})")
         }
         SeamKind::Patch => "Patch".into(),
-        SeamKind::Lapped => "Lapped".into(),
         SeamKind::Folded { angle } => format!("Folded(angle: {:?})", angle.to_degrees()),
     }
 }

@@ -5,12 +5,9 @@ use toile_core::prelude::*;
 /// Refuses a kind of seam for solvers that join the pairs of seams, and do nothing else.
 pub(crate) fn only_joins(kind: SeamKind, name: &str) -> Result<(), StageError> {
     match kind {
-        SeamKind::Matched
-        | SeamKind::Gathered
-        | SeamKind::Dart
-        | SeamKind::Pleat(_)
-        | SeamKind::Patch
-        | SeamKind::Lapped => Ok(()),
+        SeamKind::Matched | SeamKind::Gathered | SeamKind::Dart | SeamKind::Pleat(_) | SeamKind::Patch => {
+            Ok(())
+        }
         SeamKind::Elastic { .. } | SeamKind::Folded { .. } => {
             let message = format!(
                 "the seam {name} is of the kind \"{}\", which this solver does not carry out",

@@ -92,8 +92,7 @@ fn seams(garment: &Garment) -> Vec<Seam> {
             | SeamKind::Dart
             | SeamKind::Pleat(_)
             | SeamKind::Elastic { .. }
-            | SeamKind::Patch
-            | SeamKind::Lapped => seam,
+            | SeamKind::Patch => seam,
             SeamKind::Folded { angle } => Seam { fold: Some(angle), ..seam },
             SeamKind::Gathered => Seam { gather: Some(gather(&seam.pairs, &garment.rest)), ..seam },
         }
@@ -113,7 +112,6 @@ fn bands(garment: &Garment) -> Vec<Band> {
         | SeamKind::Dart
         | SeamKind::Pleat(_)
         | SeamKind::Patch
-        | SeamKind::Lapped
         | SeamKind::Folded { .. } => None,
     };
     garment.seams.iter().filter_map(band).filter(|b| b.vertices.len() > 1).collect()

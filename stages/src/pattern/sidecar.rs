@@ -54,7 +54,6 @@ enum Kind {
         stiffness: f64,
     },
     Patch,
-    Lapped,
     Folded {
         angle: f64,
     },
@@ -70,7 +69,6 @@ impl Kind {
             Kind::BoxPleat => SeamKind::Pleat(PleatFold::Box),
             Kind::Elastic { ratio, stiffness } => SeamKind::Elastic { ratio: *ratio, stiffness: *stiffness },
             Kind::Patch => SeamKind::Patch,
-            Kind::Lapped => SeamKind::Lapped,
             Kind::Folded { angle } => SeamKind::Folded { angle: angle.to_radians() },
         }
     }

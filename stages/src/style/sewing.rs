@@ -172,7 +172,6 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
         | SeamKind::Pleat(_)
         | SeamKind::Elastic { .. }
         | SeamKind::Patch
-        | SeamKind::Lapped
         | SeamKind::Folded { .. } => Ok(()),
         SeamKind::Matched if difference.is_nan() || difference > MAX_EASE => Err(StageError::invalid(
             format!("{words}: they differ by {:.1} %, too much to be sewn flat", 100.0 * difference),

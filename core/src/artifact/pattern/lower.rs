@@ -118,7 +118,6 @@ fn kind<'a>(pattern: &Pattern, s: &'a PatternSeam, gathers: &mut Vec<Gather<'a>>
         | SeamKind::Pleat(_)
         | SeamKind::Elastic { .. }
         | SeamKind::Patch
-        | SeamKind::Lapped
         | SeamKind::Folded { .. } => return s.kind,
     }
     let lengths: Vec<f64> = s.sides.iter().map(|side| pattern.side_length(side)).collect();

@@ -98,7 +98,7 @@ fn kind(pattern: &Pattern, s: &PatternSeam) -> String {
         SeamKind::Matched => "plain".to_owned(),
         SeamKind::Elastic { ratio, .. } => format!("elastic, {:.0} % of the edge", ratio * 100.0),
         SeamKind::Folded { angle } => format!("pressed to {:.0}°", angle.to_degrees()),
-        SeamKind::Gathered | SeamKind::Dart | SeamKind::Pleat(_) | SeamKind::Patch | SeamKind::Lapped => {
+        SeamKind::Gathered | SeamKind::Dart | SeamKind::Pleat(_) | SeamKind::Patch => {
             s.kind.word().to_owned()
         }
     }
