@@ -97,8 +97,8 @@ impl SeamKind {
         }
     }
 
-    /// Every kind once.
-    fn all() -> impl Iterator<Item = Self> {
+    /// Every kind once, with figures that can be.
+    pub fn all() -> impl Iterator<Item = Self> {
         std::iter::successors(Some(SeamKind::Matched), |k| k.next())
     }
 

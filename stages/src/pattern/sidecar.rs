@@ -180,21 +180,13 @@ mod tests {
     #[test]
     fn what_is_written_is_read_back() {
         let edge = |text: &str| edge_use(text, &pieces()).unwrap();
-        let kinds = [
-            SeamKind::Matched,
-            SeamKind::Gathered,
-            SeamKind::Dart,
-            SeamKind::Pleat(PleatFold::Knife),
-            SeamKind::Pleat(PleatFold::Box),
-            SeamKind::Elastic { ratio: 0.75, stiffness: 30.0 },
-            SeamKind::Patch,
-        ];
         let seam = |kind: SeamKind| PatternSeam {
             name: format!("a \"{}\" seam", kind.word()),
             kind,
             sides: vec![vec![edge("front.right"), edge("-front.top")], vec![edge("-back.left")]],
         };
-        let seams: Vec<(PatternSeam, String)> = kinds.map(|k| (seam(k), "why".to_owned())).into();
+        let seams: Vec<(PatternSeam, String)> =
+            SeamKind::all().map(|k| (seam(k), "why".to_owned())).collect();
         let again = read(write(&seams).as_bytes(), "seams.ron", &pieces()).unwrap();
         assert_eq!(again, seams.into_iter().map(|(s, _)| s).collect::<Vec<_>>());
     }
