@@ -148,7 +148,7 @@ fn tasks() -> Vec<Task> {
     for d in [1e-6, 1e-5, 1e-4, 1e-3] {
         tasks.push(Task {
             diagnostic: "Cusick drape",
-            case: format!("Rest, D {d:e} N m, 0.15 kg/m²"),
+            case: format!("StaticEquilibrium, D {d:e} N m, 0.15 kg/m²"),
             quantity: "drape coefficient; radial strips alone",
             reference: radial_strips(d),
             exact: false,

@@ -32,7 +32,7 @@ fn a_map_is_tables_pictures_and_data() {
     let solvers = ["--solver", "explicit", "--solver", "xpbd", "--solver", "rest"];
     let answer = lab(&[&["stability", "--map"], &small[..], &solvers].concat());
     assert_eq!(answer.code, 0, "{}", answer.err);
-    assert!(answer.out.contains("central differences: limit 2/omega_max") && answer.out.contains("| Rest"));
+    assert!(answer.out.contains("central differences: limit 2/omega_max") && answer.out.contains("| StaticEquilibrium"));
     assert_eq!(answer.err, format!("21 cells; pictures, map.csv and map.json in {out}\n"));
     let mut names: Vec<String> =
         fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();
@@ -77,12 +77,12 @@ fn a_map_says_what_is_wrong_with_its_flags() {
 fn drivers_are_a_table_and_data() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("drivers").display().to_string();
-    let arguments = ["drivers", "static", "rest", "--out", &out];
+    let arguments = ["drivers", "static", "--out", &out];
     let answer = lab(&arguments);
     assert_eq!((answer.code, answer.err.as_str()), (0, ""));
     assert!(
         answer.out.contains("| static Newton on springs |")
-            && answer.out.contains("| catenary | particles | Rest")
+            && answer.out.contains("| catenary | particles | StaticEquilibrium")
     );
     let csv = fs::read_to_string(format!("{out}/drivers.csv")).unwrap();
     assert_eq!(csv.lines().count(), 1 + 3 * 6);
@@ -90,7 +90,7 @@ fn drivers_are_a_table_and_data() {
     assert_eq!(json["fits"].as_array().unwrap().len(), 3);
     assert!(json["fits"][0]["error"]["exponent"].as_f64().unwrap() < -1.0);
     let ways = "central differences, central differences on springs, implicit Euler (factor), implicit Euler (factor) on springs, \
-                implicit Euler (gradients), XPBD, projective dynamics (10 turns), static Newton, static Newton on springs, Rest";
+                implicit Euler (gradients), XPBD, projective dynamics (10 turns), static Newton, static Newton on springs, StaticEquilibrium";
     assert_eq!(refused(&["drivers", "luck"]), format!("error: there is no `luck`; there are {ways}\n"));
     assert!(refused(&["drivers", "--limit", "0"]).contains("`0` is no time"));
 }

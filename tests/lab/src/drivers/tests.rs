@@ -66,9 +66,9 @@ fn every_run_is_a_line_of_the_csv() {
     assert!(csv.lines().all(|l| l.split(',').count() == 8));
     assert!(csv.contains("it would take longer than a run may"));
     assert!(csv.contains("swing,step,\"central differences\","));
-    assert!(report.to_json().contains("\"way\": \"Rest\""));
+    assert!(report.to_json().contains("\"way\": \"StaticEquilibrium\""));
     let table = report.to_string();
-    assert!(table.contains("| Rest ") && table.contains("swing of a hanging strip"));
+    assert!(table.contains("| StaticEquilibrium ") && table.contains("swing of a hanging strip"));
 }
 
 #[test]
