@@ -1,6 +1,6 @@
 //! What a mesh costs, and the error that is its own.
 //!
-//!     cargo run --release -p toile-tests --example mesh_error -- pipelines/vest.ron Rest "8 mm" [KEY=VALUE ...]
+//!     cargo run --release -p toile-tests --example mesh_error -- pipelines/vest.ron StaticEquilibrium "8 mm" [KEY=VALUE ...]
 //!
 //! Runs the pipeline up to the stage named second; then lays a grid of that fine edge over the same outlines, carries the drape over,
 //! lets it settle straight, and prints how far the settled garment is from the one it was carried from (mean, 95 %, worst, mm): the

@@ -1,6 +1,6 @@
 //! How far a garment moves as its mesh is refined, and where.
 //!
-//!     cargo run --release -p toile-tests --example meshes -- pipelines/vest.ron Rest stages.GridMesher.edge '"16 mm","11.3 mm","8 mm"' [KEY=VALUE ...]
+//!     cargo run --release -p toile-tests --example meshes -- pipelines/vest.ron StaticEquilibrium stages.GridMesher.edge '"16 mm","11.3 mm","8 mm"' [KEY=VALUE ...]
 //!
 //! Solves up to the stage named second with each of the values, and prints for each and the one before the distance and
 //! displacement (mean, 95 %, worst, mm), then by squares of the flat panels, 5 cm wide, the mean displacement (x, y, z, mm).

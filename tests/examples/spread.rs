@@ -1,6 +1,6 @@
 //! How far apart a garment comes to rest from starts that were moved by a hair.
 //!
-//!     cargo run --release -p toile-tests --example spread -- pipelines/vest.ron Rest 4 0.001,0.1,1 [KEY=VALUE ...]
+//!     cargo run --release -p toile-tests --example spread -- pipelines/vest.ron StaticEquilibrium 4 0.001,0.1,1 [KEY=VALUE ...]
 //!
 //! Solves up to the stage named second, from the pipeline's own start and from so many starts moved by each of the amounts
 //! (mm, root mean square of a smooth field), and prints for each the distance between the two garments (mean, 95 %,

@@ -82,7 +82,7 @@ fn explain_says_what_runs_and_what_does_not() {
     assert_eq!(answer.code, 0, "{}", answer.err);
     assert!(answer.out.contains("  run   GridMesher           takes outline from "), "{}", answer.out);
     assert!(
-        answer.out.contains("  skip  Rest                 not needed until GridMesher"),
+        answer.out.contains("  skip  StaticEquilibrium    not needed until GridMesher"),
         "{}",
         answer.out
     );

@@ -81,7 +81,7 @@ fn the_reports_views_are_those_of_the_preview_where_there_is_one() {
 fn factors_are_of_single_precision_where_that_solves_the_step() {
     let told = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.graded=false"]);
     let words = "
-  Rest                 simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
+  StaticEquilibrium    simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
       by      about 1024 triangles, whose matrix tells at each step how well it is solved
       within  surface 20 mm
 ";
@@ -97,7 +97,7 @@ fn factors_are_of_single_precision_where_that_solves_the_step() {
 fn regions_at_rest_sleep_unless_they_may_not() {
     let told = decisions(&[&pipeline("scene.ron")]);
     let words = "
-  Rest                 simplified steps of all vertices: while few of them move, only these (regions-at-rest)
+  StaticEquilibrium    simplified steps of all vertices: while few of them move, only these (regions-at-rest)
       by      about 1024 triangles, most of which rest before the last ones do
       within  surface 8 mm
 ";

@@ -68,8 +68,8 @@ fn the_vests_golden_sees_a_smoother_that_smooths_less() {
     // It moves the vertices by micrometres, and the folds by a millimetre.
     let answer = changed_vest("stages.PlaneSmoother.lambda=0.4");
     assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
-    assert!(answer.err.contains(": first stage that differs: Rest\n"), "{}", answer.err);
-    assert!(answer.err.contains("\n  Rest garment: its surface moved by "), "{}", answer.err);
+    assert!(answer.err.contains(": first stage that differs: StaticEquilibrium\n"), "{}", answer.err);
+    assert!(answer.err.contains("\n  StaticEquilibrium garment: its surface moved by "), "{}", answer.err);
     assert!(answer.err.contains("\n  bits move from PlaneSmoother on\n"), "{}", answer.err);
 }
 
@@ -171,8 +171,12 @@ fn a_surface_that_moved_is_told_with_its_stage_figure_and_place() {
     fs::write(dir.path().join("moved.json"), scene.to_string()).unwrap();
     let answer = toile(&["golden", "check", &file, "--set", set, "--out", &out]);
     assert_eq!(answer.code, 4, "{}{}", answer.out, answer.err);
-    assert!(answer.err.contains(": first stage that differs: Rest\n"), "{}", answer.err);
-    let line = answer.err.lines().find(|l| l.starts_with("  Rest garment: its surface moved by ")).unwrap();
+    assert!(answer.err.contains(": first stage that differs: StaticEquilibrium\n"), "{}", answer.err);
+    let line = answer
+        .err
+        .lines()
+        .find(|l| l.starts_with("  StaticEquilibrium garment: its surface moved by "))
+        .unwrap();
     assert!(
         line.contains(" mm at 95 % (tolerance 0.2) and by ") && line.contains("panel \"napkin\" at ("),
         "{line}"

@@ -29,10 +29,10 @@ fn the_cause_is_the_field_that_changed() {
     .unwrap();
     let entry = &json["stages"][0]["entries"][1];
     assert_eq!((&entry["entry"], &entry["causes"][0]), (&"front".into(), &"edge 16 mm -> 20 mm".into()));
-    let unknown = why(&["Rost"]);
+    let unknown = why(&["StaticEqilibrium"]);
     assert_eq!(unknown.code, 3);
     let words = unknown.err.split_whitespace().collect::<Vec<_>>().join(" ");
-    let head = "× there is no stage `Rost` in this pipeline help: did you mean `StaticEquilibrium`? its stages are Photos, Mannequin, ";
+    let head = "× there is no stage `StaticEqilibrium` in this pipeline help: did you mean `StaticEquilibrium`? its stages are Photos, Mannequin, ";
     assert!(words.starts_with(head), "{words}");
 }
 

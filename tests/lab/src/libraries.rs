@@ -3,8 +3,8 @@
 use crate::Progress;
 use image::{GrayImage, Luma, RgbImage};
 use parry3d_f64::math::{Pose, Vector};
+use parry3d_f64::query::PointQuery;
 use parry3d_f64::query::details::closest_points_segment_segment_with_locations;
-use parry3d_f64::query::{PointQuery, PointQueryWithLocation};
 use parry3d_f64::shape::{Segment, TriMesh, TriMeshFlags, Triangle};
 use serde::Serialize;
 use std::fmt;
@@ -103,7 +103,7 @@ fn triangle() -> Result<Row, StageError> {
     let (theirs, library_s) = best(|| {
         let at = |k: usize| {
             let [a, b, c] = corners(k).map(|c| vector(&c));
-            Triangle::new(a, b, c).project_local_point_and_get_location(vector(&p[4 * k]), false).0.point
+            Triangle::new(a, b, c).project_local_point(vector(&p[4 * k]), false).point
         };
         (0..QUERIES).map(at).collect::<Vec<_>>()
     });

@@ -32,7 +32,10 @@ fn a_map_is_tables_pictures_and_data() {
     let solvers = ["--solver", "explicit", "--solver", "xpbd", "--solver", "rest"];
     let answer = lab(&[&["stability", "--map"], &small[..], &solvers].concat());
     assert_eq!(answer.code, 0, "{}", answer.err);
-    assert!(answer.out.contains("central differences: limit 2/omega_max") && answer.out.contains("| StaticEquilibrium"));
+    assert!(
+        answer.out.contains("central differences: limit 2/omega_max")
+            && answer.out.contains("| StaticEquilibrium")
+    );
     assert_eq!(answer.err, format!("21 cells; pictures, map.csv and map.json in {out}\n"));
     let mut names: Vec<String> =
         fs::read_dir(&out).unwrap().map(|f| f.unwrap().file_name().into_string().unwrap()).collect();

@@ -142,10 +142,13 @@ fn the_own_setting_and_its_refinements() {
     )
     .unwrap();
     let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
-    assert_eq!(words(board.own()), "StaticEquilibrium.speed 0.001, mesher.edge \"16 mm\", solver Rest");
+    assert_eq!(
+        words(board.own()),
+        "StaticEquilibrium.speed 0.001, mesher.edge \"16 mm\", solver StaticEquilibrium"
+    );
     assert_eq!(
         words(board.refined(2.0)),
-        "StaticEquilibrium.speed 0.0005, mesher.edge \"8 mm\", solver Rest"
+        "StaticEquilibrium.speed 0.0005, mesher.edge \"8 mm\", solver StaticEquilibrium"
     );
     let fine = board.refined(4.0);
     assert!(board.is_finer(&fine, 1.9) && !board.is_finer(&board.refined(2.0), 1.3));
@@ -174,11 +177,11 @@ fn the_reference_may_have_values_of_its_own() {
     let board = given(&["StaticEquilibrium.graded=true"]).unwrap();
     assert_eq!(
         words(board.own()),
-        "StaticEquilibrium.graded false, StaticEquilibrium.speed 0.002, solver Rest"
+        "StaticEquilibrium.graded false, StaticEquilibrium.speed 0.002, solver StaticEquilibrium"
     );
     assert_eq!(
         words(board.refined(2.0)),
-        "StaticEquilibrium.graded true, StaticEquilibrium.speed 0.001, solver Rest"
+        "StaticEquilibrium.graded true, StaticEquilibrium.speed 0.001, solver StaticEquilibrium"
     );
     let refused = |reference: &str| {
         let e = given(&[reference]).unwrap_err();
