@@ -6,7 +6,7 @@
 //! and the sewing happen where steps cost milliseconds, and the finest level only settles.
 //!
 //! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes through a triangle: see
-//! `pierce`), the garment is sewn again on the next finer one.
+//! `penetration`), the garment is sewn again on the next finer one.
 //!
 //! Where the body would keep seams open, the coarsest level may be sewn on other solids (see [`StaticEquilibrium::solve_around`]).
 //!
