@@ -4,132 +4,85 @@
 //! show stands in [`UNSEEN`], which only gets shorter.
 #![allow(clippy::unwrap_used)]
 
+use image::{Rgb, RgbImage};
 use std::path::Path;
+use std::sync::Arc;
+use toile_core::artifact::{Artifact, ArtifactType, Garment, Phases, Photo};
 use toile_core::param::ParamDoc;
-use toile_core::testkit::{Trial, cases, folder, from_example};
-use toile_core::{Card, Registry};
+use toile_core::testkit::{Trial, cases, dress, folder, from_example, shapes, suite};
+use toile_core::{Card, Inputs, Registry};
 
 /// Parameters whose values no rule makes.
-const VALUES: &[(&str, &str)] = &[];
+const VALUES: &[(&str, &str)] = &[
+    ("Arap.darts", "Auto(max_strain: 0.02)"),
+    ("Block.waist", "Gathered(fullness: 1.5, band: \"3 cm\")"),
+    ("Cloth.warp", "[(0.02, 90.0), (0.03, 490.0)]"),
+    ("Cloth.weft", "[(0.03, 90.0), (0.06, 490.0)]"),
+    ("GraphCut.garment", "{\"front\": [(0.5, 0.5)]}"),
+    ("GraphCut.ground", "{\"front\": [(0.5, 0.5)]}"),
+    ("GraphCut.rect", "{\"front\": ((0.3, 0.3), (0.6, 0.6))}"),
+    ("GraphCut.strokes", "{\"front\": \"strokes.png\"}"),
+    ("Kes.emt", "(5.0, 9.0)"),
+    ("Kes.hb", "(0.02, 0.03)"),
+    ("Local.method", "Mean(offset: 4.0)"),
+    ("NeighbourhoodMean.pixel", "\"2 mm\""),
+    ("Photos.photos", "{\"front\": (file: \"another.jpg\", width: \"52 cm\")}"),
+    ("Seams.seams", "[Match(\"front.side_left\", \"back.side_right\")]"),
+    ("SpringFlatten.darts", "Auto(max_strain: 0.02)"),
+    ("SymmetricDirichlet.darts", "Auto(max_strain: 0.02)"),
+    ("Woven.darts", "Auto(max_strain: 0.02)"),
+];
+
+/// Other arguments with which a parameter matters.
+const BESIDE: &[(&str, &str)] =
+    &[("air_normal", "air: 1.2"), ("air_tangential", "air: 1.2"), ("quality", "textures: Jpeg")];
 
 /// Parameters that change nothing on the shared suite: each wants an input on which it must matter, or goes.
 const UNSEEN: &[&str] = &[
-    "Arap.seams",
-    "Arap.mirror",
-    "Arap.darts",
-    "Arap.iterations",
     "Arrange.bend",
     "Arrange.clearance",
     "Auto.holes",
     "Auto.touch",
-    "Background.shadow",
-    "Background.touch",
     "Block.stray",
-    "Block.waist",
+    "BodyObj.units",
     "BodyObj.up",
-    "Canny.low",
-    "CentralDifferences.gravity",
-    "CentralDifferences.air_normal",
-    "CentralDifferences.air_tangential",
-    "CentralDifferences.speed",
-    "CentralDifferences.longest",
-    "CentralDifferences.join_gap",
-    "Cloth.warp",
-    "Cloth.weft",
+    "BodyObj.turn",
     "Difference.shadow",
+    "Difference.size",
     "Difference.holes",
     "Difference.touch",
+    "DxfPattern.size",
+    "DxfPattern.seams",
+    "Garment3d.unit",
+    "Garment3d.up",
+    "Garment3d.pieces",
     "Garment3d.weld",
-    "Global.holes",
-    "Global.touch",
-    "GradedMesher.tolerance",
+    "Garment3d.flat",
     "GraphCut.rounds",
     "GraphCut.holes",
-    "GraphCut.touch",
     "GraphCut.garment",
     "GraphCut.ground",
     "GraphCut.rect",
     "GraphCut.strokes",
-    "ImplicitEuler.gravity",
-    "ImplicitEuler.air_normal",
-    "ImplicitEuler.air_tangential",
-    "ImplicitEuler.speed",
-    "ImplicitEuler.longest",
-    "ImplicitEuler.join_gap",
-    "Kes.weight",
-    "Kes.emt",
-    "Kes.lt",
-    "Kes.g",
-    "Kes.hb",
-    "Kes.thickness",
-    "Kes.miu",
-    "Laplacian.threshold",
-    "Local.method",
-    "Local.holes",
-    "Local.touch",
-    "Mannequin.height",
-    "Mannequin.bust",
-    "Mannequin.waist",
-    "Mannequin.hip",
-    "Mannequin.shoulder_width",
-    "Mannequin.neck",
-    "Measure.max_area_error",
-    "Measure.max_outline_error",
     "Measure.max_tight",
     "Measure.least_on_body",
     "Measure.max_body_crossings",
     "Neckline.usual",
     "NeighbourhoodMean.pixel",
-    "Obj.textures",
-    "Obj.quality",
     "Obj.weld",
-    "Otsu.holes",
-    "Otsu.touch",
-    "PatternDxf.standard",
     "PhotoTexturer.unseen",
-    "Photos.photos",
-    "Prewitt.threshold",
-    "Projective.gravity",
-    "Projective.air_normal",
-    "Projective.air_tangential",
-    "Projective.speed",
-    "Projective.longest",
-    "Projective.join_gap",
     "Report.pictures",
     "Report.views",
-    "Roberts.threshold",
     "Scene.distances",
     "Scene.weld",
-    "Seams.seams",
-    "Sobel.threshold",
-    "SpringDraper.max_strain",
-    "SpringFlatten.seams",
-    "SpringFlatten.mirror",
-    "SpringFlatten.darts",
-    "SpringFlatten.settled",
-    "SpringFlatten.iterations",
-    "StaticEquilibrium.gravity",
+    "Scene.units",
     "StaticEquilibrium.coarsest",
     "StaticEquilibrium.coarse_steps",
-    "StaticEquilibrium.join_gap",
     "StaticEquilibrium.sew_through",
     "StaticEquilibrium.asleep",
     "StaticEquilibrium.thickness",
-    "SymmetricDirichlet.seams",
-    "SymmetricDirichlet.mirror",
-    "SymmetricDirichlet.darts",
-    "SymmetricDirichlet.iterations",
-    "Woven.seams",
-    "Woven.mirror",
-    "Woven.darts",
+    "SvgPattern.seams",
     "Woven.angle",
-    "Woven.iterations",
-    "Xpbd.gravity",
-    "Xpbd.air_normal",
-    "Xpbd.air_tangential",
-    "Xpbd.speed",
-    "Xpbd.longest",
-    "Xpbd.join_gap",
 ];
 
 /// What bounds or paces a run; another value must not change the result.
@@ -137,7 +90,8 @@ const PACE: &[&str] = &["time_limit"];
 
 /// The arguments of an example, `(a: 1, b: (2, 3))`, by name.
 fn arguments(example: &str) -> Vec<(String, String)> {
-    let inner = example.split_once('(').map_or("", |(_, rest)| rest.trim_end().trim_end_matches(')'));
+    let inner =
+        example.split_once('(').map_or("", |(_, rest)| rest.trim_end().strip_suffix(')').unwrap_or(rest));
     let (mut depth, mut quoted, mut parts, mut part) = (0, false, Vec::new(), String::new());
     for c in inner.chars() {
         match c {
@@ -170,6 +124,7 @@ fn others(card: &Card, p: &ParamDoc, now: &str) -> Vec<String> {
     let mut numbers = vec![0.0, 1.0, 2.0, 3.0, 5.0, 10.0, 100.0];
     numbers.extend(now_number.into_iter().flat_map(|n| [2.0 * n, 0.5 * n, 0.1 * n, 10.0 * n, n + 1.0]));
     numbers.extend(p.min.into_iter().chain(p.max));
+    all.extend(within(p));
     all.extend(
         ["\"another\"", "(0.1, 0.2)", "(1.0, 2.0)", "(0.3, 0.3)", "(0.1, 0.2, 0.3)", "(3.0, 2.0, 1.0)"]
             .map(str::to_owned),
@@ -177,25 +132,112 @@ fn others(card: &Card, p: &ParamDoc, now: &str) -> Vec<String> {
     for n in numbers {
         all.extend([format!("{n}"), format!("{n:?}"), format!("Some({n:?})"), format!("\"{n} mm\"")]);
     }
-    all.retain(|v| v != now && *v != p.default && p.check.run(v, p).is_ok());
+    all.retain(|v| v != now && p.check.run(v, p).is_ok());
     all.dedup();
     all
 }
 
+/// Values spread over a parameter's range, lengths in mm.
+fn within(p: &ParamDoc) -> Vec<String> {
+    let (Some(lo), Some(hi)) = (p.min, p.max) else { return Vec::new() };
+    let of = |share: f64| {
+        let at = lo + share * (hi - lo);
+        // Wide ranges are walked by factors.
+        let at = if lo > 0.0 && hi > 100.0 * lo { lo * (hi / lo).powf(share) } else { at };
+        match p.kind.contains("length") {
+            true => format!("\"{} mm\"", 1e3 * at),
+            false if p.kind.contains("integer") || p.kind.contains("whole") => format!("{}", at.round()),
+            false => format!("{at:?}"),
+        }
+    };
+    [0.5, 0.2, 0.8, 0.05].map(of).into()
+}
+
+/// Inputs beside the shared suite's.
+fn more(card: &Card) -> Vec<Inputs> {
+    [hard_photos(card), garments_alone(card)].concat()
+}
+
+/// Photos of a garment with a hole, specks and a shadow on uneven ground, whole and cut by the frame.
+fn hard_photos(card: &Card) -> Vec<Inputs> {
+    let Some(port) = card.inputs.iter().position(|p| p.kind == Photo::KIND) else { return Vec::new() };
+    let with = |cut: bool| {
+        let photo: Arc<dyn Artifact> = Arc::new(shapes::photo_from(hard_picture(cut)));
+        let mut inputs = cases(card).first()?.inputs.clone();
+        inputs.0[port] = Some(suite::value(&card.inputs[port], &photo));
+        Some(inputs)
+    };
+    [false, true].into_iter().filter_map(with).collect()
+}
+
+/// A garment held at its upper rim, without phases, which would set gravity and air; and one that bulges and so cannot be laid flat.
+fn garments_alone(card: &Card) -> Vec<Inputs> {
+    let Some(port) = card.inputs.iter().position(|p| p.kind == Garment::KIND) else { return Vec::new() };
+    let with = |garment: Garment| {
+        let garment: Arc<dyn Artifact> = Arc::new(garment);
+        let mut inputs = cases(card).first()?.inputs.clone();
+        let phases = card.inputs.iter().position(|p| p.kind == Phases::KIND);
+        phases.into_iter().for_each(|at| inputs.0[at] = None);
+        inputs.0[port] = Some(suite::value(&card.inputs[port], &garment));
+        Some(inputs)
+    };
+    [dress::sewn_garment(), bulging()].into_iter().filter_map(with).collect()
+}
+
+fn bulging() -> Garment {
+    let mut garment = dress::sewn_garment();
+    for (at, rest) in garment.positions.iter_mut().zip(&garment.rest) {
+        let wider = 1.0 + 0.4 * (6.0 * rest.y).sin() + 0.1 * rest.x;
+        (at.x, at.z) = (at.x * wider, at.z * wider);
+    }
+    garment
+}
+
+/// A dark rectangle with a hole on a light, uneven ground; with `cut` it reaches the lower frame.
+fn hard_picture(cut: bool) -> RgbImage {
+    let low = if cut { 140 } else { 112 };
+    RgbImage::from_fn(120, 140, |x, y| {
+        let is_hole = (i64::from(x) - 60).pow(2) + (i64::from(y) - 70).pow(2) < 81;
+        let is_cloth = (30..90).contains(&x) && (28..low).contains(&y) && !is_hole;
+        let is_speck =
+            (10..13).contains(&x) && (20..23).contains(&y) || (4..6).contains(&x) && (40..90).contains(&y);
+        let shadow = if (90..104).contains(&x) && (40..low).contains(&y) { 45 } else { 0 };
+        let noise = ((x * 7919 + y * 104_729) % 13) as u8;
+        let ground = 190 + (x / 5) as u8 - shadow + noise;
+        Rgb(if is_cloth || is_speck {
+            [50 + noise, 60 + noise, 70 + noise]
+        } else {
+            [ground, ground, ground - 12]
+        })
+    })
+}
+
 /// Whether any value changes what the stage gives on the suite.
 fn acts(registry: &Registry, card: &Card, p: &ParamDoc, folder: &Path) -> bool {
-    let example = arguments(card.example);
+    let mut example = arguments(card.example);
+    for (k, v) in
+        BESIDE.iter().filter(|(name, _)| *name == p.name).flat_map(|(_, a)| arguments(&format!("({a})")))
+    {
+        example.retain(|(known, _)| *known != k);
+        example.push((k, v));
+    }
     let now = example.iter().find(|(k, _)| k == p.name).map_or(p.default.clone(), |(_, v)| v.clone());
-    let suite = cases(card);
+    let inputs: Vec<Inputs> = cases(card).into_iter().map(|c| c.inputs).chain(more(card)).collect();
     let outcomes = |stage: &dyn toile_core::Stage| -> Vec<String> {
-        suite.iter().map(|c| Trial { stage, folder }.run(&c.inputs).fingerprint()).collect()
+        inputs.iter().map(|i| Trial { stage, folder }.run(i).fingerprint()).collect()
     };
-    let Ok(plain) = from_example(registry, card, folder) else { return false };
+    let with = |others: &[(String, String)]| {
+        let text: Vec<String> = others.iter().map(|(k, v)| format!("{k}: {v}")).collect();
+        registry.make(card, &format!("({})", text.join(", ")))
+    };
+    // The files that the example names are laid down with it.
+    let (Ok(_), Ok(plain)) = (from_example(registry, card, folder), with(&example)) else { return false };
     let mut known: Option<Vec<String>> = None;
-    for value in others(card, p, &now).into_iter().take(12) {
-        let rest = example.iter().filter(|(k, _)| k != p.name).map(|(k, v)| format!("{k}: {v}"));
-        let text: Vec<String> = rest.chain([format!("{}: {value}", p.name)]).collect();
-        let Ok(stage) = registry.make(card, &format!("({})", text.join(", "))) else { continue };
+    for value in others(card, p, &now).into_iter().take(16) {
+        let mut others = example.clone();
+        others.retain(|(k, _)| k != p.name);
+        others.push((p.name.to_owned(), value));
+        let Ok(stage) = with(&others) else { continue };
         let known = known.get_or_insert_with(|| outcomes(plain.as_ref()));
         if outcomes(stage.as_ref()) != *known {
             return true;
