@@ -17,7 +17,7 @@ mod topology;
 pub use body_obj::{BodyObj, Units, Up};
 pub(crate) use bridge::bridged;
 pub use mannequin::Mannequin;
-pub(crate) use slice::{convex_hull, slice};
+pub(crate) use slice::{convex_hull, slice, trunk};
 pub(crate) use thin::grown;
 
 use toile_core::Registry;

@@ -37,6 +37,16 @@ impl SliceLoop {
         Point2::new((x0 + x1) / 2.0, (z0 + z1) / 2.0)
     }
 
+    /// Whether it goes around a place (x, z).
+    pub(crate) fn holds(&self, at: Point2) -> bool {
+        let n = self.points.len();
+        let turn = |k: usize| {
+            let (a, b) = (self.points[k] - at, self.points[(k + 1) % n] - at);
+            a.perp(&b).atan2(a.dot(&b))
+        };
+        (0..n).map(turn).sum::<f64>().abs() > std::f64::consts::PI
+    }
+
     /// Extent along x.
     pub(crate) fn width(&self) -> f64 {
         self.bounds[1] - self.bounds[0]

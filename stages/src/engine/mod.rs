@@ -20,5 +20,5 @@ pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;
-pub use scene::{Setting, garment_of, join_pairs, scene_of, weld_seams};
+pub use scene::{Setting, engine_fabric, garment_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSurface;

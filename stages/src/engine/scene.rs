@@ -33,7 +33,7 @@ pub struct Setting {
 pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageError> {
     let mut panels = Vec::with_capacity(garment.panels.len());
     for p in &garment.panels {
-        let material = fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;
+        let material = engine_fabric(&p.fabric, setting.thickness).map_err(|e| cloth_error(&e))?;
         let panel = Panel::new(p.name.clone(), p.vertices.clone(), p.triangles.clone());
         panels.push(Panel { material: Some(material), ..panel });
     }
@@ -60,7 +60,11 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
     })
 }
 
-fn fabric(f: &Fabric, thickness: f64) -> Result<engine::Fabric, ClothError> {
+/// The engine's fabric, held off the body by `thickness`, m.
+///
+/// # Errors
+/// A fabric whose curves the engine does not take.
+pub fn engine_fabric(f: &Fabric, thickness: f64) -> Result<engine::Fabric, ClothError> {
     let curve = |c: &Curve| {
         let points: Vec<[f64; 2]> = c.0.iter().map(|&(strain, force)| [strain, force]).collect();
         engine::Curve::through(&points)

@@ -20,7 +20,7 @@ const NARROW: f64 = 0.02;
 const WIDE: f64 = 1.6;
 
 /// The girths of a garment where it closes around its body, by level.
-pub(super) fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFigures> {
+pub(crate) fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFigures> {
     let of = |level: &str| {
         let mark = |side: &str| body.landmarks.get(&format!("{level}_{side}"));
         let (front, back) = (mark("front")?, mark("back")?);
@@ -83,7 +83,7 @@ fn arms(body: &Body, y: f64) -> Vec<Point2> {
 }
 
 /// The flat length of the shortest closed loop of the slice at height `y` that goes around `middle` (x, z) and around none of the `arms`.
-fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2]) -> Option<f64> {
+pub(crate) fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2]) -> Option<f64> {
     let cuts: Vec<Cut> = garment.triangles.iter().filter_map(|t| cut(garment, *t, y)).collect();
     let mut at: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
     for (k, c) in cuts.iter().enumerate() {
