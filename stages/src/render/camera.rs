@@ -35,11 +35,11 @@ pub struct View {
 }
 
 /// About that of an 85 mm portrait lens: near enough for depth, far enough to keep proportions.
-const PORTRAIT_ANGLE: f64 = 0.32;
+pub(super) const PORTRAIT_ANGLE: f64 = 0.32;
 /// A little from above, as a person looks at another.
-const EYE_ELEVATION: f64 = 0.06;
+pub(super) const EYE_ELEVATION: f64 = 0.06;
 /// Room around the garment, so that it does not touch the picture's edge.
-const MARGIN: f64 = 0.09;
+pub(super) const MARGIN: f64 = 0.09;
 
 impl View {
     /// A view from a turn about the vertical, four wide to five high.
@@ -87,33 +87,29 @@ pub(super) struct Projected {
 /// A view fitted to a model.
 #[derive(Debug, Clone)]
 pub(super) struct Camera {
-    right: Vector3,
-    up: Vector3,
+    pub(super) right: Vector3,
+    pub(super) up: Vector3,
     /// From the model to the camera.
     pub(super) back: Vector3,
-    target: Point3,
+    pub(super) target: Point3,
     /// Distance of the eye from the target, metres; infinite in parallel projection.
-    distance: f64,
+    pub(super) distance: f64,
     /// Pixels a metre at the target's depth (parallel), or pixels at depth 1 (perspective).
-    focal: f64,
-    centre: [f64; 2],
+    pub(super) focal: f64,
+    pub(super) centre: [f64; 2],
 }
 
 /// No nearer than this to the camera, metres: keeps 1 / depth bounded.
-const NEAREST: f64 = 0.05;
+pub(super) const NEAREST: f64 = 0.05;
 /// Half the size of what stands in for an empty or point-like model, metres.
 const LEAST_EXTENT: f64 = 1e-3;
 
 impl Camera {
     /// The camera of a view, fitted to the model.
     pub(super) fn fit(model: &Model, view: &View) -> Camera {
-        let (se, ce) = view.elevation.sin_cos();
-        let (sa, ca) = view.azimuth.sin_cos();
-        let back = Vector3::new(ce * sa, se, ce * ca);
-        let right = Vector3::new(ca, 0.0, -sa);
-        let up = back.cross(&right);
-        let axes = |p: &Point3| Vector3::new(right.dot(&p.coords), up.dot(&p.coords), back.dot(&p.coords));
-        let framed: Vec<Vector3> = framed_points(model, view.frame).map(axes).collect();
+        let [right, up, back] = axes(view.azimuth, view.elevation);
+        let along = |p: &Point3| Vector3::new(right.dot(&p.coords), up.dot(&p.coords), back.dot(&p.coords));
+        let framed: Vec<Vector3> = framed_points(model, view.frame).map(along).collect();
         let (lo, hi) = bounds(&framed);
         let middle = (lo + hi) / 2.0;
         let half = [f64::from(view.width) / 2.0, f64::from(view.height) / 2.0];
@@ -129,7 +125,7 @@ impl Camera {
                 p.z + need
             };
             let nearest =
-                framed_points(model, Frame::Whole).map(|p| axes(p).z - middle.z).fold(0.0, f64::max);
+                framed_points(model, Frame::Whole).map(|p| along(p).z - middle.z).fold(0.0, f64::max);
             let least = (LEAST_EXTENT / room[1]) * camera.focal;
             camera.distance = framed.iter().map(fits).fold(least, f64::max).max(nearest + NEAREST);
         } else {
@@ -157,8 +153,15 @@ impl Camera {
     }
 }
 
+/// Right, up and from the model to the camera, by its turn about the vertical and its height above the horizon, radians.
+pub(super) fn axes(azimuth: f64, elevation: f64) -> [Vector3; 3] {
+    let ((se, ce), (sa, ca)) = (elevation.sin_cos(), azimuth.sin_cos());
+    let (right, back) = (Vector3::new(ca, 0.0, -sa), Vector3::new(ce * sa, se, ce * ca));
+    [right, back.cross(&right), back]
+}
+
 /// Finite points of what is to be framed; everything where there is no garment.
-fn framed_points(model: &Model, frame: Frame) -> impl Iterator<Item = &Point3> {
+pub(super) fn framed_points(model: &Model, frame: Frame) -> impl Iterator<Item = &Point3> {
     let garment = model.meshes.iter().any(|m| m.name != super::BODY);
     let skip_body = frame == Frame::Garment && garment;
     model
@@ -170,7 +173,7 @@ fn framed_points(model: &Model, frame: Frame) -> impl Iterator<Item = &Point3> {
 }
 
 /// Least and greatest corner; a point at the origin for an empty list.
-fn bounds(points: &[Vector3]) -> (Vector3, Vector3) {
+pub(super) fn bounds(points: &[Vector3]) -> (Vector3, Vector3) {
     let Some(&first) = points.first() else { return (Vector3::zeros(), Vector3::zeros()) };
     points.iter().fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)))
 }

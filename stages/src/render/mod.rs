@@ -11,6 +11,7 @@ mod camera;
 mod cover;
 mod light;
 mod mips;
+mod orbit;
 mod overlay;
 mod pictures;
 mod remember;
@@ -21,6 +22,7 @@ mod tests;
 
 pub use camera::{Frame, View};
 pub(crate) use mips::{LINEAR, Mips, encode};
+pub use orbit::Orbit;
 pub use overlay::Line;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
 pub(crate) use pictures::{jpeg, thumbnail};

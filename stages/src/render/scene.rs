@@ -10,8 +10,8 @@ use super::light::{self, Fineness, Region};
 use super::mips::{Footprint, Mips, encode};
 use super::remember::Remember;
 use super::shade::{Lights, wall};
-use super::{Line, overlay};
-use image::RgbImage;
+use super::{Line, Orbit, overlay};
+use image::{RgbImage, RgbaImage};
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 use toile_core::Context;
@@ -61,7 +61,10 @@ impl<'a> Scene<'a> {
     fn prepare(model: &'a Model, fineness: Fineness, remember: Option<Remember<'a>>) -> Scene<'a> {
         let textures = model.textures.par_iter().map(Mips::new).collect();
         let region = region(model);
-        let make = || light::ambient(model, region, fineness);
+        let make = || match is_unlit(model) {
+            true => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
+            false => light::ambient(model, region, fineness),
+        };
         let ambient = match &remember {
             None => make(),
             Some(r) => {
@@ -76,6 +79,9 @@ impl<'a> Scene<'a> {
 
     /// The soft box's light from a direction.
     fn soft_box(&self, towards: Vector3) -> Vec<Vec<f32>> {
+        if is_unlit(self.model) {
+            return self.model.meshes.iter().map(|m| vec![0.0; m.positions.len()]).collect();
+        }
         let make = || light::soft_box(self.model, self.region, towards, self.fineness);
         let Some(r) = &self.remember else { return make() };
         let key = |d: &mut Digester| {
@@ -94,14 +100,9 @@ impl<'a> Scene<'a> {
     pub fn render_with(&self, view: &View, lines: &[Line]) -> RgbImage {
         let camera = Camera::fit(self.model, view);
         let lights = Lights::new(&camera);
-        let shot = Shot {
-            scene: self,
-            key: self.soft_box(lights.key),
-            faces: faces(self.model, &camera),
-            lights,
-            width: view.width as usize,
-            height: view.height,
-        };
+        let (width, height) = (view.width as usize, view.height);
+        let (key, faces) = (&self.soft_box(lights.key), faces(self.model, &camera));
+        let shot = Shot { scene: self, key, faces, lights, width, height };
         let mut picture = RgbImage::new(view.width, view.height);
         let band_bytes = (view.width as usize * 3 * BAND_ROWS).max(1);
         picture
@@ -111,6 +112,24 @@ impl<'a> Scene<'a> {
         overlay::draw(&mut picture, &camera, lines);
         picture
     }
+
+    /// Views from an orbit, at one turn about the vertical and several heights above the horizon, radians, without a background: the
+    /// colour of a pixel is the mean of what it shows of the model, and alpha is the share that the model has in it. The lights turn with
+    /// the camera, but do not rise with it.
+    pub fn cut_outs(&self, orbit: &Orbit, azimuth: f64, elevations: &[f64]) -> Vec<RgbaImage> {
+        let lights = Lights::new(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
+        let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height);
+        let view = |elevation: &f64| {
+            let faces = faces(self.model, &orbit.camera(azimuth, *elevation));
+            Shot { scene: self, key, faces, lights, width, height }.cut_out()
+        };
+        elevations.iter().map(view).collect()
+    }
+}
+
+/// Whether light changes nothing of a model.
+fn is_unlit(model: &Model) -> bool {
+    model.materials.iter().all(|m| m.unlit)
 }
 
 /// The box of the garment, or of everything where there is none.
@@ -195,7 +214,7 @@ fn texels_per_px(
 /// Everything that the bands of one picture read.
 struct Shot<'a> {
     scene: &'a Scene<'a>,
-    key: Vec<Vec<f32>>,
+    key: &'a [Vec<f32>],
     faces: Vec<Face>,
     lights: Lights,
     width: usize,
@@ -214,6 +233,28 @@ impl Shot<'_> {
                 pixel.copy_from_slice(&self.pixel([x, y], samples, wall).map(encode));
             }
         }
+    }
+
+    fn cut_out(&self) -> RgbaImage {
+        let mut picture = RgbaImage::new(self.width as u32, self.height);
+        let band_bytes = (self.width * 4 * BAND_ROWS).max(1);
+        picture.par_chunks_mut(band_bytes).enumerate().for_each(|(i, band)| {
+            let (top, rows) = (i * BAND_ROWS, band.len() / (self.width * 4));
+            let seen = self.visible(top, rows);
+            for (k, (pixel, samples)) in
+                band.chunks_exact_mut(4).zip(seen.chunks_exact(SAMPLES.len())).enumerate()
+            {
+                let covered = samples.iter().filter(|id| **id != NONE).count();
+                if covered > 0 {
+                    let at = [k % self.width, top + k / self.width];
+                    // The wall counts as black here, so the sum is that of the model alone.
+                    let share = SAMPLES.len() as f32 / covered as f32;
+                    let [r, g, b] = self.pixel(at, samples, [0.0; 3]).map(|v| encode(v * share));
+                    pixel.copy_from_slice(&[r, g, b, (255 * covered / SAMPLES.len()) as u8]);
+                }
+            }
+        });
+        picture
     }
 
     /// The face that every sample of a band sees.

@@ -22,6 +22,7 @@ mod scene_json;
 #[cfg(test)]
 mod tests;
 mod texture_file;
+mod turntable;
 
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
@@ -37,6 +38,7 @@ pub use report::Report;
 pub use report_views::Views;
 pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
+pub use turntable::Turntable;
 
 use toile_core::Registry;
 
@@ -54,4 +56,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Preview>();
     registry.add::<Report>();
     registry.add::<SceneJson>();
+    registry.add::<Turntable>();
 }

@@ -1,0 +1,175 @@
+//! `Turntable`: the model from all sides, in one page that any browser opens.
+//!
+//! Views around the model are rendered once; between them the page finds through the mesh which pixel of the nearest views each place is
+//! (view interpolation: Chen, Williams 1993; with a mesh in between: Buehler and others 2001). What the page holds is set down in
+//! `docs/reference/turntable.md`. Cost: one picture a view. Limits: 255 parts, 2040 px of width.
+
+mod mesh;
+mod sheet;
+
+use super::check::check_model;
+use super::names::check_name;
+use crate::render::{Orbit, Scene};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::RgbaImage;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use toile_core::prelude::*;
+
+const SCRIPT: &str = include_str!("page/turntable.js");
+const STYLE: &str = include_str!("page/turntable.css");
+const PAGE: &str = include_str!("page/page.html");
+
+/// Heights of the camera above the horizon, degrees, by the number of tiers.
+const TIERS: [&[f64]; 4] = [&[8.0], &[-5.0, 25.0], &[-5.0, 15.0, 40.0], &[-10.0, 10.0, 30.0, 55.0]];
+/// Views in one sheet.
+const PER_SHEET: usize = 12;
+/// Behind the model.
+const BACKGROUND: &str = "#e9e9e6";
+/// Below this quality JPEG shows its blocks: a page that is larger still says so.
+const LEAST_QUALITY: u8 = 30;
+/// Steps by which the quality is lowered.
+const QUALITY_STEP: u8 = 5;
+
+/// Writes one page that shows the model from all sides: drag to turn it, zoom into it; no network, no WebGL.
+///
+/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do. A click on the model
+/// dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
+#[stage(
+    role = Writer,
+    source = "Chen and Williams 1993; Buehler and others 2001",
+    example = "Turntable(views: 24, tiers: 3)",
+    contracts(Deterministic, ThreadInvariant, Cancellable)
+)]
+pub struct Turntable {
+    /// The file's name without its extension.
+    #[param(default = "turntable".to_owned())]
+    name: String,
+    /// Views around the model, at each height.
+    #[param(default = 24, min = 4, max = 120, trades)]
+    views: usize,
+    /// Heights from which it is seen: 1 to 4.
+    #[param(default = 3, min = 1, max = 4, trades)]
+    tiers: usize,
+    /// Height of a view; its width is three quarters of it.
+    #[param(default = 720, min = 64, max = 1440, unit = "px", trades)]
+    size: u32,
+    /// Quality of the JPEG sheets.
+    #[param(default = 70, min = 30, max = 100, trades)]
+    quality: u8,
+    /// The page's size that the quality is lowered for, at most to 30.
+    #[param(default = 2000, min = 50, max = 100_000, unit = "kB")]
+    page: usize,
+}
+
+#[stage]
+impl Turntable {
+    pub(super) fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {
+        check_name(&self.name)?;
+        check_model(model)?;
+        if model.meshes.len() > 255 {
+            let text = format!("the model has {} parts, a turntable holds 255", model.meshes.len());
+            return Err(StageError::invalid(text).hint("leave `Turntable` out"));
+        }
+        let html = page(&self.data(model, cx)?);
+        let kilobytes = html.len() / 1000;
+        if kilobytes > self.page {
+            cx.warn(format!(
+                "the turntable's page has {kilobytes} kB and not {}, though the quality is lowered to {LEAST_QUALITY}: take fewer `views` or \
+                 `tiers`, or a smaller `size`",
+                self.page
+            ));
+        }
+        Ok(OutputFiles::one(&format!("{}.html", self.name), html.into_bytes()))
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        check_name(&self.name).err().into_iter().collect()
+    }
+}
+
+impl Turntable {
+    /// What the page shows.
+    fn data(&self, model: &Model, cx: &Context) -> Result<Value, StageError> {
+        let tiers = TIERS[self.tiers - 1];
+        let orbit = Orbit::around(model, self.size * 3 / 4, self.size, tiers);
+        let views = self.render(model, &orbit, tiers, cx)?;
+        let spans: Vec<Vec<[u8; 2]>> = views.par_iter().map(sheet::spans).collect();
+        let sheets: Vec<image::RgbImage> = (0..views.len())
+            .into_par_iter()
+            .step_by(PER_SHEET)
+            .map(|from| {
+                let to = (from + PER_SHEET).min(views.len());
+                let own: Vec<&RgbaImage> = views[from..to].iter().collect();
+                sheet::packed(&own, &spans[from..to].iter().map(Vec::as_slice).collect::<Vec<_>>())
+            })
+            .collect();
+        let mut data = json!({
+            "title": self.name,
+            "label": "the garment from all sides",
+            "width": orbit.width,
+            "height": orbit.height,
+            "views": self.views,
+            "tiers": tiers,
+            "fov": orbit.angle.to_degrees(),
+            "distance": orbit.distance,
+            "centre": [orbit.centre.x, orbit.centre.y, orbit.centre.z],
+            "background": BACKGROUND,
+            "mesh": mesh::mesh(model),
+            "perSheet": PER_SHEET,
+            "sheetBlocks": sheet::SHEET_BLOCKS,
+            "spans": STANDARD.encode(spans.concat().as_flattened()),
+        });
+        let room = (1000 * self.page).saturating_sub(page(&data).len());
+        data["sheets"] = self.encoded(&sheets, room)?.into();
+        Ok(data)
+    }
+
+    /// Every view, tier after tier.
+    fn render(
+        &self,
+        model: &Model,
+        orbit: &Orbit,
+        tiers: &[f64],
+        cx: &Context,
+    ) -> Result<Vec<RgbaImage>, StageError> {
+        let scene = Scene::draft_in(model, cx);
+        let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
+        let mut by_azimuth = Vec::new();
+        for v in 0..self.views {
+            cx.check()?;
+            cx.progress(v as f64 / self.views as f64, format!("view {v} of {}", self.views));
+            let azimuth = std::f64::consts::TAU * v as f64 / self.views as f64;
+            by_azimuth.push(scene.cut_outs(orbit, azimuth, &elevations).into_iter());
+        }
+        Ok((0..tiers.len())
+            .flat_map(|_| by_azimuth.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>())
+            .collect())
+    }
+
+    /// The sheets as data URIs, of the greatest quality with which they fit into so many bytes.
+    fn encoded(&self, sheets: &[image::RgbImage], room: usize) -> Result<Vec<String>, StageError> {
+        let mut quality = self.quality;
+        loop {
+            let uri = |s: &image::RgbImage| {
+                Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(sheet::jpeg(s, quality)?)))
+            };
+            let uris: Vec<String> = sheets.par_iter().map(uri).collect::<Result<_, StageError>>()?;
+            if quality <= LEAST_QUALITY || uris.iter().map(|u| u.len() + 3).sum::<usize>() <= room {
+                return Ok(uris);
+            }
+            quality = quality.saturating_sub(QUALITY_STEP).max(LEAST_QUALITY);
+        }
+    }
+}
+
+/// The page, whole.
+fn page(data: &Value) -> String {
+    let json = data.to_string().replace('<', "\\u003c");
+    // The data come last: names in them may look like a mark.
+    PAGE.replacen("/*CSS*/", STYLE, 1).replacen("/*JS*/", SCRIPT, 1).replacen("/*DATA*/", &json, 1)
+}
+
+#[cfg(test)]
+mod tests;
