@@ -1,7 +1,7 @@
 //! What every writer asks of a model before it writes a byte.
 
 use toile_core::StageError;
-use toile_core::artifact::{Mesh, Model};
+use toile_core::artifact::{Mesh, Model, Variant};
 
 /// Refuses a model whose file would hold NaN or point past its own lists.
 pub(super) fn check_model(model: &Model) -> Result<(), StageError> {
@@ -9,7 +9,16 @@ pub(super) fn check_model(model: &Model) -> Result<(), StageError> {
         let hint = "did the mesher or the stitcher lose the panels?";
         return Err(StageError::invalid("the model has no triangle").hint(hint));
     }
-    model.meshes.iter().try_for_each(|mesh| check_mesh(mesh, model))
+    model.meshes.iter().try_for_each(|mesh| check_mesh(mesh, model))?;
+    let fits = |v: &&Variant| {
+        v.materials.len() == model.meshes.len() && v.materials.iter().all(|m| *m < model.materials.len())
+    };
+    match model.variants.iter().find(|v| !fits(v)) {
+        Some(v) => {
+            Err(StageError::invalid(format!("variant \"{}\" has not one material for each mesh", v.name)))
+        }
+        None => Ok(()),
+    }
 }
 
 fn check_mesh(mesh: &Mesh, model: &Model) -> Result<(), StageError> {
@@ -31,9 +40,12 @@ fn check_mesh(mesh: &Mesh, model: &Model) -> Result<(), StageError> {
     let Some(material) = model.materials.get(mesh.material) else {
         return Err(fault("has no material"));
     };
-    match material.texture {
-        Some(t) if t >= model.textures.len() => Err(fault("has a texture that does not exist")),
-        Some(_) if mesh.uv.is_empty() => Err(fault("has a texture but no texture coordinates")),
-        _ => Ok(()),
+    let pictures = || [material.texture, material.normal_texture].into_iter().flatten();
+    if pictures().any(|t| t >= model.textures.len()) {
+        return Err(fault("has a texture that does not exist"));
     }
+    if pictures().next().is_some() && mesh.uv.is_empty() {
+        return Err(fault("has a texture but no texture coordinates"));
+    }
+    Ok(())
 }

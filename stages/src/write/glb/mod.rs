@@ -1,21 +1,38 @@
 //! `Glb`: the model as binary glTF 2.0 (Khronos, 2017; ISO/IEC 12113).
 //!
 //! One node and one mesh a panel, one buffer; textures lie in the same file. Positions, normals and texture
-//! coordinates are 32-bit floats, indices 16 or 32 bits. *Replace* becomes `KHR_materials_unlit`.
+//! coordinates are 32-bit floats (or whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses, where they are needed,
+//! `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`, `KHR_materials_variants` and `KHR_mesh_quantization`. Tangents of normal
+//! maps are written, so that every viewer reads the map in the same frame.
 //! Cost: the encoding of the textures. Limit: 4 GiB, the format's own.
 
+mod buffer;
+mod grid;
+mod material;
+mod mesh;
+#[cfg(test)]
+mod tests;
+
 use super::check::check_model;
+use super::copyright::check_copyright;
 use super::names::check_name;
+use super::power_of_two::to_powers_of_two;
+use super::shown::shown;
 use super::texture_file::TextureFormat;
+use buffer::Buffer;
+use grid::Grid;
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
+use toile_core::artifact::{Artifact, Digester};
 use toile_core::prelude::*;
 
 /// Writes the model as one GLB file that any glTF viewer opens.
 ///
-/// Metres, Y up, the wearer faces +Z. Textures are embedded.
+/// Metres, Y up, the wearer faces +Z. Textures are embedded, with normal maps and their tangents, sheen and variants where the model has
+/// them. `asset.extras` names the unit, the fabrics and the digest of the model.
 #[stage(
     role = Writer,
+    version = 2,
     source = "Khronos Group, glTF 2.0, 2017",
     example = "Glb(name: \"garment\", textures: Jpeg, quality: 88)",
     contracts(Deterministic, ThreadInvariant)
@@ -30,29 +47,64 @@ pub struct Glb {
     /// Quality of JPEG textures.
     #[param(default = 88, min = 1, max = 100, trades)]
     quality: u8,
+    /// Whether the body is written, where the model has one.
+    #[param(default = true)]
+    body: bool,
+    /// Whether both sides of textures are brought to powers of two, as old graphics cards want them: to the next one, or to the one below
+    /// where that takes off a fifth at most.
+    #[param(default = true)]
+    power_of_two: bool,
+    /// Whether positions, normals and tangents are written as whole numbers of 16 and 8 bits: a third of the size, to a 65,534th of the
+    /// model's largest side. Viewers without `KHR_mesh_quantization` do not open such a file.
+    #[param(default = false)]
+    quantise: bool,
+    /// Who holds the rights to the file: `asset.copyright`.
+    #[param(default = None)]
+    copyright: Option<String>,
 }
 
 #[stage]
 impl Glb {
     pub(crate) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
+        check_copyright(self.copyright.as_deref())?;
         check_model(model)?;
-        let images = self.textures.encode_all(model, self.quality)?;
-        let bytes = glb(model, &images, self.textures.mime())?;
+        let about = About { copyright: self.copyright.as_deref(), digest: digest(model) };
+        let mut model = shown(model, self.body)?;
+        if self.power_of_two {
+            to_powers_of_two(&mut model);
+        }
+        let images = self.textures.encode_all(&model, self.quality)?;
+        let grid = self.quantise.then(|| Grid::around(&model));
+        let bytes = glb(&model, &images, self.textures.mime(), grid.as_ref(), &about)?;
         Ok(OutputFiles::one(&format!("{}.glb", self.name), bytes))
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        super::names::check_name(&self.name).err().into_iter().collect()
+        let name = check_name(&self.name).err();
+        name.into_iter().chain(check_copyright(self.copyright.as_deref()).err()).collect()
     }
 }
 
-/// Component types and buffer targets of the standard.
-const FLOAT: u32 = 5126;
-const UNSIGNED_SHORT: u32 = 5123;
-const UNSIGNED_INT: u32 = 5125;
-const ARRAY_BUFFER: u32 = 34962;
-const ELEMENT_ARRAY_BUFFER: u32 = 34963;
+/// What the file says of itself.
+struct About<'a> {
+    copyright: Option<&'a str>,
+    /// In hexadecimal.
+    digest: String,
+}
+
+/// The digest of a model, in hexadecimal.
+pub(super) fn digest(model: &Model) -> String {
+    let mut digester = Digester::new();
+    model.digest(&mut digester);
+    digester.finish().hex()
+}
+
+/// The names of the fabrics, each once.
+pub(super) fn fabrics(model: &Model) -> BTreeSet<&str> {
+    model.materials.iter().map(|m| m.fabric.as_str()).filter(|name| !name.is_empty()).collect()
+}
+
 /// Filters: linear, and linear over mip-maps; wrap: clamp to the edge, and repeat.
 const LINEAR: u32 = 9729;
 const LINEAR_MIPMAP_LINEAR: u32 = 9987;
@@ -60,11 +112,16 @@ const CLAMP_TO_EDGE: u32 = 33071;
 const REPEAT: u32 = 10497;
 
 /// The file: header, JSON chunk, binary chunk. `images` holds the model's textures, encoded.
-pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u8>, StageError> {
+fn glb(
+    model: &Model,
+    images: &[Vec<u8>],
+    mime: &str,
+    grid: Option<&Grid>,
+    about: &About<'_>,
+) -> Result<Vec<u8>, StageError> {
     let mut buffer = Buffer::default();
-    // The standard forbids empty accessors.
-    let parts: Vec<&Mesh> = model.meshes.iter().filter(|m| !m.triangles.is_empty()).collect();
-    let meshes: Vec<Value> = parts.iter().map(|m| mesh(m, &mut buffer)).collect();
+    let meshes: Vec<Value> =
+        (0..model.meshes.len()).map(|i| mesh::mesh(model, i, grid, &mut buffer)).collect();
     let images: Vec<Value> = images
         .iter()
         .zip(&model.textures)
@@ -73,42 +130,76 @@ pub(super) fn glb(model: &Model, images: &[Vec<u8>], mime: &str) -> Result<Vec<u
             json!({ "name": texture.name, "mimeType": mime, "bufferView": view })
         })
         .collect();
-    let unlit = model.materials.iter().any(|m| m.unlit);
-    let nodes: Vec<Value> =
-        parts.iter().enumerate().map(|(i, m)| json!({ "name": m.name, "mesh": i })).collect();
+    let node = |(i, m): (usize, &Mesh)| {
+        let mut node = json!({ "name": m.name, "mesh": i });
+        if let Some(grid) = grid {
+            (node["translation"], node["scale"]) = (json!(grid.centre), json!(vec![grid.half; 3]));
+        }
+        node
+    };
     let mut root = json!({
-        "asset": { "version": "2.0", "generator": concat!("toile ", env!("CARGO_PKG_VERSION")) },
+        "asset": asset(model, about),
         "scene": 0,
-        "scenes": [{ "nodes": (0..nodes.len()).collect::<Vec<_>>() }],
-        "nodes": nodes,
+        "scenes": [{ "nodes": (0..meshes.len()).collect::<Vec<_>>() }],
+        "nodes": model.meshes.iter().enumerate().map(node).collect::<Vec<_>>(),
         "meshes": meshes,
-        "materials": model.materials.iter().map(material).collect::<Vec<_>>(),
+        "materials": model.materials.iter().map(material::material).collect::<Vec<_>>(),
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
         "buffers": [{ "byteLength": buffer.bytes.len() }],
     });
     // The standard forbids empty lists.
     if !images.is_empty() {
-        let wraps: Vec<u32> = model
-            .textures
-            .iter()
-            .map(|t| if t.repeats { REPEAT } else { CLAMP_TO_EDGE })
-            .collect::<BTreeSet<_>>()
-            .into_iter()
-            .rev()
-            .collect();
-        let sampler = |t: &Texture| wraps.iter().position(|w| t.repeats == (*w == REPEAT));
-        let texture = |(i, t): (usize, &Texture)| json!({ "source": i, "sampler": sampler(t) });
-        let textures = model.textures.iter().enumerate().map(texture).collect();
         root["images"] = Value::Array(images);
-        root["textures"] = Value::Array(textures);
-        let sampler = |wrap: &u32| json!({ "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR, "wrapS": wrap, "wrapT": wrap });
-        root["samplers"] = wraps.iter().map(sampler).collect();
+        samplers(model, &mut root);
     }
-    if unlit {
-        root["extensionsUsed"] = json!(["KHR_materials_unlit"]);
-    }
+    extensions(model, grid.is_some(), &mut root);
     pack(root.to_string().into_bytes(), buffer.bytes)
+}
+
+fn asset(model: &Model, about: &About<'_>) -> Value {
+    let mut asset = json!({
+        "version": "2.0",
+        "generator": concat!("toile ", env!("CARGO_PKG_VERSION")),
+        "extras": { "units": "m", "fabrics": fabrics(model), "digest": about.digest },
+    });
+    if let Some(copyright) = about.copyright {
+        asset["copyright"] = json!(copyright);
+    }
+    asset
+}
+
+/// A texture for every picture, and a sampler for every way to go on beyond a picture's edges.
+fn samplers(model: &Model, root: &mut Value) {
+    let wrap = |t: &Texture| if t.repeats { REPEAT } else { CLAMP_TO_EDGE };
+    let wraps: Vec<u32> =
+        model.textures.iter().map(wrap).collect::<BTreeSet<_>>().into_iter().rev().collect();
+    let sampler = |t: &Texture| wraps.iter().position(|w| *w == wrap(t));
+    let texture = |(i, t): (usize, &Texture)| json!({ "source": i, "sampler": sampler(t) });
+    root["textures"] = model.textures.iter().enumerate().map(texture).collect();
+    let sampler = |wrap: &u32| json!({ "magFilter": LINEAR, "minFilter": LINEAR_MIPMAP_LINEAR, "wrapS": wrap, "wrapT": wrap });
+    root["samplers"] = wraps.iter().map(sampler).collect();
+}
+
+/// Names the extensions that the file uses.
+fn extensions(model: &Model, quantised: bool, root: &mut Value) {
+    let used = [
+        (model.materials.iter().any(|m| m.sheen.is_some()), "KHR_materials_sheen"),
+        (model.materials.iter().any(|m| m.unlit), "KHR_materials_unlit"),
+        (!model.variants.is_empty(), "KHR_materials_variants"),
+        (quantised, "KHR_mesh_quantization"),
+    ];
+    let names: Vec<&str> = used.iter().filter(|u| u.0).map(|u| u.1).collect();
+    if !names.is_empty() {
+        root["extensionsUsed"] = json!(names);
+    }
+    if quantised {
+        root["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    }
+    if !model.variants.is_empty() {
+        let names: Vec<Value> = model.variants.iter().map(|v| json!({ "name": v.name })).collect();
+        root["extensions"] = json!({ "KHR_materials_variants": { "variants": names } });
+    }
 }
 
 fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
@@ -129,90 +220,4 @@ fn pack(mut json: Vec<u8>, mut binary: Vec<u8>) -> Result<Vec<u8>, StageError> {
         file.extend_from_slice(&chunk);
     }
     Ok(file)
-}
-
-fn material(m: &Material) -> Value {
-    let [r, g, b] = m.colour;
-    let mut pbr = json!({
-        "baseColorFactor": [r, g, b, 1.0], "metallicFactor": 0.0, "roughnessFactor": m.roughness,
-    });
-    if let Some(texture) = m.texture {
-        pbr["baseColorTexture"] = json!({ "index": texture });
-    }
-    let mut value = json!({ "name": m.name, "pbrMetallicRoughness": pbr, "doubleSided": m.double_sided });
-    if m.unlit {
-        value["extensions"] = json!({ "KHR_materials_unlit": {} });
-    }
-    value
-}
-
-fn mesh(m: &Mesh, buffer: &mut Buffer) -> Value {
-    let positions = m.positions.iter().map(|p| [p.x, p.y, p.z].map(|c| c as f32));
-    let normals = m.normals.iter().map(|n| [n.x, n.y, n.z].map(|c| c as f32));
-    let mut attributes = json!({
-        "POSITION": buffer.floats(positions.collect(), "VEC3", true),
-        "NORMAL": buffer.floats(normals.collect(), "VEC3", false),
-    });
-    if !m.uv.is_empty() {
-        attributes["TEXCOORD_0"] = json!(buffer.floats(m.uv.clone(), "VEC2", false));
-    }
-    let indices = buffer.indices(&m.triangles, m.positions.len());
-    let primitive =
-        json!({ "attributes": attributes, "indices": indices, "material": m.material, "mode": 4 });
-    json!({ "name": m.name, "primitives": [primitive] })
-}
-
-/// The binary chunk in the making.
-#[derive(Default)]
-struct Buffer {
-    bytes: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-}
-
-impl Buffer {
-    /// Appends bytes on a multiple of four; returns the view's index.
-    fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
-        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
-        let mut view = json!({ "buffer": 0, "byteOffset": self.bytes.len(), "byteLength": bytes.len() });
-        if let Some(target) = target {
-            view["target"] = json!(target);
-        }
-        self.bytes.extend_from_slice(bytes);
-        self.views.push(view);
-        self.views.len() - 1
-    }
-
-    /// Appends vectors of floats; returns the accessor's index.
-    fn floats<const N: usize>(&mut self, rows: Vec<[f32; N]>, kind: &str, bounds: bool) -> usize {
-        let bytes: Vec<u8> = rows.iter().flatten().flat_map(|f| f.to_le_bytes()).collect();
-        let view = self.view(&bytes, Some(ARRAY_BUFFER));
-        let mut accessor =
-            json!({ "bufferView": view, "componentType": FLOAT, "count": rows.len(), "type": kind });
-        if bounds {
-            let fold = |f: fn(f32, f32) -> f32| {
-                let join = |a: [f32; N], b: &[f32; N]| std::array::from_fn(|k| f(a[k], b[k]));
-                rows.iter().skip(1).fold(rows.first().copied().unwrap_or([0.0; N]), join).to_vec()
-            };
-            accessor["min"] = json!(fold(f32::min));
-            accessor["max"] = json!(fold(f32::max));
-        }
-        self.accessors.push(accessor);
-        self.accessors.len() - 1
-    }
-
-    /// Appends triangles; 16 bits suffice for up to 65,535 vertices (the last value restarts a strip).
-    fn indices(&mut self, triangles: &[[u32; 3]], vertices: usize) -> usize {
-        let flat = triangles.iter().flatten();
-        let (bytes, kind): (Vec<u8>, u32) = match vertices <= usize::from(u16::MAX) {
-            true => (flat.flat_map(|&i| (i as u16).to_le_bytes()).collect(), UNSIGNED_SHORT),
-            false => (flat.flat_map(|i| i.to_le_bytes()).collect(), UNSIGNED_INT),
-        };
-        let view = self.view(&bytes, Some(ELEMENT_ARRAY_BUFFER));
-        let count = 3 * triangles.len();
-        self.accessors.push(json!({
-            "bufferView": view, "componentType": kind, "count": count, "type": "SCALAR",
-        }));
-        self.accessors.len() - 1
-    }
 }
