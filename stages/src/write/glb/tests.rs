@@ -178,9 +178,11 @@ fn glb_names_variants_and_what_each_mesh_wears() {
     assert_eq!(front["extensions"]["KHR_materials_variants"]["mappings"], mappings);
     assert!(json["meshes"][1]["primitives"][0]["extensions"].is_null(), "the back is the same in both");
     assert_eq!(json["materials"].as_array().unwrap().len(), 4);
+    let fault = |model: &Model| params::<Glb>("()").run(model, &Context::quiet()).unwrap_err().to_string();
+    two.variants[1].materials[2] = 0;
+    assert_eq!(fault(&two), "variant \"red front\" has a texture but no texture coordinates", "on the body");
     two.variants[1].materials.pop();
-    let error = params::<Glb>("()").run(&two, &Context::quiet()).unwrap_err();
-    assert_eq!(error.to_string(), "variant \"red front\" has not one material for each mesh");
+    assert_eq!(fault(&two), "variant \"red front\" has not one material for each mesh");
 }
 
 #[test]
