@@ -44,7 +44,7 @@ static SHARES: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| i
 
 /// What the numbers of a picture mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Coding {
+pub(crate) enum Coding {
     /// sRGB colours.
     Colours,
     /// Shares, such as those of a normal map.
@@ -52,14 +52,16 @@ enum Coding {
 }
 
 impl Coding {
-    fn table(self) -> &'static [f32; 256] {
+    /// The value of every level.
+    pub(crate) fn table(self) -> &'static [f32; 256] {
         match self {
             Coding::Colours => &LINEAR,
             Coding::Shares => &SHARES,
         }
     }
 
-    fn encode(self, value: f32) -> u8 {
+    /// The level of a value; clamped.
+    pub(crate) fn encode(self, value: f32) -> u8 {
         match self {
             Coding::Colours => encode(value),
             Coding::Shares => (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
