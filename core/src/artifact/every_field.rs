@@ -231,7 +231,10 @@ fn of_bodies() {
 #[test]
 fn of_models() {
     let base = model();
-    let mut others = changed!(base.clone(), Model { meshes: vec![], materials: vec![], textures: vec![] });
+    let mut others = changed!(
+        base.clone(),
+        Model { meshes: vec![], materials: vec![], textures: vec![], variants: vec![] }
+    );
     let meshes = changed!(
         base.meshes[0].clone(),
         Mesh {
@@ -250,15 +253,24 @@ fn of_models() {
             name: "skin".into(),
             colour: [0.0; 3],
             texture: None,
+            normal_texture: None,
             unlit: true,
             roughness: 0.1,
+            sheen: None,
             double_sided: false,
+            fabric: String::new(),
         }
     );
     others.extend(materials.into_iter().map(|m| Model { materials: vec![m], ..model() }));
     let textures =
         changed!(base.textures[0].clone(), Texture { name: "u".into(), pixels: rgb(1), repeats: false });
     others.extend(textures.into_iter().map(|t| Model { textures: vec![t], ..model() }));
+    let sheen = Sheen { colour: [0.1, 0.2, 0.3], roughness: 0.5 };
+    let sheens = changed!(sheen, Sheen { colour: [0.1, 0.2, 0.4], roughness: 0.6 });
+    let shiny = |sheen| Material { sheen: Some(sheen), ..base.materials[0].clone() };
+    others.extend(sheens.into_iter().map(|s| Model { materials: vec![shiny(s)], ..model() }));
+    let variants = changed!(base.variants[0].clone(), Variant { name: "blue".into(), materials: vec![0, 0] });
+    others.extend(variants.into_iter().map(|v| Model { variants: vec![v], ..model() }));
     all_differ(&base, others);
 }
 

@@ -51,7 +51,7 @@ pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_leng
 pub use locate::{Located, Locator};
 pub use mask::Mask;
 pub use measures::{Measure, Measures};
-pub use model::{Material, Mesh, Model, Texture};
+pub use model::{Material, Mesh, Model, Sheen, Texture, Variant};
 pub use outline::{Edge, InnerKind, InnerLine, Loop, Outline, PhotoFrame};
 pub use panel::{InnerChain, Panel, PanelEdge};
 pub use pattern::{

@@ -255,9 +255,12 @@ pub fn model() -> Model {
         name: name.into(),
         colour: [0.6, 0.6, 0.5],
         texture,
+        normal_texture: None,
         unlit: false,
         roughness: 0.9,
+        sheen: None,
         double_sided: true,
+        fabric: String::new(),
     };
     let front = &garment.panels[0];
     let uv = |q: &Point2| [(q.x / 120.0) as f32, (q.y / 120.0) as f32];
@@ -282,5 +285,6 @@ pub fn model() -> Model {
         meshes: vec![cloth, skin],
         materials: vec![material("front", Some(0)), material("body", None)],
         textures: vec![Texture { name: "front".into(), pixels: shapes::photo().pixels, repeats: false }],
+        variants: vec![],
     }
 }

@@ -39,6 +39,36 @@ pub(crate) fn encode(linear: f32) -> u8 {
 #[derive(Debug)]
 pub(crate) struct Mips(Vec<Level>);
 
+/// A share of 255 as it stands, which is how a normal map is read.
+static SHARES: LazyLock<[f32; 256]> = LazyLock::new(|| std::array::from_fn(|i| i as f32 / 255.0));
+
+/// What the numbers of a picture mean.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Coding {
+    /// sRGB colours.
+    Colours,
+    /// Shares, such as those of a normal map.
+    Shares,
+}
+
+impl Coding {
+    /// The value of every level.
+    pub(crate) fn table(self) -> &'static [f32; 256] {
+        match self {
+            Coding::Colours => &LINEAR,
+            Coding::Shares => &SHARES,
+        }
+    }
+
+    /// The level of a value; clamped.
+    pub(crate) fn encode(self, value: f32) -> u8 {
+        match self {
+            Coding::Colours => encode(value),
+            Coding::Shares => (value.clamp(0.0, 1.0) * 255.0 + 0.5) as u8,
+        }
+    }
+}
+
 /// Lookups along a slant at most: beyond, the print blurs rather than costs.
 const MOST_STEPS: f64 = 8.0;
 
@@ -99,15 +129,25 @@ struct Level {
     texels: Vec<[u8; 3]>,
     /// Whether it repeats beyond its edges; else its border goes on.
     repeats: bool,
+    coding: Coding,
 }
 
 impl Mips {
-    /// All levels of a texture; none for an empty one.
+    /// All levels of a texture of colours; none for an empty one.
     pub(crate) fn new(texture: &Texture) -> Mips {
+        Mips::coded(texture, Coding::Colours)
+    }
+
+    /// All levels of a normal map, whose numbers are averaged as they are.
+    pub(crate) fn of_normals(texture: &Texture) -> Mips {
+        Mips::coded(texture, Coding::Shares)
+    }
+
+    fn coded(texture: &Texture, coding: Coding) -> Mips {
         let (w, h) = texture.pixels.dimensions();
         let texels = texture.pixels.pixels().map(|p| p.0).collect();
         let mut levels =
-            vec![Level { width: w as usize, height: h as usize, texels, repeats: texture.repeats }];
+            vec![Level { width: w as usize, height: h as usize, texels, repeats: texture.repeats, coding }];
         while let Some(next) = levels.last().and_then(Level::halved) {
             levels.push(next);
         }
@@ -133,17 +173,20 @@ impl Level {
         }
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut texels = Vec::with_capacity(width * height);
+        let table = self.coding.table();
         for y in 0..height {
             for x in 0..width {
                 let at = |dx: usize, dy: usize| {
                     let (x, y) = ((2 * x + dx).min(self.width - 1), (2 * y + dy).min(self.height - 1));
-                    self.texels[y * self.width + x].map(|v| LINEAR[v as usize])
+                    self.texels[y * self.width + x].map(|v| table[v as usize])
                 };
                 let four = [at(0, 0), at(1, 0), at(0, 1), at(1, 1)];
-                texels.push([0, 1, 2].map(|c| encode(four.iter().map(|t| t[c]).sum::<f32>() / 4.0)));
+                texels.push(
+                    [0, 1, 2].map(|c| self.coding.encode(four.iter().map(|t| t[c]).sum::<f32>() / 4.0)),
+                );
             }
         }
-        Some(Level { width, height, texels, repeats: self.repeats })
+        Some(Level { width, height, texels, repeats: self.repeats, coding: self.coding })
     }
 
     /// The four texels around a lookup.
@@ -165,7 +208,7 @@ impl Level {
         let (x, y) = (uv[0] * self.width as f32 - 0.5, uv[1] * self.height as f32 - 0.5);
         let ((x, fx), (y, fy)) = (split(x), split(y));
         let Some(four) = self.around(x, y) else { return [1.0; 3] };
-        let linear = &*LINEAR;
+        let linear = self.coding.table();
         let [a, b, c, d] = four.map(|t| t.map(|v| linear[v as usize]));
         mix(mix(a, b, fx), mix(c, d, fx), fy)
     }

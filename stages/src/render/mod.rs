@@ -21,7 +21,7 @@ mod shade;
 mod tests;
 
 pub use camera::{Frame, View};
-pub(crate) use mips::{LINEAR, Mips, encode};
+pub(crate) use mips::{Coding, LINEAR, Mips, encode};
 pub use orbit::Orbit;
 pub use overlay::Line;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};

@@ -120,8 +120,7 @@ fn grey_thumbnail(picture: &GrayImage, height: u32) -> GrayImage {
 }
 
 fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
-    let model =
-        Model { meshes: vec![body_mesh(body, 0)], materials: vec![mannequin()], textures: Vec::new() };
+    let model = Model { meshes: vec![body_mesh(body, 0)], materials: vec![mannequin()], ..Model::default() };
     let dot = |p: &toile_core::artifact::Point3| Line { ends: [*p, *p], colour: LANDMARK_COLOUR, width: 5.0 };
     let dots: Vec<Line> = body.landmarks.values().map(dot).collect();
     let scene = Scene::draft(&model);

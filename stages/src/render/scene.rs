@@ -11,11 +11,12 @@ use super::mips::{Footprint, Mips, encode};
 use super::remember::Remember;
 use super::shade::{Lights, wall};
 use super::{Line, Orbit, overlay};
+use crate::texture::tangents::{Tangent, tangents};
 use image::{RgbImage, RgbaImage};
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 use toile_core::Context;
-use toile_core::artifact::{Digester, Mesh, Model, Point3, Vector3};
+use toile_core::artifact::{Digester, Material, Mesh, Model, Point3, Texture, Vector3};
 
 use super::BODY;
 /// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that nearly
@@ -31,6 +32,8 @@ const NONE: u32 = u32::MAX;
 pub struct Scene<'a> {
     model: &'a Model,
     textures: Vec<Mips>,
+    /// Of meshes with a normal map; empty for the others.
+    tangents: Vec<Vec<Tangent>>,
     region: Region,
     fineness: Fineness,
     ambient: Vec<Vec<[f32; 2]>>,
@@ -59,7 +62,13 @@ impl<'a> Scene<'a> {
     }
 
     fn prepare(model: &'a Model, fineness: Fineness, remember: Option<Remember<'a>>) -> Scene<'a> {
-        let textures = model.textures.par_iter().map(Mips::new).collect();
+        let mips = |(i, t): (usize, &Texture)| {
+            if model.is_normal_map(i) { Mips::of_normals(t) } else { Mips::new(t) }
+        };
+        let textures = model.textures.par_iter().enumerate().map(mips).collect();
+        let has_map = |m: &Mesh| model.materials.get(m.material).is_some_and(|m| m.normal_texture.is_some());
+        let frames = |m: &Mesh| if has_map(m) { tangents(m) } else { Vec::new() };
+        let tangents = model.meshes.par_iter().map(frames).collect();
         let region = region(model);
         let make = || match is_unlit(model) {
             true => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
@@ -74,7 +83,7 @@ impl<'a> Scene<'a> {
                 r.light(key, make)
             }
         };
-        Scene { model, textures, region, fineness, ambient, remember }
+        Scene { model, textures, tangents, region, fineness, ambient, remember }
     }
 
     /// The soft box's light from a direction.
@@ -161,7 +170,7 @@ struct Face {
 fn faces(model: &Model, camera: &Camera) -> Vec<Face> {
     let mesh_faces = |(index, mesh): (usize, &Mesh)| {
         let placed: Vec<Projected> = mesh.positions.iter().map(|p| camera.project(p)).collect();
-        let texture = model.materials.get(mesh.material).and_then(|m| m.texture);
+        let texture = model.materials.get(mesh.material).and_then(|m| m.texture.or(m.normal_texture));
         let size = texture.and_then(|t| model.textures.get(t)).map(|t| t.pixels.dimensions());
         let face = |t: &[u32; 3]| face(index, mesh, &placed, size, t.map(|i| i as usize));
         mesh.triangles.iter().filter_map(face).collect::<Vec<_>>()
@@ -316,8 +325,7 @@ impl Shot<'_> {
         if material.is_some_and(|m| m.unlit) {
             return own;
         }
-        let light = self.light(mesh, face, &weights) as f32;
-        own.map(|v| v * light)
+        self.lit(mesh, material, face, &weights, own)
     }
 
     fn texel(&self, mesh: &Mesh, texture: usize, face: &Face, weights: &[f64; 3]) -> Option<[f32; 3]> {
@@ -329,13 +337,43 @@ impl Shot<'_> {
         Some(face.footprint.sample(mips, at))
     }
 
-    fn light(&self, mesh: &Mesh, face: &Face, weights: &[f64; 3]) -> f64 {
+    /// The surface's own colour in the light that reaches it, and the sheen on top.
+    fn lit(
+        &self,
+        mesh: &Mesh,
+        material: Option<&Material>,
+        face: &Face,
+        weights: &[f64; 3],
+        own: [f32; 3],
+    ) -> [f32; 3] {
         let blend = |f: &dyn Fn(usize) -> f64| (0..3).map(|k| weights[k] * f(face.corners[k])).sum::<f64>();
         let side = usize::from(face.reversed);
         let ambient = blend(&|i| f64::from(self.scene.ambient[face.mesh][i][side]));
         let key = blend(&|i| f64::from(self.key[face.mesh][i]));
-        let n: Vector3 = (0..3).map(|k| mesh.normals[face.corners[k]] * weights[k]).sum();
-        let n = n.try_normalize(1e-12).unwrap_or_else(Vector3::y);
-        self.lights.on(&if face.reversed { -n } else { n }, ambient, key)
+        let map = material.and_then(|m| m.normal_texture);
+        let n = self.normal(mesh, map, face, weights);
+        let n = if face.reversed { -n } else { n };
+        let light = self.lights.on(&n, ambient, key) as f32;
+        match material.and_then(|m| m.sheen) {
+            None => own.map(|v| v * light),
+            Some(sheen) => {
+                let shine = self.lights.sheen(&sheen, &n, ambient, key) as f32;
+                [0, 1, 2].map(|k| own[k] * light + sheen.colour[k] * shine)
+            }
+        }
+    }
+
+    /// The unit normal at a place of a face, towards its front; `map` is the normal map.
+    fn normal(&self, mesh: &Mesh, map: Option<usize>, face: &Face, weights: &[f64; 3]) -> Vector3 {
+        let blend = |f: &dyn Fn(usize) -> Vector3| -> Vector3 {
+            (0..3).map(|k| f(face.corners[k]) * weights[k]).sum()
+        };
+        let n = blend(&|i| mesh.normals[i]).try_normalize(1e-12).unwrap_or_else(Vector3::y);
+        let frames = &self.scene.tangents[face.mesh];
+        let texel = map.filter(|_| !frames.is_empty()).and_then(|t| self.texel(mesh, t, face, weights));
+        let Some([x, y, z]) = texel.map(|t| t.map(|v| f64::from(v) * 2.0 - 1.0)) else { return n };
+        let along = blend(&|i| frames[i].along);
+        let up = blend(&|i| frames[i].up(&mesh.normals[i]));
+        (along * x + up * y + n * z).try_normalize(1e-12).unwrap_or(n)
     }
 }

@@ -1,7 +1,8 @@
-//! What colour a surface shows: soft key, fill and sky on a matt surface.
+//! What colour a surface shows: soft key, fill and sky on a matt surface, with the sheen of its fibres.
 
 use super::camera::Camera;
-use toile_core::artifact::Vector3;
+use std::f64::consts::PI;
+use toile_core::artifact::{Sheen, Vector3};
 
 /// The key light's direction in the camera's axes: from above left, low enough to rake over folds.
 const KEY: [f64; 3] = [-0.66, 0.52, 0.54];
@@ -17,11 +18,13 @@ const SKY_LIGHT: f64 = 0.50;
 pub(super) struct Lights {
     pub(super) key: Vector3,
     fill: Vector3,
+    /// Towards the viewer: taken as the same for the whole picture.
+    view: Vector3,
 }
 
 impl Lights {
     pub(super) fn new(camera: &Camera) -> Lights {
-        Lights { key: camera.to_world(KEY), fill: camera.to_world(FILL) }
+        Lights { key: camera.to_world(KEY), fill: camera.to_world(FILL), view: camera.back }
     }
 
     /// Light on a surface with unit normal `n` (turned to the viewer), where `ambient` of the sky and `key` of
@@ -30,6 +33,27 @@ impl Lights {
         let cosine = |l: &Vector3| n.dot(l).max(0.0);
         KEY_LIGHT * key * cosine(&self.key) + (FILL_LIGHT * cosine(&self.fill) + SKY_LIGHT) * ambient
     }
+
+    /// What fibres add of key and fill light, for white sheen; the sky's is left out. In the same units as [`Lights::on`].
+    pub(super) fn sheen(&self, sheen: &Sheen, n: &Vector3, ambient: f64, key: f64) -> f64 {
+        let alpha = f64::from(sheen.roughness).max(LEAST_ROUGHNESS).powi(2);
+        let of = |l: &Vector3| charlie(n, l, &self.view, alpha);
+        KEY_LIGHT * key * of(&self.key) + FILL_LIGHT * ambient * of(&self.fill)
+    }
+}
+
+/// Smoother sheen than this is a line of light too thin to be drawn.
+const LEAST_ROUGHNESS: f64 = 0.1;
+
+/// Light that fibres scatter from `l` to `v`, as a share of what a white matt surface that faces the light would: the distribution of Estevez
+/// and Kulla (2017) with the visibility of Neubelt and Pettineo (2013), as glTF's `KHR_materials_sheen` has it.
+fn charlie(n: &Vector3, l: &Vector3, v: &Vector3, alpha: f64) -> f64 {
+    let (light, view) = (n.dot(l), n.dot(v).max(0.0));
+    let Some(half) = (l + v).try_normalize(1e-9).filter(|_| light > 0.0) else { return 0.0 };
+    let sine = (1.0 - n.dot(&half).powi(2)).max(0.0).sqrt();
+    let distribution = (2.0 + 1.0 / alpha) * sine.powf(1.0 / alpha) / (2.0 * PI);
+    let visibility = 1.0 / (4.0 * (light + view - light * view).max(1e-3));
+    PI * light * distribution * visibility
 }
 
 /// The studio's back wall, sRGB, from the picture's top to its bottom.

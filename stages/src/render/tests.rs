@@ -27,11 +27,11 @@ fn square(name: &str, z: f64, half: f64, material: usize) -> Mesh {
 }
 
 fn paint(colour: [f32; 3]) -> Material {
-    Material { name: "paint".into(), colour, texture: None, unlit: true, roughness: 1.0, double_sided: true }
+    Material { colour, unlit: true, roughness: 1.0, ..crate::texture::parts::plain_cloth("paint", colour) }
 }
 
 fn red_square() -> Model {
-    Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![paint(RED)], textures: Vec::new() }
+    Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![paint(RED)], ..Model::default() }
 }
 
 /// A view straight from the front in parallel projection.
@@ -61,7 +61,7 @@ fn both_faces_are_drawn() {
 fn the_nearer_surface_hides_the_farther_in_any_order() {
     let meshes = vec![square("near", 0.1, 0.25, 0), square("far", 0.0, 0.5, 1)];
     let materials = vec![paint(RED), paint(BLUE)];
-    let model = Model { meshes, materials, textures: Vec::new() };
+    let model = Model { meshes, materials, ..Model::default() };
     let mut turned = model.clone();
     turned.meshes.reverse();
     for view in [flat(40, 40), View { angle: 0.4, ..flat(40, 40) }] {
@@ -105,8 +105,12 @@ fn a_texture_stands_upright() {
     });
     let texture = Texture { name: "t".into(), pixels: Shared::new(pixels), repeats: false };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
-    let model =
-        Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };
+    let model = Model {
+        meshes: vec![square("a", 0.0, 0.5, 0)],
+        materials: vec![material],
+        textures: vec![texture],
+        ..Model::default()
+    };
     let picture = render(&model, &flat(80, 80));
     assert_eq!(picture.get_pixel(22, 22).0, [255, 0, 0]);
     assert_eq!(picture.get_pixel(57, 22).0, [0, 255, 0]);
@@ -122,7 +126,12 @@ fn a_texture_that_repeats_goes_on_beyond_its_edges() {
     // Two repeats across.
     square.uv.iter_mut().for_each(|uv| uv[0] = uv[0] * 2.0 - 7.0);
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
-    let model = Model { meshes: vec![square], materials: vec![material], textures: vec![texture] };
+    let model = Model {
+        meshes: vec![square],
+        materials: vec![material],
+        textures: vec![texture],
+        ..Model::default()
+    };
     let picture = render(&model, &flat(80, 80));
     let reds: Vec<u8> = [25, 35, 45, 55].map(|x| picture.get_pixel(x, 40).0[0]).to_vec();
     assert!(reds[0] > 200 && reds[1] < 100 && reds[2] > 200 && reds[3] < 100, "{reds:?}");
@@ -133,8 +142,12 @@ fn a_fine_pattern_seen_from_afar_turns_even() {
     let pixels = RgbImage::from_fn(512, 512, |x, y| Rgb([if (x + y) % 2 == 0 { 255 } else { 0 }; 3]));
     let texture = Texture { name: "t".into(), pixels: Shared::new(pixels), repeats: false };
     let material = Material { texture: Some(0), ..paint([1.0; 3]) };
-    let model =
-        Model { meshes: vec![square("a", 0.0, 0.5, 0)], materials: vec![material], textures: vec![texture] };
+    let model = Model {
+        meshes: vec![square("a", 0.0, 0.5, 0)],
+        materials: vec![material],
+        textures: vec![texture],
+        ..Model::default()
+    };
     let picture = render(&model, &flat(64, 64));
     // Half of the light is level 188 in sRGB.
     for p in (20..44).map(|x| picture.get_pixel(x, 30).0) {
@@ -192,7 +205,7 @@ fn what_stands_in_a_hollow_is_darker() {
         plate.triangles = (0..n).flat_map(|j| (0..n).flat_map(move |i| cell(i, j))).collect();
         plate
     };
-    let model = Model { meshes: vec![fine(20), wall], materials: vec![lit], textures: Vec::new() };
+    let model = Model { meshes: vec![fine(20), wall], materials: vec![lit], ..Model::default() };
     let picture = render(&model, &flat(80, 80));
     let (near_wall, open) = (picture.get_pixel(23, 40).0[0], picture.get_pixel(57, 40).0[0]);
     assert!(near_wall + 30 < open, "{near_wall} against {open}");
@@ -281,4 +294,44 @@ proptest! {
         let picture = Scene::draft(&model).render(&View::front(20));
         prop_assert_eq!(picture.dimensions(), (16, 20));
     }
+}
+
+#[test]
+fn a_normal_map_turns_the_light_as_its_normals_lean() {
+    let brightness = |texel: [u8; 3]| {
+        let pixels = Shared::new(RgbImage::from_pixel(4, 4, image::Rgb(texel)));
+        let map = Texture { name: "n".into(), pixels, repeats: true };
+        let material = Material { normal_texture: Some(0), unlit: false, ..paint([0.5; 3]) };
+        let model = Model {
+            meshes: vec![square("a", 0.0, 0.5, 0)],
+            materials: vec![material],
+            textures: vec![map],
+            ..Model::default()
+        };
+        let picture = render(&model, &View::front(40));
+        picture.get_pixel(picture.width() / 2, 20).0[0]
+    };
+    // The key light comes from above left.
+    let (flat, left, right) =
+        (brightness([128, 128, 255]), brightness([60, 128, 236]), brightness([196, 128, 236]));
+    assert!(left > right + 10, "{left} {flat} {right}");
+    let (up, down) = (brightness([128, 196, 236]), brightness([128, 60, 236]));
+    assert!(up > down + 10, "{up} {flat} {down}");
+}
+
+#[test]
+fn sheen_brightens_what_is_seen_at_a_slant() {
+    let brightness = |sheen: f32, turn: f64| {
+        let sheen = (sheen > 0.0).then_some(Sheen { colour: [sheen; 3], roughness: 0.5 });
+        let material = Material { sheen, unlit: false, ..paint([0.2; 3]) };
+        let mut board = square("a", 0.0, 0.5, 0);
+        let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::y_axis(), turn);
+        board.positions.iter_mut().for_each(|p| *p = turned * *p);
+        board.normals.iter_mut().for_each(|n| *n = turned * *n);
+        let model = Model { meshes: vec![board], materials: vec![material], ..Model::default() };
+        let picture = render(&model, &View::front(40));
+        i32::from(picture.get_pixel(picture.width() / 2, 20).0[0])
+    };
+    let gain = |turn: f64| brightness(0.5, turn) - brightness(0.0, turn);
+    assert!(gain(0.0) >= 0 && gain(-1.3) > gain(0.0) + 5, "{} {}", gain(0.0), gain(-1.3));
 }

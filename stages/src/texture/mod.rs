@@ -7,15 +7,18 @@ mod fabric_texturer;
 pub(crate) mod fixture;
 mod inside;
 pub(crate) mod parts;
+mod photo_detail;
 mod photo_texturer;
 mod plain;
+mod relief;
+pub(crate) mod tangents;
 #[cfg(test)]
 mod tests;
 mod texture_size;
 mod weave;
 
-pub use fabric_texturer::{FabricTexture, FabricTexturer};
-pub use photo_texturer::{BodyShown, Light, PhotoTexturer, Unseen};
+pub use fabric_texturer::{FabricDetail, FabricTexture, FabricTexturer};
+pub use photo_texturer::{BodyShown, Light, PhotoDetail, PhotoTexturer, Unseen};
 
 use toile_core::Registry;
 use toile_core::prelude::*;

@@ -1,6 +1,6 @@
 //! Garment panels and body as meshes of a model, without their pictures.
 
-use toile_core::artifact::{Body, Garment, GarmentPanel, Material, Mesh, Vector3};
+use toile_core::artifact::{Body, Garment, GarmentPanel, Material, Mesh, Sheen, Vector3};
 
 /// The name of the body's mesh and material.
 pub(crate) const BODY: &str = "body";
@@ -10,6 +10,9 @@ const MANNEQUIN: [f32; 3] = [0.42, 0.41, 0.40];
 pub(crate) const UNDYED: [f32; 3] = [0.66, 0.60, 0.49];
 /// Cloth is matt.
 const CLOTH_ROUGHNESS: f32 = 0.95;
+/// The sheen of cloth where a texturer is not told: its share of white, and its roughness, that of short fibres on every side.
+pub(crate) const SHEEN: f64 = 0.1;
+const SHEEN_ROUGHNESS: f32 = 0.5;
 
 /// One panel of a garment; `normals` are the garment's. Texture coordinates are left empty.
 pub(crate) fn panel_mesh(
@@ -52,9 +55,22 @@ pub(crate) fn plain_cloth(name: &str, colour: [f32; 3]) -> Material {
         name: name.to_owned(),
         colour,
         texture: None,
+        normal_texture: None,
         unlit: false,
         roughness: CLOTH_ROUGHNESS,
+        sheen: None,
         double_sided: true,
+        fabric: String::new(),
+    }
+}
+
+/// The cloth of a panel, of one colour; `sheen` is the share of white that its fibres shine with, 0 to 1.
+pub(crate) fn panel_cloth(panel: &GarmentPanel, colour: [f32; 3], sheen: f64) -> Material {
+    let shine = Sheen { colour: [sheen as f32; 3], roughness: SHEEN_ROUGHNESS };
+    Material {
+        sheen: (sheen > 0.0).then_some(shine),
+        fabric: panel.fabric.name.clone(),
+        ..plain_cloth(&panel.name, colour)
     }
 }
 

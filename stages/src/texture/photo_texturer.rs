@@ -6,7 +6,7 @@
 
 use super::inside::{PixelBox, cover, keep_shown};
 use super::texture_size::{self, LARGEST};
-use super::{bleed, crop, of_panel, parts, plain};
+use super::{bleed, crop, of_panel, parts, photo_detail, plain};
 use rayon::prelude::*;
 use toile_core::cost::Size;
 use toile_core::decide::{Decision, Known};
@@ -42,6 +42,16 @@ pub enum Unseen {
     Plain,
 }
 
+/// The relief of the cloth, which light brings out beside the folds.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum PhotoDetail {
+    /// None: cloth as smooth as its mesh.
+    None,
+    /// A normal map of the photo's fine detail: what is brighter than its surroundings stands out.
+    Photo,
+}
+
 /// Dresses each panel in its own photo.
 ///
 /// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
@@ -50,8 +60,8 @@ pub enum Unseen {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 4,
-    source = "garment modelling thesis, 2012: replace and modulate",
+    version = 5,
+    source = "garment modelling thesis, 2012: replace and modulate; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
 )]
@@ -74,7 +84,19 @@ pub struct PhotoTexturer {
     /// Whether the body stands in the model.
     #[param(default = BodyShown::Show)]
     body: BodyShown,
+    /// Where the normal map of the cloth comes from.
+    #[param(default = PhotoDetail::None)]
+    detail: PhotoDetail,
+    /// Factor of the relief's height; 1 where it is not given.
+    #[param(default = None, min = 0.05, max = 10.0)]
+    strength: Option<f64>,
+    /// The soft shine of fibres at grazing angles, as a share of white; 0.1 where it is not given.
+    #[param(default = None, min = 0.0, max = 1.0)]
+    sheen: Option<f64>,
 }
+
+/// What only light brings out.
+const OF_LIGHT: &str = "light does not act on such a photo: leave it out, or give `light: Modulate`";
 
 #[stage]
 impl PhotoTexturer {
@@ -86,13 +108,14 @@ impl PhotoTexturer {
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Model, StageError> {
+        self.fault().map_or(Ok(()), Err)?;
         check_garment(garment)?;
         let normals = garment.vertex_normals();
         let (mut model, mut pictures) = (Model::default(), Vec::new());
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.check()?;
             let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
-            let mut material = parts::plain_cloth(&panel.name, parts::UNDYED);
+            let mut material = parts::panel_cloth(panel, parts::UNDYED, self.sheen.unwrap_or(parts::SHEEN));
             match photo_of(panel, photos.as_ref(), cx) {
                 Some(photo) => {
                     let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
@@ -103,6 +126,8 @@ impl PhotoTexturer {
                     material.colour = [1.0; 3];
                     material.texture = Some(pictures.len() - 1);
                     material.unlit = self.light == Light::Replace;
+                    // Light does not act on it.
+                    material.sheen = material.sheen.filter(|_| !material.unlit);
                 }
                 None => cx.warn(format!("panel \"{}\" has no photo and gets a plain cloth", panel.name)),
             }
@@ -116,10 +141,23 @@ impl PhotoTexturer {
                 cx.check()?;
                 let beside: Vec<&GarmentPanel> =
                     shown.iter().filter(|(_, p)| std::ptr::eq(*p, photo)).map(|(panel, _)| *panel).collect();
-                self.texture(garment, panel, &beside, (photo, mask, plain), area)
+                let texture = self.texture(garment, panel, &beside, (photo, mask, plain), area)?;
+                let scale = f64::from(texture.pixels.width()) / f64::from(area.width);
+                let relief = self.relief(&texture, px_per_metre(garment, panel) * scale, cx)?;
+                Ok((texture, relief))
             };
-        let textures: Vec<Result<Texture, StageError>> = pictures.into_par_iter().map(texture).collect();
-        model.textures = textures.into_iter().collect::<Result<_, _>>()?;
+        let textures: Vec<Result<(Texture, Option<Texture>), StageError>> =
+            pictures.into_par_iter().map(texture).collect();
+        let (colours, reliefs): (Vec<_>, Vec<_>) =
+            textures.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let first = colours.len();
+        model.textures = colours;
+        if self.detail == PhotoDetail::Photo {
+            model.textures.extend(reliefs.into_iter().flatten());
+            for material in &mut model.materials {
+                material.normal_texture = material.texture.map(|t| first + t);
+            }
+        }
         if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
             model.meshes.push(parts::body_mesh(body, model.materials.len()));
             model.materials.push(parts::mannequin());
@@ -135,9 +173,39 @@ impl PhotoTexturer {
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
         texture_size::rule(known, self.size).into_iter().collect()
     }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.fault().into_iter().collect()
+    }
 }
 
 impl PhotoTexturer {
+    /// The first parameter that does nothing beside the others.
+    fn fault(&self) -> Option<StageError> {
+        let (detail, unlit) = (self.detail == PhotoDetail::Photo, self.light == Light::Replace);
+        let idle = |name: &'static str, beside: &str, hint: &str| {
+            Some(StageError::invalid(format!("`{name}` does nothing with `{beside}`")).hint(hint).at(name))
+        };
+        match () {
+            () if unlit && detail => idle("detail", "light: Replace", OF_LIGHT),
+            () if unlit && self.sheen.is_some() => idle("sheen", "light: Replace", OF_LIGHT),
+            () if !detail && self.strength.is_some() => {
+                idle("strength", "detail: None", "leave it out, or give `detail: Photo`")
+            }
+            () => None,
+        }
+    }
+
+    /// The normal map beside a texture with so many texels a metre.
+    fn relief(&self, of: &Texture, px_per_metre: f64, cx: &Context) -> Result<Option<Texture>, StageError> {
+        if self.detail == PhotoDetail::None {
+            return Ok(None);
+        }
+        let map = photo_detail::normal_map(&of.pixels, px_per_metre, self.strength.unwrap_or(1.0), cx)?;
+        let name = format!("{} normals", of.name);
+        Ok(Some(Texture { name, pixels: Shared::new(map), repeats: of.repeats }))
+    }
+
     /// Whether print is to be taken off a photo: it is the mirror image of another side's.
     fn hides(&self, photo: &Photo, photos: Option<&Set<Photo>>) -> bool {
         let other = |(_, p): (&str, &Photo)| p.file == photo.file && p.mirrored != photo.mirrored;

@@ -301,3 +301,50 @@ fn what_the_mask_does_not_show_has_no_colour_of_its_own() {
     keep_shown(&mut inside, &GrayImage::new(3, 2), 6, area);
     assert!(inside.pixels().all(|p| p.0[0] == 255));
 }
+
+#[test]
+fn cloth_shines_as_far_as_it_is_told_and_names_its_fabric() {
+    let sheen = |params: &str| model(params).materials[0].sheen.map(|s| s.colour);
+    assert_eq!(sheen("()"), Some([0.1; 3]));
+    assert_eq!(sheen("(sheen: 0.4)"), Some([0.4; 3]));
+    assert_eq!(sheen("(sheen: 0.0)"), None);
+    assert_eq!(sheen("(light: Replace)"), None);
+    let made = model("()");
+    let fabrics: Vec<&str> = made.materials.iter().map(|m| m.fabric.as_str()).collect();
+    assert_eq!(fabrics, ["test cloth", "test cloth", ""]);
+}
+
+#[test]
+fn the_detail_of_a_photo_is_a_normal_map_of_its_size() {
+    let made = model("(detail: Photo, size: 200)");
+    let names: Vec<&str> = made.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["front", "back", "front normals", "back normals"]);
+    let maps: Vec<Option<usize>> = made.materials.iter().map(|m| m.normal_texture).collect();
+    assert_eq!(maps, [Some(2), Some(3), None]);
+    assert_eq!(made.textures[2].pixels.dimensions(), made.textures[0].pixels.dimensions());
+    // Stripes and dots are relief here: some normals lean, and more so where it is stronger.
+    let lean = |params: &str| {
+        let made = model(params);
+        made.textures[2].pixels.pixels().map(|p| u64::from(255 - p.0[2])).sum::<u64>()
+    };
+    assert!(lean("(detail: Photo, strength: 2.0)") > lean("(detail: Photo)"));
+}
+
+#[test]
+fn what_no_light_brings_out_is_refused() {
+    let fault = |params: &str| {
+        let e = texturer(params)
+            .run(&fixture::garment(2), Some(fixture::photos()), None, None, &Context::quiet())
+            .unwrap_err();
+        (e.message, e.hint.unwrap_or_default(), e.param)
+    };
+    let hint = "light does not act on such a photo: leave it out, or give `light: Modulate`";
+    let told = |text: &str, hint: &str, name| (text.to_owned(), hint.to_owned(), Some(name));
+    let detail = told("`detail` does nothing with `light: Replace`", hint, "detail");
+    assert_eq!(fault("(light: Replace, detail: Photo)"), detail);
+    let sheen = told("`sheen` does nothing with `light: Replace`", hint, "sheen");
+    assert_eq!(fault("(light: Replace, sheen: 0.2)"), sheen);
+    let hint = "leave it out, or give `detail: Photo`";
+    let strength = told("`strength` does nothing with `detail: None`", hint, "strength");
+    assert_eq!(fault("(strength: 2.0)"), strength);
+}

@@ -1,7 +1,7 @@
 //! What every writer asks of a model before it writes a byte.
 
 use toile_core::StageError;
-use toile_core::artifact::{Mesh, Model};
+use toile_core::artifact::{Mesh, Model, Variant};
 
 /// Refuses a model whose file would hold NaN or point past its own lists.
 pub(super) fn check_model(model: &Model) -> Result<(), StageError> {
@@ -9,7 +9,30 @@ pub(super) fn check_model(model: &Model) -> Result<(), StageError> {
         let hint = "did the mesher or the stitcher lose the panels?";
         return Err(StageError::invalid("the model has no triangle").hint(hint));
     }
-    model.meshes.iter().try_for_each(|mesh| check_mesh(mesh, model))
+    model.meshes.iter().try_for_each(|mesh| check_mesh(mesh, model))?;
+    model.variants.iter().try_for_each(|variant| check_variant(variant, model))
+}
+
+fn check_variant(variant: &Variant, model: &Model) -> Result<(), StageError> {
+    let fault = |what: &str| StageError::invalid(format!("variant \"{}\" {what}", variant.name));
+    if variant.materials.len() != model.meshes.len() {
+        return Err(fault("has not one material for each mesh"));
+    }
+    let mut worn = model.meshes.iter().zip(&variant.materials);
+    worn.try_for_each(|(mesh, material)| check_look(mesh, *material, model)).map_err(fault)
+}
+
+/// Whether a mesh can wear a material; what is wrong in words.
+fn check_look(mesh: &Mesh, material: usize, model: &Model) -> Result<(), &'static str> {
+    let material = model.materials.get(material).ok_or("has no material")?;
+    let pictures = || [material.texture, material.normal_texture].into_iter().flatten();
+    if pictures().any(|t| t >= model.textures.len()) {
+        return Err("has a texture that does not exist");
+    }
+    if pictures().next().is_some() && mesh.uv.is_empty() {
+        return Err("has a texture but no texture coordinates");
+    }
+    Ok(())
 }
 
 fn check_mesh(mesh: &Mesh, model: &Model) -> Result<(), StageError> {
@@ -28,12 +51,5 @@ fn check_mesh(mesh: &Mesh, model: &Model) -> Result<(), StageError> {
     if !mesh.triangles.iter().flatten().all(|&i| (i as usize) < count) {
         return Err(fault("has a triangle with a vertex that does not exist"));
     }
-    let Some(material) = model.materials.get(mesh.material) else {
-        return Err(fault("has no material"));
-    };
-    match material.texture {
-        Some(t) if t >= model.textures.len() => Err(fault("has a texture that does not exist")),
-        Some(_) if mesh.uv.is_empty() => Err(fault("has a texture but no texture coordinates")),
-        _ => Ok(()),
-    }
+    check_look(mesh, mesh.material, model).map_err(fault)
 }

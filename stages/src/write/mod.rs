@@ -1,6 +1,7 @@
 //! Writers: model and run to files.
 
 mod check;
+mod copyright;
 mod garment_obj;
 mod glb;
 mod names;
@@ -14,15 +15,18 @@ mod pattern_svg;
 #[cfg(test)]
 mod pattern_tests;
 mod ply;
+mod power_of_two;
 mod preview;
 mod report;
 mod report_data;
 mod report_views;
 mod scene_json;
+mod shown;
 #[cfg(test)]
 mod tests;
 mod texture_file;
 mod turntable;
+mod usdz;
 
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
@@ -39,6 +43,7 @@ pub use report_views::Views;
 pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
 pub use turntable::Turntable;
+pub use usdz::Usdz;
 
 use toile_core::Registry;
 
@@ -57,4 +62,5 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Report>();
     registry.add::<SceneJson>();
     registry.add::<Turntable>();
+    registry.add::<Usdz>();
 }

@@ -113,6 +113,10 @@ fn mtl(model: &Model, names: &[String], files: &[String]) -> String {
         if let Some(file) = material.texture.and_then(|t| files.get(t)) {
             let _ = writeln!(s, "map_Kd {file}");
         }
+        // A word of later readers; the others pass over it.
+        if let Some(file) = material.normal_texture.and_then(|t| files.get(t)) {
+            let _ = writeln!(s, "norm {file}");
+        }
         s.push('\n');
     }
     s

@@ -7,7 +7,6 @@ use super::report_data::number;
 use super::{Glb, Obj, Ply, Preview, Report};
 use crate::texture::{PhotoTexturer, fixture};
 use proptest::prelude::*;
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::cost::{Estimate, Predicted};
@@ -15,11 +14,11 @@ use toile_core::param::ron_options;
 use toile_core::prelude::*;
 use toile_core::{Inputs, PortValue};
 
-fn params<T: serde::de::DeserializeOwned>(text: &str) -> T {
+pub(super) fn params<T: serde::de::DeserializeOwned>(text: &str) -> T {
     ron_options().from_str(text).unwrap()
 }
 
-fn one(artifact: impl Artifact) -> PortValue {
+pub(super) fn one(artifact: impl Artifact) -> PortValue {
     PortValue::One(Arc::new(artifact))
 }
 
@@ -28,7 +27,7 @@ fn photos() -> PortValue {
     PortValue::Set(Photo::KIND, fixture::photos().0.into_iter().map(erase).collect())
 }
 
-fn model_with(texturer: &str) -> Model {
+pub(super) fn model_with(texturer: &str) -> Model {
     let inputs =
         Inputs(vec![Some(one(fixture::garment(8))), Some(photos()), None, Some(one(fixture::body()))]);
     let out = params::<PhotoTexturer>(texturer).run_ports(&inputs, &Context::quiet()).unwrap();
@@ -36,110 +35,8 @@ fn model_with(texturer: &str) -> Model {
     any.downcast_ref::<Model>().unwrap().clone()
 }
 
-fn model() -> Model {
+pub(super) fn model() -> Model {
     model_with("()")
-}
-
-fn glb_file(model: &Model, text: &str) -> Vec<u8> {
-    params::<Glb>(text).run(model, &Context::quiet()).unwrap().0.remove(0).bytes
-}
-
-/// The JSON chunk of a GLB file.
-fn json_chunk(file: &[u8]) -> Value {
-    let length = u32::from_le_bytes(file[12..16].try_into().unwrap()) as usize;
-    serde_json::from_slice(&file[20..20 + length]).unwrap()
-}
-
-#[test]
-fn glb_is_read_back_with_all_its_geometry() {
-    let model = model();
-    let file = glb_file(&model, "()");
-    let read = gltf::Gltf::from_slice(&file).unwrap();
-    let blob = read.blob.clone().unwrap();
-    assert_eq!(read.meshes().len(), 3);
-    for (mesh, ours) in read.meshes().zip(&model.meshes) {
-        assert_eq!(mesh.name(), Some(ours.name.as_str()));
-        let primitive = mesh.primitives().next().unwrap();
-        let reader = primitive.reader(|_| Some(&blob));
-        let positions: Vec<[f32; 3]> = reader.read_positions().unwrap().collect();
-        let want: Vec<[f32; 3]> =
-            ours.positions.iter().map(|p| [p.x as f32, p.y as f32, p.z as f32]).collect();
-        assert_eq!(positions, want);
-        let indices: Vec<u32> = reader.read_indices().unwrap().into_u32().collect();
-        assert_eq!(indices, ours.triangles.concat());
-        let uv: Vec<[f32; 2]> = reader.read_tex_coords(0).map(|t| t.into_f32().collect()).unwrap_or_default();
-        assert_eq!(uv, ours.uv);
-        for n in reader.read_normals().unwrap() {
-            assert!((n.iter().map(|c| c * c).sum::<f32>() - 1.0).abs() < 1e-5);
-        }
-        let bounds = primitive.bounding_box();
-        let least = want.iter().fold([f32::MAX; 3], |a, p| [0, 1, 2].map(|k| a[k].min(p[k])));
-        let most = want.iter().fold([f32::MIN; 3], |a, p| [0, 1, 2].map(|k| a[k].max(p[k])));
-        assert_eq!((bounds.min, bounds.max), (least, most));
-    }
-}
-
-#[test]
-fn glb_holds_its_textures() {
-    let model = model();
-    for (text, mime) in [("()", "image/jpeg"), ("(textures: Png)", "image/png")] {
-        let read = gltf::Gltf::from_slice(&glb_file(&model, text)).unwrap();
-        let blob = read.blob.clone().unwrap();
-        assert_eq!(read.images().len(), 2);
-        for (image, ours) in read.images().zip(&model.textures) {
-            let gltf::image::Source::View { view, mime_type } = image.source() else {
-                panic!("not in the file")
-            };
-            assert_eq!(mime_type, mime);
-            let bytes = &blob[view.offset()..view.offset() + view.length()];
-            let decoded = image::load_from_memory(bytes).unwrap().to_rgb8();
-            assert_eq!(decoded.dimensions(), ours.pixels.dimensions());
-            assert!(mime != "image/png" || decoded == *ours.pixels);
-        }
-    }
-}
-
-#[test]
-fn glb_marks_replaced_colours_as_unlit() {
-    let unlit = json_chunk(&glb_file(&model_with("(light: Replace)"), "()"));
-    assert_eq!(unlit["extensionsUsed"], serde_json::json!(["KHR_materials_unlit"]));
-    assert!(unlit["materials"][0]["extensions"]["KHR_materials_unlit"].is_object());
-    assert_eq!(unlit["materials"][0]["doubleSided"], true);
-    assert!(unlit["materials"][2]["extensions"].is_null(), "the body stays lit");
-    let lit = json_chunk(&glb_file(&model(), "()"));
-    assert!(lit["extensionsUsed"].is_null() && lit["materials"][0]["extensions"].is_null());
-}
-
-#[test]
-fn glb_keeps_the_formats_alignment() {
-    let file = glb_file(&model(), "()");
-    assert_eq!(&file[..8], b"glTF\x02\0\0\0");
-    assert_eq!(u32::from_le_bytes(file[8..12].try_into().unwrap()) as usize, file.len());
-    assert_eq!(file.len() % 4, 0);
-    let json = json_chunk(&file);
-    assert!(
-        json["bufferViews"].as_array().unwrap().iter().all(|v| v["byteOffset"].as_u64().unwrap() % 4 == 0)
-    );
-}
-
-#[test]
-fn glb_without_textures_has_no_empty_list() {
-    let model = crate::render::garment_model(&fixture::garment(4), None);
-    let file = glb_file(&model, "()");
-    let json = json_chunk(&file);
-    assert!(json["images"].is_null() && json["samplers"].is_null());
-    assert_eq!(gltf::Gltf::from_slice(&file).unwrap().meshes().len(), 2);
-}
-
-#[test]
-fn glb_counts_beyond_16_bits() {
-    let model = crate::render::garment_model(&fixture::garment(260), None);
-    assert!(model.meshes[0].positions.len() > 65_535);
-    let read = gltf::Gltf::from_slice(&glb_file(&model, "()")).unwrap();
-    let blob = read.blob.clone().unwrap();
-    let primitive = read.meshes().next().unwrap().primitives().next().unwrap();
-    let indices: Vec<u32> = primitive.reader(|_| Some(&blob)).read_indices().unwrap().into_u32().collect();
-    assert_eq!(indices, model.meshes[0].triangles.concat());
 }
 
 /// What a small OBJ reader finds.

@@ -1,7 +1,8 @@
 //! Records of what stands in space: bodies, garments, models.
 
 use super::super::{
-    Body, Garment, GarmentPanel, GarmentSeam, Material, Mesh, Model, Point3, SeamState, SolveStatus, Texture,
+    Body, Garment, GarmentPanel, GarmentSeam, Material, Mesh, Model, Point3, SeamState, Sheen, SolveStatus,
+    Texture, Variant,
 };
 use super::flat::{rgb, value, word};
 use super::plan::{kind_fields, kind_of};
@@ -140,10 +141,14 @@ fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
 
 impl Model {
     pub(in super::super) fn fields(&self) -> Record<'_> {
-        Record::new()
+        let record = Record::new()
             .records("meshes", self.meshes.iter().map(mesh_fields))
             .records("materials", self.materials.iter().map(material_fields))
-            .records("textures", self.textures.iter().map(texture_fields))
+            .records("textures", self.textures.iter().map(texture_fields));
+        match self.variants.is_empty() {
+            true => record,
+            false => record.records("variants", self.variants.iter().map(variant_fields)),
+        }
     }
 }
 
@@ -158,8 +163,24 @@ impl Stored for Model {
             meshes: r.records("meshes")?.map(|m| mesh_of(&m)).collect::<Result<_, _>>()?,
             materials: r.records("materials")?.map(|m| material_of(&m)).collect::<Result<_, _>>()?,
             textures: r.records("textures")?.map(texture).collect::<Result<_, _>>()?,
+            // Absent where there is one look only.
+            variants: match r.find("variants") {
+                Some(_) => r.records("variants")?.map(|v| variant_of(&v)).collect::<Result<_, _>>()?,
+                None => Vec::new(),
+            },
         })
     }
+}
+
+fn variant_fields(v: &Variant) -> Record<'_> {
+    let materials = v.materials.iter().map(|&m| m as u64);
+    Record::new().text("name", &v.name).owned("materials", materials)
+}
+
+fn variant_of(r: &Reader<'_>) -> Result<Variant, String> {
+    let index = |m: u64| usize::try_from(m).map_err(|_| format!("`materials` holds {m}, which is too many"));
+    let materials = r.list::<u64>("materials")?.into_iter().map(index).collect::<Result<_, _>>()?;
+    Ok(Variant { name: r.text("name")?, materials })
 }
 
 fn texture_fields(t: &Texture) -> Record<'_> {
@@ -188,26 +209,40 @@ fn mesh_of(r: &Reader<'_>) -> Result<Mesh, String> {
     })
 }
 
-fn material_fields(m: &Material) -> Record<'_> {
+fn material_fields<'a>(m: &'a Material) -> Record<'a> {
     let record = Record::new()
         .text("name", &m.name)
         .owned("colour", [m.colour])
         .flag("unlit", m.unlit)
         .owned("roughness", [m.roughness])
         .flag("double_sided", m.double_sided);
-    match m.texture {
-        Some(texture) => record.count("texture", texture),
+    let numbered = |record: Record<'a>, name, index: Option<usize>| match index {
+        Some(index) => record.count(name, index),
         None => record,
-    }
+    };
+    let record = numbered(record, "texture", m.texture);
+    let record = numbered(record, "normal_texture", m.normal_texture);
+    let record = record.maybe("sheen", m.sheen.map(sheen_fields));
+    if m.fabric.is_empty() { record } else { record.text("fabric", &m.fabric) }
+}
+
+fn sheen_fields<'a>(s: Sheen) -> Record<'a> {
+    Record::new().owned("colour", [s.colour]).owned("roughness", [s.roughness])
 }
 
 fn material_of(r: &Reader<'_>) -> Result<Material, String> {
+    let index = |name: &str| r.find(name).map(|_| r.count(name)).transpose();
+    let sheen =
+        |s: Reader<'_>| Ok::<_, String>(Sheen { colour: s.one("colour")?, roughness: s.one("roughness")? });
     Ok(Material {
         name: r.text("name")?,
         colour: r.one("colour")?,
-        texture: r.find("texture").map(|_| r.count("texture")).transpose()?,
+        texture: index("texture")?,
+        normal_texture: index("normal_texture")?,
         unlit: r.flag("unlit")?,
         roughness: r.one("roughness")?,
+        sheen: r.maybe("sheen")?.map(sheen).transpose()?,
         double_sided: r.flag("double_sided")?,
+        fabric: r.find("fabric").map(|_| r.text("fabric")).transpose()?.unwrap_or_default(),
     })
 }

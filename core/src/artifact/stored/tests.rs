@@ -130,11 +130,18 @@ pub(in crate::artifact) fn model() -> Model {
             name: "cloth".into(),
             colour: [1.0, 0.5, 0.25],
             texture: Some(0),
+            normal_texture: Some(1),
             unlit: false,
             roughness: 0.9,
+            sheen: Some(Sheen { colour: [0.1, 0.2, 0.3], roughness: 0.5 }),
             double_sided: true,
+            fabric: "poplin".into(),
         }],
-        textures: vec![Texture { name: "t".into(), pixels: photo().pixels, repeats: true }],
+        textures: vec![
+            Texture { name: "t".into(), pixels: photo().pixels, repeats: true },
+            Texture { name: "n".into(), pixels: photo().pixels, repeats: true },
+        ],
+        variants: vec![Variant { name: "red".into(), materials: vec![0] }],
     }
 }
 

@@ -107,6 +107,7 @@ impl Map<'_> {
             meshes: Vec::new(),
             materials: vec![cloth, Material { unlit: true, ..mannequin() }],
             textures: vec![texture],
+            ..Model::default()
         };
         for panel in &garment.panels {
             let mut mesh = panel_mesh(garment, panel, &normals, 0);

@@ -3,10 +3,24 @@
 //! Every panel is covered by a small picture of cloth that repeats, upright along the panel's grain. Cost: one picture of `size` squared
 //! pixels a kind of cloth. Limit: stripes and checks of two panels do not meet at their seam; each panel's begin at its own origin.
 
+#[cfg(test)]
+mod tests;
+
 use super::weave::{Cloth, Colour, Tile, tile};
 use super::{BodyShown, parts};
 use crate::render::LINEAR;
+use std::collections::BTreeMap;
 use toile_core::prelude::*;
+
+/// The relief of the threads, which light brings out beside the folds.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum FabricDetail {
+    /// None: cloth as smooth as its mesh.
+    None,
+    /// A normal map of the same threads.
+    Weave,
+}
 
 /// What cloth looks like.
 #[choice]
@@ -36,7 +50,8 @@ pub enum FabricTexture {
 /// coordinates go beyond 0 to 1.
 #[stage(
     role = Texturer,
-    source = "Adanur, Handbook of Weaving, 2001: plain, twill and denim weaves",
+    version = 2,
+    source = "Adanur, Handbook of Weaving, 2001: plain, twill and denim weaves; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "FabricTexturer(texture: Denim, colour: \"#2b3f5c\")",
     contracts(Deterministic, ThreadInvariant, Cancellable)
 )]
@@ -60,12 +75,26 @@ pub struct FabricTexturer {
     /// Whether the body stands in the model.
     #[param(default = BodyShown::Show)]
     body: BodyShown,
+    /// Where the normal map of the cloth comes from.
+    #[param(default = FabricDetail::None)]
+    detail: FabricDetail,
+    /// Factor of the relief's height; 1 where it is not given.
+    #[param(default = None, min = 0.05, max = 10.0)]
+    strength: Option<f64>,
+    /// The soft shine of fibres at grazing angles, as a share of white.
+    #[param(default = parts::SHEEN, min = 0.0, max = 1.0)]
+    sheen: f64,
+    /// Further looks of the model by name, each with its `colour`: `{"red": "#a03028"}`. The look without them is then named `original`.
+    #[param(default = BTreeMap::new())]
+    variants: BTreeMap<String, String>,
 }
 
 /// Indigo, natural and bleached white; what a colour is where none is given.
 const INDIGO: &str = "#34486b";
 const NATURAL: &str = "#d9d2c3";
 const WHITE: &str = "#f2f0ea";
+/// The name of the look without variants.
+const ORIGINAL: &str = "original";
 /// Bands of a check or a stripe, metres.
 const BANDS: f64 = 0.02;
 
@@ -74,40 +103,32 @@ impl FabricTexturer {
     fn run(&self, garment: &Garment, body: Option<&Body>, cx: &Context) -> Result<Model, StageError> {
         crate::engine::check_garment(garment)?;
         self.fault().map_or(Ok(()), Err)?;
-        let normals = garment.vertex_normals();
-        let mut model = Model::default();
-        let mut tiles: Vec<(FabricTexture, f64)> = Vec::new();
-        for (i, panel) in garment.panels.iter().enumerate() {
-            cx.check()?;
-            let shows = self.shows(&panel.fabric.name);
-            let known = tiles.iter().position(|t| t.0 == shows);
-            let k = match known {
-                Some(k) => k,
-                None => {
-                    let repeat = self.repeat.map_or(BANDS, |l| l.metres());
-                    let Tile { pixels, side } = tile(self.cloth(shows)?, repeat, self.size);
-                    let name = format!("{shows:?}").to_lowercase();
-                    model.textures.push(Texture { name, pixels: Shared::new(pixels), repeats: true });
-                    tiles.push((shows, side));
-                    tiles.len() - 1
-                }
-            };
-            let side = tiles[k].1;
-            let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
-            let flat = &garment.rest[panel.vertices.clone()];
-            mesh.uv = flat.iter().map(|p| [(p.x / side) as f32, (-p.y / side) as f32]).collect();
-            model.meshes.push(mesh);
-            let plain = parts::plain_cloth(&panel.name, [1.0; 3]);
-            model.materials.push(Material { texture: Some(k), ..plain });
+        let mut kinds = Vec::new();
+        for shows in garment.panels.iter().map(|p| self.shows(&p.fabric.name)) {
+            if !kinds.contains(&shows) {
+                kinds.push(shows);
+            }
         }
         // Only the fabrics tell whether `Auto` finds denim.
-        let is_denim = |t: &(FabricTexture, f64)| t.0 == FabricTexture::Denim;
-        if self.texture == FabricTexture::Auto && self.second.is_some() && !tiles.iter().any(is_denim) {
+        let has_denim = kinds.contains(&FabricTexture::Denim);
+        if self.texture == FabricTexture::Auto && self.second.is_some() && !has_denim {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
         }
+        let mut model = self.dressed(garment, &kinds, cx)?;
         if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
             model.meshes.push(parts::body_mesh(body, model.materials.len()));
             model.materials.push(parts::mannequin());
+        }
+        let own = model.clone();
+        for (name, colour) in &self.variants {
+            cx.check()?;
+            let mut other = own.clone();
+            for (k, shows) in kinds.iter().enumerate() {
+                let Tile { pixels, .. } = self.tile(*shows, Some(colour))?;
+                other.textures[k].name = format!("{} {name}", own.textures[k].name);
+                other.textures[k].pixels = Shared::new(pixels);
+            }
+            model.add_variant(ORIGINAL, name, &other).map_err(StageError::internal)?;
         }
         Ok(model)
     }
@@ -118,6 +139,46 @@ impl FabricTexturer {
 }
 
 impl FabricTexturer {
+    /// The panels in their cloth: a texture a kind, then a normal map a kind where they are asked for.
+    fn dressed(&self, garment: &Garment, kinds: &[FabricTexture], cx: &Context) -> Result<Model, StageError> {
+        let mut model = Model::default();
+        let (mut sides, mut reliefs) = (Vec::new(), Vec::new());
+        for shows in kinds {
+            cx.check()?;
+            let tile = self.tile(*shows, self.colour.as_deref())?;
+            let name = format!("{shows:?}").to_lowercase();
+            if self.detail == FabricDetail::Weave {
+                let map = Shared::new(tile.normal_map(self.strength.unwrap_or(1.0)));
+                reliefs.push(Texture { name: format!("{name} normals"), pixels: map, repeats: true });
+            }
+            sides.push(tile.side);
+            model.textures.push(Texture { name, pixels: Shared::new(tile.pixels), repeats: true });
+        }
+        let normals = garment.vertex_normals();
+        for (i, panel) in garment.panels.iter().enumerate() {
+            cx.check()?;
+            let shows = self.shows(&panel.fabric.name);
+            let k = kinds.iter().position(|kind| *kind == shows);
+            let side = k.map_or(1.0, |k| sides[k]);
+            let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
+            let flat = &garment.rest[panel.vertices.clone()];
+            mesh.uv = flat.iter().map(|p| [(p.x / side) as f32, (-p.y / side) as f32]).collect();
+            model.meshes.push(mesh);
+            model.materials.push(Material {
+                texture: k,
+                normal_texture: k.filter(|_| !reliefs.is_empty()).map(|k| kinds.len() + k),
+                ..parts::panel_cloth(panel, [1.0; 3], self.sheen)
+            });
+        }
+        model.textures.extend(reliefs);
+        Ok(model)
+    }
+
+    fn tile(&self, shows: FabricTexture, colour: Option<&str>) -> Result<Tile, StageError> {
+        let repeat = self.repeat.map_or(BANDS, |l| l.metres());
+        Ok(tile(self.cloth(shows, colour)?, repeat, self.size))
+    }
+
     /// The first parameter that is not understood or does nothing here.
     fn fault(&self) -> Option<StageError> {
         use FabricTexture::{Auto, Check, Denim, Stripe};
@@ -129,7 +190,14 @@ impl FabricTexturer {
         let bad = |(name, text): (&'static str, &Option<String>)| Some(parse(text.as_ref()?).err()?.at(name));
         of("second", self.second.is_some(), &[Auto, Denim, Check, Stripe], OF_SECOND)
             .or_else(|| of("repeat", self.repeat.is_some(), &[Check, Stripe], "checks and stripes"))
+            .or_else(|| {
+                let given = self.strength.is_some() && self.detail == FabricDetail::None;
+                let text = "`strength` does nothing with `detail: None`";
+                let hint = "leave it out, or give `detail: Weave`";
+                given.then(|| StageError::invalid(text).hint(hint).at("strength"))
+            })
             .or_else(|| colours.into_iter().find_map(bad))
+            .or_else(|| self.variants.iter().find_map(bad_variant))
     }
 
     /// What cloth of this name looks like.
@@ -148,9 +216,9 @@ impl FabricTexturer {
         }
     }
 
-    fn cloth(&self, shows: FabricTexture) -> Result<Cloth, StageError> {
+    fn cloth(&self, shows: FabricTexture, colour: Option<&str>) -> Result<Cloth, StageError> {
         let standard = if shows == FabricTexture::Denim { INDIGO } else { NATURAL };
-        let colour = parse(self.colour.as_deref().unwrap_or(standard))?;
+        let colour = parse(colour.unwrap_or(standard))?;
         let second = parse(self.second.as_deref().unwrap_or(WHITE))?;
         Ok(match shows {
             FabricTexture::Auto | FabricTexture::Plain => Cloth::Plain(colour),
@@ -162,6 +230,17 @@ impl FabricTexturer {
             FabricTexture::Stripe => Cloth::Stripe { first: colour, second },
         })
     }
+}
+
+/// Refuses a variant without a name or colour of its own.
+fn bad_variant((name, colour): (&String, &String)) -> Option<StageError> {
+    let hint = "a variant is a name with a colour, such as \"red\": \"#a03028\"";
+    let text = format!("the variant {name:?} has the name of the model's own look, or none");
+    let named = !name.trim().is_empty() && name != ORIGINAL;
+    (!named)
+        .then(|| StageError::invalid(text).hint(hint))
+        .or_else(|| parse(colour).err())
+        .map(|e| e.at("variants"))
 }
 
 /// What a second colour is for.
@@ -183,68 +262,4 @@ fn parse(text: &str) -> Result<Colour, StageError> {
         )
     })?;
     Ok([16, 8, 0].map(|shift| LINEAR[(value >> shift & 255) as usize]))
-}
-
-#[cfg(test)]
-#[allow(clippy::unwrap_used)]
-mod tests {
-    use super::*;
-    use toile_core::testkit::dress;
-
-    fn texturer(texture: FabricTexture) -> FabricTexturer {
-        FabricTexturer { texture, colour: None, second: None, repeat: None, size: 64, body: BodyShown::Hide }
-    }
-
-    fn fault(texturer: &FabricTexturer) -> (String, String) {
-        let e = texturer.fault().unwrap();
-        (e.message, e.hint.unwrap())
-    }
-
-    #[test]
-    fn every_panel_gets_its_cloth_along_the_grain_once_a_kind() {
-        let garment = dress::garment();
-        let model = texturer(FabricTexture::Twill).run(&garment, None, &Context::quiet()).unwrap();
-        assert_eq!((model.meshes.len(), model.textures.len()), (garment.panels.len(), 1));
-        assert!(model.textures[0].repeats && model.textures[0].name == "twill");
-        let (uv, flat) = (&model.meshes[0].uv, &garment.rest[garment.panels[0].vertices.clone()]);
-        // 64 mm a repeat; up the grain is up the picture.
-        let rises = f64::from(uv[0][1] - uv[uv.len() - 1][1]);
-        assert!((rises - (flat[flat.len() - 1].y - flat[0].y) / 0.064).abs() < 1e-4);
-    }
-
-    #[test]
-    fn the_fabrics_name_says_what_it_looks_like() {
-        let shows = |name: &str| texturer(FabricTexture::Auto).shows(name);
-        let told = ["denim", "cotton twill", "Cotton Jersey", "rib knit", "ripstop nylon", "silk charmeuse"]
-            .map(shows);
-        use FabricTexture::{Denim, Jersey, Plain, Rib, Twill};
-        assert_eq!(told, [Denim, Twill, Jersey, Rib, Plain, Plain]);
-    }
-
-    #[test]
-    fn what_does_nothing_is_refused() {
-        let striped = FabricTexturer { repeat: Some(Length::mm(10.0)), ..texturer(FabricTexture::Jersey) };
-        let hint = "it is for checks and stripes: leave it out, or choose one of these";
-        assert_eq!(fault(&striped), ("`repeat` does nothing with `texture: Jersey`".into(), hint.into()));
-        let two = FabricTexturer { second: Some("#ffffff".into()), ..texturer(FabricTexture::Plain) };
-        assert_eq!(fault(&two).0, "`second` does nothing with `texture: Plain`");
-        // No panel of the garment is of denim.
-        let auto = FabricTexturer { texture: FabricTexture::Auto, ..two };
-        let e = auto.run(&dress::garment(), None, &Context::quiet()).unwrap_err();
-        assert_eq!(e.message, "`second` does nothing with `texture: Auto`, which found no denim");
-        assert_eq!(
-            e.hint.unwrap(),
-            "it is for denim, checks and stripes: leave it out, or choose one of these"
-        );
-    }
-
-    #[test]
-    fn a_colour_is_six_digits() {
-        let red = FabricTexturer { colour: Some("red".into()), ..texturer(FabricTexture::Plain) };
-        let hint =
-            "a colour is # and six digits of 0 to 9 and a to f: red, green and blue, such as \"#2b3f5c\"";
-        assert_eq!(fault(&red), ("\"red\" is no colour".into(), hint.into()));
-        assert_eq!(parse("#ff0000").unwrap(), [1.0, 0.0, 0.0]);
-        assert!(parse("#ff00é").is_err());
-    }
 }

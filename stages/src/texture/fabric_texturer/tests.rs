@@ -1,0 +1,106 @@
+//! Cloth by name, its relief and its variants.
+
+#![allow(clippy::unwrap_used)]
+
+use super::*;
+use toile_core::testkit::dress;
+
+fn texturer(texture: FabricTexture) -> FabricTexturer {
+    let text = format!("(texture: {texture:?}, size: 64, body: Hide)");
+    toile_core::param::ron_options().from_str(&text).unwrap()
+}
+
+fn fault(texturer: &FabricTexturer) -> (String, String) {
+    let e = texturer.fault().unwrap();
+    (e.message, e.hint.unwrap())
+}
+
+#[test]
+fn every_panel_gets_its_cloth_along_the_grain_once_a_kind() {
+    let garment = dress::garment();
+    let model = texturer(FabricTexture::Twill).run(&garment, None, &Context::quiet()).unwrap();
+    assert_eq!((model.meshes.len(), model.textures.len()), (garment.panels.len(), 1));
+    assert!(model.textures[0].repeats && model.textures[0].name == "twill");
+    let (uv, flat) = (&model.meshes[0].uv, &garment.rest[garment.panels[0].vertices.clone()]);
+    // 64 mm a repeat; up the grain is up the picture.
+    let rises = f64::from(uv[0][1] - uv[uv.len() - 1][1]);
+    assert!((rises - (flat[flat.len() - 1].y - flat[0].y) / 0.064).abs() < 1e-4);
+}
+
+#[test]
+fn the_fabrics_name_says_what_it_looks_like() {
+    let shows = |name: &str| texturer(FabricTexture::Auto).shows(name);
+    let told =
+        ["denim", "cotton twill", "Cotton Jersey", "rib knit", "ripstop nylon", "silk charmeuse"].map(shows);
+    use FabricTexture::{Denim, Jersey, Plain, Rib, Twill};
+    assert_eq!(told, [Denim, Twill, Jersey, Rib, Plain, Plain]);
+}
+
+#[test]
+fn what_does_nothing_is_refused() {
+    let striped = FabricTexturer { repeat: Some(Length::mm(10.0)), ..texturer(FabricTexture::Jersey) };
+    let hint = "it is for checks and stripes: leave it out, or choose one of these";
+    assert_eq!(fault(&striped), ("`repeat` does nothing with `texture: Jersey`".into(), hint.into()));
+    let two = FabricTexturer { second: Some("#ffffff".into()), ..texturer(FabricTexture::Plain) };
+    assert_eq!(fault(&two).0, "`second` does nothing with `texture: Plain`");
+    // No panel of the garment is of denim.
+    let auto = FabricTexturer { texture: FabricTexture::Auto, ..two };
+    let e = auto.run(&dress::garment(), None, &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "`second` does nothing with `texture: Auto`, which found no denim");
+    assert_eq!(e.hint.unwrap(), "it is for denim, checks and stripes: leave it out, or choose one of these");
+}
+
+#[test]
+fn a_normal_map_of_the_same_threads_lies_beside_the_cloth() {
+    let woven = FabricTexturer { detail: FabricDetail::Weave, ..texturer(FabricTexture::Twill) };
+    let model = woven.run(&dress::garment(), None, &Context::quiet()).unwrap();
+    let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["twill", "twill normals"]);
+    assert!(model.is_normal_map(1) && !model.is_normal_map(0));
+    assert!(model.materials.iter().all(|m| (m.texture, m.normal_texture) == (Some(0), Some(1))));
+    let idle = FabricTexturer { strength: Some(2.0), ..texturer(FabricTexture::Twill) };
+    let told = ("`strength` does nothing with `detail: None`", "leave it out, or give `detail: Weave`");
+    assert_eq!(fault(&idle), (told.0.into(), told.1.into()));
+}
+
+#[test]
+fn variants_are_looks_in_other_colours_of_one_relief() {
+    let variants = [("navy", "#001133"), ("red", "#a03028")].map(|(n, c)| (n.to_owned(), c.to_owned()));
+    let detail = FabricDetail::Weave;
+    let many = FabricTexturer { variants: variants.into(), detail, ..texturer(FabricTexture::Plain) };
+    let (garment, body) = (dress::garment(), dress::body());
+    let many = FabricTexturer { body: BodyShown::Show, ..many };
+    let model = many.run(&garment, Some(&body), &Context::quiet()).unwrap();
+    let names: Vec<&str> = model.variants.iter().map(|v| v.name.as_str()).collect();
+    assert_eq!(names, ["original", "navy", "red"]);
+    let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["plain", "plain normals", "plain navy", "plain red"]);
+    let panels = garment.panels.len();
+    for (variant, texture) in model.variants.iter().zip([0, 2, 3]) {
+        let worn = variant.materials[..panels].iter().map(|m| &model.materials[*m]);
+        assert!(worn.clone().all(|m| m.texture == Some(texture) && m.normal_texture == Some(1)));
+        assert_eq!(variant.materials[panels], panels, "the body is the same in all");
+    }
+    assert_eq!(model.check(), Ok(()));
+}
+
+#[test]
+fn a_variant_has_a_name_and_a_colour() {
+    let with = |name: &str, colour: &str| {
+        let variants = BTreeMap::from([(name.to_owned(), colour.to_owned())]);
+        fault(&FabricTexturer { variants, ..texturer(FabricTexture::Plain) })
+    };
+    let hint = "a variant is a name with a colour, such as \"red\": \"#a03028\"";
+    let own = "the variant \"original\" has the name of the model's own look, or none";
+    assert_eq!(with("original", "#ffffff"), (own.into(), hint.into()));
+    assert_eq!(with("red", "red").0, "\"red\" is no colour");
+}
+
+#[test]
+fn a_colour_is_six_digits() {
+    let red = FabricTexturer { colour: Some("red".into()), ..texturer(FabricTexture::Plain) };
+    let hint = "a colour is # and six digits of 0 to 9 and a to f: red, green and blue, such as \"#2b3f5c\"";
+    assert_eq!(fault(&red), ("\"red\" is no colour".into(), hint.into()));
+    assert_eq!(parse("#ff0000").unwrap(), [1.0, 0.0, 0.0]);
+    assert!(parse("#ff00é").is_err());
+}
