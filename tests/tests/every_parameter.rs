@@ -73,6 +73,8 @@ const UNSEEN: &[&str] = &[
     "Mannequin.hip",
     "Mannequin.shoulder_width",
     "Mannequin.neck",
+    "Mannequin.arm",
+    "Mannequin.inseam",
     "Measure.max_area_error",
     "Measure.max_outline_error",
     "Measure.max_tight",

@@ -14,7 +14,7 @@ const BEND: f64 = 12.0;
 
 /// Shoulder joint, elbow and wrist of the left arm: the axis, not the skin.
 pub(crate) fn axis(shape: &Shape) -> [Point3; 3] {
-    let joint = girdle(shape).axis()[1] + Vector3::new(-0.006, -0.003, 0.002) * shape.stature;
+    let joint = girdle(shape).axis()[1] + Vector3::new(0.002, 0.006, 0.002) * shape.stature;
     let (sin, cos) = shape.size.arm_angle.sin_cos();
     let length = shape.aims.arm * shape.stature;
     let bend = BEND.to_radians();

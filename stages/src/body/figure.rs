@@ -19,7 +19,7 @@ use toile_core::artifact::{Point3, Vector3};
 
 /// Widths over which parts are joined, metres on the adult.
 mod joint {
-    pub(super) const ARM: f64 = 0.036;
+    pub(super) const ARM: f64 = 0.032;
     pub(super) const NECK: f64 = 0.070;
     pub(super) const HEAD: f64 = 0.035;
     pub(super) const LEG: f64 = 0.065;
@@ -36,7 +36,7 @@ const OUT: f64 = 0.10;
 const THICKER: f64 = 0.005;
 
 /// Where the mesh is finer than its edge: shares of the edge at fingers, palm, head and feet.
-const FINER: [f64; 4] = [0.50, 0.72, 0.78, 0.95];
+const FINER: [f64; 4] = [0.44, 0.70, 0.68, 0.95];
 
 /// A figure of given size.
 #[derive(Debug, Clone)]

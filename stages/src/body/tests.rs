@@ -210,25 +210,25 @@ fn combination(k: usize) -> (Wearer, [f64; 4], f64) {
     let bust = height * (shares[0] + 0.08 * spread(7, 11));
     let waist = bust * (shares[1] + 0.10 * spread(5, 7));
     let hip = bust * (shares[2] + 0.10 * (spread(3, 5) + 0.1));
-    (figure, [height, bust, waist, hip], [60.0, 45.0, 75.0, 52.0, 38.0][k % 5])
+    (figure, [height, bust, waist, hip], [60.0, 54.0, 75.0, 52.0, 66.0][k % 5])
 }
 
 #[test]
 fn forty_figures_have_their_measures_and_do_not_cross_themselves() {
     for k in 0..40 {
         let (figure, [height, bust, waist, hip], arm_angle) = combination(k);
-        let stage = Mannequin {
-            figure: Some(figure),
-            ..Mannequin::made(height, [bust, waist, hip], arm_angle, 0.016)
-        };
-        let body = stage.run(&Context::quiet()).unwrap_or_else(|e| panic!("{k}: {}", e.message));
+        let ron = format!(
+            "(figure: {figure:?}, height: \"{height} m\", bust: \"{bust} m\", waist: \"{waist} m\", \
+             hip: \"{hip} m\", arm_angle: {arm_angle:?})"
+        );
+        let body = mannequin(&ron).unwrap_or_else(|e| panic!("{k}: {}", e.message));
         for (name, wanted) in [("height", height), ("bust", bust), ("waist", waist), ("hip", hip)] {
             let found = body.measurements[name];
             assert!((found - wanted).abs() < 5e-3, "{k} {figure:?} {name}: {found} for {wanted}");
         }
         let topology = Topology::of(body.positions.len(), &body.triangles);
         assert!(topology.is_closed() && topology.components == 1 && topology.euler() == 2, "{k}");
-        assert!(body.triangles.len() < 25_000, "{k}: {}", body.triangles.len());
+        assert!(body.triangles.len() < 27_000, "{k}: {}", body.triangles.len());
         assert_eq!(crossing::crossings(&body.positions, &body.triangles), 0, "{k}");
     }
 }
