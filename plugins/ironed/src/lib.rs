@@ -159,7 +159,17 @@ fn px_per_metre(garment: &Garment, panel: &GarmentPanel, triangles: &[[u32; 3]])
 }
 
 fn cloth(name: &str, colour: [f32; 3], texture: Option<usize>, double_sided: bool) -> Material {
-    Material { name: name.to_owned(), colour, texture, unlit: false, roughness: 0.95, double_sided }
+    Material {
+        name: name.to_owned(),
+        colour,
+        texture,
+        unlit: false,
+        roughness: 0.95,
+        double_sided,
+        sheen: None,
+        normal_texture: None,
+        fabric: String::new(),
+    }
 }
 
 fn add_body(model: &mut Model, body: &Body) {

@@ -1,19 +1,28 @@
 //! Smooth solids as scalar fields: negative inside, zero on the skin, about the distance near it.
 //!
-//! Parts (lofts, ellipsoids, and [limbs](super::limb)) are joined by a smooth minimum (after Quilez, 2008), so that no
+//! Parts ([lofts](super::loft), ellipsoids, and [limbs](super::limb)) are joined by a smooth minimum (after Quilez, 2008), so that no
 //! crease shows where an arm leaves the trunk. Every part is symmetric about x = 0 and is asked at
 //! x >= 0 only.
 //!
 //! Cost: some tens of nanoseconds a part and point. Limit: values are distances to first order
 //! only; whoever needs the skin itself steps onto it with [`Field::onto_skin`].
 
-use super::spline::Spline;
 use toile_core::artifact::{Point3, Vector3};
 
 /// A solid given by a scalar field.
 pub(crate) trait Field: Sync {
     /// Negative inside, positive outside, about the distance near the skin.
     fn value(&self, p: Point3) -> f64;
+
+    /// The value of a solid near this one without parts that are thinner than the cells of a first, coarse mesh.
+    fn coarse(&self, p: Point3) -> f64 {
+        self.value(p)
+    }
+
+    /// The share of the mesh's edge that the edges at a point shall have.
+    fn fineness(&self, _p: Point3) -> f64 {
+        1.0
+    }
 
     /// The field's mean and gradient at a point, from the corners of a small tetrahedron.
     fn gradient(&self, p: Point3) -> (f64, Vector3) {
@@ -51,45 +60,6 @@ pub(crate) fn smooth_min(a: f64, b: f64, k: f64) -> f64 {
 /// Maximum with the corner rounded over a width `k`.
 pub(crate) fn smooth_max(a: f64, b: f64, k: f64) -> f64 {
     -smooth_min(-a, -b, k)
-}
-
-/// Upright stack of sections: half an ellipse in front, another behind, joined at the sides.
-#[derive(Debug, Clone)]
-pub(crate) struct Loft {
-    /// Half width over the height, metres.
-    pub half_width: Spline,
-    /// Depth in front of the axis over the height.
-    pub front: Spline,
-    /// Depth behind the axis over the height.
-    pub back: Spline,
-    /// The axis' z over the height.
-    pub axis: Spline,
-    /// Bottom and top, metres.
-    pub span: [f64; 2],
-    /// Radius by which bottom and top are rounded, metres.
-    pub rounding: f64,
-}
-
-impl Loft {
-    /// The value: the section's implicit form divided by its slope.
-    pub(crate) fn value(&self, p: Point3) -> f64 {
-        let y = p.y.clamp(self.span[0], self.span[1]);
-        let (a, dz) = (self.half_width.at(y), p.z - self.axis.at(y));
-        let d = if dz > 0.0 { self.front.at(y) } else { self.back.at(y) };
-        let (u, w) = (p.x.abs() / a, dz.abs() / d);
-        // A superellipse of exponent 2.25: a little boxier than an ellipse, and roots are cheap.
-        let power = |t: f64| t * t * t.sqrt().sqrt();
-        let r = (power(u) + power(w)).powf(1.0 / 2.25);
-        let across = if r > 0.3 {
-            let falling = |t: f64| (t / r) * (t / r).sqrt().sqrt();
-            let slope = (falling(u) / a).hypot(falling(w) / d);
-            (r - 1.0) / slope
-        } else {
-            (r - 1.0) * a.min(d)
-        };
-        let along = (self.span[0] - p.y).max(p.y - self.span[1]);
-        smooth_max(across, along, self.rounding)
-    }
 }
 
 /// An ellipsoid with axes along x, y and z.
@@ -134,20 +104,8 @@ mod tests {
     }
 
     #[test]
-    fn ellipsoids_and_lofts_vanish_on_their_skin() {
+    fn ellipsoids_vanish_on_their_skin() {
         let e = Ellipsoid { centre: Point3::origin(), half_axes: Vector3::new(1.0, 2.0, 3.0) };
         assert!(e.value(Point3::new(0.0, 2.0, 0.0)).abs() < 1e-12);
-        let flat = |v| Spline::new([(0.0, v), (1.0, v)]);
-        let loft = Loft {
-            half_width: flat(0.2),
-            front: flat(0.1),
-            back: flat(0.15),
-            axis: flat(0.0),
-            span: [0.0, 1.0],
-            rounding: 0.05,
-        };
-        for p in [[0.2, 0.5, 0.0], [0.0, 0.5, 0.1], [0.0, 0.5, -0.15]] {
-            assert!(loft.value(Point3::from(p)).abs() < 1e-12);
-        }
     }
 }

@@ -1,23 +1,29 @@
 //! The skin of a [`Field`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with one
-//! vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004), then rounds of
-//! tangential smoothing, each followed by a Newton step back onto the skin.
+//! vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004), [refined](super::refine) where the field asks
+//! for shorter edges, with rounds of tangential smoothing, each followed by a Newton step back onto the skin.
 //!
 //! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the plane,
 //! and mirrored, so that the mesh is symmetric to the last bit and costs half.
 //!
-//! Cost: one look-up a grid point and about five a vertex and round; slabs and vertices in parallel.
+//! Cost: one look-up a grid point near the skin and about four a vertex and round; slabs and vertices in parallel.
 //! Limit: parts thinner than two cells are lost, and parts closer than two cells may share
 //! edges of four triangles, which the caller must refuse.
 
 use super::field::Field;
+use super::refine::{LEVELS, flip, refined};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Point3, Vector3};
 
-/// Rounds of smoothing: more rounds, evener triangles; after five little is gained.
-const ROUNDS: usize = 6;
+/// Rounds of smoothing before the mesh is refined, and after.
+const ROUNDS: [usize; 2] = [2, 3];
 /// Share of the way to the neighbours' centre that a vertex moves in a round.
 const RELAXATION: f64 = 0.6;
+/// Points along the side of a block whose middle is asked first.
+const BLOCK: usize = 4;
+/// A block is far from the skin where its middle's value is so many times the distance to its corners: values are distances
+/// to first order only.
+const FAR: f64 = 1.7;
 
 /// Vertices and triangles, counter-clockwise from outside.
 pub(crate) type TriMesh = (Vec<Point3>, Vec<[u32; 3]>);
@@ -50,16 +56,30 @@ impl Grid {
 
 /// Meshes the skin of a field that is symmetric about x = 0.
 pub(crate) fn mesh(field: &impl Field, grid: &Grid) -> TriMesh {
-    let samples = Samples::take(field, grid);
-    let (mut points, quads) = samples.nets(grid);
-    let neighbours = quad_neighbours(points.len(), &quads);
-    points = relocate(&points, |i| field.onto_skin(points[i], 3, grid.cell));
-    for _ in 0..ROUNDS {
-        points = relocate(&points, |i| relaxed(field, &points, &neighbours[i], i, grid.cell));
-    }
-    points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
+    let (points, quads) = Samples::take(field, grid).nets(grid);
+    let points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
     let triangles = quads.iter().flat_map(|q| split(&points, *q)).collect();
+    let mut skin = even(field, grid, (points, triangles), ROUNDS[0]);
+    for _ in 0..LEVELS {
+        skin = refined(skin, |p| field.fineness(p) * grid.cell, |p| field.onto_skin(p, 1, grid.cell));
+    }
+    let (points, triangles) = even(field, grid, skin, ROUNDS[1]);
+    let points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
     mirror(points, triangles)
+}
+
+/// Rounds of smoothing and of turning edges.
+fn even(field: &impl Field, grid: &Grid, (mut points, mut triangles): TriMesh, rounds: usize) -> TriMesh {
+    for _ in 0..rounds {
+        flip(&points, &mut triangles);
+        let (around, normals) = (neighbours(points.len(), &triangles), normals(&points, &triangles));
+        points = relocate(&points, |i| {
+            let to = points[i] + pull(&points, &around[i], i, &normals[i]) * RELAXATION;
+            field.onto_skin(to, 1, grid.cell)
+        });
+    }
+    flip(&points, &mut triangles);
+    (points, triangles)
 }
 
 /// Moves every vertex; those of the plane of symmetry stay in it.
@@ -68,19 +88,44 @@ fn relocate(points: &[Point3], to: impl Fn(usize) -> Point3 + Sync) -> Vec<Point
     (0..points.len()).into_par_iter().map(|i| flat(i, to(i))).collect()
 }
 
-fn relaxed(field: &impl Field, points: &[Point3], neighbours: &[u32], i: usize, cell: f64) -> Point3 {
+/// The way to the middle of the neighbours, along the skin.
+fn pull(points: &[Point3], neighbours: &[u32], i: usize, n: &Vector3) -> Vector3 {
     let p = points[i];
     let (mut sum, mut weights) = (Vector3::zeros(), 0.0);
-    for &n in neighbours {
+    for &m in neighbours {
         // Seen from the plane of symmetry a neighbour off the plane stands for its image as well.
-        let w = if p.x == 0.0 && points[n as usize].x != 0.0 { 2.0 } else { 1.0 };
-        sum += (points[n as usize] - p) * w;
+        let w = if p.x == 0.0 && points[m as usize].x != 0.0 { 2.0 } else { 1.0 };
+        sum += (points[m as usize] - p) * w;
         weights += w;
     }
-    let (_, g) = field.gradient(p);
-    let n = g.try_normalize(0.0).unwrap_or_else(Vector3::zeros);
     let pull = sum / f64::max(weights, 1.0);
-    field.onto_skin(p + (pull - n * pull.dot(&n)) * RELAXATION, 1, cell)
+    pull - n * pull.dot(n)
+}
+
+fn normals(points: &[Point3], triangles: &[[u32; 3]]) -> Vec<Vector3> {
+    let mut normals = vec![Vector3::zeros(); points.len()];
+    for t in triangles {
+        let [a, b, c] = t.map(|v| points[v as usize]);
+        let n = (b - a).cross(&(c - a));
+        t.iter().for_each(|&v| normals[v as usize] += n);
+    }
+    // Half a figure: at the plane of symmetry the image's triangles are missing.
+    let flat = |(n, p): (Vector3, &Point3)| if p.x == 0.0 { Vector3::new(0.0, n.y, n.z) } else { n };
+    normals.into_iter().zip(points).map(|n| flat(n).try_normalize(0.0).unwrap_or_default()).collect()
+}
+
+fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<Vec<u32>> {
+    let mut around = vec![Vec::with_capacity(14); vertices];
+    for t in triangles {
+        for k in 0..3 {
+            around[t[k] as usize].extend([t[(k + 1) % 3], t[(k + 2) % 3]]);
+        }
+    }
+    around.par_iter_mut().for_each(|n| {
+        n.sort_unstable();
+        n.dedup();
+    });
+    around
 }
 
 /// Field values at the grid's points.
@@ -90,16 +135,31 @@ struct Samples {
 }
 
 impl Samples {
+    /// Blocks of points that lie far from the skin get their middle's value.
     fn take(field: &impl Field, grid: &Grid) -> Self {
         let counts = grid.counts();
-        let [nx, ny, nz] = counts;
-        let slab = |j: usize| {
-            let grid = *grid;
-            (0..nx).flat_map(move |i| (0..nz).map(move |k| field.value(grid.point([i, j, k]))))
-        };
-        let values =
-            (0..ny).into_par_iter().map(|j| slab(j).collect::<Vec<_>>()).collect::<Vec<_>>().concat();
+        let layers: Vec<usize> = (0..counts[1]).step_by(BLOCK).collect();
+        let layer = |&j: &usize| Self::layer(field, grid, counts, j);
+        let values = layers.par_iter().map(layer).collect::<Vec<_>>().concat();
         Samples { counts, values }
+    }
+
+    /// The values of up to [`BLOCK`] slabs from `j0` on.
+    fn layer(field: &impl Field, grid: &Grid, [nx, ny, nz]: [usize; 3], j0: usize) -> Vec<f64> {
+        let rows = BLOCK.min(ny - j0);
+        let mut values = vec![0.0; rows * nx * nz];
+        let half = 0.5 * (BLOCK - 1) as f64 * grid.cell;
+        let far = FAR * 3.0_f64.sqrt() * half;
+        for (i0, k0) in (0..nx).step_by(BLOCK).flat_map(|i| (0..nz).step_by(BLOCK).map(move |k| (i, k))) {
+            let middle = field.coarse(grid.point([i0, j0, k0]) + Vector3::from([half; 3]));
+            for (j, i) in (0..rows).flat_map(|j| (i0..nx.min(i0 + BLOCK)).map(move |i| (j, i))) {
+                for k in k0..nz.min(k0 + BLOCK) {
+                    let near = || field.coarse(grid.point([i, j0 + j, k]));
+                    values[(j * nx + i) * nz + k] = if middle.abs() > far { middle } else { near() };
+                }
+            }
+        }
+        values
     }
 
     fn at(&self, [i, j, k]: [usize; 3]) -> f64 {
@@ -249,20 +309,6 @@ fn edge_ends(cell: [usize; 3], edge: usize) -> ([usize; 3], [usize; 3]) {
     let mut to = from;
     to[axis] += 1;
     (from, to)
-}
-
-fn quad_neighbours(vertices: usize, quads: &[[u32; 4]]) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); vertices];
-    for q in quads {
-        for k in 0..4 {
-            neighbours[q[k] as usize].extend([q[(k + 1) % 4], q[(k + 3) % 4]]);
-        }
-    }
-    neighbours.par_iter_mut().for_each(|n| {
-        n.sort_unstable();
-        n.dedup();
-    });
-    neighbours
 }
 
 /// Splits a quad along its shorter diagonal.

@@ -1,6 +1,7 @@
 //! Landmarks of a mannequin: where its figure's skeleton and levels meet its skin.
 
-use super::figure::{Figure, level};
+use super::figure::Figure;
+use super::shape::level;
 use super::slice::{SliceLoop, slice, trunk};
 use std::collections::BTreeMap;
 use toile_core::artifact::{Landmark, Point3};
@@ -8,36 +9,35 @@ use toile_core::artifact::{Landmark, Point3};
 /// Halvings by which a level is looked for: a tenth of a millimetre on a metre.
 const HALVINGS: usize = 13;
 
+/// Landmarks by name.
+pub(crate) type Marks = BTreeMap<String, Landmark>;
+
 /// The landmarks that [`Body`](toile_core::artifact::Body) lists; `None` where the arms or legs have
 /// grown into the trunk.
-pub(crate) fn landmarks(
-    figure: &Figure,
-    positions: &[Point3],
-    triangles: &[[u32; 3]],
-) -> Option<BTreeMap<String, Landmark>> {
+pub(crate) fn landmarks(figure: &Figure, positions: &[Point3], triangles: &[[u32; 3]]) -> Option<Marks> {
     let mut marks = BTreeMap::new();
     let cut = |y: f64| slice(positions, triangles, y);
-    let chin = figure.chin;
     let rings =
         [("bust", level::BUST), ("waist", level::WAIST), ("hip", level::HIP), ("neck_base", level::NECK)];
     for (name, level) in rings {
-        let y = level * chin;
+        let y = figure.y(level);
         let (front, back) = trunk(&cut(y), 0.0)?.depths_at(0.0)?;
         marks.insert(format!("{name}_front"), Point3::new(0.0, y, front));
         marks.insert(format!("{name}_back"), Point3::new(0.0, y, back));
     }
     let whole = |y: f64| trunk(&cut(y), 0.0).and_then(|l| l.depths_at(0.0));
-    let crotch = bisect(level::HIP * chin, 0.8 * level::CROTCH * chin, |y| whole(y).is_some())?;
+    let crotch = bisect(figure.y(level::HIP), 0.8 * figure.y(level::CROTCH), |y| whole(y).is_some())?;
     let (front, back) = whole(crotch)?;
     marks.insert("crotch".into(), Point3::new(0.0, crotch, (front + back) / 2.0));
 
+    let chin = figure.shape.chin;
     let half = figure.size().shoulder_width / 2.0;
     let neck = figure.size().neck / std::f64::consts::TAU;
     let [_, elbow, wrist] = figure.arm_axis;
     let left = [
         ("elbow", elbow),
         ("wrist", wrist),
-        ("armpit", armpit(cut, chin)?),
+        ("armpit", armpit(cut, [(level::BUST + level::WAIST) / 2.0, level::SHOULDER].map(|l| figure.y(l)))?),
         ("shoulder", ridge(positions, triangles, half, chin)?),
         ("neck", ridge(positions, triangles, neck * 1.15, chin)?),
     ];
@@ -62,14 +62,14 @@ pub(crate) fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -
 }
 
 /// Where the left arm leaves the trunk: midway between the two in the last slice that keeps them apart.
-fn armpit(cut: impl Fn(f64) -> Vec<SliceLoop>, chin: f64) -> Option<Point3> {
+fn armpit(cut: impl Fn(f64) -> Vec<SliceLoop>, [low, high]: [f64; 2]) -> Option<Point3> {
     let gap = |y: f64| {
         let loops = cut(y);
         let body = trunk(&loops, 0.0)?;
         let arm = loops.iter().find(|l| l.bounds[0] > body.bounds[1] - 1e-3 && l.width() > 0.02)?;
         Some(Point3::new((body.bounds[1] + arm.bounds[0]) / 2.0, y, arm.centre().y))
     };
-    let y = bisect(level::BUST * chin, level::SHOULDER * chin, |y| gap(y).is_some())?;
+    let y = bisect(low, high, |y| gap(y).is_some())?;
     gap(y)
 }
 

@@ -1,67 +1,84 @@
 //! `Mannequin`: a closed, smooth figure made to measure.
 //!
-//! A [`Figure`]'s sections are scaled until a tape around bust, waist and hip reads what is wanted;
-//! then it is meshed (surface nets with Newton steps onto the skin) and the mesh is measured: where
-//! it misses, the aim is corrected and the figure meshed again. Cost: mostly one meshing, some
-//! tenths of a second. Limits: see [`Figure`].
+//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](super::fit). What is not given follows from the size,
+//! the figure, the height and the bust. Cost: mostly one meshing, a tenth of a second.
 
-use super::figure::{Figure, Size, level};
-use super::isosurface::{Grid, TriMesh, mesh};
-use super::landmarks::landmarks;
-use super::slice::{convex_hull, slice, trunk};
-use super::topology::Topology;
-use std::collections::BTreeMap;
+use super::fit::fit;
+use super::form::{CHILD, Form, MAN, WOMAN};
+use super::shape::{Size, chin, level};
+use super::sizes::{Table, known, measures};
+use toile_core::choice;
 use toile_core::prelude::*;
 
-/// Girths agree to this share of the wanted one.
-const GIRTH_TOLERANCE: f64 = 0.002;
-/// Girths of the smooth figure agree to this share before it is meshed.
-const FIT_TOLERANCE: f64 = 2e-4;
-/// Corrections of the sections before giving up; five suffice for ordinary figures.
-const MAX_FITS: usize = 30;
-/// Meshings before giving up; one suffices for ordinary figures.
-const MAX_MESHINGS: usize = 4;
-/// Rays around the trunk when the smooth figure is measured: a polygon of so many corners is
-/// short by 0.02 %.
-const RAYS: usize = 96;
-/// The finest mesh of the smallest body still has edges of this share of its height; it also keeps
-/// wrists and thumbs several cells thick for children.
-const LARGEST_EDGE: f64 = 1.0 / 95.0;
+/// Heights between which a figure that is not stated is half a child's, metres.
+const GROWING: [f64; 2] = [1.35, 1.55];
+
+/// Shares of the height up to the chin that make the arm's length where none is given: child and grown up.
+const ARM: [f64; 2] = [0.366, 0.384];
+
+/// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
+const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
+
+/// Whose proportions a mannequin has.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Wearer {
+    /// A woman's.
+    Woman,
+    /// A man's.
+    Man,
+    /// A child's.
+    Child,
+}
 
 /// A mannequin made to measure: closed and smooth, arms spread in A-pose, legs a little apart.
 ///
-/// Girths are those of a tape around the trunk at the fullest bust, the waist and the fullest hip.
-/// Shoulder width and neck follow from height and bust where they are not given. Children from
-/// 80 cm on have larger heads and shorter limbs.
+/// Measures are taken as ISO 8559-1 (2017) says: girths are those of a tape around the trunk at the fullest bust, the waist and
+/// the fullest hip and around the neck; the arm's length goes from the shoulder point over the elbow to the wrist, the inseam from
+/// the fork of the legs to the sole. What is not given follows from `size`, else from the figure, the height and the bust.
+/// Sizes are those of EN 13402-3. Children from 80 cm on have larger heads and shorter limbs.
 #[stage(
     role = Body,
-    source = "surface nets: Gibson, 1998; proportions: Gordon and others, 1989",
+    version = 2,
+    source = "measures: ISO 8559-1, 2017; sizes: EN 13402-3; proportions: Gordon and others, 1989; surface nets: Gibson, 1998",
     example = "Mannequin(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")",
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Mannequin {
-    /// Crown to sole.
-    #[param(default = Length::cm(172.0), min = 0.8, max = 2.1)]
-    height: Length,
-    /// Girth at the fullest part of the chest.
-    #[param(default = Length::cm(88.0), min = 0.4, max = 1.7)]
-    bust: Length,
-    /// Girth at the waist.
-    #[param(default = Length::cm(70.0), min = 0.35, max = 1.7)]
-    waist: Length,
-    /// Girth at the fullest part of the seat.
-    #[param(default = Length::cm(96.0), min = 0.4, max = 1.7)]
-    hip: Length,
+    /// Crown to sole; where neither it nor a size is given, 172 cm for a woman, 180 cm for a man, 110 cm for a child.
+    #[param(default = None, min = 0.8, max = 2.1)]
+    height: Option<Length>,
+    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise.
+    #[param(default = None, min = 0.4, max = 1.7)]
+    bust: Option<Length>,
+    /// Girth at the waist; 70, 86 or 54 cm likewise.
+    #[param(default = None, min = 0.35, max = 1.7)]
+    waist: Option<Length>,
+    /// Girth at the fullest part of the seat; 96, 100 or 60 cm likewise.
+    #[param(default = None, min = 0.4, max = 1.7)]
+    hip: Option<Length>,
+    /// Whose proportions; a woman's where it is not given, a child's below 135 cm, between the two up to 155 cm.
+    #[param(default = None)]
+    figure: Option<Wearer>,
+    /// A size such as `M` or `EU 38`, for a child `EU 110`: measures that are not given follow from it.
+    #[param(default = None)]
+    size: Option<String>,
     /// Distance of the shoulders' outer points; follows from height and bust where it is not given.
     #[param(default = None, min = 0.15, max = 0.6)]
     shoulder_width: Option<Length>,
-    /// Girth of the neck; follows from height and bust where it is not given.
+    /// Girth of the neck, square to its axis; follows from height and bust where it is not given.
     #[param(default = None, min = 0.18, max = 0.6)]
     neck: Option<Length>,
+    /// Shoulder point over elbow to wrist; follows from the height where it is not given.
+    #[param(default = None, min = 0.2, max = 0.9)]
+    arm: Option<Length>,
+    /// Fork of the legs to sole; follows from the height where it is not given.
+    #[param(default = None, min = 0.25, max = 1.1)]
+    inseam: Option<Length>,
     /// Angle between the arms and the vertical; 60 suits sleeves of shirts laid flat.
     #[param(default = 60.0, min = 30.0, max = 75.0, unit = "degrees")]
     arm_angle: f64,
-    /// Length of the mesh's edges; small bodies get shorter ones.
+    /// Length of the mesh's edges; small bodies get shorter ones, hands, head and feet too.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
     edge: Length,
 }
@@ -69,44 +86,85 @@ pub struct Mannequin {
 #[stage]
 impl Mannequin {
     pub(crate) fn run(&self, cx: &Context) -> Result<Body, StageError> {
-        let size = self.size();
+        let (size, form) = self.measures()?;
         check(&size)?;
-        fit(&size, self.edge.metres(), cx)
+        fit(&size, &form, self.edge.metres(), cx)
     }
 
     /// Whether anybody has such measures.
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        check(&self.size()).err().into_iter().collect()
+        self.measures().and_then(|(size, _)| check(&size)).err().into_iter().collect()
     }
 }
 
 impl Mannequin {
     /// A mannequin of that height with bust, waist and hip, meshed at an edge length, all in metres.
     #[cfg(test)]
-    pub(crate) fn of(height: f64, [bust, waist, hip]: [f64; 3], edge: f64) -> Self {
-        let [height, bust, waist, hip, edge] = [height, bust, waist, hip, edge].map(Length::m);
-        Mannequin { height, bust, waist, hip, edge, ..Mannequin::default() }
+    pub(crate) fn of(height: f64, girths: [f64; 3], edge: f64) -> Self {
+        Mannequin::made(height, girths, 60.0, edge)
     }
 
     /// A mannequin of that height with bust, waist and hip and the arms at that angle in degrees, meshed at an edge length, all in metres.
     pub(crate) fn made(height: f64, [bust, waist, hip]: [f64; 3], arm_angle: f64, edge: f64) -> Self {
-        let [height, bust, waist, hip, edge] = [height, bust, waist, hip, edge].map(Length::m);
-        Mannequin { height, bust, waist, hip, arm_angle, edge, ..Mannequin::default() }
+        let [height, bust, waist, hip] = [height, bust, waist, hip].map(|l| Some(Length::m(l)));
+        Mannequin { height, bust, waist, hip, arm_angle, edge: Length::m(edge), ..Mannequin::default() }
     }
 
-    fn size(&self) -> Size {
-        let [height, bust, waist, hip] = [self.height, self.bust, self.waist, self.hip].map(Length::metres);
+    /// The measures that are given, those of the size, and those that follow.
+    fn measures(&self) -> Result<(Size, Form), StageError> {
+        let (wearer, usual) = self.usual()?;
         let given = |l: Option<Length>, or: f64| l.map_or(or, Length::metres);
-        Size {
+        let [height, bust, waist, hip] = [self.height, self.bust, self.waist, self.hip];
+        let height = given(height, usual[0] / 100.0);
+        let bust = given(bust, usual[1] / 100.0);
+        let (form, grown) = form(wearer, height);
+        let follows = |[of_height, of_bust]: [f64; 2]| of_height * height + of_bust * bust;
+        let size = Size {
             height,
             bust,
-            waist,
-            hip,
-            shoulder_width: given(self.shoulder_width, 0.13 * height + 0.185 * bust),
-            neck: given(self.neck, 0.085 * height + 0.225 * bust),
+            waist: given(waist, usual[2] / 100.0),
+            hip: given(hip, usual[3] / 100.0),
+            shoulder_width: given(self.shoulder_width, follows(form.shoulders)),
+            neck: given(self.neck, follows(form.neck)),
+            arm: given(self.arm, (ARM[0] + (ARM[1] - ARM[0]) * grown) * chin(height)),
+            inseam: given(self.inseam, level::CROTCH * chin(height)),
             arm_angle: self.arm_angle.to_radians(),
-        }
+        };
+        Ok((size, form))
     }
+
+    /// Whose figure it is, where that is known, and the measures of the size or those that are usual.
+    fn usual(&self) -> Result<(Option<Wearer>, Table), StageError> {
+        let Some(size) = &self.size else {
+            return Ok((self.figure, USUAL[self.figure.map_or(0, |w| w as usize)]));
+        };
+        let found = measures(size, self.figure).ok_or_else(|| no_size(size, self.figure))?;
+        Ok((Some(found.0), found.1))
+    }
+}
+
+/// The proportions, and the share in which they are a grown person's.
+fn form(wearer: Option<Wearer>, height: f64) -> (Form, f64) {
+    let [child, grown] = GROWING;
+    let share = ((height - child) / (grown - child)).clamp(0.0, 1.0);
+    match wearer {
+        Some(Wearer::Woman) => (WOMAN, 1.0),
+        Some(Wearer::Man) => (MAN, 1.0),
+        Some(Wearer::Child) => (CHILD, 0.0),
+        None => (CHILD.towards(&WOMAN, share), share),
+    }
+}
+
+fn no_size(size: &str, wearer: Option<Wearer>) -> StageError {
+    let whose = match wearer {
+        None => "mannequin",
+        Some(Wearer::Woman) => "woman",
+        Some(Wearer::Man) => "man",
+        Some(Wearer::Child) => "child",
+    };
+    StageError::new(ErrorCode::InvalidParameter, format!("no {whose} has a size of \"{size}\""))
+        .hint(format!("the sizes are {}", known(wearer)))
+        .at("size")
 }
 
 /// Shares of a length that people have, from thin to heavy: parameter, what it is compared to, range.
@@ -122,6 +180,8 @@ fn check(size: &Size) -> Result<(), StageError> {
         ("hip", size.hip, "a waist", size.waist, (0.85, 1.75)),
         ("shoulder_width", size.shoulder_width, "a bust", size.bust, (0.34, 0.56)),
         ("neck", size.neck, "a bust", size.bust, (0.30, 0.52)),
+        ("arm", size.arm, "a height", h, (0.25, 0.40)),
+        ("inseam", size.inseam, "a height", h, (0.36, 0.52)),
         // From radians, 30 degrees come back with the last digits of a rounding.
         ("arm_angle", (size.arm_angle.to_degrees() * 1e9).round() / 1e9, "", 1.0, (30.0, 75.0)),
     ];
@@ -144,117 +204,17 @@ fn misfit(name: &'static str, value: f64, to: &str, base: f64, (lo, hi): (f64, f
         format!("nobody has {} {what} of {amount}{beside}", article(name)),
     )
     .hint(format!(
-        "a {what} of {range} would fit{}",
+        "{} {what} of {range} would fit{}",
+        article(name),
         if to.is_empty() { "" } else { "; check the units as well" }
     ))
     .at(name)
 }
 
 fn article(name: &str) -> &'static str {
-    if name.starts_with('a') { "an" } else { "a" }
+    if name.starts_with(['a', 'i']) { "an" } else { "a" }
 }
 
 fn cm(metres: f64) -> String {
     format!("{} cm", (metres * 1e3).round() / 10.0)
-}
-
-/// Fits the figure's sections, meshes it, and corrects by what the mesh's chords cut off.
-fn fit(size: &Size, edge: f64, cx: &Context) -> Result<Body, StageError> {
-    let wanted = [size.hip, size.waist, size.bust];
-    let (mut aim, cell) = (wanted, edge.min(size.height * LARGEST_EDGE));
-    let mut scale = [size.hip / 0.96, size.waist / 0.70, size.bust / 0.88];
-    for round in 0..MAX_MESHINGS {
-        cx.check()?;
-        cx.progress(round as f64 / MAX_MESHINGS as f64, "fitting the girths");
-        let figure = fitted(size, aim, &mut scale).ok_or_else(|| unfit("bust, waist and hip"))?;
-        let skin = skin(&figure, cell);
-        let girths = girths(&skin, figure.chin).ok_or_else(|| unfit("trunk"))?;
-        let ratio = [0, 1, 2].map(|k| wanted[k] / girths[k]);
-        if ratio.iter().all(|r| (r - 1.0).abs() < GIRTH_TOLERANCE) {
-            return finish(&figure, skin, girths);
-        }
-        aim = [0, 1, 2].map(|k| aim[k] * ratio[k]);
-    }
-    Err(unfit("bust, waist and hip"))
-}
-
-/// The figure whose sections have the girths that are aimed at; `scale` is where the search begins
-/// and where it ends.
-fn fitted(size: &Size, aim: [f64; 3], scale: &mut [f64; 3]) -> Option<Figure> {
-    for _ in 0..MAX_FITS {
-        let figure = Figure::new(size, *scale);
-        let girths = [level::HIP, level::WAIST, level::BUST].map(|l| trunk_girth(&figure, l * figure.chin));
-        let ratio = [0, 1, 2].map(|k| aim[k] / girths[k]);
-        if ratio.iter().all(|r| (r - 1.0).abs() < FIT_TOLERANCE) {
-            return Some(figure);
-        }
-        (0..3).for_each(|k| scale[k] *= ratio[k]);
-    }
-    None
-}
-
-/// The length of a tape around the trunk at height `y`: rays from the axis meet the skin.
-fn trunk_girth(figure: &Figure, y: f64) -> f64 {
-    let ring = (0..RAYS).map(|i| {
-        let (sin, cos) = ((i as f64 + 0.5) * std::f64::consts::TAU / RAYS as f64).sin_cos();
-        let at = |r: f64| Point3::new(r * sin, y, r * cos);
-        let (mut near, mut far) = (0.01, 0.5);
-        for parts in [16, 8, 8, 8, 8] {
-            // The first skin on the way out: beyond may lie the other leg.
-            let step = (far - near) / f64::from(parts);
-            let outside = |k: &i32| figure.without_arms(at(near + step * f64::from(*k))) > 0.0;
-            near += step * f64::from((1..parts).find(outside).unwrap_or(parts) - 1);
-            far = near + step;
-        }
-        Point2::new((near + far) / 2.0 * sin, (near + far) / 2.0 * cos)
-    });
-    let hull = convex_hull(ring.collect());
-    (0..hull.len()).map(|i| (hull[(i + 1) % hull.len()] - hull[i]).norm()).sum()
-}
-
-fn unfit(what: &str) -> StageError {
-    StageError::new(
-        ErrorCode::InvalidParameter,
-        format!("the mannequin's {what} cannot be brought to these measures"),
-    )
-    .hint("bring bust, waist, hip and shoulder width nearer to each other, or raise `arm_angle`")
-}
-
-/// The figure's mesh, brought to the exact height with its soles at zero.
-fn skin(figure: &Figure, cell: f64) -> TriMesh {
-    let (mut positions, triangles) = mesh(figure, &Grid { bounds: figure.bounds(), cell });
-    let (lo, hi) = positions.iter().fold((f64::INFINITY, 0.0_f64), |(l, h), p| (l.min(p.y), h.max(p.y)));
-    let stretch = figure.size().height / (hi - lo);
-    positions.iter_mut().for_each(|p| p.y = (p.y - lo) * stretch);
-    (positions, triangles)
-}
-
-/// Tape measures at hip, waist and bust.
-fn girths((positions, triangles): &TriMesh, chin: f64) -> Option<[f64; 3]> {
-    let at = |level: f64| trunk(&slice(positions, triangles, level * chin), 0.0).map(|l| l.girth);
-    Some([at(level::HIP)?, at(level::WAIST)?, at(level::BUST)?])
-}
-
-fn finish(figure: &Figure, skin: TriMesh, [hip, waist, bust]: [f64; 3]) -> Result<Body, StageError> {
-    let (positions, triangles) = skin;
-    let topology = Topology::of(positions.len(), &triangles);
-    if !topology.is_closed() || topology.components != 1 || topology.euler() != 2 {
-        return Err(unfit("skin"));
-    }
-    let size = figure.size();
-    let landmarks = landmarks(figure, &positions, &triangles).ok_or_else(|| unfit("armpits"))?;
-    let across = |a: &str, b: &str| Some((landmarks.get(a)? - landmarks.get(b)?).norm());
-    let arm =
-        across("shoulder_left", "elbow_left").zip(across("elbow_left", "wrist_left")).map(|(u, f)| u + f);
-    let measured = [
-        ("height", Some(size.height)),
-        ("bust", Some(bust)),
-        ("waist", Some(waist)),
-        ("hip", Some(hip)),
-        ("shoulder_width", across("shoulder_left", "shoulder_right")),
-        ("arm_length", arm),
-    ];
-    let measurements: BTreeMap<String, f64> =
-        measured.into_iter().filter_map(|(name, v)| Some((name.to_owned(), v?))).collect();
-    Ok(Body { positions, triangles, landmarks, measurements })
 }

@@ -1,22 +1,39 @@
 //! Bodies: made from measurements or read from a file.
 
+mod arm;
 mod body_obj;
+mod bounds;
 mod bridge;
+mod bump;
+#[cfg(test)]
+mod crossing;
 mod estimate;
 mod field;
 mod figure;
+mod fit;
+mod form;
+mod head;
 mod isosurface;
 mod landmarks;
+mod leg;
 mod limb;
+mod loft;
 mod mannequin;
+mod measure;
+mod profile;
+mod refine;
+mod relief;
+mod shape;
+mod sizes;
 mod slice;
 mod spline;
 mod thin;
 mod topology;
+mod torso;
 
 pub use body_obj::{BodyObj, Units, Up};
 pub(crate) use bridge::bridged;
-pub use mannequin::Mannequin;
+pub use mannequin::{Mannequin, Wearer};
 pub(crate) use slice::{convex_hull, slice, trunk};
 pub(crate) use thin::grown;
 

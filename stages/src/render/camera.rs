@@ -39,7 +39,7 @@ pub(super) const PORTRAIT_ANGLE: f64 = 0.32;
 /// A little from above, as a person looks at another.
 pub(super) const EYE_ELEVATION: f64 = 0.06;
 /// Room around the garment, so that it does not touch the picture's edge.
-pub(super) const MARGIN: f64 = 0.09;
+const MARGIN: f64 = 0.09;
 
 impl View {
     /// A view from a turn about the vertical, four wide to five high.

@@ -1,10 +1,13 @@
 //! Cameras on a sphere around the garment: one point that all look at, one distance, one focal length.
 
-use super::camera::{Camera, Frame, MARGIN, NEAREST, PORTRAIT_ANGLE, axes, bounds, framed_points};
+use super::camera::{Camera, Frame, NEAREST, PORTRAIT_ANGLE, axes, bounds, framed_points};
 use toile_core::artifact::{Model, Point3};
 
 /// Turns about the vertical at which the garment must be in the picture.
 const TURNS: usize = 24;
+
+/// Share of the picture left free at each side: a view from another height sees a little more of the body.
+const MARGIN: f64 = 0.12;
 
 /// What all views of a turntable share.
 #[derive(Debug, Clone, Copy, PartialEq)]
