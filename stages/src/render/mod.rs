@@ -25,7 +25,7 @@ pub(crate) use mips::{Coding, LINEAR, Mips, encode};
 pub use orbit::Orbit;
 pub use overlay::Line;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
-pub(crate) use pictures::{jpeg, thumbnail};
+pub(crate) use pictures::{escaped, jpeg, thumbnail};
 pub use scene::Scene;
 
 use image::RgbImage;

@@ -14,6 +14,8 @@ use toile_core::prelude::*;
 
 /// The page; autoescaped, since its name ends in `.html`.
 const TEMPLATE: (&str, &str) = ("report.html", include_str!("report.html"));
+/// What joins the turntable and the origins.
+const SCRIPT: &str = include_str!("report.js");
 
 /// Writes a page on the run: every stage with its pictures, parameters, time and numbers.
 ///
@@ -63,5 +65,6 @@ fn html(page: &Page) -> Result<String, minijinja::Error> {
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).build()?);
     environment.add_template(TEMPLATE.0, TEMPLATE.1)?;
+    environment.add_global("script", SCRIPT);
     environment.get_template(TEMPLATE.0)?.render(Value::from(Serde(page)))
 }

@@ -1,6 +1,11 @@
 //! What stands on the report's page, gathered from the run's record.
 
+use super::report_outline::outlined;
+use super::report_pieces::pieces;
+use super::report_top::{Verdict, Warning, verdict, warnings};
+use super::report_turn::{Turn, turn};
 use super::report_views::{Views, taken};
+use crate::measure::Fit;
 use crate::render::{Form, Picture, Scene, View, jpeg, pictures_of, thumbnail};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -9,11 +14,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
 use toile_core::artifact::{
-    Artifact, Body, Digester, Figures, Garment, Measure, Model, OutputFiles, RunLog, SeamState, SewingPlan,
-    StageRecord, quantile, stored,
+    Artifact, Body, Digester, Figures, Garment, Measure, Model, Outline, OutputFiles, Photo, RunLog,
+    SeamState, SewingPlan, StageRecord, quantile, stored,
 };
 use toile_core::cost::Estimate;
-use toile_core::{Context, StageError};
+use toile_core::{Context, StageError, StageMeta};
 
 /// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
 const PICTURE_BUDGET: usize = 2_600_000;
@@ -33,7 +38,16 @@ pub(super) struct Page {
     total: String,
     /// Why the run ended early; none of one that came to its end.
     failure: Option<Ended>,
+    verdict: Verdict,
+    warnings: Vec<Warning>,
     views: Vec<Shown>,
+    turn: Option<Turn>,
+    outlines: Vec<Shown>,
+    pieces: Vec<Shown>,
+    /// Ease and finished measures.
+    fit: Vec<Vec<Figure>>,
+    /// Strain, tension and pressure on the cloth.
+    maps: Vec<Shown>,
     shortfalls: Vec<String>,
     figures: Vec<Vec<Figure>>,
     stages: Vec<Section>,
@@ -98,6 +112,11 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     let heads = model.map_or_else(Vec::new, |model| heads(run, model, views, cx));
     let draw = Draw { run, height, model, heads, cx };
     let views = within(shown(draw.heads_at(VIEW_HEIGHT)), &mut budget).0;
+    let garment = last::<Garment>(run, run.stages.len());
+    let missed = shortfalls(run);
+    let outlines = within(shown(outlines(run, height)), &mut budget).0;
+    let maps =
+        within(shown(fit_files(run).map_or_else(Vec::new, |f| pictures_of(f, None, height))), &mut budget).0;
     let mut stages = Vec::new();
     for (i, record) in run.stages.iter().enumerate() {
         cx.check()?;
@@ -115,8 +134,15 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
             message: f.message.clone(),
             hint: f.hint.clone().unwrap_or_default(),
         }),
+        verdict: verdict(run, garment, missed.len()),
+        warnings: warnings(run),
+        turn: turn(run.stages.iter().flat_map(entries).filter_map(|(_, a)| is(a))),
+        outlines,
+        pieces: shown(garment.and_then(pieces).into_iter().collect()),
+        fit: fit_files(run).map(fit).unwrap_or_default(),
+        maps,
         views,
-        shortfalls: shortfalls(run),
+        shortfalls: missed,
         figures: key_figures(run),
         stages,
         skipped: skipped.collect(),
@@ -176,6 +202,10 @@ struct Draw<'a> {
 impl Draw<'_> {
     /// Pictures of what a stage made, in the order of its outputs.
     fn stage(&self, index: usize) -> Vec<Shown> {
+        if self.run.stages[index].name == Fit::NAME {
+            // Its maps stand at the head.
+            return Vec::new();
+        }
         let body = last::<Body>(self.run, index);
         let made: Vec<(&str, &dyn Artifact)> = entries(&self.run.stages[index]).collect();
         let each = |(name, artifact): &(&str, &dyn Artifact)| {
@@ -219,6 +249,39 @@ impl Draw<'_> {
         };
         self.heads.par_iter().map(picture).collect::<Vec<_>>().into_iter().flatten().collect()
     }
+}
+
+/// The outlines over their photos: those that the last stage that names outlines left, on the photos as they were read.
+fn outlines(run: &RunLog, height: u32) -> Vec<Picture> {
+    let photos = run.stages.iter().find(|s| entries(s).any(|(_, a)| is::<Photo>(a).is_some()));
+    let found = run.stages.iter().rev().find(|s| entries(s).any(|(_, a)| is::<Outline>(a).is_some()));
+    let (Some(photos), Some(found)) = (photos, found) else { return Vec::new() };
+    let photo = |name: &str| entries(photos).find(|(n, _)| *n == name).and_then(|(_, a)| is::<Photo>(a));
+    let of = |(name, a): (&str, &dyn Artifact)| outlined(name, photo(name)?, is(a)?, height);
+    entries(found).filter_map(of).collect()
+}
+
+/// What `Fit` has written.
+fn fit_files(run: &RunLog) -> Option<&OutputFiles> {
+    let fit = run.stages.iter().rev().find(|s| s.name == Fit::NAME)?;
+    entries(fit).find_map(|(_, a)| is(a))
+}
+
+/// Ease and finished measures from the file of `Fit`, in centimetres.
+fn fit(files: &OutputFiles) -> Vec<Vec<Figure>> {
+    let json = files.0.iter().find(|f| f.path.ends_with(".json"));
+    let json: serde_json::Value =
+        json.and_then(|f| serde_json::from_slice(&f.bytes).ok()).unwrap_or_default();
+    let cm = |v: &serde_json::Value| format!("{:.1} cm", 1e2 * v.as_f64().unwrap_or(0.0));
+    let rows = |key: &str, row: &dyn Fn(&str, &serde_json::Value) -> Figure| -> Vec<Figure> {
+        json[key].as_object().into_iter().flatten().map(|(name, v)| row(&name.replace('_', " "), v)).collect()
+    };
+    let ease = |name: &str, v: &serde_json::Value| {
+        let value = format!("{} (cloth {}, body {})", cm(&v["ease"]), cm(&v["cloth"]), cm(&v["body"]));
+        Figure { name: format!("ease, {name}"), value }
+    };
+    let measure = |name: &str, v: &serde_json::Value| Figure { name: name.to_owned(), value: cm(v) };
+    vec![rows("ease", &ease), rows("measures", &measure)]
 }
 
 /// The three views at the head.

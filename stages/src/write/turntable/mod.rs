@@ -17,12 +17,16 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use toile_core::prelude::*;
 
-const SCRIPT: &str = include_str!("page/turntable.js");
-const STYLE: &str = include_str!("page/turntable.css");
+/// The viewer: defines `turntable(root, data)`.
+pub(super) const SCRIPT: &str = include_str!("page/turntable.js");
+/// Its looks; every class begins with `tt-`.
+pub(super) const STYLE: &str = include_str!("page/turntable.css");
 const PAGE: &str = include_str!("page/page.html");
 
 /// Heights of the camera above the horizon, degrees, by the number of tiers.
 const TIERS: [&[f64]; 4] = [&[8.0], &[-5.0, 25.0], &[-5.0, 15.0, 40.0], &[-10.0, 10.0, 30.0, 55.0]];
+/// Turns that are rendered at the same time; a run can be stopped between them.
+const AT_ONCE: usize = 4;
 /// Views in one sheet.
 const PER_SHEET: usize = 12;
 /// Behind the model.
@@ -137,11 +141,15 @@ impl Turntable {
         let scene = Scene::draft_in(model, cx);
         let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
         let mut by_azimuth = Vec::new();
-        for v in 0..self.views {
+        let turns: Vec<f64> =
+            (0..self.views).map(|v| std::f64::consts::TAU * v as f64 / self.views as f64).collect();
+        for some in turns.chunks(AT_ONCE) {
             cx.check()?;
-            cx.progress(v as f64 / self.views as f64, format!("view {v} of {}", self.views));
-            let azimuth = std::f64::consts::TAU * v as f64 / self.views as f64;
-            by_azimuth.push(scene.cut_outs(orbit, azimuth, &elevations).into_iter());
+            let done = by_azimuth.len();
+            cx.progress(done as f64 / self.views as f64, format!("view {done} of {}", self.views));
+            let made: Vec<Vec<RgbaImage>> =
+                some.par_iter().map(|turn| scene.cut_outs(orbit, *turn, &elevations)).collect();
+            by_azimuth.extend(made.into_iter().map(Vec::into_iter));
         }
         Ok((0..tiers.len())
             .flat_map(|_| by_azimuth.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>())
@@ -162,6 +170,11 @@ impl Turntable {
             quality = quality.saturating_sub(QUALITY_STEP).max(LEAST_QUALITY);
         }
     }
+}
+
+/// The data in a page that this stage has written, as escaped JSON.
+pub(super) fn data_of(html: &str) -> Option<&str> {
+    Some(html.split_once("id=\"tt-data\">")?.1.split_once("</script>")?.0)
 }
 
 /// The page, whole.

@@ -30,8 +30,8 @@ pub(super) fn spans(view: &RgbaImage) -> Vec<[u8; 2]> {
     ends.into_iter().map(|e| e.map_or([0, 0], |[a, b]| [a as u8, (b - a + 1) as u8])).collect()
 }
 
-/// The view with its colours carried on beyond the outline.
-fn spread(view: &RgbaImage) -> RgbImage {
+/// The view with its colours carried on beyond the outline, in the blocks that are kept.
+fn spread(view: &RgbaImage, spans: &[[u8; 2]]) -> RgbImage {
     let (w, h) = view.dimensions();
     let mut out = RgbImage::from_fn(w, h, |x, y| {
         let [r, g, b, _] = view.get_pixel(x, y).0;
@@ -39,8 +39,12 @@ fn spread(view: &RgbaImage) -> RgbImage {
     });
     let at = |x: u32, y: u32| (y * w + x) as usize;
     let mut known: Vec<bool> = view.pixels().map(|p| p.0[3] > 0).collect();
-    let mut border: Vec<[u32; 2]> =
-        (0..h).flat_map(|y| (0..w).map(move |x| [x, y])).filter(|p| !known[at(p[0], p[1])]).collect();
+    let near = |x: u32, y: u32| {
+        let row = spans[(y / BLOCK) as usize].map(u32::from);
+        (row[0]..row[0] + row[1]).contains(&(x / BLOCK))
+    };
+    let all = (0..h).flat_map(|y| (0..w).map(move |x| [x, y]));
+    let mut border: Vec<[u32; 2]> = all.filter(|&[x, y]| !known[at(x, y)] && near(x, y)).collect();
     for _ in 0..SPREAD {
         let (mut found, mut open) = (Vec::new(), Vec::new());
         for [x, y] in border {
@@ -91,7 +95,7 @@ pub(super) fn packed(views: &[&RgbaImage], spans: &[&[[u8; 2]]]) -> RgbImage {
     );
     let mut n = 0;
     for (view, spans) in views.iter().zip(spans) {
-        let full = spread(view);
+        let full = spread(view, spans);
         let (w, h) = full.dimensions();
         for (row, [first, blocks]) in spans.iter().enumerate() {
             for column in u32::from(*first)..u32::from(*first) + u32::from(*blocks) {

@@ -12,15 +12,14 @@ fn html(t: &Turntable, cx: &Context) -> String {
     String::from_utf8(t.run(&dress::model(), cx).unwrap().0.remove(0).bytes).unwrap()
 }
 
-fn data_of(html: &str) -> Value {
-    let json = html.split_once("id=\"tt-data\">").unwrap().1.split_once("</script>").unwrap().0;
-    serde_json::from_str(json).unwrap()
+fn data(html: &str) -> Value {
+    serde_json::from_str(data_of(html).unwrap()).unwrap()
 }
 
 #[test]
 fn the_page_holds_every_view_and_asks_for_nothing_else() {
     let html = html(&small(), &Context::quiet());
-    let data = data_of(&html);
+    let data = data(&html);
     assert_eq!((data["views"].as_u64(), data["tiers"].as_array().unwrap().len()), (Some(4), 2));
     assert_eq!(data["sheets"].as_array().unwrap().len(), 1, "8 views in one sheet");
     let rows = 96 / 8;
@@ -46,7 +45,7 @@ fn names_of_parts_cannot_end_the_script() {
     model.meshes[0].name = "</script><b>/*JS*/".into();
     let text = String::from_utf8(small().run(&model, &Context::quiet()).unwrap().0.remove(0).bytes).unwrap();
     assert!(!text.contains("</script><b>"));
-    assert_eq!(data_of(&text)["mesh"]["parts"][0]["name"], "</script><b>/*JS*/");
+    assert_eq!(data(&text)["mesh"]["parts"][0]["name"], "</script><b>/*JS*/");
 }
 
 #[test]
