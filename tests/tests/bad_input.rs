@@ -154,7 +154,7 @@ fn what_ran_until_a_fault_lies_in_a_folder_of_its_own_until_a_run_is_good() {
     assert!(reason.contains("\nhelp: leave a margin of ground on all sides"), "{reason}");
     let page = std::fs::read_to_string(page).unwrap();
     let (top, rest) = page.split_once("<h2>Time</h2>").unwrap();
-    assert!(top.contains("<h2>The run failed in Otsu</h2>") && top.contains("is cut by the frame"));
+    assert!(top.contains("The run ended in Otsu: ") && top.contains("is cut by the frame"));
     assert!(rest.contains("data:image"), "the stages' pictures");
     // What was taken for the garment: its own colour inside, the line at its edge, dark ground.
     let marked = image::open(out.join("failed/stages/Otsu/photo.png")).unwrap().into_rgb8();

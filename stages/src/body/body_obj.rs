@@ -4,7 +4,7 @@
 //! scaled; landmarks and girths are estimated from its slices. Cost: some hundred slices.
 
 use super::estimate::estimate;
-use super::isosurface::TriMesh;
+use super::topology::TriMesh;
 use super::topology::{Pieces, Topology};
 use crate::engine::OBJ_HINT;
 use std::collections::BTreeMap;

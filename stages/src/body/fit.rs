@@ -5,11 +5,12 @@
 
 use super::figure::Figure;
 use super::form::Form;
-use super::isosurface::{Grid, TriMesh, mesh};
+use super::isosurface::{Grid, mesh};
 use super::landmarks::landmarks;
 use super::measure::{Six, limbs, meshed, smooth, wanted};
 use super::shape::{Aims, Size};
 use super::topology::Topology;
+use super::topology::TriMesh;
 use toile_core::prelude::*;
 
 /// The mesh's measures agree to this length, metres, and to this share.
@@ -56,7 +57,8 @@ fn fitted(size: &Size, form: &Form, goal: &Six, aims: &mut Aims) -> Result<Figur
         let figure = Figure::new(size, form, aims);
         let found = smooth(&figure);
         let ratio: Six = std::array::from_fn(|k| goal[k] / found[k]);
-        let Some(worst) = (0..6).find(|&k| !((ratio[k] - 1.0).abs() < SMOOTH_TOLERANCE)) else {
+        let Some(worst) = (0..6).find(|&k| ratio[k].is_nan() || (ratio[k] - 1.0).abs() >= SMOOTH_TOLERANCE)
+        else {
             return Ok(figure);
         };
         missed = NAMES[worst];

@@ -11,6 +11,7 @@
 
 use super::field::Field;
 use super::refine::{LEVELS, flip, refined};
+use super::topology::TriMesh;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Point3, Vector3};
@@ -24,9 +25,6 @@ const BLOCK: usize = 4;
 /// A block is far from the skin where its middle's value is so many times the distance to its corners: values are distances
 /// to first order only.
 const FAR: f64 = 1.7;
-
-/// Vertices and triangles, counter-clockwise from outside.
-pub(crate) type TriMesh = (Vec<Point3>, Vec<[u32; 3]>);
 
 /// The box that holds the half of the solid with x >= 0, and the size of a cell, metres.
 #[derive(Debug, Clone, Copy)]

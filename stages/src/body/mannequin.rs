@@ -7,7 +7,7 @@ use super::fit::fit;
 use super::form::{CHILD, Form, MAN, WOMAN};
 use super::shape::{Size, chin, level};
 use super::sizes::{Table, known, measures};
-use toile_core::choice;
+use super::wearer::Wearer;
 use toile_core::prelude::*;
 
 /// Heights between which a figure that is not stated is half a child's, metres.
@@ -18,18 +18,6 @@ const ARM: [f64; 2] = [0.366, 0.384];
 
 /// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
 const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
-
-/// Whose proportions a mannequin has.
-#[choice]
-#[derive(Copy, Eq)]
-pub enum Wearer {
-    /// A woman's.
-    Woman,
-    /// A man's.
-    Man,
-    /// A child's.
-    Child,
-}
 
 /// A mannequin made to measure: closed and smooth, arms spread in A-pose, legs a little apart.
 ///

@@ -4,10 +4,10 @@
 //! inseam from the fork of the legs to the sole.
 
 use super::figure::Figure;
-use super::isosurface::TriMesh;
 use super::landmarks::Marks;
 use super::shape::{Size, level};
 use super::slice::{SliceLoop, convex_hull, slice, trunk};
+use super::topology::TriMesh;
 use nalgebra::{Rotation3, Unit};
 use toile_core::artifact::{Point2, Point3, Vector3};
 

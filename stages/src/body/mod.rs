@@ -30,12 +30,14 @@ mod spline;
 mod thin;
 mod topology;
 mod torso;
+mod wearer;
 
 pub use body_obj::{BodyObj, Units, Up};
 pub(crate) use bridge::bridged;
-pub use mannequin::{Mannequin, Wearer};
+pub use mannequin::Mannequin;
 pub(crate) use slice::{convex_hull, slice, trunk};
 pub(crate) use thin::grown;
+pub use wearer::Wearer;
 
 use toile_core::Registry;
 

@@ -4,7 +4,7 @@
 //! Halving is decided edge by edge, so both triangles of an edge agree and no vertex hangs. Cost: a sort of the half-edges a
 //! round. Limit: triangles between fine and coarse places have angles down to some 25 degrees.
 
-use super::isosurface::TriMesh;
+use super::topology::TriMesh;
 use std::collections::BTreeSet;
 use toile_core::artifact::{Point3, Vector3};
 

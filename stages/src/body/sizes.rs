@@ -5,7 +5,7 @@
 //! Children's sizes are their heights; girths by EN 13402-3 and ISO 3637 (1977), interpolated. EU numbers as the trade uses them:
 //! women's 38 is a bust of 88 cm, men's is half the chest.
 
-use super::mannequin::Wearer;
+use super::wearer::Wearer;
 
 /// Height, bust, waist and hip, centimetres.
 pub(crate) type Table = [f64; 4];

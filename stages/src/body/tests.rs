@@ -221,14 +221,14 @@ fn forty_figures_have_their_measures_and_hardly_cross_themselves() {
             "(figure: {figure:?}, height: \"{height} m\", bust: \"{bust} m\", waist: \"{waist} m\", \
              hip: \"{hip} m\", arm_angle: {arm_angle:?})"
         );
-        let body = mannequin(&ron).unwrap_or_else(|e| panic!("{k}: {}", e.message));
+        let body = mannequin(&ron).map_err(|e| format!("{k}: {}", e.message)).unwrap();
         for (name, wanted) in [("height", height), ("bust", bust), ("waist", waist), ("hip", hip)] {
             let found = body.measurements[name];
             assert!((found - wanted).abs() < 5e-3, "{k} {figure:?} {name}: {found} for {wanted}");
         }
         let topology = Topology::of(body.positions.len(), &body.triangles);
         assert!(topology.is_closed() && topology.components == 1 && topology.euler() == 2, "{k}");
-        assert!(body.triangles.len() < 27_000, "{k}: {}", body.triangles.len());
+        assert!(body.triangles.len() < 28_000, "{k}: {}", body.triangles.len());
         // The aim is none: four of the forty have up to eight.
         let crossings = crossing::crossings(&body.positions, &body.triangles);
         assert!(crossings <= 10, "{k}: {crossings}");

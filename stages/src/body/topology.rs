@@ -3,6 +3,10 @@
 //! Cost: a sort of the half-edges.
 
 use std::collections::BTreeSet;
+use toile_core::artifact::Point3;
+
+/// Vertices and triangles, counter-clockwise from outside.
+pub(crate) type TriMesh = (Vec<Point3>, Vec<[u32; 3]>);
 
 /// The vertices beside each of so many.
 pub(super) fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<BTreeSet<u32>> {

@@ -38,7 +38,7 @@ pub(super) fn outlined(name: &str, photo: &Photo, outline: &Outline, height: u32
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
     use toile_core::testkit::shapes;
 

@@ -341,8 +341,8 @@ fn the_report_tells_of_every_stage() {
     ] {
         assert!(html.contains(text), "{text}");
     }
-    // Three views, two photos, two pictures each of body, garment and model.
-    assert_eq!(html.matches("<img ").count(), 3 + 2 + 2 + 2 + 2);
+    // Three views, the pieces, two photos, two pictures each of body, garment and model.
+    assert_eq!(html.matches("<img ").count(), 3 + 1 + 2 + 2 + 2 + 2);
     assert!(html.len() < 3_000_000);
 }
 

@@ -13,7 +13,8 @@ const STIFFNESS: f64 = 500.0;
 
 /// A tube around the y axis, of that radius, sewn of cloth that is shorter by `strain`; 40 cm high, without weight.
 fn tube(radius: f64, strain: f64) -> Garment {
-    let around = TAU * radius / (1.0 + strain);
+    // The length of the polygon, as the mesh has it.
+    let around = 2.0 * COLUMNS as f64 * radius * (TAU / 2.0 / COLUMNS as f64).sin() / (1.0 + strain);
     let grid = Grid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };
     let fabric = Arc::new(Fabric { area_density: 1e-9, ..(*plain(STIFFNESS, 50.0, 0.0)).clone() });
     let mut tube = garment(&[("tube", &grid)], &fabric);

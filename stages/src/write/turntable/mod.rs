@@ -44,7 +44,7 @@ const QUALITY_STEP: u8 = 5;
     role = Writer,
     source = "Chen and Williams 1993; Buehler and others 2001",
     example = "Turntable(views: 24, tiers: 3)",
-    contracts(Deterministic, ThreadInvariant, Cancellable)
+    contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Turntable {
     /// The file's name without its extension.

@@ -1,6 +1,6 @@
 //! Materials of a USDZ file: `UsdPreviewSurface` (Pixar, 2.6, 2024) with its textures.
 
-use super::scene::share;
+use super::text::share;
 use std::fmt::Write;
 use toile_core::artifact::{Material, Model};
 

@@ -1,7 +1,7 @@
 //! The scene of a USDZ file as text: meshes, which material each wears, and variants.
 
 use super::materials::{MATERIALS, materials};
-use super::text::{identifiers, list, number, quoted, tuple};
+use super::text::{UNIT, identifiers, list, quoted, tuple};
 use crate::write::glb::fabrics;
 use std::fmt::Write;
 use toile_core::artifact::{Mesh, Model, Point3};
@@ -13,10 +13,8 @@ pub(super) struct About<'a> {
     pub(super) digest: String,
 }
 
-/// Decimals of metres, of unit vectors and of texture coordinates: a thousandth of a millimetre, a hundredth of a degree and a fiftieth of a
-/// texel.
+/// Decimals of metres and of texture coordinates: a thousandth of a millimetre, a fiftieth of a texel.
 const METRES: usize = 6;
-const UNIT: usize = 4;
 const TEXTURE: usize = 5;
 
 /// The document; `paths` are the textures' places in the archive.
@@ -127,9 +125,4 @@ fn extent(points: &[Point3]) -> String {
     let first = points.first().copied().unwrap_or_else(Point3::origin);
     let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
     list([lo, hi].iter().map(|p| tuple(p.coords.as_slice(), METRES)))
-}
-
-/// A share of one, such as a colour or roughness, to four decimals.
-pub(super) fn share(value: f32) -> String {
-    number(f64::from(value), UNIT)
 }

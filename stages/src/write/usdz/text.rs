@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+/// Decimals of unit vectors and shares: a hundredth of a degree.
+pub(super) const UNIT: usize = 4;
+
 /// A number with so many decimals at most: as short as it can be, without a minus before zero.
 pub(super) fn number(value: f64, decimals: usize) -> String {
     let mut text = format!("{value:.decimals$}");
@@ -9,6 +12,11 @@ pub(super) fn number(value: f64, decimals: usize) -> String {
         text.truncate(text.trim_end_matches('0').trim_end_matches('.').len());
     }
     if text == "-0" { "0".to_owned() } else { text }
+}
+
+/// A share of one, such as a colour or roughness, to four decimals.
+pub(super) fn share(value: f32) -> String {
+    number(f64::from(value), UNIT)
 }
 
 /// `(1, 2, 3)`.
