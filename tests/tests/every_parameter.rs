@@ -33,9 +33,15 @@ const VALUES: &[(&str, &str)] = &[
     ("Woven.darts", "Auto(max_strain: 0.02)"),
 ];
 
-/// Other arguments with which a parameter matters.
-const BESIDE: &[(&str, &str)] =
-    &[("air_normal", "air: 1.2"), ("air_tangential", "air: 1.2"), ("quality", "textures: Jpeg")];
+/// Other arguments with which a parameter matters, or a stage takes less time.
+const BESIDE: &[(&str, &str)] = &[
+    ("air_normal", "air: 1.2"),
+    ("air_tangential", "air: 1.2"),
+    ("Glb.quality", "textures: Jpeg"),
+    ("Obj.quality", "textures: Jpeg"),
+    ("Turntable", "views: 4, tiers: 1, size: 64"),
+    ("Usdz.quality", "textures: Jpeg"),
+];
 
 /// Parameters that change nothing on the shared suite: each wants an input on which it must matter, or goes.
 const UNSEEN: &[&str] = &[
@@ -214,9 +220,12 @@ fn hard_picture(cut: bool) -> RgbImage {
 
 /// Whether any value changes what the stage gives on the suite.
 fn acts(registry: &Registry, card: &Card, p: &ParamDoc, folder: &Path) -> bool {
+    let whole = format!("{}.{}", card.name, p.name);
     let mut example = arguments(card.example);
-    for (k, v) in
-        BESIDE.iter().filter(|(name, _)| *name == p.name).flat_map(|(_, a)| arguments(&format!("({a})")))
+    for (k, v) in BESIDE
+        .iter()
+        .filter(|(name, _)| [p.name, card.name, &whole].contains(name))
+        .flat_map(|(_, a)| arguments(&format!("({a})")))
     {
         example.retain(|(known, _)| *known != k);
         example.push((k, v));

@@ -30,6 +30,7 @@ mod proposals;
 mod qualities;
 mod repeatable;
 mod trade;
+mod turntable;
 mod typos;
 mod vest;
 mod why;

@@ -23,6 +23,7 @@ mod fault;
 mod graph;
 mod json;
 mod migrate;
+mod old_name;
 mod order;
 mod origin;
 mod overrides;
@@ -34,6 +35,7 @@ mod plugins;
 mod qualities;
 mod read;
 mod repair;
+mod setting;
 mod tree;
 mod warnings;
 mod words;
@@ -45,13 +47,13 @@ pub use fault::{Fault, FaultRecord, Faults, Label};
 pub use json::to_json;
 pub use migrate::{Migrated, migrate};
 use overrides::Given;
-pub use overrides::Override;
 pub use pipeline::Pipeline;
 pub use plugins::{PluginUse, asked as plugins_asked};
 pub use qualities::{
     Basis, MAX_QUALITIES, MAX_SETTINGS, Quality, Standing, fill as fill_qualities,
     without as without_qualities,
 };
+pub use setting::Override;
 
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -10,32 +10,10 @@ use super::origin::{Origin, Region, Writer};
 use super::parse;
 use super::qualities::Quality;
 use super::read::{self, GENERIC};
+use super::setting::Override;
 use super::tree::{Bracket, Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::Registry;
-
-/// One `--set PATH=VALUE`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Override {
-    /// Names with dots between them: `stages.GridMesher.edge`.
-    pub path: String,
-    /// A RON value: `"6 mm"`.
-    pub value: String,
-}
-
-impl std::str::FromStr for Override {
-    type Err = String;
-
-    /// Splits `PATH=VALUE` at its first `=`.
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.split_once('=') {
-            Some((path, value)) if !path.trim().is_empty() && !value.trim().is_empty() => {
-                Ok(Override { path: path.trim().to_owned(), value: value.trim().to_owned() })
-            }
-            _ => Err(format!("`{text}` is not PATH=VALUE, like `body.height=\"1.8 m\"`")),
-        }
-    }
-}
 
 /// An override with where it comes from.
 #[derive(Debug, Clone, Copy)]

@@ -5,7 +5,7 @@ use super::fault::Fault;
 use super::pick::{Before, pick};
 use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
-use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, migrate, plugins, qualities};
+use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, old_name, plugins, qualities};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::param::ron_options;
@@ -204,7 +204,7 @@ impl Reader<'_> {
         let card = self.card(&name, name_span, section, &from);
         let mut draft = Draft::new(&name, &value.span, name_span, card);
         let is_known =
-            self.registry.card(&name).is_some() || migrate::old_stage(self.registry, &name).is_some();
+            self.registry.card(&name).is_some() || old_name::old_stage(self.registry, &name).is_some();
         draft.meant = draft.card.as_ref().map(|c| c.name).filter(|_| !is_known);
         match entries {
             Some(entries) => self.arguments(&mut draft, entries),
@@ -247,7 +247,9 @@ impl Reader<'_> {
                 (Fault::new("wrong_role", message).hint(known), names.first().copied())
             }
             (Some(card), _) => return Some(card.clone()),
-            (None, _) if let Some((fault, to)) = migrate::old_stage(self.registry, name) => (fault, Some(to)),
+            (None, _) if let Some((fault, to)) = old_name::old_stage(self.registry, name) => {
+                (fault, Some(to))
+            }
             (None, _) => {
                 let listing = if section.is_some() { "there is" } else { "" };
                 let hint = toile_core::hint(name, listing, &names)
@@ -319,7 +321,7 @@ impl Reader<'_> {
         if self.faults.len() >= MAX_FAULTS {
             return;
         }
-        if let Some(old) = migrate::old_param(self.registry, card.name, name) {
+        if let Some(old) = old_name::old_param(self.registry, card.name, name) {
             self.push(old.at(key, ""));
             return;
         }

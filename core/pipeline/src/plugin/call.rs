@@ -1,6 +1,6 @@
 //! What the program offers to a plugin during one call, and what comes of it.
 
-use super::library::Loaded;
+use super::loaded::Loaded;
 use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::sync::mpsc::{Receiver, Sender, channel};

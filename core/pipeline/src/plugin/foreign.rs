@@ -5,7 +5,7 @@
 
 use super::call::{Call, Failure, Loop, Message};
 use super::card;
-use super::library::Loaded;
+use super::loaded::Loaded;
 use rayon::prelude::*;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::any::Any;

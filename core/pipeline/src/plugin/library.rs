@@ -2,11 +2,11 @@
 
 use super::card::{Strides, read};
 use super::foreign::ForeignType;
+use super::loaded::Loaded;
 use super::whole::check_whole;
 use libloading::Library;
 use std::collections::BTreeMap;
 use std::io::Write;
-use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use tempfile::NamedTempFile;
@@ -22,24 +22,6 @@ use toile_core::{Card, NoFile, PluginId, Registry, read_file};
 const SYMBOL: &[u8] = b"toile_plugin";
 /// The most stages of one plugin.
 const MAX_STAGES: usize = 1000;
-
-/// A library that is loaded.
-///
-/// It stays so until the program ends: threads of its own may outlive its last object, and code that is
-/// taken from under a thread ends the program.
-#[derive(Debug)]
-pub(super) struct Loaded {
-    id: PluginId,
-    words: &'static str,
-    _library: ManuallyDrop<Library>,
-}
-
-impl Loaded {
-    /// The plugin in words: `plugin "sdf" 0.1.0`.
-    pub(super) fn words(&self) -> &'static str {
-        self.words
-    }
-}
 
 /// Loads a plugin and adds its stages to the registry, all or none; `pinned` is the BLAKE3 digest that its file must
 /// have.
@@ -205,7 +187,7 @@ unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugi
     }
     let id = PluginId { name: intern(name), version: intern(version), digest };
     let words = intern(&format!("plugin \"{}\" {}", id.name, id.version));
-    let loaded = Arc::new(Loaded { id, words, _library: ManuallyDrop::new(library) });
+    let loaded = Arc::new(Loaded::new(id, words, library));
     let (cards, makers) = unsafe { stages(&declaration, &loaded)? };
     Ok(Plugin { id, file: file.to_owned(), abi: (declaration.major, declaration.minor), cards, makers })
 }
@@ -282,7 +264,7 @@ unsafe fn stages(d: &abi::Declaration, library: &Arc<Loaded>) -> Result<(Vec<Car
     for i in 0..count {
         let at = unsafe { first.byte_add(i * d.stage_size as usize) };
         let of = ForeignType { library: library.clone(), table: unsafe { whole(at, d.stage_size) } };
-        let card = unsafe { card_of(&of, strides, library.id) }.map_err(plain)?;
+        let card = unsafe { card_of(&of, strides, library.id()) }.map_err(plain)?;
         if cards.iter().any(|c: &Card| c.name == card.name) {
             return Err(plain(format!("it has two stages named `{}`", card.name)));
         }

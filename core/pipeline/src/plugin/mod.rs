@@ -1,4 +1,4 @@
-//! The program's side of plugins: `whole` looks whether a library is one, `library` loads and checks a plugin, `card` reads its
+//! The program's side of plugins: `whole` looks whether a library is one, `library` loads and checks a plugin, `loaded` keeps it, `card` reads its
 //! stages' cards, `foreign` is its stage behind the [`Stage`](toile_core::Stage) trait, `call` what the program offers during a
 //! call.
 //!
@@ -8,6 +8,7 @@ mod call;
 mod card;
 mod foreign;
 mod library;
+mod loaded;
 mod whole;
 
 pub use call::MAX_OUTPUT_BYTES;

@@ -9,15 +9,12 @@
 //! for each rewritten argument. Limits: a value is converted as text; what a change cannot convert is left, and the load
 //! names it.
 //!
-//! - [`Migration`](toile_core::Migration): what a crate lists; `old_name`: what the load says; `rewrite`, `qualities`: what becomes of the text.
+//! - [`Migration`](toile_core::Migration): what a crate lists; `old_name` (beside this): what the load says; `rewrite`, `qualities`: what becomes of the text.
 
-mod old_name;
 mod qualities;
 mod rewrite;
 #[cfg(test)]
 mod tests;
-
-pub(super) use old_name::{old_param, old_stage};
 
 use super::draft::Draft;
 use super::fault::Faults;

@@ -10,8 +10,8 @@ use super::super::read::Read;
 use super::super::tree::{Entry, Tree};
 use super::super::{Override, parse};
 use super::is_read_from;
-use super::old_name::renamed;
 use super::rewrite::{Edit, Followed, Migrator};
+use crate::load::old_name::renamed;
 use std::ops::Range;
 use toile_core::param::ron_text;
 

@@ -1,8 +1,8 @@
 //! Edits of a file's text at the places that the syntax tree knows.
 
 use super::Migrated;
-use super::old_name::renamed;
 use crate::load::fault::{Fault, Lines};
+use crate::load::old_name::renamed;
 use crate::load::tree::{Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::{Change, Registry};

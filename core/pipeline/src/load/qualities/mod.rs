@@ -28,7 +28,7 @@ pub(super) use check::settings;
 pub(super) use read::{choose, named, read};
 pub use write::{fill, without};
 
-use super::Override;
+use super::setting::Override;
 use std::ops::Range;
 use toile_core::Length;
 
