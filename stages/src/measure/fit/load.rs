@@ -5,7 +5,8 @@
 //! holds. Its part along the body's normal, by the area around the vertex, is the pressure; on a tube around a cylinder it is Laplace's
 //! `p = T / r`. Source: Woven law of the cloth engine (see `docs/reference/solver.md`); Laplace 1806.
 //!
-//! Limits: bending is left out, which is below 0.1 kPa for clothing; of layers that lie on each other each has its own pressure.
+//! Limits: bending is left out; weight is that of the Earth, whatever the solver was told; of layers that lie on each other each has its
+//! own pressure; cloth that is not at rest, or whose flat shape is not known, has no true figures.
 
 use crate::engine::{cloth_error, engine_fabric};
 use nalgebra::{Matrix2, Matrix3x2};

@@ -3,6 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{Body, Garment, GarmentPanel, Point2, Point3};
 
+/// The middle of an armhole, a cuff or a leg is farther than this from the middle of the body, metres.
+const BESIDE: f64 = 0.05;
+
 /// A closed line of edges that nothing is sewn to.
 #[derive(Debug, Clone)]
 pub(super) struct Opening {
@@ -96,7 +99,7 @@ pub(super) fn finished(
     let trunk: BTreeSet<u32> = around.iter().flat_map(|o| o.vertices.iter().copied()).collect();
     for (side, sign) in [("left", 1.0), ("right", -1.0)] {
         let own = |o: &&Opening| {
-            sign * (o.middle().x - axis) > 0.05 && !o.vertices.iter().any(|v| trunk.contains(v))
+            sign * (o.middle().x - axis) > BESIDE && !o.vertices.iter().any(|v| trunk.contains(v))
         };
         let Some(end) = openings.iter().filter(own).min_by(|a, b| a.height.total_cmp(&b.height)) else {
             continue;

@@ -12,6 +12,8 @@ use toile_core::artifact::{Body, Garment, GirthFigures, Point2, Point3, Vector3}
 
 /// Below the crotch, metres: where the legs are apart.
 const BELOW_CROTCH: f64 = 0.05;
+/// A sleeve is no wider than so many times the arm.
+const AROUND_ARM: f64 = 3.0;
 /// Above the neck's base, metres: where a tape around the neck lies, if the body brings no measure.
 const ABOVE_BASE: f64 = 0.03;
 /// An opening around the neck is no longer than so many times the neck: beyond it is a boat or a strapless top.
@@ -48,7 +50,7 @@ fn biceps(garment: &Garment, body: &Body, side: &str) -> Option<GirthFigures> {
     let sleeve = Garment { positions: turned(&garment.positions), ..garment.clone() };
     let cloth_m = girth::around(&sleeve, 0.0, arm.centre(), &[])?;
     // What goes around trunk and arm together is no sleeve.
-    (cloth_m < 3.0 * arm.girth).then_some(GirthFigures { cloth_m, body_m: arm.girth })
+    (cloth_m < AROUND_ARM * arm.girth).then_some(GirthFigures { cloth_m, body_m: arm.girth })
 }
 
 /// Around one leg alone.

@@ -4,6 +4,9 @@ use super::load::Load;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Body, Garment, Point3};
 
+/// What is nearer than this to the line of an arm's joints lies on the arm, metres.
+const ARM: f64 = 0.09;
+
 /// A part of the body on which the cloth presses too hard.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Tight {
@@ -64,7 +67,7 @@ fn part(body: &Body, p: &Point3) -> String {
             let (along, beyond) = (b - a, mark(&format!("armpit_{side}")).map_or(0.0, |q| q.x.abs()));
             let share = (p - a).dot(&along) / along.norm_squared().max(1e-12);
             let off = (p - (a + along * share.clamp(0.0, 1.0))).norm();
-            if off < 0.09 && share < 1.05 && p.x.abs() > beyond {
+            if off < ARM && share < 1.05 && p.x.abs() > beyond {
                 return format!("{side} {name}");
             }
         }
