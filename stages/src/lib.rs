@@ -11,6 +11,7 @@ pub mod fabric;
 #[cfg(test)]
 mod fixtures;
 pub mod flat;
+mod grid;
 pub mod measure;
 pub mod mesh;
 pub mod pattern;

@@ -1,7 +1,7 @@
 //! How far garments of several pipelines lie from that of the first, and what each costs.
 //!
 //!     cargo run --release -p toile-tests --example held_against -- \
-//!         pipelines/vest.ron Settle stages.Refine.parts=6 -- pipelines/vest.ron Settle -- my.ron Settle KEY=VALUE ...
+//!         pipelines/vest.ron Settle stages.Subdivide.parts=6 -- pipelines/vest.ron Settle -- my.ron Settle KEY=VALUE ...
 //!
 //! Each group between `--` is a pipeline's file, the stage up to which it runs, and changed values. For every group after
 //! the first: triangles, processor seconds of the run, then distance and displacement from the first's garment (mean, 95 %,

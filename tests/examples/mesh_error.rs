@@ -53,7 +53,7 @@ fn kept(text: &str) -> &str {
 /// The same garment on a fine mesh, from where `until` left it.
 fn branch(until: &str, fine: &str) -> String {
     format!(
-        "GridMesher(id: \"Fine\", edge: \"{fine}\"), Carry(id: \"Carried\", from: [\"Fine\", \"{until}\"]), \
+        "GridMesher(id: \"Fine\", edge: \"{fine}\"), Transfer(id: \"Carried\", from: [\"Fine\", \"{until}\"]), \
          StaticEquilibrium(id: \"Settled\", from: \"Carried\", coarsest: 100000, steps: 2000)])"
     )
 }

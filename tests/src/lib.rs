@@ -40,7 +40,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A pipeline's text without its solver: no line of `StaticEquilibrium` or `Refine`, and no qualities, which set them.
+/// A pipeline's text without its solver: no line of `StaticEquilibrium` or `Subdivide`, and no qualities, which set them.
 #[must_use]
 pub fn without_rest(text: &str) -> String {
     let (head, qualities) = text.split_once("    qualities: [").unwrap_or((text, ""));
@@ -48,7 +48,7 @@ pub fn without_rest(text: &str) -> String {
     let lines = head
         .lines()
         .chain(tail.lines())
-        .filter(|l| !["StaticEquilibrium(", "Refine("].iter().any(|s| l.trim().starts_with(s)));
+        .filter(|l| !["StaticEquilibrium(", "Subdivide("].iter().any(|s| l.trim().starts_with(s)));
     lines.collect::<Vec<_>>().join("\n")
 }
 

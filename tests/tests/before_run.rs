@@ -215,10 +215,10 @@ fn what_is_not_used_is_a_warning() {
     for name in toile_tests::PIPELINES {
         assert_eq!(warned(&pipeline(name)), "");
     }
-    let file = vest(dir.path(), &[("Report(),", "Report(), Refine(),")]);
-    let line = fs::read_to_string(&file).unwrap().lines().position(|l| l.contains("Refine(")).unwrap() + 1;
+    let file = vest(dir.path(), &[("Report(),", "Report(), Subdivide(),")]);
+    let line = fs::read_to_string(&file).unwrap().lines().position(|l| l.contains("Subdivide(")).unwrap() + 1;
     let expected = format!(
-        "warning: vest.ron:{line}:44: nothing uses what `Refine` makes; it is left out of a run; \
+        "warning: vest.ron:{line}:44: nothing uses what `Subdivide` makes; it is left out of a run; \
          put a stage that takes a garment behind it, or take it away\n"
     );
     assert_eq!(warned(&file), expected);
@@ -246,11 +246,11 @@ fn a_stage_after_the_report_is_no_panic_and_what_is_written_is_judged() {
         json["garment"]["triangles"].as_u64().unwrap() as usize
     };
     let was = triangles("GarmentObj(), Report(),");
-    for late in ["Refine(parts: 2)", "PlaneSmoother()", "BvhCollider()"] {
+    for late in ["Subdivide(parts: 2)", "PlaneSmoother()", "BvhCollider()"] {
         assert_eq!(triangles(&format!("GarmentObj(), Report(), {late},")), was, "{late}");
     }
     // What is written after the report is what is judged.
-    let judged = triangles("Report(), Refine(parts: 2), GarmentObj(),");
+    let judged = triangles("Report(), Subdivide(parts: 2), GarmentObj(),");
     let written = fs::read_to_string(format!("{out}/result.obj")).unwrap();
     assert_eq!(judged, written.lines().filter(|l| l.starts_with("f ")).count());
     assert!(judged > 3 * was);

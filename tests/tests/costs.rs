@@ -69,7 +69,7 @@ fn a_scene_is_foreseen_to_the_triangle() {
 
 #[test]
 fn a_refined_garment_is_foreseen_to_the_triangle() {
-    let parts = Override { path: "stages.Refine.parts".into(), value: "3".into() };
+    let parts = Override { path: "stages.Subdivide.parts".into(), value: "3".into() };
     let pipeline = loaded("skirt.ron", &[parts]);
     let foreseen = foresee(&pipeline, &|_, _| None);
     let triangles = |stage: &str| foreseen[pipeline.find(stage).unwrap()].made.get(Quantity::Triangles);
@@ -88,7 +88,7 @@ fn a_way_of_its_own_has_records_of_its_own() {
     let costs = run(&pipeline, &options, &Cancel::new(), &listener).unwrap().costs;
     let noted: Vec<String> =
         note(&pipeline, &costs, &Costs::default(), 1).into_iter().map(|r| r.stage).collect();
-    assert_eq!(noted[1..4], ["StaticEquilibrium", "Refine", "StaticEquilibrium(from_here: true)"]);
+    assert_eq!(noted[1..4], ["StaticEquilibrium", "Subdivide", "StaticEquilibrium(from_here: true)"]);
 }
 
 #[test]

@@ -79,7 +79,8 @@ fn the_reports_views_are_those_of_the_preview_where_there_is_one() {
 
 #[test]
 fn factors_are_of_single_precision_where_that_solves_the_step() {
-    let told = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.graded=false"]);
+    let told =
+        decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.bending_continuation=false"]);
     let words = "
   StaticEquilibrium    simplified double precision of each step's factor: only where single does not solve the step (mixed-precision)
       by      about 1024 triangles, whose matrix tells at each step how well it is solved
@@ -87,8 +88,8 @@ fn factors_are_of_single_precision_where_that_solves_the_step() {
 ";
     assert!(told.contains(words), "{told}");
     assert!(told.contains("      else    --set 'stages.StaticEquilibrium.precision=Double'"), "{told}");
-    let graded = decisions(&[&pipeline("scene.ron")]);
-    assert!(graded.contains("      within  surface 8 mm\n"), "{graded}");
+    let continued = decisions(&[&pipeline("scene.ron")]);
+    assert!(continued.contains("      within  surface 8 mm\n"), "{continued}");
     let turned = decisions(&[&pipeline("scene.ron"), "--set", "stages.StaticEquilibrium.precision=Double"]);
     assert!(!turned.contains("mixed-precision"), "{turned}");
 }

@@ -74,7 +74,7 @@ const SKIRT: &str = "the cloth of 'front' and 'back'";
 
 #[test]
 fn a_skirt_that_misses_its_body_is_an_error_with_a_remedy() {
-    for draper in ["StaticEquilibrium()", "StaticEquilibrium(graded: false)"] {
+    for draper in ["StaticEquilibrium()", "StaticEquilibrium(bending_continuation: false)"] {
         for (aside, start, back) in [
             (
                 [0.6, 0.0, 0.0],
@@ -125,11 +125,13 @@ fn solvers_in_time_tell_a_fall_as_well() {
 
 #[test]
 fn a_skirt_that_slides_some_centimetres_is_good_and_measured() {
-    let (answer, metrics) = Skirt::new().moved([0.0, 0.06, 0.02]).run("StaticEquilibrium(graded: false)");
+    let (answer, metrics) =
+        Skirt::new().moved([0.0, 0.06, 0.02]).run("StaticEquilibrium(bending_continuation: false)");
     assert_eq!(answer.code, 0, "{}", answer.err);
     let share = metrics.unwrap()["garment"]["on_body"].as_f64().unwrap();
     assert!((0.7..1.0).contains(&share), "{share}");
-    let (answer, _) = Skirt::new().run("StaticEquilibrium(graded: false), Measure(least_on_body: 1.0)");
+    let (answer, _) =
+        Skirt::new().run("StaticEquilibrium(bending_continuation: false), Measure(least_on_body: 1.0)");
     assert_eq!(answer.code, 4, "{}", answer.err);
     assert!(words(&answer).contains("panel \"front\" has slid down the body: 9"), "{}", answer.err);
 }

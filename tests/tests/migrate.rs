@@ -3,7 +3,8 @@
 use std::fs;
 use toile_tests::{PIPELINES, pipeline, toile};
 
-/// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium, `tugs` of the stitcher is gone.
+/// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium, Refine is Subdivide; parameters have other
+/// names, `tugs` of the stitcher is gone.
 const OLD: &str = r#"// My vest.
 (
     photos: { "front": (file: "front.jpg", width: "52 cm"), "back": MirrorOf("front") },
@@ -14,15 +15,16 @@ const OLD: &str = r#"// My vest.
         Otsu(),
         LaplacianEdges(threshold: 8.0),  // finer than Canny
         GridMesher(),
-        Place(),
+        Place(ease: "2 cm"),
         BvhCollider(),
         SpringStitcher(
             tugs: 3,            // pull
             seam_distance: "1 mm",
         ),
         Rest(graded: false),
+        Refine(parts: 2),
     ],
-    qualities: [Quality(name: "Draft", max_error: "20 mm", set: ["stages.Rest.speed=0.01"])],
+    qualities: [Quality(name: "Draft", max_error: "20 mm", set: ["stages.Rest.graded=true", "stages.Refine.parts=1"])],
 )
 "#;
 
@@ -46,9 +48,13 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
 
     let changes = format!(
         "{name}: line 9: stage LaplacianEdges -> Laplacian\n\
+         {name}: line 11: Place: ease -> start_offset\n\
          {name}: line 14: SpringStitcher: tugs removed: seams close at the speed `closing`\n\
          {name}: line 17: stage Rest -> StaticEquilibrium\n\
-         {name}: line 19: quality Draft: stages.Rest.speed=0.01 -> stages.StaticEquilibrium.speed=0.01\n"
+         {name}: line 17: StaticEquilibrium: graded -> bending_continuation\n\
+         {name}: line 18: stage Refine -> Subdivide\n\
+         {name}: line 20: quality Draft: stages.Rest.graded=true -> stages.StaticEquilibrium.bending_continuation=true\n\
+         {name}: line 20: quality Draft: stages.Refine.parts=1 -> stages.Subdivide.parts=1\n"
     );
     let check = toile(&["migrate", "--check", &name]);
     assert_eq!((check.code, check.out.as_str()), (4, changes.as_str()));
@@ -61,8 +67,10 @@ fn an_old_file_is_refused_with_the_command_that_mends_it_and_then_valid() {
         new,
         OLD.replace("LaplacianEdges", "Laplacian")
             .replace("            tugs: 3,            // pull", "            // pull")
-            .replace("Rest(", "StaticEquilibrium(")
-            .replace("stages.Rest.speed", "stages.StaticEquilibrium.speed")
+            .replace("Rest", "StaticEquilibrium")
+            .replace("graded", "bending_continuation")
+            .replace("Refine", "Subdivide")
+            .replace("ease:", "start_offset:")
     );
     assert_eq!(toile(&["validate", &name]).code, 0, "{}", toile(&["validate", &name]).err);
     assert_eq!(toile(&["migrate", &name]).out, format!("{name}: up to date\n"));
@@ -84,12 +92,15 @@ fn what_validate_refuses_is_not_called_up_to_date() {
     let new = OLD
         .replace("LaplacianEdges", "Laplacian")
         .replace("            tugs: 3,            // pull\n", "")
-        .replace("Rest", "StaticEquilibrium");
+        .replace("Rest", "StaticEquilibrium")
+        .replace("graded", "bending_continuation")
+        .replace("Refine", "Subdivide")
+        .replace("ease:", "start_offset:");
     fs::copy(pipeline("samples/vest/front.jpg"), dir.path().join("front.jpg")).unwrap();
     for (right, wrong, words) in [
         ("Otsu()", "Otzu()", "unknown stage `Otzu`"),
         ("\"cotton poplin\"", "\"coton poplin\"", "there is no fabric preset \"coton poplin\""),
-        ("Place()", "Place(ease: 2)", "the length 2 has no unit"),
+        ("start_offset: \"2 cm\"", "start_offset: 2", "the length 2 has no unit"),
     ] {
         fs::write(&file, new.replace(right, wrong)).unwrap();
         for more in [&["migrate", "--check", &name][..], &["migrate", &name]] {

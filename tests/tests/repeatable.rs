@@ -46,7 +46,7 @@ fn a_skirt_from_moved_starts_ends_in_the_same_folds() {
     let default = spread(&skirt, 4, 0, &[]);
     assert!(default < 2.5, "{default}");
     // The choice that is fast leaves the folds to chance, or this test would tell nothing.
-    let fast = spread(&skirt, 4, 0, &["--set", "stages.StaticEquilibrium.graded=false"]);
+    let fast = spread(&skirt, 4, 0, &["--set", "stages.StaticEquilibrium.bending_continuation=false"]);
     assert!(fast > 3.0, "{fast}");
 }
 

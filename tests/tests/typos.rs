@@ -12,7 +12,7 @@ const SLIPS: [Slip; 32] = [
     ("Otsu()", "^Otzu()", "unknown stage `Otzu`", "did you mean `Otsu`?"),
     ("Neckline()", "^Nekcline()", "unknown stage `Nekcline`", "did you mean `Neckline`?"),
     ("PlaneSmoother(", "^PlaneSmother(", "unknown stage `PlaneSmother`", "did you mean `PlaneSmoother`?"),
-    ("Refine(parts", "^Refien(parts", "unknown stage `Refien`", "did you mean `Refine`?"),
+    ("Subdivide(parts", "^Subdvide(parts", "unknown stage `Subdvide`", "did you mean `Subdivide`?"),
     ("GarmentObj(", "^GarmentOjb(", "unknown stage `GarmentOjb`", "did you mean `GarmentObj`?"),
     ("style: Vest()", "style: ^Vset()", "unknown stage `Vset`", "did you mean `Vest`?"),
     ("body: Mannequin(", "body: ^Manequin(", "unknown stage `Manequin`", "did you mean `Mannequin`?"),
@@ -28,7 +28,12 @@ const SLIPS: [Slip; 32] = [
         "did you mean `Eight`?",
     ),
     // values
-    ("ease: \"2 cm\"", "ease: ^2", "`ease`: the length 2 has no unit; write \"2 mm\" or \"2 cm\"", ""),
+    (
+        "start_offset: \"2 cm\"",
+        "start_offset: ^2",
+        "`start_offset`: the length 2 has no unit; write \"2 mm\" or \"2 cm\"",
+        "",
+    ),
     ("lambda: 0.5", "lambda: ^5", "`lambda` is 5, above its greatest value ", ""),
     ("high: 60", "high: ^\"60\"", "`high` wants a number, found `\"60\"`", ""),
     ("from_here: true", "from_here: ^yes", "`from_here` wants true | false, found `yes`", ""),
@@ -54,17 +59,32 @@ const SLIPS: [Slip; 32] = [
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets
-    ("ease: \"2 cm\"),", "ease: \"2 cm\")^", "a comma is missing after `Place(ease: \"2 cm\")`", ""),
+    (
+        "start_offset: \"2 cm\"),",
+        "start_offset: \"2 cm\")^",
+        "a comma is missing after `Place(start_offset: \"2 cm\")`",
+        "",
+    ),
     ("low: 20,", "low: 20^", "a comma is missing after `20`", ""),
     ("lambda: 0.5", "lambda^ 0.5", "a colon is missing after `lambda`", "write `lambda: ...`"),
-    ("ease: \"2 cm\"", "ease: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
-    ("ease: \"2 cm\"", "ease: ^2 cm", "`2 cm` is a text and stands in quotes", "write `\"2 cm\"`"),
+    ("start_offset: \"2 cm\"", "start_offset: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
+    (
+        "start_offset: \"2 cm\"",
+        "start_offset: ^2 cm",
+        "`2 cm` is a text and stands in quotes",
+        "write `\"2 cm\"`",
+    ),
     ("Glb()", "^Glb", "`Glb` needs brackets", "write `Glb()`"),
     ("(lambda: 0.5)", "^(lambda: 0.5", "this `(` is never closed", "write `)` before `"),
     // what stands twice, and settings of qualities
     ("\"back\":", "^\"front\":", "the key \"front\" is given twice", ""),
     ("low: 20,", "low: 20, ^low: 20,", "the field `low` is given twice", ""),
-    ("[\"stages.Refine.parts", "[^\"stages.Refin.parts", "quality `", "did you mean `stages.Refine.parts`?"),
+    (
+        "[\"stages.Subdivide.parts",
+        "[^\"stages.Subdivid.parts",
+        "quality `",
+        "did you mean `stages.Subdivide.parts`?",
+    ),
 ];
 
 /// The place of `^` and the text without it; none where the slip has none.

@@ -55,7 +55,7 @@ pub(crate) struct StudyArgs {
     /// Root mean square move of a moved start
     #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = super::amounts::length)]
     pub(crate) jitter: Length,
-    /// Value of a knob for the reference alone, like `StaticEquilibrium.graded=true`; may be given again [default: the pipeline's own]
+    /// Value of a knob for the reference alone, like `StaticEquilibrium.bending_continuation=true`; may be given again [default: the pipeline's own]
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) reference: Vec<ReferenceValue>,
     /// Clock of the front; on a busy machine the processors' own is steadier

@@ -258,6 +258,7 @@ fn of_models() {
             roughness: 0.1,
             sheen: None,
             double_sided: false,
+            wrong_side: Some([0.1; 3]),
             fabric: String::new(),
         }
     );

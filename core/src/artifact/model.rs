@@ -45,6 +45,8 @@ pub struct Material {
     pub sheen: Option<Sheen>,
     /// True where both faces are seen, as for cloth.
     pub double_sided: bool,
+    /// Colour of the cloth's wrong side, linear RGB, which is then plain; none where it looks like the right side.
+    pub wrong_side: Option<[f32; 3]>,
     /// Name of the fabric; empty where it is none.
     pub fabric: String,
 }
@@ -153,6 +155,10 @@ impl Model {
         let sheen = m.sheen.map_or([0.0; 4], |s| [s.colour[0], s.colour[1], s.colour[2], s.roughness]);
         ensure(sheen.iter().all(|v| (0.0..=1.0).contains(v)), || {
             format!("the sheen of material \"{}\" is not between 0 and 1", m.name)
+        })?;
+        let back = m.wrong_side.unwrap_or_default();
+        ensure(back.iter().all(|v| (0.0..=1.0).contains(v)), || {
+            format!("the wrong side of material \"{}\" is not between 0 and 1", m.name)
         })
     }
 
@@ -266,6 +272,8 @@ mod tests {
         let sheen =
             fault(&|m| m.materials[0].sheen = Some(Sheen { colour: [0.0, 2.0, 0.0], roughness: 0.5 }));
         assert_eq!(sheen, "mesh \"front\": the sheen of material \"cloth\" is not between 0 and 1");
+        let back = fault(&|m| m.materials[0].wrong_side = Some([f32::NAN; 3]));
+        assert_eq!(back, "mesh \"front\": the wrong side of material \"cloth\" is not between 0 and 1");
         let worn = fault(&|m| m.variants[0].materials = vec![7]);
         assert_eq!(worn, "variant \"red\": a mesh has a material that does not exist");
     }

@@ -260,6 +260,7 @@ pub fn model() -> Model {
         roughness: 0.9,
         sheen: None,
         double_sided: true,
+        wrong_side: None,
         fabric: String::new(),
     };
     let front = &garment.panels[0];

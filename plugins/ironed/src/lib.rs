@@ -168,6 +168,7 @@ fn cloth(name: &str, colour: [f32; 3], texture: Option<usize>, double_sided: boo
         double_sided,
         sheen: None,
         normal_texture: None,
+        wrong_side: None,
         fabric: String::new(),
     }
 }

@@ -9,7 +9,7 @@ fn dress(texturer: &str, out: &Path) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let vest = std::fs::read_to_string(root.join("pipelines/vest.ron")).unwrap();
     let (stages, _) = vest.split_once("    qualities: [").unwrap();
-    let is_rest = |l: &&str| ["StaticEquilibrium(", "Refine("].iter().any(|s| l.trim().starts_with(s));
+    let is_rest = |l: &&str| ["StaticEquilibrium(", "Subdivide("].iter().any(|s| l.trim().starts_with(s));
     let unsewn: String = stages.lines().filter(|l| !is_rest(l)).map(|l| format!("{l}\n")).collect();
     let text = (unsewn + ")\n")
         .replace("PhotoTexturer(light: Modulate)", texturer)

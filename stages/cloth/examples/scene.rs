@@ -1,4 +1,4 @@
-//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--graded] [--trace] [--jitter SEED]`; prints one line of JSON.
+//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--continuation] [--trace] [--jitter SEED]`; prints one line of JSON.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -11,7 +11,7 @@ use toile_cloth::statics::solve::{Equilibrium, StaticEquilibrium, StaticsError};
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();
     let (Some(file), Some(out)) = (args.first(), args.get(1)) else {
-        return Err("usage: scene SCENE.json RESULT.obj [--graded] [--trace] [--jitter SEED]".into());
+        return Err("usage: scene SCENE.json RESULT.obj [--continuation] [--trace] [--jitter SEED]".into());
     };
     let trace = args.iter().any(|a| a == "--trace");
     let mut scene = scene::read(Path::new(file), &scene::Options::default())?.scene;
@@ -20,19 +20,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let clock = Instant::now();
     let mut steps = 0;
-    let solved =
-        StaticEquilibrium { graded: args.iter().any(|a| a == "--graded"), ..StaticEquilibrium::default() }
-            .solve(&scene, &mut |level| {
-                steps += 1;
-                if trace {
-                    let o = &level.outcome;
-                    eprintln!(
-                        "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
-                        level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
-                    );
-                }
-                ControlFlow::Continue(())
-            });
+    let solved = StaticEquilibrium {
+        bending_continuation: args.iter().any(|a| a == "--continuation"),
+        ..StaticEquilibrium::default()
+    }
+    .solve(&scene, &mut |level| {
+        steps += 1;
+        if trace {
+            let o = &level.outcome;
+            eprintln!(
+                "{:6} {:3} dt {:.3} speed {:.2e} residual {:.2e} share {:.3}",
+                level.nodes, o.steps, o.dt, o.speed, o.residual, o.share
+            );
+        }
+        ControlFlow::Continue(())
+    });
     let wall = clock.elapsed().as_secs_f64();
     let (state, error): (Equilibrium, Option<String>) = match solved {
         Ok(state) => (state, None),

@@ -9,19 +9,19 @@ use super::mixed_precision::APART;
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
-/// Share of the stage's time that it saves, on garments of some thousand triangles: graded, straight.
+/// Share of the stage's time that it saves, on garments of some thousand triangles: continued, straight.
 const SHARE: (f64, f64) = (0.05, 0.25);
 
 /// The decision of a drape of so many triangles.
-pub(super) fn rule(asleep: bool, graded: bool, size: &Size) -> Option<Decision> {
+pub(super) fn rule(asleep: bool, continued: bool, size: &Size) -> Option<Decision> {
     let triangles = size.get(Quantity::Triangles).filter(|n| *n > 0.0)?;
     asleep.then(|| Decision {
         rule: "regions-at-rest".into(),
         state: State::Simplified,
         what: "steps of all vertices: while few of them move, only these".into(),
         fact: format!("about {triangles:.0} triangles, most of which rest before the last ones do"),
-        tolerance: Tolerance::Distance(if graded { APART.0 } else { APART.1 }),
-        saves: Saves::Share(if graded { SHARE.0 } else { SHARE.1 }),
+        tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
+        saves: Saves::Share(if continued { SHARE.0 } else { SHARE.1 }),
         source: "nonlinear elimination: Lanzkron, Rose, Wilkes 1996".into(),
         turn: Turn::Param { name: "asleep".into(), value: "false".into() },
     })

@@ -32,12 +32,12 @@ impl From<Precision> for toile_cloth::statics::solve::Precision {
 /// Share of the stage's time that it saves, on garments of some thousand triangles.
 const SHARE: f64 = 0.08;
 
-/// How far the surface may lie from that of double precision (95 %), m: graded, as far as states that chance picks from; straight,
+/// How far the surface may lie from that of double precision (95 %), m: continued, as far as states that chance picks from; straight,
 /// as far as the folds of two moved starts.
 pub(super) const APART: (f64, f64) = (0.008, 0.02);
 
 /// The decision of a drape of so many triangles.
-pub(super) fn rule(precision: Precision, graded: bool, size: &Size) -> Option<Decision> {
+pub(super) fn rule(precision: Precision, continued: bool, size: &Size) -> Option<Decision> {
     let triangles = size.get(Quantity::Triangles).filter(|n| *n > 0.0)?;
     (precision == Precision::Mixed).then(|| Decision {
         rule: "mixed-precision".into(),
@@ -46,7 +46,7 @@ pub(super) fn rule(precision: Precision, graded: bool, size: &Size) -> Option<De
         fact: format!(
             "about {triangles:.0} triangles, whose matrix tells at each step how well it is solved"
         ),
-        tolerance: Tolerance::Distance(if graded { APART.0 } else { APART.1 }),
+        tolerance: Tolerance::Distance(if continued { APART.0 } else { APART.1 }),
         saves: Saves::Share(SHARE),
         source: "iterative refinement: Wilkinson 1963; Carson, Higham 2018".into(),
         turn: Turn::Param { name: "precision".into(), value: "Double".into() },

@@ -37,6 +37,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<CentralDifferences>();
     registry.add::<SpringDraper>();
     registry.migrate(Migration::stage("Rest", "StaticEquilibrium"));
+    registry.migrate(Migration::renamed("StaticEquilibrium", "graded", "bending_continuation"));
     for (parameter, why) in [
         ("tolerance", "rest is a change of energy below 0.1 % in a sixtieth of a second"),
         ("max_steps", "`time_limit` ends the motion"),

@@ -74,10 +74,10 @@ pub struct StaticEquilibrium {
     /// Which steps prove rest.
     #[param(default = Proof::Short, trades)]
     pub proof: Proof,
-    /// Vertices of the coarsest mesh, on which the garment is sewn; where bending is graded, at least 700.
+    /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at least 700.
     #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
-    /// Steps on every mesh but the finest; where bending is graded, each of its states has 60.
+    /// Steps on every mesh but the finest; with `bending_continuation`, each of its states has 60.
     #[param(default = 30, min = 1, max = 100_000, unit = "steps", trades)]
     pub coarse_steps: usize,
     /// Steps on the finest mesh, after which the drape stops as it is.
@@ -92,9 +92,9 @@ pub struct StaticEquilibrium {
     /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a millimetre then ends in the same
     /// folds, and a finer mesh in like ones. Without, it is faster, and chance picks the folds.
     #[param(default = true)]
-    pub graded: bool,
+    pub bending_continuation: bool,
     /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came to rest on a coarser mesh (see
-    /// `Refine`) and shall keep its folds. Nothing is graded then.
+    /// `Subdivide`) and shall keep its folds. Bending is not continued then.
     #[param(default = false, way)]
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
@@ -197,8 +197,8 @@ impl StaticEquilibrium {
 
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
         let rules = [
-            mixed_precision::rule(self.precision, self.graded, known.given),
-            asleep::rule(self.asleep, self.graded, known.given),
+            mixed_precision::rule(self.precision, self.bending_continuation, known.given),
+            asleep::rule(self.asleep, self.bending_continuation, known.given),
         ];
         rules.into_iter().flatten().collect()
     }
@@ -213,7 +213,7 @@ impl StaticEquilibrium {
             finest_steps: self.steps,
             join_gap: self.join_gap.metres(),
             budget: Duration::from_secs_f64(self.time_limit),
-            graded: self.graded,
+            bending_continuation: self.bending_continuation,
             from_here: self.from_here,
             sew_through: self.sew_through,
             long_proof: self.proof == Proof::Long,

@@ -1,29 +1,32 @@
 //! Placement: flat panels into space around the body.
 
 mod arrange;
-mod carry;
 mod depth;
 mod fit;
 mod lift;
 mod panels;
-mod refine;
 mod sew;
+mod subdivide;
+mod transfer;
 mod whole;
 
 pub use arrange::Arrange;
-pub use carry::Carry;
 pub use lift::Lift;
 pub use panels::Place;
-pub use refine::Refine;
+pub use subdivide::Subdivide;
+pub use transfer::Transfer;
 
-use toile_core::Registry;
+use toile_core::{Migration, Registry};
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Place>();
     registry.add::<Arrange>();
-    registry.add::<Carry>();
-    registry.add::<Refine>();
+    registry.add::<Transfer>();
+    registry.add::<Subdivide>();
+    registry.migrate(Migration::stage("Refine", "Subdivide"));
+    registry.migrate(Migration::stage("Carry", "Transfer"));
+    registry.migrate(Migration::renamed("Place", "ease", "start_offset"));
 }
 
 #[cfg(test)]

@@ -30,13 +30,13 @@ const MAX_BLOCKED: f64 = 0.5;
 #[stage(
     role = Placement,
     source = "lift by depth: 3D garment modelling based on image-based rendering, about 2012",
-    example = "Place(ease: \"2 cm\")",
+    example = "Place(start_offset: \"2 cm\")",
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Place {
     /// Distance between the panels and the skin.
     #[param(default = Length::cm(2.0), min = -0.5, max = 3.0)]
-    ease: Length,
+    start_offset: Length,
     /// Stiff boards, or panels bent around the body.
     #[param(default = Lift::Flat)]
     lift: Lift,
@@ -122,7 +122,7 @@ impl<'a> Scene<'a> {
         })?;
         let board = Board::new(place, self.body, raise)?;
         let laid: Vec<Point2> = panel.positions.iter().map(|&p| board.lay(p)).collect();
-        let profile = profile(self.place.lift, &laid, &board, self.body, self.place.ease.metres());
+        let profile = profile(self.place.lift, &laid, &board, self.body, self.place.start_offset.metres());
         Ok(Placed { name, panel, board, first, points: lift(&laid, &board, &profile) })
     }
 
@@ -224,13 +224,15 @@ impl<'a> Scene<'a> {
 
 fn too_deep(panel: &str, depth: f64) -> StageError {
     let message = format!("the panel \"{panel}\" would start {:.0} mm deep in the body", depth * 1e3);
-    StageError::invalid(message).hint("raise `ease`: the panels' distance from the skin").at("ease")
+    StageError::invalid(message)
+        .hint("raise `start_offset`: the panels' distance from the skin")
+        .at("start_offset")
 }
 
 fn too_far(seam: &str, gap: f64) -> StageError {
     let message = format!("the seam {seam} would start {:.0} cm apart, too far to be sewn", gap * 100.0);
     StageError::invalid(message).hint(format!(
-        "lower `ease`, or check the panels' places; seams may start {:.0} cm apart",
+        "lower `start_offset`, or check the panels' places; seams may start {:.0} cm apart",
         MAX_GAP * 100.0
     ))
 }

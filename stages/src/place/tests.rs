@@ -211,10 +211,10 @@ fn refused(scene: &Scene, ron: &str) -> String {
 fn starts_that_cannot_be_sewn_are_named() {
     let scene = vest();
     assert_eq!(
-        refused(&scene, "(ease: \"2 m\")"),
+        refused(&scene, "(start_offset: \"2 m\")"),
         "the seam front.shoulder_left + back.shoulder_left would start 426 cm apart, too far to be sewn"
     );
-    assert!(refused(&scene, "(ease: \"-10 cm\")").ends_with("mm deep in the body"));
+    assert!(refused(&scene, "(start_offset: \"-10 cm\")").ends_with("mm deep in the body"));
 }
 
 #[test]
@@ -285,7 +285,7 @@ fn draped(scene: &Scene) -> Garment {
 }
 
 fn carry(panels: &Set<Panel>, scene: &Scene, drape: &Garment) -> Result<Garment, StageError> {
-    Carry::default().run(panels.clone(), &scene.plan, &scene.fabric, drape, &Context::quiet())
+    Transfer::default().run(panels.clone(), &scene.plan, &scene.fabric, drape, &Context::quiet())
 }
 
 #[test]

@@ -65,6 +65,11 @@ impl View {
         View::turned(std::f64::consts::PI, height)
     }
 
+    /// Between the wearer's front and left side.
+    pub fn three_quarter(height: u32) -> View {
+        View::turned(std::f64::consts::FRAC_PI_4, height)
+    }
+
     /// The wearer's left side.
     pub fn side(height: u32) -> View {
         View::turned(std::f64::consts::FRAC_PI_2, height)

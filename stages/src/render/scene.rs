@@ -321,7 +321,8 @@ impl Shot<'_> {
         let material = self.scene.model.materials.get(mesh.material);
         let colour = material.map_or([0.8; 3], |m| m.colour);
         let texel = material.and_then(|m| m.texture).and_then(|t| self.texel(mesh, t, face, &weights));
-        let own = texel.map_or(colour, |t| [0, 1, 2].map(|k| t[k] * colour[k]));
+        let right_side = || texel.map_or(colour, |t| [0, 1, 2].map(|k| t[k] * colour[k]));
+        let own = material.and_then(|m| m.wrong_side).filter(|_| face.reversed).unwrap_or_else(right_side);
         if material.is_some_and(|m| m.unlit) {
             return own;
         }
@@ -350,7 +351,8 @@ impl Shot<'_> {
         let side = usize::from(face.reversed);
         let ambient = blend(&|i| f64::from(self.scene.ambient[face.mesh][i][side]));
         let key = blend(&|i| f64::from(self.key[face.mesh][i]));
-        let map = material.and_then(|m| m.normal_texture);
+        let map =
+            material.filter(|m| !(face.reversed && m.wrong_side.is_some())).and_then(|m| m.normal_texture);
         let n = self.normal(mesh, map, face, weights);
         let n = if face.reversed { -n } else { n };
         let light = self.lights.on(&n, ambient, key) as f32;

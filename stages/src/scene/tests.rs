@@ -63,7 +63,7 @@ fn rest_brings_the_skirt_to_rest_in_the_order_of_the_file() {
     let (garment, _, collider, phases) = through_files(&scene).unwrap();
     let cx = Context::quiet();
     // On edges of 13 cm a graded skirt slides lower, where it is strained by 7 %.
-    let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
+    let rest = StaticEquilibrium { bending_continuation: false, ..StaticEquilibrium::default() };
     let draped = rest.run(&garment, Some(&collider), Some(&phases), &cx).unwrap();
     assert!(draped.status.converged && draped.status.max_speed < 1e-3, "{:?}", draped.status);
     assert_eq!(draped.seam_gap_max(), 0.0);
@@ -83,7 +83,7 @@ fn rest_keeps_cloth_off_the_sharp_edges_of_a_pipelines_body() {
     ];
     for (k, body) in bodies.into_iter().enumerate() {
         let (garment, body, collider, phases) = through_files(&generate::cover(body, 12, 0.3)).unwrap();
-        let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
+        let rest = StaticEquilibrium { bending_continuation: false, ..StaticEquilibrium::default() };
         let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
         // On the plate it is told as not at rest.
         assert!(draped.status.converged || k == 1, "{k}");
@@ -121,8 +121,11 @@ fn a_pin_on_a_seam_stays_where_it_is_and_the_other_side_comes_to_it() {
     let [a, b] = scene.seams[0].pairs[0];
     scene.pinned = vec![a];
     let (garment, _, collider, phases) = through_files(&scene).unwrap();
-    let rest =
-        StaticEquilibrium { join_gap: Length::mm(20.0), graded: false, ..StaticEquilibrium::default() };
+    let rest = StaticEquilibrium {
+        join_gap: Length::mm(20.0),
+        bending_continuation: false,
+        ..StaticEquilibrium::default()
+    };
     let draped = rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap();
     assert_eq!(draped.positions[a as usize], garment.positions[a as usize]);
     assert_eq!(draped.positions[b as usize], garment.positions[a as usize]);
@@ -405,7 +408,7 @@ fn a_welded_mesh_drapes_as_one() {
     let read = |weld: bool, scene: &toile_cloth::scene::Scene| {
         std::fs::write(dir.path().join("scene.json"), to_json(scene, "")).unwrap();
         let (g, _, c, p) = Scene { file: "scene.json".into(), weld, ..Scene::default() }.run(&cx).unwrap();
-        StaticEquilibrium { graded: false, ..StaticEquilibrium::default() }
+        StaticEquilibrium { bending_continuation: false, ..StaticEquilibrium::default() }
             .run(&g, Some(&c), Some(&p), &cx)
             .unwrap()
     };
@@ -435,7 +438,7 @@ fn a_curtain_sewn_to_pins_of_no_triangle_hangs_there_in_every_solver() {
 /// What `StaticEquilibrium` says of a scene that it cannot bring to rest.
 fn refused(scene: &toile_cloth::scene::Scene) -> StageError {
     let (garment, _, collider, phases) = through_files(scene).unwrap();
-    let rest = StaticEquilibrium { graded: false, ..StaticEquilibrium::default() };
+    let rest = StaticEquilibrium { bending_continuation: false, ..StaticEquilibrium::default() };
     rest.run(&garment, Some(&collider), Some(&phases), &Context::quiet()).unwrap_err()
 }
 

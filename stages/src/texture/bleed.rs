@@ -5,7 +5,9 @@
 //! functions*, 2012) which also keeps where the nearest was. So neither a seam nor a reduced texture shows the
 //! ground on which the garment lay.
 //!
-//! Cost: linear in the number of pixels. Limit: beyond the outline colours run out as streaks.
+//! One colour a ray would run out as a streak; so the picture beyond the outline is the rim inside of it, mirrored there and back.
+//!
+//! Cost: linear in the number of pixels. Limit: across a print that ends at the outline the mirror shows.
 
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
@@ -124,8 +126,9 @@ pub(super) fn eroded(inside: &GrayImage, depth: f64) -> GrayImage {
     kept
 }
 
-/// Gives every pixel off `sure` the colour of the nearest pixel on it; false where there is none.
-pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
+/// Gives every pixel off `sure` a colour from the rim of `depth` pixels inside of the nearest pixel on it: there and back again with growing
+/// distance, as in a mirror. False where there is no pixel to take it from.
+pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage, depth: f64) -> bool {
     let (w, h) = (sure.width() as usize, sure.height() as usize);
     let raw = sure.as_raw();
     let Some(near) = nearest(|x, y| raw[y * w + x] != 0, w, h) else { return false };
@@ -133,10 +136,25 @@ pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
     let row = |(y, row): (usize, &mut [u8])| {
         let off = |(x, _): &(usize, &mut [u8])| raw[y * w + x] == 0;
         for (x, pixel) in row.chunks_exact_mut(3).enumerate().filter(off) {
-            let from = near[y * w + x] as usize * 3;
+            let from = mirrored([x, y], near[y * w + x] as usize, [w, h], depth);
+            let from = 3 * from.filter(|i| raw[*i] != 0).unwrap_or(near[y * w + x] as usize);
             pixel.copy_from_slice(&before.as_raw()[from..from + 3]);
         }
     };
     pixels.par_chunks_mut(w * 3).enumerate().for_each(row);
     true
+}
+
+/// The pixel inside of `at`, which is the nearest sure one to `from`, as deep as `from` lies outside, folded at `depth`.
+fn mirrored(from: [usize; 2], at: usize, [w, h]: [usize; 2], depth: f64) -> Option<usize> {
+    let (x, y) = ((at % w) as f64, (at / w) as f64);
+    let (dx, dy) = (x - from[0] as f64, y - from[1] as f64);
+    let distance = dx.hypot(dy);
+    if depth < 1.0 || distance < 1.0 {
+        return None;
+    }
+    let deep = (depth - (distance.rem_euclid(2.0 * depth) - depth).abs()) / distance;
+    let (x, y) = ((x + dx * deep).round(), (y + dy * deep).round());
+    let within = x >= 0.0 && y >= 0.0 && x < w as f64 && y < h as f64;
+    within.then(|| y as usize * w + x as usize)
 }

@@ -1,7 +1,9 @@
 //! Texturers: garment and photos to a textured model.
 
+mod arms;
 mod bleed;
 mod crop;
+pub(crate) mod edge;
 mod fabric_texturer;
 #[cfg(test)]
 pub(crate) mod fixture;
@@ -11,6 +13,7 @@ mod photo_detail;
 mod photo_texturer;
 mod plain;
 mod relief;
+mod shading;
 pub(crate) mod tangents;
 #[cfg(test)]
 mod tests;
@@ -18,7 +21,7 @@ mod texture_size;
 mod weave;
 
 pub use fabric_texturer::{FabricDetail, FabricTexture, FabricTexturer};
-pub use photo_texturer::{BodyShown, Light, PhotoDetail, PhotoTexturer, Unseen};
+pub use photo_texturer::{BodyShown, Light, PhotoDetail, PhotoLight, PhotoTexturer, Unseen, WrongSide};
 
 use toile_core::Registry;
 use toile_core::prelude::*;

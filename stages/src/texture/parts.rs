@@ -60,6 +60,7 @@ pub(crate) fn plain_cloth(name: &str, colour: [f32; 3]) -> Material {
         roughness: CLOTH_ROUGHNESS,
         sheen: None,
         double_sided: true,
+        wrong_side: None,
         fabric: String::new(),
     }
 }

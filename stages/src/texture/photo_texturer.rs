@@ -2,9 +2,12 @@
 //!
 //! The photo's pixels are cropped to the panel, scaled down by area average and bled past the outline; texture
 //! coordinates are the photo coordinates that the mesher kept for every vertex.
-//! Cost: a few passes over the photo's pixels. Limit: light and shadow in the photo stay in the texture.
+//! Cost: a few passes over the photo's pixels. Limit: without `shading: Remove` light and shadow in the photo stay in the texture.
 
+use super::arms::without_arms;
+use super::edge::add_edges;
 use super::inside::{PixelBox, cover, keep_shown};
+use super::shading::Shading;
 use super::texture_size::{self, LARGEST};
 use super::{bleed, crop, of_panel, parts, photo_detail, plain};
 use rayon::prelude::*;
@@ -28,8 +31,25 @@ pub enum Light {
 pub enum BodyShown {
     /// As the last mesh.
     Show,
+    /// The same without arms, as a dress form stands in a shop: nothing hides the garment's side. The garment was draped with them.
+    WithoutArms,
     /// Left out.
     Hide,
+}
+
+impl BodyShown {
+    /// Adds the body to the end of a model.
+    pub(super) fn add(self, model: &mut Model, body: Option<&Body>) -> Result<(), StageError> {
+        let Some(body) = body.filter(|b| !b.triangles.is_empty()) else { return Ok(()) };
+        let mesh = match self {
+            BodyShown::Show => parts::body_mesh(body, model.materials.len()),
+            BodyShown::WithoutArms => parts::body_mesh(&without_arms(body)?, model.materials.len()),
+            BodyShown::Hide => return Ok(()),
+        };
+        model.meshes.push(mesh);
+        model.materials.push(parts::mannequin());
+        Ok(())
+    }
 }
 
 /// What a side shows of which there is no photo, but the other side's mirror image.
@@ -52,6 +72,26 @@ pub enum PhotoDetail {
     Photo,
 }
 
+/// What becomes of the light under which the photo was taken.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum PhotoLight {
+    /// It stays: creases and uneven light are part of the cloth's colour.
+    Keep,
+    /// It is taken out, as far as it is told from print: folds of the flat garment are not lit a second time.
+    Remove,
+}
+
+/// What the wrong side of the cloth shows: the inside of the garment.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum WrongSide {
+    /// The cloth's own colour: the commonest one of its photo.
+    Plain,
+    /// The same as the right side, as a weave or a knit of coloured yarns does.
+    Same,
+}
+
 /// Dresses each panel in its own photo.
 ///
 /// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
@@ -60,8 +100,8 @@ pub enum PhotoDetail {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 5,
-    source = "garment modelling thesis, 2012: replace and modulate; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
+    version = 6,
+    source = "garment modelling thesis, 2012: replace and modulate; Land, McCann 1971 and Grosse and others 2009: light apart from colour; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
 )]
@@ -78,6 +118,15 @@ pub struct PhotoTexturer {
     /// What a side shows of which there is no photo (`MirrorOf`).
     #[param(default = Unseen::Mirrored)]
     unseen: Unseen,
+    /// What becomes of the photo's own light: creases, shadows and uneven light.
+    #[param(default = PhotoLight::Keep)]
+    shading: PhotoLight,
+    /// What the wrong side of the cloth shows.
+    #[param(default = WrongSide::Plain)]
+    wrong_side: WrongSide,
+    /// Thickness of open edges, as of a hem, neckline or cuff that is turned under; 0 for none.
+    #[param(default = Length::mm(2.0), min = 0.0, max = 0.02)]
+    edge: Length,
     /// Room around the panel in its texture, filled with its colours.
     #[param(default = 8, min = 0, max = 256, unit = "px")]
     margin: u32,
@@ -94,6 +143,12 @@ pub struct PhotoTexturer {
     #[param(default = None, min = 0.0, max = 1.0)]
     sheen: Option<f64>,
 }
+
+/// A panel with its photo, that photo's mask, whether its print is to be taken off, and the panel's part of the photo.
+type Pictured<'a> = (&'a GarmentPanel, &'a Photo, Option<&'a Mask>, bool, PixelBox);
+
+/// Width of the rim inside of the outline whose picture goes on beyond it, metres: some threads.
+const RIM: f64 = 2e-3;
 
 /// What only light brings out.
 const OF_LIGHT: &str = "light does not act on such a photo: leave it out, or give `light: Modulate`";
@@ -136,20 +191,28 @@ impl PhotoTexturer {
         }
         cx.progress(0.5, format!("textures of {} panels", pictures.len()));
         let shown: Vec<(&GarmentPanel, &Photo)> = pictures.iter().map(|p| (p.0, p.1)).collect();
+        let lights = self.lights(garment, &pictures, cx)?;
         let texture =
             |(panel, photo, mask, plain, area): (&GarmentPanel, &Photo, Option<&Mask>, bool, PixelBox)| {
                 cx.check()?;
                 let beside: Vec<&GarmentPanel> =
                     shown.iter().filter(|(_, p)| std::ptr::eq(*p, photo)).map(|(panel, _)| *panel).collect();
-                let texture = self.texture(garment, panel, &beside, (photo, mask, plain), area)?;
+                let light = lights.iter().find(|(p, _)| std::ptr::eq(*p, photo)).map(|(_, light)| light);
+                let texture = self.texture(garment, panel, &beside, (photo, mask, plain, light), area)?;
                 let scale = f64::from(texture.pixels.width()) / f64::from(area.width);
                 let relief = self.relief(&texture, px_per_metre(garment, panel) * scale, cx)?;
                 Ok((texture, relief))
             };
         let textures: Vec<Result<(Texture, Option<Texture>), StageError>> =
-            pictures.into_par_iter().map(texture).collect();
+            pictures.par_iter().copied().map(texture).collect();
         let (colours, reliefs): (Vec<_>, Vec<_>) =
             textures.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        if self.wrong_side == WrongSide::Plain {
+            let backs = wrong_sides(&colours, &pictures);
+            for material in &mut model.materials {
+                material.wrong_side = material.texture.and_then(|t| backs[t]);
+            }
+        }
         let first = colours.len();
         model.textures = colours;
         if self.detail == PhotoDetail::Photo {
@@ -158,10 +221,8 @@ impl PhotoTexturer {
                 material.normal_texture = material.texture.map(|t| first + t);
             }
         }
-        if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
-            model.meshes.push(parts::body_mesh(body, model.materials.len()));
-            model.materials.push(parts::mannequin());
-        }
+        add_edges(&mut model, garment, &normals, self.edge.metres());
+        self.body.add(&mut model, body)?;
         Ok(model)
     }
 
@@ -188,6 +249,7 @@ impl PhotoTexturer {
         };
         match () {
             () if unlit && detail => idle("detail", "light: Replace", OF_LIGHT),
+            () if unlit && self.shading == PhotoLight::Remove => idle("shading", "light: Replace", OF_LIGHT),
             () if unlit && self.sheen.is_some() => idle("sheen", "light: Replace", OF_LIGHT),
             () if !detail && self.strength.is_some() => {
                 idle("strength", "detail: None", "leave it out, or give `detail: Photo`")
@@ -212,27 +274,48 @@ impl PhotoTexturer {
         self.unseen == Unseen::Plain && photo.mirrored && photos.is_some_and(|all| all.iter().any(other))
     }
 
+    /// The light of every photo, where it is to be taken out: one for all panels that it shows, so that no step of light comes between them.
+    fn lights<'a>(
+        &self,
+        garment: &Garment,
+        pictures: &[Pictured<'a>],
+        cx: &Context,
+    ) -> Result<Vec<(&'a Photo, Shading)>, StageError> {
+        let mut lights: Vec<(&Photo, Shading)> = Vec::new();
+        if self.shading == PhotoLight::Keep {
+            return Ok(lights);
+        }
+        for &(panel, photo, mask, ..) in pictures {
+            if lights.iter().any(|(p, _)| std::ptr::eq(*p, photo)) {
+                continue;
+            }
+            let (width, height) = photo.pixels.dimensions();
+            let whole = PixelBox { left: 0, top: 0, width, height };
+            let beside: Vec<&GarmentPanel> =
+                pictures.iter().filter(|p| std::ptr::eq(p.1, photo)).map(|p| p.0).collect();
+            let inside = shown_in(garment, &beside, photo, mask, whole);
+            lights.push((photo, Shading::of(&photo.pixels, &inside, px_per_metre(garment, panel), cx)?));
+        }
+        Ok(lights)
+    }
+
     /// A panel's texture. `beside` are all panels that the photo shows, this one as well: where two of them meet is no rim of the garment.
     fn texture(
         &self,
         garment: &Garment,
         panel: &GarmentPanel,
         beside: &[&GarmentPanel],
-        (photo, mask, plain): (&Photo, Option<&Mask>, bool),
+        (photo, mask, plain, light): (&Photo, Option<&Mask>, bool, Option<&Shading>),
         area: PixelBox,
     ) -> Result<Texture, StageError> {
-        let mut inside = image::GrayImage::new(area.width, area.height);
-        for panel in beside {
-            let first = panel.vertices.start as u32;
-            let triangles: Vec<[u32; 3]> =
-                garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
-            cover(&mut inside, &panel.photo_px, &triangles, area);
-        }
-        if let Some(mask) = mask {
-            keep_shown(&mut inside, &mask.pixels, photo.pixels.width(), area);
-        }
+        let inside = shown_in(garment, beside, photo, mask, area);
         let size = crop::scaled_size(area, self.size);
         let mut crop = crop::crop(&photo.pixels, area, &inside, size);
+        if let Some(light) = light {
+            let step =
+                [f64::from(area.width) / f64::from(size[0]), f64::from(area.height) / f64::from(size[1])];
+            light.take_out(&mut crop.pixels, [area.left as f64, area.top as f64], step);
+        }
         let scale = f64::from(size[0]) / f64::from(area.width);
         let depth = self.inset.metres() * px_per_metre(garment, panel) * scale;
         let sure = bleed::eroded(&crop.inside, depth);
@@ -240,11 +323,44 @@ impl PhotoTexturer {
             plain::plain(&mut crop.pixels, &sure);
         }
         // A panel thinner than twice the inset has no inner part: then its whole inside must do.
-        if !bleed::bleed(&mut crop.pixels, &sure) && !bleed::bleed(&mut crop.pixels, &crop.inside) {
+        let rim = RIM * px_per_metre(garment, panel) * scale;
+        if !bleed::bleed(&mut crop.pixels, &sure, rim) && !bleed::bleed(&mut crop.pixels, &crop.inside, rim) {
             return Err(off_photo(panel, photo));
         }
         Ok(Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels), repeats: false })
     }
+}
+
+/// The colour of every texture's wrong side: that of the cloth in the largest texture of the same photo, so that panels of one cloth agree.
+fn wrong_sides(textures: &[Texture], pictures: &[Pictured<'_>]) -> Vec<Option<[f32; 3]>> {
+    let area = |i: &usize| textures[*i].pixels.as_raw().len();
+    let largest = |of: &Photo| {
+        let same = |i: &usize| std::ptr::eq(pictures[*i].1, of);
+        (0..textures.len()).filter(same).max_by_key(|i| (area(i), std::cmp::Reverse(*i)))
+    };
+    let colour = |p: &Pictured<'_>| plain::cloth_colour(&textures[largest(p.1)?].pixels);
+    pictures.iter().map(colour).collect()
+}
+
+/// The pixels of a part of a photo that show one of the panels.
+fn shown_in(
+    garment: &Garment,
+    panels: &[&GarmentPanel],
+    photo: &Photo,
+    mask: Option<&Mask>,
+    area: PixelBox,
+) -> image::GrayImage {
+    let mut inside = image::GrayImage::new(area.width, area.height);
+    for panel in panels {
+        let first = panel.vertices.start as u32;
+        let triangles: Vec<[u32; 3]> =
+            garment.triangles[panel.triangles.clone()].iter().map(|t| t.map(|i| i - first)).collect();
+        cover(&mut inside, &panel.photo_px, &triangles, area);
+    }
+    if let Some(mask) = mask {
+        keep_shown(&mut inside, &mask.pixels, photo.pixels.width(), area);
+    }
+    inside
 }
 
 /// The panel's photo, where both it and the panel's place in it are known.

@@ -10,6 +10,7 @@
 
 use super::bleed::eroded;
 use crate::binarise::{Regions, close, dilate, lab};
+use crate::render::LINEAR;
 use image::imageops::{FilterType, resize};
 use image::{GrayImage, Luma, RgbImage};
 use nalgebra::Vector3;
@@ -26,6 +27,9 @@ const HUE: f64 = 12.0;
 const LIGHT: [f64; 2] = [30.0, 10.0];
 /// Beyond this share of the band, or of all, what differs is a pattern of the cloth.
 const PATTERN: [f64; 2] = [0.2, 0.6];
+/// Squares along the longer side in which marks are looked for, and the share of them with marks from which these are a pattern.
+const SQUARES: usize = 12;
+const MOST_SPREAD: f64 = 0.75;
 /// Below this share nothing is print.
 const LEAST: f64 = 0.002;
 /// Pieces of fewer small pixels are no print.
@@ -48,6 +52,23 @@ pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
         p.0 = [0, 1, 2].map(|c| (colour[c] + thread[c]).round().clamp(0.0, 255.0) as u8);
     }
     true
+}
+
+/// The commonest colour of a picture that is cloth all over, linear light.
+pub(super) fn cloth_colour(pixels: &RgbImage) -> Option<[f32; 3]> {
+    let (w, h) = pixels.dimensions();
+    let scale = (f64::from(SMALL) / f64::from(w.max(h))).min(1.0);
+    let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
+    let small = resize(pixels, size(w), size(h), FilterType::Triangle);
+    let colours: Vec<Vector3<f64>> = small.pixels().map(|p| lab(p.0.map(f64::from))).collect();
+    let cloth = commonest(&colours, &vec![true; colours.len()])?;
+    let far = |c: &Vector3<f64>| (c - cloth).norm() > HUE;
+    let (mut sum, mut count) = ([0.0_f32; 3], 0.0_f32);
+    for (p, _) in small.pixels().zip(&colours).filter(|(_, c)| !far(c)) {
+        (0..3).for_each(|k| sum[k] += LINEAR[p.0[k] as usize]);
+        count += 1.0;
+    }
+    (count > 0.0).then(|| sum.map(|s| s / count))
 }
 
 /// Where the picture shows print, at its own size.
@@ -90,7 +111,23 @@ fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
         |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
     let share = |of: &[bool]| marked(of) / of.iter().filter(|on| **on).count().max(1) as f64;
     let is_print = share(&on) >= LEAST && share(&on) <= PATTERN[1] && share(&band) <= PATTERN[0];
+    let is_print = is_print && spread(&found, &on) <= MOST_SPREAD;
     is_print.then(|| dilate(&close(&found, AROUND), AROUND))
+}
+
+/// In which share of the squares that cloth fills there is something marked: a print stands somewhere, a pattern everywhere.
+fn spread(found: &GrayImage, on: &[bool]) -> f64 {
+    let (w, h) = (found.width() as usize, found.height() as usize);
+    let side = (w.max(h) / SQUARES).max(1);
+    let (mut filled, mut marked) = (0, 0);
+    for (top, left) in (0..h / side).flat_map(|r| (0..w / side).map(move |c| (r * side, c * side))) {
+        let pixels = || (top..top + side).flat_map(|y| (left..left + side).map(move |x| y * w + x));
+        if pixels().all(|i| on[i]) {
+            filled += 1_u32;
+            marked += u32::from(pixels().any(|i| found.as_raw()[i] != 0));
+        }
+    }
+    if filled == 0 { 0.0 } else { f64::from(marked) / f64::from(filled) }
 }
 
 /// The mask without pieces too small for a letter: the weave's own.
@@ -291,6 +328,15 @@ mod tests {
     fn stripes_all_over_are_the_cloths_own() {
         let (mut pixels, sure) =
             picture(|x, y| if (y / 10).is_multiple_of(2) { [250; 3] } else { cloth(x, y) });
+        let before = pixels.clone();
+        assert!(!plain(&mut pixels, &sure));
+        assert_eq!(pixels, before);
+    }
+
+    #[test]
+    fn dots_all_over_are_the_cloths_own() {
+        let dot = |x: u32, y: u32| x % 14 < 5 && (y + x / 14 % 2 * 7) % 14 < 5;
+        let (mut pixels, sure) = picture(|x, y| if dot(x, y) { [230, 210, 160] } else { cloth(x, y) });
         let before = pixels.clone();
         assert!(!plain(&mut pixels, &sure));
         assert_eq!(pixels, before);

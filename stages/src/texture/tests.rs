@@ -216,7 +216,7 @@ fn erosion_takes_the_rim_off() {
 
 #[test]
 fn bleeding_nothing_says_so() {
-    assert!(!bleed(&mut RgbImage::new(3, 3), &GrayImage::new(3, 3)));
+    assert!(!bleed(&mut RgbImage::new(3, 3), &GrayImage::new(3, 3), 2.0));
 }
 
 /// Small pictures with some pixels marked.

@@ -26,6 +26,7 @@ mod report_turn;
 mod report_views;
 mod scene_json;
 mod shown;
+mod sides;
 #[cfg(test)]
 mod tests;
 mod texture_file;

@@ -6,6 +6,7 @@
 
 use super::check::check_model;
 use super::names::{check_name, plain_names};
+use super::shown::sheets;
 use super::texture_file::TextureFormat;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -13,7 +14,8 @@ use toile_core::prelude::*;
 
 /// Writes the model as OBJ, its materials as MTL and its textures as pictures beside it.
 ///
-/// Metres, Y up. Panels are groups; joined seams share their vertices.
+/// Metres, Y up. Panels are groups; joined seams share their vertices. Every panel is one sheet: the thickness of open edges is left out,
+/// and both sides look alike.
 #[stage(
     role = Writer,
     source = "Wavefront Technologies, Object Files, 1992",
@@ -40,6 +42,7 @@ impl Obj {
     pub(super) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         check_model(model)?;
+        let model = &sheets(model);
         let images = self.textures.encode_all(model, self.quality)?;
         // MTL ends a file name at a blank in many readers.
         let stem = self.name.replace(' ', "_");

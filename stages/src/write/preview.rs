@@ -1,8 +1,8 @@
-//! `Preview`: pictures of the model from front, back and side.
+//! `Preview`: pictures of the model from front, back and side, and a sheet of them beside the photo.
 //!
 //! See the renderer for method, cost and limits.
 
-use crate::render::{Frame, Scene, View};
+use crate::render::{Form, Frame, Scene, View, jpeg, thumbnail};
 use image::{ImageFormat, RgbImage};
 use rayon::prelude::*;
 use std::io::Cursor;
@@ -20,7 +20,7 @@ pub enum Framing {
 
 /// Draws the model from the front, from behind and from the wearer's left.
 ///
-/// Writes `front.png`, `back.png` and `side.png`.
+/// Writes `front.png`, `back.png` and `side.png`, and on request `sheet.jpg`: the photo, front, back, left side and three-quarter view in one row.
 #[stage(
     role = Writer,
     source = "z-buffer: Catmull, 1974; shadows: Williams, 1978; mip-maps: Williams, 1983",
@@ -34,6 +34,9 @@ pub struct Preview {
     /// What fills the pictures.
     #[param(default = Framing::Garment)]
     frame: Framing,
+    /// Height of `sheet.jpg`; none is written where it is not given.
+    #[param(default = None, min = 64, max = 2048)]
+    sheet: Option<u32>,
 }
 
 impl Preview {
@@ -45,7 +48,12 @@ impl Preview {
 
 #[stage]
 impl Preview {
-    pub(super) fn run(&self, model: &Model, cx: &Context) -> Result<OutputFiles, StageError> {
+    pub(super) fn run(
+        &self,
+        model: &Model,
+        #[original] photos: Option<Set<Photo>>,
+        cx: &Context,
+    ) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
         let scene = Scene::new_in(model, cx);
         let frame = match self.frame {
@@ -65,8 +73,40 @@ impl Preview {
             pictures.push((path, scene.render(&View { frame, ..view(self.size) })));
         }
         let files: Vec<Result<OutputFile, StageError>> = pictures.par_iter().map(file).collect();
-        Ok(OutputFiles(files.into_iter().collect::<Result<_, _>>()?))
+        let mut files: Vec<OutputFile> = files.into_iter().collect::<Result<_, _>>()?;
+        if let Some(height) = self.sheet {
+            let mut row: Vec<RgbImage> =
+                photo_of(photos.as_ref()).map(|p| thumbnail(&p.pixels, height)).into_iter().collect();
+            for view in [View::front, View::back, View::side, View::three_quarter] {
+                cx.check()?;
+                row.push(scene.render(&View { frame, ..view(height) }));
+            }
+            let Some(Form::Jpeg(bytes)) = jpeg(&beside(&row)) else {
+                return Err(StageError::internal("sheet.jpg cannot be encoded"));
+            };
+            files.push(OutputFile::new("sheet.jpg", bytes));
+        }
+        Ok(OutputFiles(files))
     }
+}
+
+/// The photo of a sheet: that of the front, or the first one.
+fn photo_of(photos: Option<&Set<Photo>>) -> Option<&Photo> {
+    let photos = photos?;
+    photos.get("front").or_else(|| photos.0.values().next().map(AsRef::as_ref))
+}
+
+/// Pictures from left to right, upper edges in line, on white.
+fn beside(row: &[RgbImage]) -> RgbImage {
+    let height = row.iter().map(RgbImage::height).max().unwrap_or(1);
+    let width = row.iter().map(RgbImage::width).sum::<u32>().max(1);
+    let mut sheet = RgbImage::from_pixel(width, height, image::Rgb([255; 3]));
+    let mut x = 0;
+    for picture in row {
+        image::imageops::replace(&mut sheet, picture, i64::from(x), 0);
+        x += picture.width();
+    }
+    sheet
 }
 
 fn file((path, picture): &(&str, RgbImage)) -> Result<OutputFile, StageError> {

@@ -1,5 +1,6 @@
 //! The part of a model that a file shows.
 
+use crate::texture::edge::is_edge;
 use crate::texture::parts::BODY;
 use toile_core::StageError;
 use toile_core::artifact::{Material, Mesh, Model};
@@ -27,6 +28,17 @@ pub(super) fn shown(model: &Model, body: bool) -> Result<Model, StageError> {
     keep_used_textures(&mut part);
     drop_unread_uv(&mut part);
     Ok(part)
+}
+
+/// The model without the strips along its open edges: every panel is one sheet, as programs want it that work on cloth.
+pub(super) fn sheets(model: &Model) -> Model {
+    let kept: Vec<usize> = (0..model.meshes.len()).filter(|i| !is_edge(&model.meshes[*i], model)).collect();
+    let mut part = Model { meshes: kept.iter().map(|i| model.meshes[*i].clone()).collect(), ..model.clone() };
+    for variant in &mut part.variants {
+        variant.materials = kept.iter().map(|i| variant.materials[*i]).collect();
+    }
+    keep_used_materials(&mut part);
+    part
 }
 
 /// The new index of every item that is used; the order stays.

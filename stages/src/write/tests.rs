@@ -165,7 +165,7 @@ fn ply_has_the_length_that_its_header_says() {
 
 #[test]
 fn preview_draws_three_pictures() {
-    let files = params::<Preview>("(size: 100)").run(&model(), &Context::quiet()).unwrap().0;
+    let files = params::<Preview>("(size: 100)").run(&model(), None, &Context::quiet()).unwrap().0;
     let names: Vec<&str> = files.iter().map(|f| f.path.as_str()).collect();
     assert_eq!(names, ["front.png", "back.png", "side.png"]);
     let [front, back, _] = [0, 1, 2].map(|i| image::load_from_memory(&files[i].bytes).unwrap().to_rgb8());
@@ -184,7 +184,7 @@ fn what_is_not_finite_is_never_written() {
         params::<Glb>("()").run(&broken, &cx).unwrap_err(),
         params::<Obj>("()").run(&broken, &cx).unwrap_err(),
         params::<Ply>("()").run(&broken, &cx).unwrap_err(),
-        params::<Preview>("()").run(&broken, &cx).unwrap_err(),
+        params::<Preview>("()").run(&broken, None, &cx).unwrap_err(),
     ];
     for error in errors {
         assert_eq!(error.to_string(), "mesh \"back\" has a vertex that is not finite");
@@ -235,7 +235,7 @@ fn file_names_stay_in_their_folder() {
 #[test]
 fn preview_shows_the_whole_body_on_request() {
     let redness = |text: &str| {
-        let files = params::<Preview>(text).run(&model(), &Context::quiet()).unwrap().0;
+        let files = params::<Preview>(text).run(&model(), None, &Context::quiet()).unwrap().0;
         let picture = image::load_from_memory(&files[0].bytes).unwrap().to_rgb8();
         picture.pixels().filter(|p| i32::from(p.0[0]) > i32::from(p.0[2]) + 40).count()
     };
@@ -353,7 +353,7 @@ fn the_reports_views_are_those_of_a_preview_that_has_drawn_the_model() {
     let preview = params::<Preview>("(size: 640)");
     let mut record = run.stages[4].clone();
     (record.id, record.name, record.params) = ("Preview".into(), "Preview".into(), "(size: 640)".into());
-    record.outputs = vec![one(preview.run(&model(), &Context::quiet()).unwrap())];
+    record.outputs = vec![one(preview.run(&model(), None, &Context::quiet()).unwrap())];
     run.stages.insert(5, record);
     let heads = |html: &str| {
         let sources = html.split("src=\"").skip(1).take(3);
@@ -448,4 +448,19 @@ proptest! {
         let run = RunLog { pipeline, quality, stages: vec![record], skipped: vec![(text.clone(), text)], failure: None };
         assert_balanced(&report(&run, "()"));
     }
+}
+
+#[test]
+fn a_sheet_shows_the_photo_and_four_views_in_one_row() {
+    let sheet = |photos| {
+        let files =
+            params::<Preview>("(size: 40, sheet: 100)").run(&model(), photos, &Context::quiet()).unwrap().0;
+        assert_eq!(files.last().unwrap().path, "sheet.jpg");
+        image::load_from_memory(&files.last().unwrap().bytes).unwrap().into_rgb8()
+    };
+    let photos = fixture::photos();
+    let (w, h) = photos.get("front").unwrap().pixels.dimensions();
+    let wide = (f64::from(w) * 100.0 / f64::from(h)).round() as u32;
+    assert_eq!(sheet(Some(photos)).dimensions(), (wide + 4 * 80, 100));
+    assert_eq!(sheet(None).dimensions(), (4 * 80, 100));
 }

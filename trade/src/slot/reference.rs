@@ -9,7 +9,7 @@ use crate::knob::{Values, fault};
 use std::str::FromStr;
 use toile_core::StageError;
 
-/// The reference's value of a knob: `StaticEquilibrium.graded=true`.
+/// The reference's value of a knob: `StaticEquilibrium.bending_continuation=true`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReferenceValue {
     /// The knob's key.
@@ -25,7 +25,7 @@ impl FromStr for ReferenceValue {
         let parts = text.split_once('=').map(|(key, value)| (key.trim(), value.trim()));
         match parts.filter(|(key, value)| !key.is_empty() && !value.is_empty()) {
             Some((key, value)) => Ok(ReferenceValue { key: key.to_owned(), value: value.to_owned() }),
-            None => Err("write KEY=VALUE, like `StaticEquilibrium.graded=true`".to_owned()),
+            None => Err("write KEY=VALUE, like `StaticEquilibrium.bending_continuation=true`".to_owned()),
         }
     }
 }
@@ -56,7 +56,7 @@ impl Board {
             docs.find(|d| d.name == param)
         };
         let Some(doc) = knob.param.as_ref().and_then(doc) else {
-            let hint = "name a parameter, like `StaticEquilibrium.graded=true`";
+            let hint = "name a parameter, like `StaticEquilibrium.bending_continuation=true`";
             return Err(refuse("the reference keeps the pipeline's own stages", hint.to_owned()));
         };
         let one = dial(key, doc, &Values::List(vec![given.value.clone()]))?;

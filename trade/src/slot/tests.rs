@@ -60,12 +60,12 @@ fn parts_of_an_edge_are_refined_by_what_they_are() {
     let registry = registry();
     let text = VEST.replace(
         "StaticEquilibrium(),",
-        "StaticEquilibrium(), Refine(parts: 1), StaticEquilibrium(id: \"Settle\", from_here: true),",
+        "StaticEquilibrium(), Subdivide(parts: 1), StaticEquilibrium(id: \"Settle\", from_here: true),",
     );
     let source = source(&text, &registry);
-    let board = board(&source, &["Refine.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
+    let board = board(&source, &["Subdivide.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
     let at = |power: i32| board.refined(f64::sqrt(2.0).powi(power));
-    let parts = |power| at(power)["Refine.parts"].clone();
+    let parts = |power| at(power)["Subdivide.parts"].clone();
     assert_eq!([0, 1, 2, 3, 4, 5].map(parts), ["1", "1", "2", "3", "4", "6"]);
     // By the edge, where that is refined; else by what is.
     assert!((board.ratio(&at(1), &at(0)) - f64::sqrt(2.0)).abs() < 1e-2);
@@ -163,10 +163,10 @@ fn the_own_setting_and_its_refinements() {
 #[test]
 fn the_reference_may_have_values_of_its_own() {
     let registry = registry();
-    let source = source(&FILE.replace("0.002", "0.002, graded: false"), &registry);
+    let source = source(&FILE.replace("0.002", "0.002, bending_continuation: false"), &registry);
     let knobs = [
         "StaticEquilibrium.speed=1e-4..1e-2",
-        "StaticEquilibrium.graded=true,false",
+        "StaticEquilibrium.bending_continuation=true,false",
         "solver=StaticEquilibrium,Xpbd",
     ];
     let given = |reference: &[&str]| {
@@ -174,14 +174,14 @@ fn the_reference_may_have_values_of_its_own() {
         board(&source, &knobs).unwrap().with_reference(&values)
     };
     let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
-    let board = given(&["StaticEquilibrium.graded=true"]).unwrap();
+    let board = given(&["StaticEquilibrium.bending_continuation=true"]).unwrap();
     assert_eq!(
         words(board.own()),
-        "StaticEquilibrium.graded false, StaticEquilibrium.speed 0.002, solver StaticEquilibrium"
+        "StaticEquilibrium.bending_continuation false, StaticEquilibrium.speed 0.002, solver StaticEquilibrium"
     );
     assert_eq!(
         words(board.refined(2.0)),
-        "StaticEquilibrium.graded true, StaticEquilibrium.speed 0.001, solver StaticEquilibrium"
+        "StaticEquilibrium.bending_continuation true, StaticEquilibrium.speed 0.001, solver StaticEquilibrium"
     );
     let refused = |reference: &str| {
         let e = given(&[reference]).unwrap_err();
@@ -191,7 +191,7 @@ fn the_reference_may_have_values_of_its_own() {
         (
             "solver=Xpbd",
             "--reference `solver`: the reference keeps the pipeline's own stages",
-            "name a parameter, like `StaticEquilibrium.graded=true`",
+            "name a parameter, like `StaticEquilibrium.bending_continuation=true`",
         ),
         (
             "StaticEquilibrium.steps=900",
@@ -199,15 +199,15 @@ fn the_reference_may_have_values_of_its_own() {
             "add `--knob \"StaticEquilibrium.steps=...\"`, or give it by --set",
         ),
         (
-            "StaticEquilibrium.graded=yes",
-            "`StaticEquilibrium.graded`: `graded` wants true | false, found `yes`",
+            "StaticEquilibrium.bending_continuation=yes",
+            "`StaticEquilibrium.bending_continuation`: `graded` wants true | false, found `yes`",
             "",
         ),
     ] {
         assert_eq!(refused(reference), (message.to_owned(), hint.to_owned()));
     }
-    let form = Err("write KEY=VALUE, like `StaticEquilibrium.graded=true`".to_owned());
-    assert_eq!("StaticEquilibrium.graded=".parse::<ReferenceValue>(), form);
+    let form = Err("write KEY=VALUE, like `StaticEquilibrium.bending_continuation=true`".to_owned());
+    assert_eq!("StaticEquilibrium.bending_continuation=".parse::<ReferenceValue>(), form);
 }
 
 /// A stage as third parties write it, with names of its own.
@@ -271,7 +271,7 @@ fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
 fn refined_vest() -> String {
     VEST.replace(
         "StaticEquilibrium(),",
-        "StaticEquilibrium(), Refine(parts: 2), StaticEquilibrium(id: \"Settle\", from_here: true),",
+        "StaticEquilibrium(), Subdivide(parts: 2), StaticEquilibrium(id: \"Settle\", from_here: true),",
     )
 }
 
@@ -280,12 +280,12 @@ fn where_a_draped_garment_is_refined_its_parts_are_turned_and_the_mesh_that_find
     let registry = registry();
     let pipeline = source(&refined_vest(), &registry).load(&[]).unwrap();
     let found = default_knobs(&pipeline, &registry);
-    assert_eq!(found.iter().map(KnobSpec::key).collect::<Vec<_>>(), ["Refine.parts", "Settle.speed"]);
+    assert_eq!(found.iter().map(KnobSpec::key).collect::<Vec<_>>(), ["Subdivide.parts", "Settle.speed"]);
     let board = Board::new(&source(&refined_vest(), &registry), &pipeline, &found).unwrap();
     // Half and twice the parts.
     assert!(
-        board.setting(&[0.0, 0.5])["Refine.parts"] == "1"
-            && board.setting(&[1.0, 0.5])["Refine.parts"] == "4"
+        board.setting(&[0.0, 0.5])["Subdivide.parts"] == "1"
+            && board.setting(&[1.0, 0.5])["Subdivide.parts"] == "4"
     );
 }
 
@@ -294,9 +294,9 @@ fn parts_of_an_edge_are_a_resolution_in_space_that_a_fiftieth_does_not_change() 
     let registry = registry();
     let text = refined_vest();
     let source = source(&text, &registry);
-    let board = board(&source, &["Refine.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
+    let board = board(&source, &["Subdivide.parts=1,2,3", "Settle.speed=1e-4..1e-2"]).unwrap();
     let (own, near, far) = (board.own(), board.refined(1.02), board.refined(2.0));
-    assert_eq!((&*near["Refine.parts"], &*far["Refine.parts"]), ("2", "4"));
+    assert_eq!((&*near["Subdivide.parts"], &*far["Subdivide.parts"]), ("2", "4"));
     assert!(near != own && !board.differ_in_space(&near, &own) && board.differ_in_space(&far, &own));
     // A reference of four parts may judge three, not four.
     assert!(board.is_finer(&far, 1.3) && !board.is_finer(&own, 1.3));

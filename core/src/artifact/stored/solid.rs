@@ -223,6 +223,10 @@ fn material_fields<'a>(m: &'a Material) -> Record<'a> {
     let record = numbered(record, "texture", m.texture);
     let record = numbered(record, "normal_texture", m.normal_texture);
     let record = record.maybe("sheen", m.sheen.map(sheen_fields));
+    let record = match m.wrong_side {
+        Some(colour) => record.owned("wrong_side", [colour]),
+        None => record,
+    };
     if m.fabric.is_empty() { record } else { record.text("fabric", &m.fabric) }
 }
 
@@ -243,6 +247,7 @@ fn material_of(r: &Reader<'_>) -> Result<Material, String> {
         roughness: r.one("roughness")?,
         sheen: r.maybe("sheen")?.map(sheen).transpose()?,
         double_sided: r.flag("double_sided")?,
+        wrong_side: r.find("wrong_side").map(|_| r.one("wrong_side")).transpose()?,
         fabric: r.find("fabric").map(|_| r.text("fabric")).transpose()?.unwrap_or_default(),
     })
 }

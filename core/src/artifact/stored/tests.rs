@@ -135,6 +135,7 @@ pub(in crate::artifact) fn model() -> Model {
             roughness: 0.9,
             sheen: Some(Sheen { colour: [0.1, 0.2, 0.3], roughness: 0.5 }),
             double_sided: true,
+            wrong_side: Some([0.2, 0.3, 0.4]),
             fabric: "poplin".into(),
         }],
         textures: vec![

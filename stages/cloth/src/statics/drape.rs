@@ -190,10 +190,11 @@ impl<'a> Solve<'a> {
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         level.system.elastic.scale_bending(stiff);
-        let offsets = level.system.support.as_mut().filter(|_| self.plan.rest.graded).map(|s| {
-            s.grows = true;
-            s.offsets.clone()
-        });
+        let offsets =
+            level.system.support.as_mut().filter(|_| self.plan.rest.bending_continuation).map(|s| {
+                s.grows = true;
+                s.offsets.clone()
+            });
         let Level { system, sheet, layout, x, .. } = &mut *level;
         let run = self.run_free(system, sheet, layout, x, &pace, progress);
         if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {

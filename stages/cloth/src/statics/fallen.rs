@@ -53,7 +53,7 @@ impl Solve<'_> {
             cloth: list_of(self.plan.scene, &is_fallen),
             start,
             body: body.height(),
-            is_certain: start != Start::Around || !self.plan.rest.graded && body.resolves(edge),
+            is_certain: start != Start::Around || !self.plan.rest.bending_continuation && body.resolves(edge),
         })))
     }
 }

@@ -106,7 +106,7 @@ impl<'a> Plan<'a> {
     pub(super) fn grade(&self, size: f64) -> Option<Grade> {
         let gravity = gravity(self.scene).norm();
         let edges = if self.rest.sew_through { EDGES_THROUGH } else { EDGES };
-        self.rest.graded.then(|| Grade::of(&self.cloths, gravity, size, edges)).flatten()
+        self.rest.bending_continuation.then(|| Grade::of(&self.cloths, gravity, size, edges)).flatten()
     }
 
     /// Level `k`, sewn, with its nodes nowhere yet.
@@ -117,7 +117,7 @@ impl<'a> Plan<'a> {
         let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.rest.models)?;
         system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
         system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
-        if let (true, true, Some(s)) = (self.rest.graded, k > 0, &mut system.support) {
+        if let (true, true, Some(s)) = (self.rest.bending_continuation, k > 0, &mut system.support) {
             // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
             s.edges.clear();
         }

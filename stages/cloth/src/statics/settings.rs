@@ -25,7 +25,7 @@ pub struct StaticEquilibrium {
     pub budget: Duration,
     /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
     /// cloth began.
-    pub graded: bool,
+    pub bending_continuation: bool,
     /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a coarser mesh keeps its folds.
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep them open, and the sewn
@@ -50,7 +50,7 @@ impl Default for StaticEquilibrium {
             finest_steps: 500,
             join_gap: 5e-4,
             budget: Duration::from_secs(600),
-            graded: false,
+            bending_continuation: false,
             from_here: false,
             sew_through: false,
             long_proof: false,

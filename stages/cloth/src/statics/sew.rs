@@ -313,7 +313,7 @@ impl Solve<'_> {
         let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
         let mut system =
             assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.rest.models)?;
-        if self.plan.rest.graded {
+        if self.plan.rest.bending_continuation {
             system.elastic.scale_bending(stiff);
             system.support.iter_mut().for_each(|s| s.grows = true);
         }

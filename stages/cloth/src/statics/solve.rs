@@ -12,7 +12,7 @@
 //!
 //! With [`StaticEquilibrium::from_here`] there are no coarser levels: cloth that hangs already settles where it is.
 //!
-//! With [`StaticEquilibrium::graded`] bending starts stiff and is let go on the way (see `bending_continuation`), so that chance has less of a say.
+//! With [`StaticEquilibrium::bending_continuation`] bending starts stiff and is let go on the way (see `bending_continuation`), so that chance has less of a say.
 //!
 //! Cost: some 35 to 150 factorizations of the finest level (docs/log/2026-11-23-rest-speed.md). Limits: what the coarse level cannot see (a fold finer than its
 //! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
@@ -82,7 +82,10 @@ impl StaticEquilibrium {
         scene.check()?;
         scene.check_still()?;
         let pile = pile_of(scene);
-        let mut rest = Self { graded: self.graded && !self.from_here && pile.is_none(), ..*self };
+        let mut rest = Self {
+            bending_continuation: self.bending_continuation && !self.from_here && pile.is_none(),
+            ..*self
+        };
         let start = match self.sew_through {
             true => moved_out::<StaticsError>(
                 scene,
@@ -109,8 +112,10 @@ impl StaticEquilibrium {
                 (Ok(Draped::Tangled(entangled)), Some(finer)) => entangled.nodes.max(finer),
                 (Ok(Draped::TooCoarse { finer }), _) => finer,
                 // What slides off while it is stiff may stay on as cloth.
-                (Err(StaticsError::FallsPast(fallen)), _) if rest.graded && !fallen.is_certain => {
-                    rest.graded = false;
+                (Err(StaticsError::FallsPast(fallen)), _)
+                    if rest.bending_continuation && !fallen.is_certain =>
+                {
+                    rest.bending_continuation = false;
                     rest.first_coarsest(pile)
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
@@ -129,7 +134,7 @@ impl StaticEquilibrium {
         if self.from_here {
             return usize::MAX;
         }
-        let one = if self.graded { COARSEST.max(self.coarsest) } else { self.coarsest };
+        let one = if self.bending_continuation { COARSEST.max(self.coarsest) } else { self.coarsest };
         // The limit is for each cloth of a pile: nine nodes cannot follow a body.
         one * pile.unwrap_or(1)
     }
@@ -145,9 +150,9 @@ impl StaticEquilibrium {
 }
 
 #[cfg(test)]
-mod fall_tests;
+mod continuation_tests;
 #[cfg(test)]
-mod graded_tests;
+mod fall_tests;
 #[cfg(test)]
 mod held_tests;
 #[cfg(test)]

@@ -10,16 +10,15 @@
 
 use super::super::background::rim_width;
 use super::super::small::Small;
+use crate::grid::{End, Grid};
 use toile_core::prelude::*;
 
 /// How much a step of colour holds the walker up, against the mean square of all steps.
 const BETA: f64 = 1.0;
 /// What passes across the largest step: keeps every pixel in reach.
 const LEAST: f64 = 1e-3;
-/// The residual at which the rounds end, against that at the start.
-const TOLERANCE: f64 = 1e-3;
-/// The most rounds.
-const ROUNDS: usize = 400;
+/// When the rounds end.
+const END: End = End { residual: 1e-3, rounds: 400 };
 
 /// The chance of each pixel to be garment, 0 to 1; `inside` is known to be garment, the rim ground.
 pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Result<Vec<f64>, StageError> {
@@ -34,64 +33,7 @@ pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Re
         })
         .collect();
     let (right, down) = weights(small, inside);
-    // Product of the Laplacian with a vector that is zero where values are fixed.
-    let apply = |x: &[f64], out: &mut [f64]| {
-        out.fill(0.0);
-        for i in 0..n {
-            if i % w + 1 < w {
-                let flow = right[i] * (x[i] - x[i + 1]);
-                out[i] += flow;
-                out[i + 1] -= flow;
-            }
-            if i + w < n {
-                let flow = down[i] * (x[i] - x[i + w]);
-                out[i] += flow;
-                out[i + w] -= flow;
-            }
-        }
-        out.iter_mut().zip(&fixed).filter(|(_, f)| f.is_some()).for_each(|(o, _)| *o = 0.0);
-    };
-    let diagonal: Vec<f64> = (0..n)
-        .map(|i| {
-            let left = if i % w > 0 { right[i - 1] } else { 0.0 };
-            let up = if i >= w { down[i - w] } else { 0.0 };
-            (right[i] + down[i] + left + up).max(LEAST)
-        })
-        .collect();
-    let mut x: Vec<f64> = fixed.iter().map(|f| f.unwrap_or(0.0)).collect();
-    let mut q = vec![0.0; n];
-    apply(&x, &mut q);
-    let mut r: Vec<f64> = q.iter().map(|q| -q).collect();
-    let mut z: Vec<f64> = r.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
-    let mut p = z.clone();
-    let mut rz = dot(&r, &z);
-    let end = rz * TOLERANCE * TOLERANCE;
-    for round in 0..ROUNDS {
-        if rz <= end || rz <= f64::MIN_POSITIVE {
-            break;
-        }
-        if round % 16 == 0 {
-            cx.check()?;
-        }
-        apply(&p, &mut q);
-        let pq = dot(&p, &q);
-        if pq <= 0.0 {
-            break;
-        }
-        let a = rz / pq;
-        x.iter_mut().zip(&p).for_each(|(x, p)| *x += a * p);
-        r.iter_mut().zip(&q).for_each(|(r, q)| *r -= a * q);
-        z.iter_mut().zip(r.iter().zip(&diagonal)).for_each(|(z, (r, d))| *z = r / d);
-        let next = dot(&r, &z);
-        let b = next / rz;
-        rz = next;
-        p.iter_mut().zip(&z).for_each(|(p, z)| *p = z + b * *p);
-    }
-    Ok(x)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    Grid { width: w, right, down }.solve(None, &fixed, &END, cx)
 }
 
 /// How readily a walker passes to the right and down; zero past the frame. Steps within what is known to be garment do not count

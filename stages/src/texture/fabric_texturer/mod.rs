@@ -6,6 +6,7 @@
 #[cfg(test)]
 mod tests;
 
+use super::edge::add_edges;
 use super::weave::{Cloth, Colour, Tile, tile};
 use super::{BodyShown, parts};
 use crate::render::LINEAR;
@@ -50,7 +51,7 @@ pub enum FabricTexture {
 /// coordinates go beyond 0 to 1.
 #[stage(
     role = Texturer,
-    version = 2,
+    version = 3,
     source = "Adanur, Handbook of Weaving, 2001: plain, twill and denim weaves; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "FabricTexturer(texture: Denim, colour: \"#2b3f5c\")",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -72,6 +73,9 @@ pub struct FabricTexturer {
     /// Side of the square picture that repeats.
     #[param(default = 1024, min = 64, max = 4096, unit = "px", trades)]
     size: u32,
+    /// Thickness of open edges, as of a hem, neckline or cuff that is turned under; 0 for none.
+    #[param(default = Length::mm(2.0), min = 0.0, max = 0.02)]
+    edge: Length,
     /// Whether the body stands in the model.
     #[param(default = BodyShown::Show)]
     body: BodyShown,
@@ -115,10 +119,7 @@ impl FabricTexturer {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
         }
         let mut model = self.dressed(garment, &kinds, cx)?;
-        if let (Some(body), BodyShown::Show) = (body.filter(|b| !b.triangles.is_empty()), &self.body) {
-            model.meshes.push(parts::body_mesh(body, model.materials.len()));
-            model.materials.push(parts::mannequin());
-        }
+        self.body.add(&mut model, body)?;
         let own = model.clone();
         for (name, colour) in &self.variants {
             cx.check()?;
@@ -171,6 +172,7 @@ impl FabricTexturer {
             });
         }
         model.textures.extend(reliefs);
+        add_edges(&mut model, garment, &normals, self.edge.metres());
         Ok(model)
     }
 

@@ -1,6 +1,6 @@
 //! `Glb`: the model as binary glTF 2.0 (Khronos, 2017; ISO/IEC 12113).
 //!
-//! One node and one mesh a panel, one buffer; textures lie in the same file. Positions, normals and texture
+//! One node and one mesh a panel (two where its wrong side looks unlike the right one), one buffer; textures lie in the same file. Positions, normals and texture
 //! coordinates are 32-bit floats (or whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses, where they are needed,
 //! `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`, `KHR_materials_variants` and `KHR_mesh_quantization`. Tangents of normal
 //! maps are written, so that every viewer reads the map in the same frame.
@@ -18,6 +18,7 @@ use super::copyright::check_copyright;
 use super::names::check_name;
 use super::power_of_two::to_powers_of_two;
 use super::shown::shown;
+use super::sides::with_wrong_sides;
 use super::texture_file::TextureFormat;
 use buffer::Buffer;
 use grid::Grid;
@@ -32,7 +33,7 @@ use toile_core::prelude::*;
 /// them. `asset.extras` names the unit, the fabrics and the digest of the model.
 #[stage(
     role = Writer,
-    version = 2,
+    version = 3,
     source = "Khronos Group, glTF 2.0, 2017",
     example = "Glb(name: \"garment\", textures: Jpeg, quality: 88)",
     contracts(Deterministic, ThreadInvariant)
@@ -71,6 +72,7 @@ impl Glb {
         check_model(model)?;
         let about = About { copyright: self.copyright.as_deref(), digest: digest(model) };
         let mut model = shown(model, self.body)?;
+        with_wrong_sides(&mut model);
         if self.power_of_two {
             to_powers_of_two(&mut model);
         }

@@ -15,6 +15,7 @@ use super::copyright::check_copyright;
 use super::glb::digest;
 use super::names::{check_name, plain_names};
 use super::shown::shown;
+use super::sides::with_wrong_sides;
 use super::texture_file::TextureFormat;
 use scene::{About, scene};
 use toile_core::prelude::*;
@@ -53,7 +54,8 @@ impl Usdz {
         check_copyright(self.copyright.as_deref())?;
         check_model(model)?;
         let about = About { copyright: self.copyright.as_deref(), digest: digest(model) };
-        let model = shown(model, self.body)?;
+        let mut model = shown(model, self.body)?;
+        with_wrong_sides(&mut model);
         let images = self.textures.encode_all(&model, self.quality)?;
         let names = plain_names(model.textures.iter().map(|t| t.name.as_str()));
         let path = |name: &String| format!("textures/{name}.{}", self.textures.extension());

@@ -27,10 +27,13 @@ fn scaled_body(scene: &mut Scene, factor: f64) {
 /// How it fell, and how many nodes the finest mesh had that it was followed on.
 fn fall(scene: &Scene, graded: bool) -> (crate::contact::past::Fallen, usize) {
     let mut finest = 0;
-    let solved = StaticEquilibrium { graded, ..StaticEquilibrium::default() }.solve(scene, &mut |level| {
-        finest = finest.max(if level.sewing { 0 } else { level.nodes });
-        ControlFlow::Continue(())
-    });
+    let solved = StaticEquilibrium { bending_continuation: graded, ..StaticEquilibrium::default() }.solve(
+        scene,
+        &mut |level| {
+            finest = finest.max(if level.sewing { 0 } else { level.nodes });
+            ControlFlow::Continue(())
+        },
+    );
     match solved {
         Err(StaticsError::FallsPast(fallen)) => (*fallen, finest),
         other => panic!("{:?}", other.map(|s| s.outcome)),

@@ -26,7 +26,7 @@ fn a_curtain_hangs_from_pins_that_belong_to_no_triangle() {
         let scene = generate::curtain(cells);
         let [left, right] = scene.seams[0].pairs[..] else { panic!() };
         for graded in [false, true] {
-            let state = StaticEquilibrium { graded, ..StaticEquilibrium::default() }
+            let state = StaticEquilibrium { bending_continuation: graded, ..StaticEquilibrium::default() }
                 .solve(&scene, &mut |_| ControlFlow::Continue(()))
                 .unwrap();
             let x = &state.positions;
@@ -243,7 +243,7 @@ fn crossed() -> Scene {
 #[test]
 fn a_skirt_whose_panels_start_behind_each_other_is_sewn_through_and_ends_as_ever() {
     let scene = crossed();
-    let plain = StaticEquilibrium { graded: true, ..StaticEquilibrium::default() };
+    let plain = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
     let refused = plain.solve(&scene, &mut |_| ControlFlow::Continue(())).err();
     assert!(matches!(refused, Some(StaticsError::Start(StartError::Crossing { .. }))));
     let through = StaticEquilibrium { sew_through: true, ..plain };
@@ -267,7 +267,8 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
     };
     let (low, middle, body) = (solid(0.06), solid(0.03), solid(0.0));
     let wearer = Collider { skin: &body, friction: scene.body.as_ref().unwrap().friction };
-    let through = StaticEquilibrium { graded: true, sew_through: true, ..StaticEquilibrium::default() };
+    let through =
+        StaticEquilibrium { bending_continuation: true, sew_through: true, ..StaticEquilibrium::default() };
     let solve = |around: &[&dyn CollisionSurface]| {
         through
             .solve_around(&scene, Some(wearer), around, &mut |_| ControlFlow::Continue(()))

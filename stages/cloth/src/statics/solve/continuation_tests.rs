@@ -7,7 +7,7 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 fn graded(scene: &Scene) -> Equilibrium {
-    let rest = StaticEquilibrium { graded: true, ..StaticEquilibrium::default() };
+    let rest = StaticEquilibrium { bending_continuation: true, ..StaticEquilibrium::default() };
     match rest.solve(scene, &mut |_| ControlFlow::Continue(())) {
         Err(StaticsError::NotAtRest { state, .. }) => *state,
         other => other.unwrap(),
@@ -75,8 +75,11 @@ fn cloth_without_bending_or_weight_is_solved_straight_away() {
 #[test]
 fn out_of_time_tells_the_mesh_whatever_the_state_of_stiffness() {
     let scene = generate::hang(24);
-    let rest =
-        StaticEquilibrium { graded: true, budget: Duration::from_secs(1), ..StaticEquilibrium::default() };
+    let rest = StaticEquilibrium {
+        bending_continuation: true,
+        budget: Duration::from_secs(1),
+        ..StaticEquilibrium::default()
+    };
     let mut progress = |level: &LevelReport| {
         if level.nodes == scene.rest.len() {
             std::thread::sleep(rest.budget);

@@ -1,4 +1,4 @@
-//! `Carry`: panels into space as an earlier drape of the same pattern lies.
+//! `Transfer`: panels into space as an earlier drape of the same pattern lies.
 //!
 //! Method: each vertex takes the place of its flat point in the earlier garment, by the weights of the triangle that it lies in.
 //! Cost: linear in vertices. Limits: what was flat between the old vertices is flat still: on a body, new vertices start a
@@ -23,13 +23,13 @@ const FARTHEST: f64 = 1e6;
 #[stage(
     role = Placement,
     source = "nested iteration, as in multigrid (Brandt 1977)",
-    example = "Carry()",
+    example = "Transfer()",
     contracts(Deterministic, ThreadInvariant)
 )]
-pub struct Carry;
+pub struct Transfer;
 
 #[stage]
-impl Carry {
+impl Transfer {
     pub(crate) fn run(
         &self,
         panels: Set<Panel>,

@@ -1,7 +1,7 @@
 //! A tube of two panels, a vest and small corners of cloth on finer meshes.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::Refine;
+use super::Subdivide;
 use crate::fixtures::{Grid, garment, hanging, plain, vest};
 use crate::texture::fixture;
 use proptest::prelude::*;
@@ -27,7 +27,7 @@ fn open_tube() -> Garment {
 }
 
 fn refined(garment: &Garment, parts: usize) -> Garment {
-    let fine = Refine { parts }.run(garment, &Context::quiet()).unwrap();
+    let fine = Subdivide { parts }.run(garment, &Context::quiet()).unwrap();
     fine.check().unwrap();
     fine
 }
@@ -271,7 +271,7 @@ fn one_part_leaves_every_bit() {
 #[test]
 fn what_would_be_too_large_is_refused_before_it_is_made() {
     let (sheet, _) = hanging(1.4, 1.4, 0.01, &plain(500.0, 50.0, 1e-5));
-    let e = Refine { parts: 16 }.run(&sheet, &Context::quiet()).unwrap_err();
+    let e = Subdivide { parts: 16 }.run(&sheet, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "with edges in 16 parts the garment has 5022081 vertices, the limit is 4000000");
     assert_eq!((e.code, e.hint.as_deref()), (ErrorCode::InvalidParameter, Some("take fewer parts")));
 }
@@ -280,11 +280,11 @@ fn what_would_be_too_large_is_refused_before_it_is_made() {
 fn it_stops_when_it_is_asked_to_and_refuses_an_empty_garment() {
     let cancel = Cancel::new();
     cancel.cancel();
-    let cx = Context::new("Refine", std::path::Path::new("."), cancel, std::sync::Arc::new(()));
-    assert_eq!(Refine::default().run(&tube(), &cx).unwrap_err().code, ErrorCode::Cancelled);
+    let cx = Context::new("Subdivide", std::path::Path::new("."), cancel, std::sync::Arc::new(()));
+    assert_eq!(Subdivide::default().run(&tube(), &cx).unwrap_err().code, ErrorCode::Cancelled);
     let mut none = tube();
     none.triangles.clear();
-    let e = Refine::default().run(&none, &Context::quiet()).unwrap_err();
+    let e = Subdivide::default().run(&none, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "the garment is empty: it has no triangles");
 }
 
@@ -306,7 +306,7 @@ proptest! {
                 coarse.positions[v] + Vector3::new(sways[v % sways.len()], sways[v % 3], sways[v / 2 % 3])
             };
         }
-        let fine = Refine { parts }.run(&coarse, &Context::quiet()).unwrap();
+        let fine = Subdivide { parts }.run(&coarse, &Context::quiet()).unwrap();
         prop_assert_eq!(fine.check(), Ok(()));
         prop_assert!(joined_edges(&fine).values().all(|n| *n <= 2));
         prop_assert_eq!(euler(&fine), euler(&coarse));

@@ -1,4 +1,4 @@
-//! `Refine`: the garment as it lies, on a finer mesh.
+//! `Subdivide`: the garment as it lies, on a finer mesh.
 //!
 //! Method: every edge is cut into equal parts, every triangle into alike ones; what a vertex has is interpolated linearly.
 //! Cost: O(triangles * parts^2), and a sort of the edges. Limits: the outline stays the polygon of the coarse mesh; what was
@@ -30,17 +30,17 @@ const MOST_VERTICES: usize = 4_000_000;
 #[stage(
     role = Placement,
     source = "uniform subdivision of triangles, a textbook method",
-    example = "Refine(parts: 2)",
+    example = "Subdivide(parts: 2)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
-pub struct Refine {
+pub struct Subdivide {
     /// Parts that every edge is cut into.
     #[param(default = 2, min = 1, max = 16, unit = "parts", trades, finer = "more")]
     pub parts: usize,
 }
 
 #[stage]
-impl Refine {
+impl Subdivide {
     /// Runs the stage.
     pub fn run(&self, garment: &Garment, cx: &Context) -> Result<Garment, StageError> {
         check_garment(garment)?;
