@@ -2,10 +2,14 @@
 //! beside other tests may come too late, so `.ci/wide` runs it.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use image::RgbaImage;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use toile_core::artifact::OutputFiles;
-use toile_core::testkit::{Trial, cases, folder};
+use toile_core::testkit::{Trial, cases, dress, folder};
+use toile_stages::render::{Orbit, Scene};
 
 const BROWSERS: [&str; 4] = ["chromium-headless-shell", "chromium", "chromium-browser", "google-chrome"];
 
@@ -15,11 +19,11 @@ fn browser() -> Option<PathBuf> {
     BROWSERS.iter().flat_map(|b| folders.iter().map(move |f| f.join(b))).find(|p| p.is_file())
 }
 
-/// A small turntable of the suite's model.
-fn page(dir: &Path) -> PathBuf {
+/// A turntable of the suite's model.
+fn page(dir: &Path, params: &str) -> PathBuf {
     let registry = toile::registry();
     let card = registry.cards().find(|c| c.name == "Turntable").unwrap();
-    let stage = registry.make(card, "(views: 4, tiers: 2, size: 240)").unwrap();
+    let stage = registry.make(card, params).unwrap();
     let made = Trial { stage: stage.as_ref(), folder: dir }.run(&cases(card)[0].inputs);
     let values = made.values().unwrap();
     let any: &dyn std::any::Any = values[0].entries()[0].1.as_ref();
@@ -54,7 +58,7 @@ fn chromium(browser: &Path, dir: &Path, arguments: &[&str], page: &Path) -> Vec<
 fn the_page_loads_without_webgl_and_shows_the_garment() {
     let Some(browser) = browser() else { return eprintln!("skipped: no Chromium on the path") };
     let (_keep, dir) = folder().unwrap();
-    let page = page(&dir);
+    let page = page(&dir, "(views: 4, tiers: 2, size: 240)");
     let dom = String::from_utf8(chromium(&browser, &dir, &["--dump-dom"], &page)).unwrap();
     assert!(dom.contains("data-tt-loaded=\"yes\""), "the views were not read");
     let shot = dir.join("shot.png");
@@ -63,4 +67,56 @@ fn the_page_loads_without_webgl_and_shows_the_garment() {
     // The stage is light grey around the garment, and darker where the garment or the mannequin is.
     let dark = picture.pixels().filter(|p| p.0.iter().all(|c| *c < 190)).count();
     assert!(dark > 5_000, "{dark} dark pixels");
+}
+
+/// Puts the picture on the page's canvas into the page's text, two seconds after the views are read.
+const SHOW: &str = "<script>const wait = setInterval(() => {
+  if (!document.querySelector('[data-tt-loaded]')) return;
+  clearInterval(wait);
+  setTimeout(() => {
+    const text = document.createElement('pre');
+    text.textContent = 'shot:' + document.querySelectorAll('canvas')[1].toDataURL('image/png') + ':end';
+    document.body.append(text);
+  }, 2000);
+}, 50);</script>";
+
+/// What the page shows at a turn and a height, degrees.
+fn shown(browser: &Path, dir: &Path, page: &Path, azimuth: f64, elevation: f64) -> RgbaImage {
+    let at = PathBuf::from(format!("{}#azimuth={azimuth}&elevation={elevation}", page.display()));
+    let dom = String::from_utf8(chromium(browser, dir, &["--dump-dom"], &at)).unwrap();
+    let (_, rest) = dom.split_once("shot:data:image/png;base64,").unwrap();
+    let bytes = STANDARD.decode(rest.split_once(":end").unwrap().0).unwrap();
+    image::load_from_memory(&bytes).unwrap().into_rgba8()
+}
+
+/// Peak signal-to-noise ratio over the pixels that both show whole, dB, and their number.
+fn psnr(a: &RgbaImage, b: &RgbaImage) -> (f64, usize) {
+    let both = || a.pixels().zip(b.pixels()).filter(|(a, b)| a.0[3] == 255 && b.0[3] == 255);
+    let squares: f64 =
+        both().flat_map(|(a, b)| (0..3).map(|c| f64::from(a.0[c].abs_diff(b.0[c])).powi(2))).sum();
+    let count = both().count();
+    (10.0 * (255.0_f64.powi(2) * 3.0 * count as f64 / squares).log10(), count)
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn between_views_the_page_shows_what_would_have_been_rendered() {
+    let Some(browser) = browser() else { return eprintln!("skipped: no Chromium on the path") };
+    let (_keep, dir) = folder().unwrap();
+    let page = page(&dir, "(views: 24, tiers: 3, size: 480, quality: 90)");
+    let html = std::fs::read_to_string(&page).unwrap();
+    std::fs::write(&page, html.replacen("</body>", &format!("{SHOW}</body>"), 1)).unwrap();
+    let model = dress::model();
+    let orbit = Orbit::around(&model, 360, 480, &[-5.0, 15.0, 40.0]);
+    let scene = Scene::draft(&model);
+    for (azimuth, elevation) in [(7.5_f64, 15.0_f64), (52.5, 15.0), (187.5, 5.0)] {
+        let seen = shown(&browser, &dir, &page, azimuth, elevation);
+        let truth = scene.cut_outs(&orbit, azimuth.to_radians(), &[elevation.to_radians()]).remove(0);
+        let (db, pixels) = psnr(&seen, &truth);
+        eprintln!("at {azimuth}, {elevation} degrees: {db:.1} dB over {pixels} pixels");
+        assert!(
+            pixels > 10_000 && db > 35.0,
+            "at {azimuth}, {elevation} degrees: {db:.1} dB over {pixels} pixels"
+        );
+    }
 }

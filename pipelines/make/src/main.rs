@@ -1,4 +1,5 @@
-//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, and sewing patterns of a shirt, trousers, a dress and a one-piece.
+//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, a panorama, and sewing patterns of a shirt,
+//! trousers, a dress and a one-piece.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
 //! run. Another folder may be given as the first argument, and as the second a factor for the photos' resolution:
@@ -10,6 +11,7 @@ mod garment;
 mod ground;
 mod near;
 mod noise;
+mod panorama;
 mod pattern;
 mod print;
 mod render;
@@ -39,6 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (name, shot, outline) in single() {
         write(&folder.join(name), Side::Front, &enlarged(shot, factor), &outline)?;
     }
+    panorama::write(&folder.join("panorama"))?;
     pattern::write(&folder.join("pattern"))?;
     scene::write(&folder.join("scene"))
 }
@@ -251,6 +254,12 @@ mod tests {
         for (name, text) in scene::files() {
             assert!(std::fs::read_to_string(folder.join(name)).unwrap() == text, "{name}: run the program");
         }
+    }
+
+    #[test]
+    fn the_committed_panorama_is_that_of_this_program() {
+        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../samples/panorama/studio.jpg");
+        assert!(std::fs::read(file).unwrap() == panorama::jpeg().unwrap(), "run the program");
     }
 
     #[test]

@@ -20,7 +20,9 @@ const SMOOTH_TOLERANCE: f64 = 4e-4;
 /// Corrections of the aims before giving up; six suffice for ordinary figures.
 const MAX_FITS: usize = 30;
 /// Meshings before giving up; one suffices for ordinary figures.
-const MAX_MESHINGS: usize = 3;
+const MAX_MESHINGS: usize = 5;
+/// A mesh that is not closed, or in which fingers have grown together, is made anew with edges shorter by this factor.
+const FINER: f64 = 0.92;
 /// The finest mesh of the smallest body still has edges of this share of its height; it also keeps
 /// wrists and thumbs several cells thick for children.
 const LARGEST_EDGE: f64 = 1.0 / 95.0;
@@ -29,7 +31,7 @@ const NAMES: [&str; 6] = ["hip", "waist", "bust", "neck", "arm", "inseam"];
 
 /// The body of that size and form, meshed at that edge length.
 pub(crate) fn fit(size: &Size, form: &Form, edge: f64, cx: &Context) -> Result<Body, StageError> {
-    let (want, cell) = (wanted(size), edge.min(size.height * LARGEST_EDGE));
+    let (want, mut cell) = (wanted(size), edge.min(size.height * LARGEST_EDGE));
     let (mut goal, mut aims) = (want, Aims::first(size));
     let mut missed = NAMES[0];
     for round in 0..MAX_MESHINGS {
@@ -37,6 +39,11 @@ pub(crate) fn fit(size: &Size, form: &Form, edge: f64, cx: &Context) -> Result<B
         cx.progress(round as f64 / MAX_MESHINGS as f64, "fitting the measures");
         let figure = fitted(size, form, &goal, &mut aims).map_err(unfit)?;
         let skin = skin(&figure, cell);
+        if !is_sound(&skin) {
+            missed = "skin";
+            cell *= FINER;
+            continue;
+        }
         let marks = landmarks(&figure, &skin.0, &skin.1).ok_or_else(|| unfit("armpits"))?;
         let found = meshed(&figure, &skin, &marks).ok_or_else(|| unfit("trunk"))?;
         let close = |k: usize| (found[k] - want[k]).abs() < TOLERANCE[0].min(TOLERANCE[1] * want[k]);
@@ -87,16 +94,18 @@ fn skin(figure: &Figure, cell: f64) -> TriMesh {
     (positions, triangles)
 }
 
+/// Whether the mesh is one closed skin without holes through it.
+fn is_sound((positions, triangles): &TriMesh) -> bool {
+    let topology = Topology::of(positions.len(), triangles);
+    topology.is_closed() && topology.components == 1 && topology.euler() == 2
+}
+
 fn finish(
     figure: &Figure,
     skin: TriMesh,
     landmarks: super::landmarks::Marks,
     found: Six,
 ) -> Result<Body, StageError> {
-    let topology = Topology::of(skin.0.len(), &skin.1);
-    if !topology.is_closed() || topology.components != 1 || topology.euler() != 2 {
-        return Err(unfit("skin"));
-    }
     let [biceps, thigh] = limbs(figure, &skin, &landmarks).ok_or_else(|| unfit("limbs"))?;
     let [hip, waist, bust, neck, arm, inseam] = found;
     let across = landmarks.get("shoulder_left").zip(landmarks.get("shoulder_right"));

@@ -12,12 +12,15 @@
 use super::field::Field;
 use super::refine::{LEVELS, flip, refined};
 use super::topology::TriMesh;
+use super::untangle::untangle;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use toile_core::artifact::{Point3, Vector3};
 
 /// Rounds of smoothing before the mesh is refined, and after.
 const ROUNDS: [usize; 2] = [2, 3];
+/// Where the mesh is finer than this share of a cell, sheets of skin lie near each other and may cross.
+const FINE: f64 = 0.8;
 /// Share of the way to the neighbours' centre that a vertex moves in a round.
 const RELAXATION: f64 = 0.6;
 /// Points along the side of a block whose middle is asked first.
@@ -62,7 +65,9 @@ pub(crate) fn mesh(field: &impl Field, grid: &Grid) -> TriMesh {
         skin = refined(skin, |p| field.fineness(p) * grid.cell, |p| field.onto_skin(p, 1, grid.cell));
     }
     let (points, triangles) = even(field, grid, skin, ROUNDS[1]);
-    let points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
+    let mut points = relocate(&points, |i| field.onto_skin(points[i], 2, grid.cell));
+    let around = neighbours(points.len(), &triangles);
+    untangle(&mut points, &triangles, &around, |p| field.fineness(p) < FINE);
     mirror(points, triangles)
 }
 

@@ -5,8 +5,6 @@ mod body_obj;
 mod bounds;
 mod bridge;
 mod bump;
-#[cfg(test)]
-mod crossing;
 mod estimate;
 mod field;
 mod figure;
@@ -30,6 +28,7 @@ mod spline;
 mod thin;
 mod topology;
 mod torso;
+mod untangle;
 mod wearer;
 
 pub use body_obj::{BodyObj, Units, Up};

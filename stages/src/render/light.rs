@@ -58,9 +58,18 @@ impl Region {
     }
 }
 
-/// Ambient light on the front and on the back of every vertex, one list a mesh; 0 to 1.
-pub(super) fn ambient(model: &Model, region: Region, fineness: Fineness) -> Vec<Vec<[f32; 2]>> {
-    let sky = |d: &Vector3| NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0;
+/// The studio's light from a direction: bright above, dimmer from the floor.
+pub(super) fn studio(d: &Vector3) -> f64 {
+    NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0
+}
+
+/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes from each direction.
+pub(super) fn ambient(
+    model: &Model,
+    region: Region,
+    fineness: Fineness,
+    sky: impl Fn(&Vector3) -> f64 + Sync,
+) -> Vec<Vec<[f32; 2]>> {
     let sums = gather(model, region, &sphere(fineness.ambient), |map, p, n| {
         let cos = n.dot(&map.towards);
         let free = BOUNCE + (1.0 - BOUNCE) * map.free(p + n * LIFT.copysign(cos));

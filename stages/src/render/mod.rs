@@ -17,6 +17,7 @@ mod pictures;
 mod remember;
 mod scene;
 mod shade;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 
@@ -27,6 +28,7 @@ pub use overlay::Line;
 pub use pictures::{Form, PANEL_COLOURS, Picture, garment_model, pictures_of};
 pub(crate) use pictures::{escaped, jpeg, thumbnail};
 pub use scene::Scene;
+pub use surroundings::Surroundings;
 
 use image::RgbImage;
 use toile_core::artifact::Model;

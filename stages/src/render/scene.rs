@@ -10,6 +10,7 @@ use super::light::{self, Fineness, Region};
 use super::mips::{Footprint, Mips, encode};
 use super::remember::Remember;
 use super::shade::{Lights, wall};
+use super::surroundings::Surroundings;
 use super::{Line, Orbit, overlay};
 use crate::texture::tangents::{Tangent, tangents};
 use image::{RgbImage, RgbaImage};
@@ -38,30 +39,41 @@ pub struct Scene<'a> {
     fineness: Fineness,
     ambient: Vec<Vec<[f32; 2]>>,
     remember: Option<Remember<'a>>,
+    surroundings: Option<Surroundings>,
 }
 
 impl<'a> Scene<'a> {
     /// Prepares a model.
     pub fn new(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::FINE, None)
+        Scene::prepare(model, light::FINE, None, None)
     }
 
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
     pub fn new_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
-        Scene::prepare(model, light::FINE, Some(Remember::new(model, cx)))
+        Scene::prepare(model, light::FINE, Some(Remember::new(model, cx)), None)
     }
 
     /// Prepares a model for small pictures: the light is coarser and almost three times as fast.
     pub fn draft(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, None)
+        Scene::prepare(model, light::DRAFT, None, None)
     }
 
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
     pub fn draft_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)))
+        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)), None)
     }
 
-    fn prepare(model: &'a Model, fineness: Fineness, remember: Option<Remember<'a>>) -> Scene<'a> {
+    /// The same in the light of a panorama, where one is given.
+    pub fn draft_within(model: &'a Model, surroundings: Option<Surroundings>, cx: &'a Context) -> Scene<'a> {
+        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)), surroundings)
+    }
+
+    fn prepare(
+        model: &'a Model,
+        fineness: Fineness,
+        remember: Option<Remember<'a>>,
+        surroundings: Option<Surroundings>,
+    ) -> Scene<'a> {
         let mips = |(i, t): (usize, &Texture)| {
             if model.is_normal_map(i) { Mips::of_normals(t) } else { Mips::new(t) }
         };
@@ -72,18 +84,29 @@ impl<'a> Scene<'a> {
         let region = region(model);
         let make = || match is_unlit(model) {
             true => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
-            false => light::ambient(model, region, fineness),
+            false => match &surroundings {
+                None => light::ambient(model, region, fineness, light::studio),
+                Some(s) => light::ambient(model, region, fineness, |d| s.towards(d)),
+            },
         };
         let ambient = match &remember {
             None => make(),
             Some(r) => {
                 let key = |d: &mut Digester| {
                     d.text("ambient").count(fineness.ambient);
+                    if let Some(s) = &surroundings {
+                        s.digest(d);
+                    }
                 };
                 r.light(key, make)
             }
         };
-        Scene { model, textures, tangents, region, fineness, ambient, remember }
+        Scene { model, textures, tangents, region, fineness, ambient, remember, surroundings }
+    }
+
+    /// The lights of a view.
+    fn lights(&self, camera: &Camera) -> Lights {
+        self.surroundings.as_ref().map_or_else(|| Lights::new(camera), |s| Lights::of(s, camera))
     }
 
     /// The soft box's light from a direction.
@@ -108,7 +131,7 @@ impl<'a> Scene<'a> {
     /// A picture with lines drawn over it.
     pub fn render_with(&self, view: &View, lines: &[Line]) -> RgbImage {
         let camera = Camera::fit(self.model, view);
-        let lights = Lights::new(&camera);
+        let lights = self.lights(&camera);
         let (width, height) = (view.width as usize, view.height);
         let (key, faces) = (&self.soft_box(lights.key), faces(self.model, &camera));
         let shot = Shot { scene: self, key, faces, lights, width, height };
@@ -124,9 +147,9 @@ impl<'a> Scene<'a> {
 
     /// Views from an orbit, at one turn about the vertical and several heights above the horizon, radians, without a background: the
     /// colour of a pixel is the mean of what it shows of the model, and alpha is the share that the model has in it. The lights turn with
-    /// the camera, but do not rise with it.
+    /// the camera, but do not rise with it; those of a panorama stay.
     pub fn cut_outs(&self, orbit: &Orbit, azimuth: f64, elevations: &[f64]) -> Vec<RgbaImage> {
-        let lights = Lights::new(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
+        let lights = self.lights(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
         let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height);
         let view = |elevation: &f64| {
             let faces = faces(self.model, &orbit.camera(azimuth, *elevation));
@@ -355,12 +378,12 @@ impl Shot<'_> {
             material.filter(|m| !(face.reversed && m.wrong_side.is_some())).and_then(|m| m.normal_texture);
         let n = self.normal(mesh, map, face, weights);
         let n = if face.reversed { -n } else { n };
-        let light = self.lights.on(&n, ambient, key) as f32;
+        let light = self.lights.on(&n, ambient, key);
         match material.and_then(|m| m.sheen) {
-            None => own.map(|v| v * light),
+            None => [0, 1, 2].map(|k| own[k] * light[k]),
             Some(sheen) => {
                 let shine = self.lights.sheen(&sheen, &n, ambient, key) as f32;
-                [0, 1, 2].map(|k| own[k] * light + sheen.colour[k] * shine)
+                [0, 1, 2].map(|k| own[k] * light[k] + sheen.colour[k] * shine)
             }
         }
     }

@@ -1,6 +1,7 @@
 //! What colour a surface shows: soft key, fill and sky on a matt surface, with the sheen of its fibres.
 
 use super::camera::Camera;
+use super::surroundings::Surroundings;
 use std::f64::consts::PI;
 use toile_core::artifact::{Sheen, Vector3};
 
@@ -18,27 +19,52 @@ const SKY_LIGHT: f64 = 0.50;
 pub(super) struct Lights {
     pub(super) key: Vector3,
     fill: Vector3,
+    /// Strengths and colours of the key light and of what comes from all sides.
+    key_light: f64,
+    fill_light: f64,
+    key_tint: [f32; 3],
+    tint: [f32; 3],
     /// Towards the viewer: taken as the same for the whole picture.
     view: Vector3,
 }
 
 impl Lights {
     pub(super) fn new(camera: &Camera) -> Lights {
-        Lights { key: camera.to_world(KEY), fill: camera.to_world(FILL), view: camera.back }
+        let (key_light, fill_light) = (KEY_LIGHT, FILL_LIGHT);
+        let (key, fill, view) = (camera.to_world(KEY), camera.to_world(FILL), camera.back);
+        Lights { key, fill, key_light, fill_light, key_tint: [1.0; 3], tint: [1.0; 3], view }
+    }
+
+    /// Those of a panorama, which stay where they are when the camera turns.
+    pub(super) fn of(surroundings: &Surroundings, camera: &Camera) -> Lights {
+        Lights {
+            key: surroundings.key,
+            key_light: KEY_LIGHT * surroundings.strength,
+            // What fills the shadows comes from all sides already.
+            fill_light: 0.0,
+            key_tint: surroundings.key_tint,
+            tint: surroundings.tint,
+            ..Lights::new(camera)
+        }
     }
 
     /// Light on a surface with unit normal `n` (turned to the viewer), where `ambient` of the sky and `key` of
     /// the key light reach it.
-    pub(super) fn on(&self, n: &Vector3, ambient: f64, key: f64) -> f64 {
+    pub(super) fn on(&self, n: &Vector3, ambient: f64, key: f64) -> [f32; 3] {
         let cosine = |l: &Vector3| n.dot(l).max(0.0);
-        KEY_LIGHT * key * cosine(&self.key) + (FILL_LIGHT * cosine(&self.fill) + SKY_LIGHT) * ambient
+        // Without fill light the sky gives its share as well, so that pictures are as bright.
+        let sky = if self.fill_light > 0.0 { SKY_LIGHT } else { SKY_LIGHT + FILL_LIGHT };
+        let key = (self.key_light * key * cosine(&self.key)) as f32;
+        let around = ((self.fill_light * cosine(&self.fill) + sky) * ambient) as f32;
+        [0, 1, 2].map(|c| key * self.key_tint[c] + around * self.tint[c])
     }
 
     /// What fibres add of key and fill light, for white sheen; the sky's is left out. In the same units as [`Lights::on`].
     pub(super) fn sheen(&self, sheen: &Sheen, n: &Vector3, ambient: f64, key: f64) -> f64 {
         let alpha = f64::from(sheen.roughness).max(LEAST_ROUGHNESS).powi(2);
         let of = |l: &Vector3| charlie(n, l, &self.view, alpha);
-        KEY_LIGHT * key * of(&self.key) + FILL_LIGHT * ambient * of(&self.fill)
+        let fill = if self.fill_light > 0.0 { self.fill_light * ambient * of(&self.fill) } else { 0.0 };
+        self.key_light * key * of(&self.key) + fill
     }
 }
 
@@ -51,7 +77,14 @@ fn charlie(n: &Vector3, l: &Vector3, v: &Vector3, alpha: f64) -> f64 {
     let (light, view) = (n.dot(l), n.dot(v).max(0.0));
     let Some(half) = (l + v).try_normalize(1e-9).filter(|_| light > 0.0) else { return 0.0 };
     let sine = (1.0 - n.dot(&half).powi(2)).max(0.0).sqrt();
-    let distribution = (2.0 + 1.0 / alpha) * sine.powf(1.0 / alpha) / (2.0 * PI);
+    let exponent = 1.0 / alpha;
+    // Whole exponents, such as 4 for short fibres, need no logarithm.
+    let power = if exponent.fract() == 0.0 && exponent <= 64.0 {
+        sine.powi(exponent as i32)
+    } else {
+        sine.powf(exponent)
+    };
+    let distribution = (2.0 + exponent) * power / (2.0 * PI);
     let visibility = 1.0 / (4.0 * (light + view - light * view).max(1e-3));
     PI * light * distribution * visibility
 }

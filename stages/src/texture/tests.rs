@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::bleed::{bleed, eroded, nearest};
+use super::fixture::one_sheet;
 use super::inside::{PixelBox, cover, keep_shown};
 use super::{PhotoTexturer, crop, fixture};
 use image::{GrayImage, Luma, Rgb, RgbImage};
@@ -11,7 +12,7 @@ use toile_core::param::ron_options;
 use toile_core::prelude::*;
 
 fn texturer(params: &str) -> PhotoTexturer {
-    ron_options().from_str(params).unwrap()
+    ron_options().from_str(&one_sheet(params)).unwrap()
 }
 
 fn model(params: &str) -> Model {
@@ -347,4 +348,44 @@ fn what_no_light_brings_out_is_refused() {
     let hint = "leave it out, or give `detail: Photo`";
     let strength = told("`strength` does nothing with `detail: None`", hint, "strength");
     assert_eq!(fault("(strength: 2.0)"), strength);
+}
+
+#[test]
+fn the_wrong_side_is_plain_cloth_and_open_edges_are_thick() {
+    let run = |params: &str| {
+        let texturer: PhotoTexturer = ron_options().from_str(params).unwrap();
+        let photos = Some(fixture::photos());
+        texturer.run(&fixture::garment(8), photos, None, None, &Context::quiet()).unwrap()
+    };
+    let model = run("()");
+    let names: Vec<&str> = model.meshes.iter().map(|m| m.name.as_str()).collect();
+    assert_eq!(names, ["front", "back", "front edge", "back edge"]);
+    // The front is red and the back blue: each photo's own cloth.
+    let backs: Vec<[f32; 3]> = model.materials[..2].iter().map(|m| m.wrong_side.unwrap()).collect();
+    assert!(backs[0][0] > 2.0 * backs[0][2] && backs[1][2] > 2.0 * backs[1][0], "{backs:?}");
+    let edge = &model.materials[model.meshes[2].material];
+    assert_eq!((edge.texture, edge.wrong_side, edge.double_sided), (Some(0), None, false));
+    assert_eq!(run("(edge: \"0 mm\", wrong_side: Same)").meshes.len(), 2);
+}
+
+#[test]
+fn uneven_light_goes_only_where_it_is_asked_to() {
+    let light = |x: u32| 60 + (x / 4).min(120) as u8;
+    let photos = || {
+        let shaded = |p: &Photo| {
+            let (w, h) = p.pixels.dimensions();
+            let pixels = RgbImage::from_fn(w, h, |x, _| Rgb([light(x), light(x) / 2, light(x) / 2]));
+            p.with_pixels(pixels)
+        };
+        fixture::photos().0.iter().map(|(name, p)| (name.clone(), shaded(p))).collect()
+    };
+    let spread = |params: &str| {
+        let model = texturer(params)
+            .run(&fixture::garment(8), Some(photos()), None, None, &Context::quiet())
+            .unwrap();
+        let (w, h) = model.textures[0].pixels.dimensions();
+        let red = |x: u32| i32::from(model.textures[0].pixels.get_pixel(x, h / 2).0[0]);
+        (red(w * 3 / 4) - red(w / 4)).abs()
+    };
+    assert!(spread("()") > 30 && spread("(shading: Remove)") < 8, "{}", spread("(shading: Remove)"));
 }

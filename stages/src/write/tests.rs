@@ -30,7 +30,8 @@ fn photos() -> PortValue {
 pub(super) fn model_with(texturer: &str) -> Model {
     let inputs =
         Inputs(vec![Some(one(fixture::garment(8))), Some(photos()), None, Some(one(fixture::body()))]);
-    let out = params::<PhotoTexturer>(texturer).run_ports(&inputs, &Context::quiet()).unwrap();
+    let out =
+        params::<PhotoTexturer>(&fixture::one_sheet(texturer)).run_ports(&inputs, &Context::quiet()).unwrap();
     let any: &dyn std::any::Any = out[0].entries()[0].1.as_ref();
     any.downcast_ref::<Model>().unwrap().clone()
 }

@@ -6,7 +6,7 @@ use super::*;
 use toile_core::testkit::dress;
 
 fn texturer(texture: FabricTexture) -> FabricTexturer {
-    let text = format!("(texture: {texture:?}, size: 64, body: Hide)");
+    let text = format!("(texture: {texture:?}, size: 64, body: Hide, edge: \"0 mm\")");
     toile_core::param::ron_options().from_str(&text).unwrap()
 }
 

@@ -254,3 +254,24 @@ fn glb_counts_beyond_16_bits() {
     let indices: Vec<u32> = primitive.reader(|_| Some(&blob)).read_indices().unwrap().into_u32().collect();
     assert_eq!(indices, model.meshes[0].triangles.concat());
 }
+
+#[test]
+fn glb_gives_the_wrong_side_a_mesh_of_its_own() {
+    let mut model = model();
+    model.materials[0].wrong_side = Some([0.2, 0.1, 0.1]);
+    let json = json_chunk(&glb_file(&model, "(body: false)"));
+    let names: Vec<&str> =
+        json["meshes"].as_array().unwrap().iter().map(|m| m["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["front", "back", "front wrong side"]);
+    let material = |mesh: usize| {
+        &json["materials"][json["meshes"][mesh]["primitives"][0]["material"].as_u64().unwrap() as usize]
+    };
+    assert_eq!((&material(0)["doubleSided"], &material(2)["doubleSided"]), (&json!(false), &json!(false)));
+    let colour: Vec<f64> = material(2)["pbrMetallicRoughness"]["baseColorFactor"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|v| v.as_f64().unwrap())
+        .collect();
+    assert!((colour[0] - 0.2).abs() < 1e-6 && (colour[1] - 0.1).abs() < 1e-6);
+}

@@ -9,10 +9,11 @@ mod sheet;
 
 use super::check::check_model;
 use super::names::check_name;
-use crate::render::{Orbit, Scene};
+use crate::photo::decode;
+use crate::render::{Orbit, Scene, Surroundings};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use image::RgbaImage;
+use image::{RgbImage, RgbaImage};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use toile_core::prelude::*;
@@ -31,6 +32,9 @@ const AT_ONCE: usize = 4;
 const PER_SHEET: usize = 12;
 /// Behind the model.
 const BACKGROUND: &str = "#e9e9e6";
+/// The width of the panorama in the page, px, and its quality as JPEG: it is out of focus.
+const PANORAMA_WIDTH: u32 = 1024;
+const PANORAMA_QUALITY: u8 = 75;
 /// Below this quality JPEG shows its blocks: a page that is larger still says so.
 const LEAST_QUALITY: u8 = 30;
 /// Steps by which the quality is lowered.
@@ -42,9 +46,10 @@ const QUALITY_STEP: u8 = 5;
 /// dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
-    source = "Chen and Williams 1993; Buehler and others 2001",
+    version = 2,
+    source = "Chen and Williams 1993; Buehler and others 2001; light of a panorama: Debevec 1998",
     example = "Turntable(views: 24, tiers: 3)",
-    contracts(Deterministic, ThreadInvariant)
+    contracts(Deterministic, ThreadInvariant, Cancellable)
 )]
 pub struct Turntable {
     /// The file's name without its extension.
@@ -65,6 +70,9 @@ pub struct Turntable {
     /// The page's size that the quality is lowered for, at most to 30.
     #[param(default = 2000, min = 50, max = 100_000, unit = "kB")]
     page: usize,
+    /// A panorama that surrounds the model and lights it: a picture twice as wide as high, of which the middle is seen behind the wearer.
+    #[param(default = None)]
+    panorama: Option<String>,
 }
 
 #[stage]
@@ -76,7 +84,8 @@ impl Turntable {
             let text = format!("the model has {} parts, a turntable holds 255", model.meshes.len());
             return Err(StageError::invalid(text).hint("leave `Turntable` out"));
         }
-        let html = page(&self.data(model, cx)?);
+        let panorama = self.panorama.as_deref().map(|file| read_panorama(file, cx)).transpose()?;
+        let html = page(&self.data(model, panorama.as_ref(), cx)?);
         let kilobytes = html.len() / 1000;
         if kilobytes > self.page {
             cx.warn(format!(
@@ -95,12 +104,12 @@ impl Turntable {
 
 impl Turntable {
     /// What the page shows.
-    fn data(&self, model: &Model, cx: &Context) -> Result<Value, StageError> {
+    fn data(&self, model: &Model, panorama: Option<&RgbImage>, cx: &Context) -> Result<Value, StageError> {
         let tiers = TIERS[self.tiers - 1];
         let orbit = Orbit::around(model, self.size * 3 / 4, self.size, tiers);
-        let views = self.render(model, &orbit, tiers, cx)?;
+        let views = self.render(model, panorama, &orbit, tiers, cx)?;
         let spans: Vec<Vec<[u8; 2]>> = views.par_iter().map(sheet::spans).collect();
-        let sheets: Vec<image::RgbImage> = (0..views.len())
+        let sheets: Vec<RgbImage> = (0..views.len())
             .into_par_iter()
             .step_by(PER_SHEET)
             .map(|from| {
@@ -125,6 +134,13 @@ impl Turntable {
             "sheetBlocks": sheet::SHEET_BLOCKS,
             "spans": STANDARD.encode(spans.concat().as_flattened()),
         });
+        if let Some(panorama) = panorama {
+            data["panorama"] = format!(
+                "data:image/jpeg;base64,{}",
+                STANDARD.encode(sheet::jpeg(panorama, PANORAMA_QUALITY)?)
+            )
+            .into();
+        }
         let room = (1000 * self.page).saturating_sub(page(&data).len());
         data["sheets"] = self.encoded(&sheets, room)?.into();
         Ok(data)
@@ -134,11 +150,12 @@ impl Turntable {
     fn render(
         &self,
         model: &Model,
+        panorama: Option<&RgbImage>,
         orbit: &Orbit,
         tiers: &[f64],
         cx: &Context,
     ) -> Result<Vec<RgbaImage>, StageError> {
-        let scene = Scene::draft_in(model, cx);
+        let scene = Scene::draft_within(model, panorama.map(Surroundings::new), cx);
         let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
         let mut by_azimuth = Vec::new();
         let turns: Vec<f64> =
@@ -157,10 +174,10 @@ impl Turntable {
     }
 
     /// The sheets as data URIs, of the greatest quality with which they fit into so many bytes.
-    fn encoded(&self, sheets: &[image::RgbImage], room: usize) -> Result<Vec<String>, StageError> {
+    fn encoded(&self, sheets: &[RgbImage], room: usize) -> Result<Vec<String>, StageError> {
         let mut quality = self.quality;
         loop {
-            let uri = |s: &image::RgbImage| {
+            let uri = |s: &RgbImage| {
                 Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(sheet::jpeg(s, quality)?)))
             };
             let uris: Vec<String> = sheets.par_iter().map(uri).collect::<Result<_, StageError>>()?;
@@ -170,6 +187,22 @@ impl Turntable {
             quality = quality.saturating_sub(QUALITY_STEP).max(LEAST_QUALITY);
         }
     }
+}
+
+/// A panorama, brought down to what the page shows of it.
+fn read_panorama(file: &str, cx: &Context) -> Result<RgbImage, StageError> {
+    let at = |e: StageError| e.at("panorama");
+    let picture = cx.read(file).and_then(|bytes| decode(&bytes, file)).map_err(at)?.pixels;
+    let (w, h) = picture.dimensions();
+    if w.abs_diff(2 * h) > h / 50 {
+        let text = format!("the panorama \"{file}\" is {w} x {h} px, and not twice as wide as high");
+        let hint = "a panorama shows 360 degrees across and 180 down (equirectangular projection)";
+        return Err(at(StageError::invalid(text).hint(hint)));
+    }
+    if w <= PANORAMA_WIDTH {
+        return Ok(picture);
+    }
+    Ok(image::imageops::thumbnail(&picture, PANORAMA_WIDTH, PANORAMA_WIDTH / 2))
 }
 
 /// The data in a page that this stage has written, as escaped JSON.

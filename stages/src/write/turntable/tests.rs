@@ -60,3 +60,51 @@ fn a_page_that_cannot_be_as_small_as_asked_says_what_to_do() {
         )]
     );
 }
+
+/// A context whose folder holds a panorama of this size, dark but for a lamp to the wearer's left.
+fn with_panorama(folder: &tempfile::TempDir, width: u32, height: u32) -> Context {
+    let lamp = |x: u32, y: u32| x > width * 11 / 16 && x < width * 13 / 16 && y < height / 2;
+    let room =
+        RgbImage::from_fn(width, height, |x, y| image::Rgb(if lamp(x, y) { [255; 3] } else { [40; 3] }));
+    room.save(folder.path().join("room.png")).unwrap();
+    Context::new("Turntable", folder.path(), toile_core::Cancel::new(), std::sync::Arc::new(()))
+}
+
+#[test]
+fn a_panorama_stands_in_the_page_and_lights_the_model_from_its_own_side() {
+    let folder = tempfile::tempdir().unwrap();
+    let cx = with_panorama(&folder, 256, 128);
+    let t = Turntable { panorama: Some("room.png".into()), ..small() };
+    let page = data(&html(&t, &cx));
+    assert!(page["panorama"].as_str().unwrap().starts_with("data:image/jpeg;base64,"));
+    assert!(data(&html(&small(), &cx)).get("panorama").is_none());
+    let (model, orbit) = (dress::model(), Orbit::around(&dress::model(), 72, 96, TIERS[0]));
+    let room = read_panorama("room.png", &cx).unwrap();
+    let scene = Scene::draft_within(&model, Some(Surroundings::new(&room)), &cx);
+    let brightness = |turn: f64| {
+        let view = scene.cut_outs(&orbit, turn, &[0.0]).remove(0);
+        let seen: Vec<u64> = view
+            .pixels()
+            .filter(|p| p.0[3] == 255)
+            .map(|p| p.0[..3].iter().map(|v| u64::from(*v)).sum())
+            .collect();
+        seen.iter().sum::<u64>() / seen.len() as u64
+    };
+    let (left, right) = (brightness(std::f64::consts::FRAC_PI_2), brightness(-std::f64::consts::FRAC_PI_2));
+    assert!(left > right + 60, "{left} {right}");
+}
+
+#[test]
+fn a_picture_that_is_no_panorama_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let cx = with_panorama(&folder, 200, 150);
+    let t = Turntable { panorama: Some("room.png".into()), ..small() };
+    let e = t.run(&dress::model(), &cx).unwrap_err();
+    assert_eq!(e.message, "the panorama \"room.png\" is 200 x 150 px, and not twice as wide as high");
+    assert_eq!(
+        e.hint.unwrap(),
+        "a panorama shows 360 degrees across and 180 down (equirectangular projection)"
+    );
+    let none = Turntable { panorama: Some("none.png".into()), ..small() };
+    assert!(none.run(&dress::model(), &cx).unwrap_err().message.starts_with("cannot read \"none.png\""));
+}

@@ -603,7 +603,7 @@ const turntable = (() => {
     const range = { 'aria-orientation': 'horizontal', 'aria-valuemin': 0, 'aria-valuemax': 359, 'aria-valuenow': 0 };
     const stage = make(root, 'div', 'tt-stage', { tabindex: 0, role: 'slider', 'aria-label': label, ...range });
     if (data.background) stage.style.background = data.background;
-    const behind = make(stage, 'canvas', 'tt-canvas', { 'aria-hidden': 'true' }), front = make(stage, 'canvas', 'tt-canvas', { 'aria-hidden': 'true' });
+    const behind = make(stage, 'canvas', 'tt-canvas tt-behind', { 'aria-hidden': 'true' }), front = make(stage, 'canvas', 'tt-canvas', { 'aria-hidden': 'true' });
     front.width = data.width; front.height = data.height;
     const tools = make(root, 'div', 'tt-tools', { role: 'group', 'aria-label': 'View' });
     const state = make(root, 'p', 'tt-state', { role: 'status', 'aria-live': 'polite' }, 'Loading');
