@@ -159,8 +159,18 @@ impl GraphCut {
 
     /// The cut under the models of the coarse rounds, as it is: with its holes, hairs and specks.
     pub(super) fn raw(&self, coarse: &Coarse, cx: &Context) -> Result<Vec<bool>, StageError> {
-        let links = Links::of(&coarse.small, self.gamma);
-        cut(&coarse.small, &coarse.models, &links, rim_width(&coarse.small, self.rim), None, cx)
+        self.raw_at(&coarse.small, coarse, cx)
+    }
+
+    /// The same at another size of the photo.
+    pub(super) fn raw_at(
+        &self,
+        small: &Small,
+        coarse: &Coarse,
+        cx: &Context,
+    ) -> Result<Vec<bool>, StageError> {
+        let links = Links::of(small, self.gamma);
+        cut(small, &coarse.models, &links, rim_width(small, self.rim), None, cx)
     }
 
     /// The state before the last cut of a mask that another method found; `None` where one side is empty.

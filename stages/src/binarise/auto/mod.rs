@@ -4,7 +4,8 @@
 //! the ground's colours, a split of colours in two, the distance to the rim's colours, a random walk that sees edges alone, and a graph cut from that walk's end.
 //! For each mask `evidence` asks how far others agree with it, how much of its contour lies on an edge of the photo, and how
 //! alike its halves are. The best is taken: thin parts without a mirror image are taken off it and pairs of straps are put back (`thin`), wedges of ground
-//! between sleeve and side are opened (`wedge`), its boundary is cut at twice the size and set at the photo's own, and a strip of ground between hem and frame is
+//! between sleeve and side are opened (`wedge`), its boundary is cut at twice the size, inlets of ground between legs are opened up to their tips,
+//! it is set at the photo's own size, and a strip of ground between hem and frame is
 //! found (`frame`). The product of
 //! the evidence is the confidence. Below the least that is asked for, and where the mask looks like a print on something
 //! larger (`larger`), the photo is refused with a picture of the doubt (`doubt`).
@@ -44,7 +45,7 @@ use grid::{bits, picture};
 use image::GrayImage;
 use methods::methods;
 use toile_core::prelude::*;
-use wedge::with_wedges;
+use wedge::{follow, with_inlets, with_wedges};
 
 /// The binariser that takes what a user marks.
 const NEXT: &str = "`GraphCut()`";
@@ -56,6 +57,7 @@ const NEXT: &str = "`GraphCut()`";
 /// Transparent pixels are ground.
 #[stage(
     role = Binariser,
+    version = 2,
     source = "Boykov and Jolly, 2001; Grady, 2006; Otsu, 1979",
     example = "Auto(confidence: 0.3)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -101,8 +103,16 @@ impl Auto {
         cx.figure("agreement", evidence.agreement, "");
         cx.figure("edges", 100.0 * evidence.support, "% of the outline");
         cx.figure("symmetry", evidence.symmetry, "");
-        let fine = GraphCut::default().fine(&large, coarse, cx)?;
+        let cut = GraphCut::default();
+        let (fine, inlets) =
+            with_inlets(&cut.fine(&large, coarse, cx)?, &cut.raw_at(&large, coarse, cx)?, large.w);
         let mut mask = refine(photo, &large, &fine, cx)?;
+        let (w, h) = mask.dimensions();
+        let in_photo =
+            |at: usize, of: usize, to: u32| ((2 * at as u32 + 1) * to / (2 * of as u32)).min(to - 1);
+        for [x, y] in inlets {
+            follow(&mut mask, photo, [in_photo(x, large.w, w), in_photo(y, large.h, h)]);
+        }
         frame::without_strips(&mut mask, photo);
         let mask = opened(mask);
         if confidence < self.confidence {

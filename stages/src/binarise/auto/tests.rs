@@ -180,6 +180,26 @@ fn a_wedge_of_ground_between_sleeve_and_side_is_opened() {
     assert!(ground(0.3) && ground(0.7));
 }
 
+/// Legs that lie a finger apart: a clean-up closes the ground between them from the fork on.
+#[test]
+fn ground_between_legs_is_open_up_to_the_fork() {
+    let between = |x: f64, y: f64| (x - 0.5).abs() < 0.07 * (y - 0.3);
+    let trousers = |x: f64, y: f64| (0.25..0.75).contains(&x) && (0.1..0.9).contains(&y) && !between(x, y);
+    let photo = photo(|x, y| if trousers(x, y) { [40, 50, 70] } else { [210, 180, 140] });
+    let mask = run(&photo).unwrap();
+    let ground = |y: f64| mask.pixels.get_pixel(W / 2, (y * f64::from(H)) as u32).0[0] == 0;
+    assert!(ground(0.45) && !ground(0.28));
+    assert!(score(&mask, trousers) > 0.985);
+}
+
+/// A tie of the ground's colour hangs from the neck and is as wide below.
+#[test]
+fn a_stripe_that_ends_at_the_outline_is_no_inlet() {
+    let tie = |x: f64, y: f64| (x - 0.5).abs() < 0.01 && y < 0.6;
+    let photo = photo(|x, y| if tee(x, y) && !tie(x, y) { [25; 3] } else { [235; 3] });
+    assert!(score(&run(&photo).unwrap(), tee) > 0.98);
+}
+
 /// White bars on the chest of a red shirt on white are holes of what is found by colour.
 #[test]
 fn a_print_of_the_grounds_colour_is_no_wedge() {

@@ -5,13 +5,20 @@
 //! only. A print crosses the axis or lies far from the outline; a stripe across a sleeve comes near it at both ends. The wedge
 //! is opened by a slit at the place where it comes nearest to the outside.
 //!
-//! Cost: one labelling of the mask and a symmetry axis. Limits: a wedge on the axis, between two legs that touch at their
-//! feet, stays filled.
+//! A wedge that is open at its wide end is filled from its tip on where it is narrower than what a clean-up closes
+//! ([`with_inlets`]), and in the photo itself up to its tip ([`follow`]). What tapers away from the outside is such a wedge; a stripe that
+//! ends at the hem does not taper.
+//!
+//! Cost: one labelling of the mask and a symmetry axis; an inlet one labelling. Limits: a wedge on the axis, between two legs that touch at
+//! their feet, stays filled.
 
 use super::super::morphology::dilate;
 use super::super::regions::Regions;
+use super::super::small::{Lab, lab};
 use super::grid::{bits, picture};
 use super::symmetry::{Symmetry, symmetry};
+use image::GrayImage;
+use toile_core::prelude::*;
 
 /// A wedge holds at least this share of the garment.
 const LEAST: f64 = 0.004;
@@ -23,6 +30,110 @@ const ONE_SIDE: f64 = 0.95;
 const LONG: f64 = 4.0;
 /// Where it comes near the outside, it does so over at most this share of its length.
 const ONE_PLACE: f64 = 0.5;
+
+/// An inlet holds at least this share of the garment.
+const LEAST_INLET: f64 = 0.0005;
+/// The middle of an inlet lies nearer to its mouth than this, as a share of its length: a third where it is a triangle, a half where it is a
+/// stripe.
+const TAPERS: f64 = 0.42;
+
+/// Half the side of the square in which an inlet is followed to its tip, as a share of the photo's longer side; and of the one from which its
+/// colours are taken.
+const FOLLOWED: f64 = 0.08;
+const BESIDE: f64 = 0.02;
+/// An inlet goes on within this of where it ends, as a share of the longer side.
+const GOES_ON: f64 = 0.012;
+
+/// The mask with the inlets of ground opened that a clean-up has closed from their tips on, and where they end. `raw` is the mask by colours and
+/// edges alone, both of `w` pixels across.
+pub(super) fn with_inlets(mask: &[bool], raw: &[bool], w: usize) -> (Vec<bool>, Vec<[usize; 2]>) {
+    let (mut open, mut ends) = (mask.to_vec(), Vec::new());
+    let h = mask.len() / w.max(1);
+    let closed: Vec<bool> = mask.iter().zip(raw).map(|(on, raw)| *on && !raw).collect();
+    let closed = Regions::of(&picture(&closed, w, h));
+    let least = LEAST_INLET * mask.iter().filter(|on| **on).count() as f64;
+    let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
+    let beside = bits(&dilate(&picture(&outside, w, h), 1));
+    for (i, _) in closed.pieces.iter().enumerate().filter(|(_, p)| p.on && p.area as f64 >= least) {
+        let pixels = places(&bits(&closed.paint(|k, _| k == i)));
+        if is_inlet(&pixels, &beside, w) {
+            let mouth = middle(pixels.iter().copied().filter(|&k| beside[k]), w);
+            let away =
+                |k: &usize| (((k % w) as f64 - mouth[0]).hypot((k / w) as f64 - mouth[1]) * 1e3) as u64;
+            ends.extend(pixels.iter().copied().max_by_key(away).map(|k| [k % w, k / w]));
+            pixels.into_iter().for_each(|k| open[k] = false);
+        }
+    }
+    (open, ends)
+}
+
+/// Follows an inlet from where it ends, at `end`, to its tip in the photo: what hangs together with its ground, and whose colour is nearer to that of
+/// the ground than of the garment there, where it is long.
+pub(super) fn follow(mask: &mut GrayImage, photo: &Photo, end: [u32; 2]) {
+    let (w, h) = mask.dimensions();
+    let side = f64::from(w.max(h));
+    let square = |at: [u32; 2], share: f64| {
+        let reach = (share * side).ceil() as u32;
+        let span = |at: u32, most: u32| at.saturating_sub(reach)..(at + reach + 1).min(most);
+        (span(at[0], w), span(at[1], h))
+    };
+    // The boundary that was set in the photo ends before it.
+    let (xs, ys) = square(end, FOLLOWED);
+    let ground =
+        ys.flat_map(|y| xs.clone().map(move |x| [x, y])).filter(|p| mask.get_pixel(p[0], p[1]).0[0] == 0);
+    let away = |p: &[u32; 2]| p[0].abs_diff(end[0]).pow(2) + p[1].abs_diff(end[1]).pow(2);
+    let Some(end) = ground.min_by_key(away) else { return };
+    let colour = |x: u32, y: u32| lab(photo.pixels.get_pixel(x, y).0.map(f64::from));
+    let (xs, ys) = square(end, BESIDE);
+    let (mut sums, mut counts) = ([Lab::zeros(); 2], [0.0; 2]);
+    for (x, y) in ys.flat_map(|y| xs.clone().map(move |x| (x, y))) {
+        let on = usize::from(mask.get_pixel(x, y).0[0] != 0);
+        sums[on] += colour(x, y);
+        counts[on] += 1.0;
+    }
+    if counts.contains(&0.0) {
+        return;
+    }
+    let [ground, garment] = [0, 1].map(|k| sums[k] / counts[k]);
+    let is_ground = |x: u32, y: u32| (colour(x, y) - ground).norm() < (colour(x, y) - garment).norm();
+    let (xs, ys) = square(end, FOLLOWED);
+    let wide = xs.len();
+    let square: Vec<(u32, u32)> = ys.flat_map(|y| xs.clone().map(move |x| (x, y))).collect();
+    let flags = |of: &dyn Fn(u32, u32) -> bool| square.iter().map(|&(x, y)| of(x, y)).collect::<Vec<bool>>();
+    let picture = |of: &[bool]| picture(of, wide, of.len() / wide);
+    let on = flags(&|x, y| mask.get_pixel(x, y).0[0] != 0);
+    let outside: Vec<bool> = on.iter().map(|on| !on).collect();
+    let beside = bits(&dilate(&picture(&outside), 1));
+    let goes_on = flags(&|x, y| f64::from(x.abs_diff(end[0]).max(y.abs_diff(end[1]))) < GOES_ON * side);
+    // The rim of the garment, whose colours are mixed, is ground only where the inlet goes on.
+    let like = flags(&is_ground);
+    let like: Vec<bool> = (0..square.len()).map(|k| on[k] && like[k] && (goes_on[k] || !beside[k])).collect();
+    let parts = Regions::of(&picture(&like));
+    for (i, _) in parts.pieces.iter().enumerate().filter(|(_, p)| p.on) {
+        let pixels = places(&bits(&parts.paint(|k, _| k == i)));
+        if pixels.iter().any(|&k| goes_on[k] && beside[k]) && is_inlet(&pixels, &beside, wide) {
+            pixels.into_iter().for_each(|k| mask.get_pixel_mut(square[k].0, square[k].1).0 = [0]);
+        }
+    }
+}
+
+/// The middle of some pixels.
+fn middle(of: impl Iterator<Item = usize>, w: usize) -> [f64; 2] {
+    let (sum, count) =
+        of.fold(([0.0; 2], 0.0), |([x, y], n), k| ([x + (k % w) as f64, y + (k / w) as f64], n + 1.0));
+    sum.map(|s| s / f64::max(count, 1.0))
+}
+
+/// Whether some pixels are long, lie beside the outside at one place only, and taper away from it.
+fn is_inlet(pixels: &[usize], beside: &[bool], w: usize) -> bool {
+    let mouth: Vec<usize> = pixels.iter().copied().filter(|&k| beside[k]).collect();
+    let length = extent(pixels, w);
+    let (a, b) = (middle(pixels.iter().copied(), w), middle(mouth.iter().copied(), w));
+    !mouth.is_empty()
+        && length * length > LONG * pixels.len() as f64
+        && extent(&mouth, w) <= ONE_PLACE * length
+        && (a[0] - b[0]).hypot(a[1] - b[1]) <= TAPERS * length
+}
 
 /// The mask with its wedges opened. `solid` is the mask with its holes filled, `raw` the mask with its holes, both of `w` pixels
 /// across.

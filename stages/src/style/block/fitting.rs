@@ -2,7 +2,7 @@
 //!
 //! Method: a block is fitted to the outline ([`super::fit`]) and measured as a tailor measures a garment that lies flat. Of the sizes of a
 //! table, from a child of 80 cm to an adult, the one is taken whose girths, with the usual ease, and whose height, with the usual length of such a garment,
-//! lie nearest. The arms are spread as the sleeves are. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
+//! lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
 //! shorts and vests tell little, so that a short garment with few girths may fit several sizes; the body is a woman's or a child's.
 
 use super::complete::Complete;
@@ -46,6 +46,8 @@ pub(super) const SIZES: [[f64; 4]; 26] = [
 /// at the hip as they like: there only what is narrower counts.
 const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
+/// Hips of people of one size differ by this share: trousers are worn by one whose hips are so much wider where they are cut for them.
+const HIPS: f64 = 0.05;
 /// A height that is likely, cm, and its spread: it decides where a garment fits a child and an adult.
 const LIKELY: [f64; 2] = [165.0, 60.0];
 /// Usual length of a garment from neck or waist to hem, of one-pieces from neck to fork, as a share of the body's height, and its spread.
@@ -63,17 +65,20 @@ const MOST: f64 = 9.0;
 const ODD: f64 = 5.0;
 /// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the vertical.
 const ARMS: f64 = 45.0;
-const REACH: (f64, f64) = (35.0, 75.0);
+const REACH: (f64, f64) = (30.0, 75.0);
+/// A trunk that lies flat is half its girth wide; worn, it is an ellipse about 0.7 times as deep as wide, and its armpits lie nearer to the axis by
+/// this share.
+const CLOSED: f64 = 0.26;
 /// Arms that touch the trunk are spread by so much more, degrees.
-const SPREAD: f64 = 10.0;
+const SPREAD: f64 = 4.0;
 
-/// A mannequin that the photographed garment fits: child or adult, its arms spread as the sleeves lie.
+/// A mannequin that the photographed garment fits: child or adult, its arms spread as the sleeves hang.
 ///
 /// Takes the outline of the photo `front` and its scale. The size that is taken is told, with what it was taken for. State a body of your own where you
 /// know the wearer.
 #[stage(
     role = Body,
-    version = 5,
+    version = 6,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -118,7 +123,9 @@ impl Fitting {
         tape.tell(cx);
         let cost = |s: &[f64; 4]| tape.cost(s);
         let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
-        let [height, bust, waist, hip] = *best;
+        let [height, bust, waist, usual] = *best;
+        let cut_for = tape.girths[HIP].filter(|_| form.has_legs()).map(|g| g * 100.0 / (1.0 + EASE[HIP][0]));
+        let hip = cut_for.map_or(usual, |h| h.clamp(usual, (1.0 + HIPS) * usual));
         cx.warn(format!(
             "worn by a mannequin of {height:.0} cm, bust {bust:.0}, waist {waist:.0}, hip {hip:.0} cm: {} fits it",
             tape.words()
@@ -240,16 +247,19 @@ fn out(fit: &Fit, cuff: usize) -> f64 {
     0.5 * fit.sides.iter().map(angle).sum::<f64>()
 }
 
-/// The angle of the arms from the vertical at which the sleeves lie: the mean of both, from cap to cuff; degrees.
+/// The angle of the arms from the vertical at which the sleeves hang: the mean of both, from cap to cuff; degrees. As the trunk takes its depth, its
+/// armpits come inwards and the points of its shoulders do not: caps turn, and sleeves hang lower than they lie.
 fn arms(form: &Form, fit: &Fit) -> f64 {
     let Some(k) = form.underarm() else {
         return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k));
     };
+    let from_vertical = |way: Vector2| way.x.atan2(-way.y).to_degrees();
     let angle = |s: &Vec<super::bow::Bow>| {
+        let (armpit, shoulder) = (s[k].a, s[k + 2].b);
         let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
-        let cap = nalgebra::center(&s[k].a, &s[k + 2].b);
-        let way = cuff - cap;
-        way.x.atan2(-way.y).to_degrees()
+        let worn = Point2::new(armpit.x * (1.0 - CLOSED), armpit.y);
+        let turn = from_vertical(armpit - shoulder) - from_vertical(worn - shoulder);
+        from_vertical(cuff - nalgebra::center(&armpit, &shoulder)) - turn
     };
     0.5 * fit.sides.iter().map(angle).sum::<f64>()
 }

@@ -381,7 +381,7 @@ fn a_garment_is_worn_by_whom_it_fits() {
 }
 
 #[test]
-fn arms_are_spread_as_the_sleeves_lie() {
+fn arms_are_spread_as_the_sleeves_hang() {
     let at = |points: Vec<Point2>| {
         let front = [("front".to_owned(), outline(points))].into_iter().collect();
         let body = Fitting { style: BlockStyle::TShirt, ..Fitting::default() }
@@ -393,6 +393,20 @@ fn arms_are_spread_as_the_sleeves_lie() {
     let mut level: Vec<[f64; 2]> = TEE.to_vec();
     (level[3], level[4]) = ([400.0, 420.0], [420.0, 580.0]);
     assert!(at(garment(&level)) > at(garment(TEE)) + 10.0, "{} {}", at(garment(&level)), at(garment(TEE)));
+    // The sleeves lie 58 degrees from the vertical; around a trunk with depth they hang 17 degrees lower.
+    assert!((at(garment(TEE)) - 41.0).abs() < 6.0, "{}", at(garment(TEE)));
+}
+
+#[test]
+fn trousers_are_worn_by_hips_that_they_are_cut_for() {
+    // A waist of 80 cm, for which hips of 100 cm are usual.
+    let told = |seat: f64| {
+        let mut points = TROUSERS.to_vec();
+        points[3][0] = seat;
+        fitted_to(garment(&points), BlockStyle::Trousers).1.remove(0)
+    };
+    assert!(told(245.0).contains("waist 76, hip 100 cm"), "{}", told(245.0));
+    assert!(told(290.0).contains("waist 76, hip 105 cm"), "{}", told(290.0));
 }
 
 const SLEEVED: &[[f64; 2]] = &[
