@@ -155,7 +155,7 @@ impl Grid {
     fn diagonal(&self) -> Vec<f64> {
         let w = self.width;
         let sum = |i: usize| {
-            let left = if i % w > 0 { self.right[i - 1] } else { 0.0 };
+            let left = if !i.is_multiple_of(w) { self.right[i - 1] } else { 0.0 };
             let up = if i >= w { self.down[i - w] } else { 0.0 };
             self.right[i] + self.down[i] + left + up
         };

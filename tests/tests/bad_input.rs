@@ -234,7 +234,7 @@ fn a_body_that_is_not_closed() {
 
 #[test]
 fn panels_placed_too_far_away() {
-    let answer = refused("stages.Place.ease=\"3 m\"");
+    let answer = refused("stages.Place.start_offset=\"3 m\"");
     assert_says(&answer, "would start");
     assert_says(&answer, "too far to be sewn");
 }

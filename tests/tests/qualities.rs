@@ -210,7 +210,7 @@ fn an_edit_of_a_shipped_pipeline_voids_its_claims() {
             edited.out
         );
     }
-    for set in ["name=\"mine\"", "stages.PhotoTexturer.light=Replace"] {
+    for set in ["name=\"mine\"", "stages.PhotoTexturer.shading=Keep"] {
         assert_eq!(valid(&["--set", set]).out, plain.out, "{set}");
     }
 }

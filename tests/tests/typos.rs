@@ -59,12 +59,7 @@ const SLIPS: [Slip; 32] = [
     ),
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets
-    (
-        "start_offset: \"2 cm\"),",
-        "start_offset: \"2 cm\")^",
-        "a comma is missing after `Place(start_offset: \"2 cm\")`",
-        "",
-    ),
+    ("start_offset: \"2 cm\"),", "start_offset: \"2 cm\")^", "a comma is missing after `Place(...)`", ""),
     ("low: 20,", "low: 20^", "a comma is missing after `20`", ""),
     ("lambda: 0.5", "lambda^ 0.5", "a colon is missing after `lambda`", "write `lambda: ...`"),
     ("start_offset: \"2 cm\"", "start_offset: ^\"2 cm", "this text is never closed", "write `\"` at its end"),

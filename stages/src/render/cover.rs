@@ -33,7 +33,7 @@ impl Patch {
         if !v.iter().all(ok) {
             return None;
         }
-        let snap = |p: &Projected| [p.x, p.y].map(|c| (c * STEPS as f64).round() as i64);
+        let snap = |p: &Projected| [p.x, p.y].map(|c| nearest(c * STEPS as f64));
         let corners = v.each_ref().map(snap);
         let area = edge(corners[0], corners[1], corners[2]);
         let order = if area < 0 { [0, 2, 1] } else { [0, 1, 2] };
@@ -93,6 +93,19 @@ impl Patch {
             }
         }
     }
+}
+
+/// Added before a number is cut off, so that it is positive: what lies within reach is smaller.
+const OFFSET: i64 = 1 << 40;
+
+/// The whole number below, to 1/4096: without the call of a library that `floor` is on old processors.
+pub(super) fn below(v: f64) -> i64 {
+    ((v + OFFSET as f64) as i64).saturating_sub(OFFSET)
+}
+
+/// The nearest whole number, the upper of two.
+fn nearest(v: f64) -> i64 {
+    below(v + 0.5)
 }
 
 /// Twice the signed area of a, b, p.

@@ -10,7 +10,7 @@
 //! Limits: light varies linearly over a triangle; details below [`MAP_PX`]'s resolution are lost.
 
 use super::camera::Projected;
-use super::cover::Patch;
+use super::cover::{Patch, below};
 use rayon::prelude::*;
 use toile_core::artifact::{Mesh, Model, Point3, Vector3};
 
@@ -29,6 +29,9 @@ pub(super) struct Fineness {
 pub(super) const FINE: Fineness = Fineness { ambient: 64, soft_box: 16 };
 /// For small pictures: almost three times as fast.
 pub(super) const DRAFT: Fineness = Fineness { ambient: 24, soft_box: 6 };
+
+/// For thumbnails.
+pub(super) const SKETCH: Fineness = Fineness { ambient: 12, soft_box: 3 };
 
 /// Half angle of the soft box as its sine: the width of its shadows' edges.
 const BOX_SPREAD: f64 = 0.22;
@@ -230,9 +233,10 @@ impl DepthMap {
     fn free(&self, p: Point3) -> f64 {
         let at = self.place(&p);
         let (x, y) = (at.x - 0.5, at.y - 0.5);
-        let (fx, fy) = (x - x.floor(), y - y.floor());
+        let (left, top) = (below(x), below(y));
+        let (fx, fy) = (x - left as f64, y - top as f64);
         let open = |dx: i64, dy: i64| {
-            let (x, y) = (x.floor() as i64 + dx, y.floor() as i64 + dy);
+            let (x, y) = (left + dx, top + dy);
             let inside = (0..MAP_PX as i64).contains(&x) && (0..MAP_PX as i64).contains(&y);
             let lit = !inside || f64::from(self.nearest[y as usize * MAP_PX + x as usize]) < at.near + BIAS;
             f64::from(u8::from(lit))

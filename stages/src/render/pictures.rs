@@ -68,7 +68,7 @@ pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) ->
     } else if let Some(garment) = any.downcast_ref::<Garment>() {
         garment_pictures(garment, body, height)
     } else if let Some(model) = any.downcast_ref::<Model>() {
-        shots(&Scene::draft(model), &[], height)
+        shots(&Scene::sketch(model), &[], height)
     } else if let Some(files) = any.downcast_ref::<OutputFiles>() {
         drawings(files)
     } else {
@@ -123,7 +123,7 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
     let model = Model { meshes: vec![body_mesh(body, 0)], materials: vec![mannequin()], ..Model::default() };
     let dot = |p: &toile_core::artifact::Point3| Line { ends: [*p, *p], colour: LANDMARK_COLOUR, width: 5.0 };
     let dots: Vec<Line> = body.landmarks.values().map(dot).collect();
-    let scene = Scene::draft(&model);
+    let scene = Scene::sketch(&model);
     let whole = |view: View| View { frame: Frame::Whole, margin: 0.04, ..view };
     let shot = |caption: &str, view: View| {
         let form = jpeg(&scene.render_with(&whole(view), &dots))?;
@@ -137,7 +137,7 @@ fn body_pictures(body: &Body, height: u32) -> Vec<Picture> {
 
 fn garment_pictures(garment: &Garment, body: Option<&Body>, height: u32) -> Vec<Picture> {
     let model = garment_model(garment, body);
-    shots(&Scene::draft(&model), &open_seams(garment), height)
+    shots(&Scene::sketch(&model), &open_seams(garment), height)
 }
 
 /// Front and back.

@@ -58,6 +58,11 @@ impl<'a> Scene<'a> {
         Scene::prepare(model, light::DRAFT, None, None)
     }
 
+    /// Prepares a model for thumbnails: twice as fast again.
+    pub fn sketch(model: &'a Model) -> Scene<'a> {
+        Scene::prepare(model, light::SKETCH, None, None)
+    }
+
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
     pub fn draft_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
         Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)), None)

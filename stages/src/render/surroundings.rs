@@ -53,9 +53,9 @@ impl Surroundings {
         }
         let region = |towards: &Vector3| {
             let (mut sum, mut weight) = ([0.0; 3], 0.0);
-            for i in 0..WIDTH * HEIGHT {
+            for (i, colour) in colours.iter().enumerate() {
                 let share = solid(i / WIDTH) * (towards.dot(&direction(i)) - (1.0 - REGION)).max(0.0);
-                (0..3).for_each(|c| sum[c] += colours[i][c] * share);
+                (0..3).for_each(|c| sum[c] += colour[c] * share);
                 weight += share;
             }
             sum.map(|s: f64| s / f64::max(weight, 1e-12))

@@ -29,7 +29,7 @@ const LIGHT: [f64; 2] = [30.0, 10.0];
 const PATTERN: [f64; 2] = [0.2, 0.6];
 /// Squares along the longer side in which marks are looked for, and the share of them with marks from which these are a pattern.
 const SQUARES: usize = 12;
-const MOST_SPREAD: f64 = 0.75;
+const MOST_SPREAD: f64 = 0.9;
 /// Below this share nothing is print.
 const LEAST: f64 = 0.002;
 /// Pieces of fewer small pixels are no print.

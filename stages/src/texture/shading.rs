@@ -22,8 +22,12 @@ const CELL: f64 = 3e-3;
 const MOST_CELLS: f64 = 480.0;
 /// A step between neighbours is print from this change of chromaticity.
 const HUE: f64 = 0.012;
-/// Or from this change of the logarithm of luminance.
+/// Or from this change of the logarithm of luminance, if it is as large between places [`BESIDE`] cells before and behind: across a
+/// crease luminance comes back.
 const LIGHT: f64 = 0.22;
+const BESIDE: usize = 3;
+/// From this change on it is print in any case.
+const STEEP: f64 = 0.55;
 /// Darker than this share of white, hue is noise of the camera.
 const DARK: f64 = 0.02;
 /// What joins cells beyond the garment: light goes on there evenly.
@@ -165,7 +169,15 @@ fn pairs(cells: &[Cell], width: usize, next: usize) -> Vec<f64> {
         }
         let (a, b) = (&cells[i], &cells[i + next]);
         let hue = (a.hue[0] - b.hue[0]).hypot(a.hue[1] - b.hue[1]);
-        hue > HUE || (a.level - b.level).abs() > LIGHT
+        let step = (a.level - b.level).abs();
+        // Along one row or column, as far as it goes.
+        let far = |from: usize, forward: bool| {
+            let ahead = |k: usize| if forward { k.checked_add(next) } else { k.checked_sub(next) };
+            let in_line = |k: &usize| *k < n && (next != 1 || *k / width == i / width);
+            (0..BESIDE).fold(from, |k, _| ahead(k).filter(in_line).unwrap_or(k))
+        };
+        let stays = || (cells[far(i + next, true)].level - cells[far(i, false)].level).abs() > LIGHT;
+        hue > HUE || step > STEEP || step > LIGHT && stays()
     };
     let print: Vec<bool> = (0..n).map(print).collect();
     let near = |i: usize| print[i] || i >= next && print[i - next] || i + next < n && print[i + next];
@@ -221,6 +233,19 @@ mod tests {
                 assert!((0..3).all(|c| p[c].abs_diff(q[c]) < 12), "{x} {y}: {p:?} {q:?}");
             }
         }
+    }
+
+    #[test]
+    fn a_sharp_fold_from_side_to_side_leaves_both_halves_alike() {
+        // Pressed into the cloth: bright above, dark below, in light that comes from above.
+        let fold = |y: f64| {
+            let d = (y - 121.0) / 5.0;
+            1.0 - 0.55 * d * (-d * d).exp()
+        };
+        let even = without_light(&photo(|_, y| [0.12, 0.05, 0.14].map(|v| v * fold(y) * (1.2 - y / 600.0))));
+        let red = |y: u32| even.get_pixel(120, y).0[0];
+        let (above, below) = (red(60), red(180));
+        assert!(above.abs_diff(below) <= 3 && red(110).abs_diff(red(132)) <= 8, "{above} {below}");
     }
 
     #[test]

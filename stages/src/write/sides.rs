@@ -6,7 +6,7 @@
 use toile_core::artifact::{Material, Mesh, Model};
 
 /// What is added to the names of a mesh and its material.
-const WRONG_SIDE: &str = "wrong side";
+pub(super) const WRONG_SIDE: &str = " wrong side";
 
 /// The model with a mesh more for the wrong side of every mesh that has a look of its own there.
 pub(super) fn with_wrong_sides(model: &mut Model) {
@@ -31,7 +31,7 @@ pub(super) fn with_wrong_sides(model: &mut Model) {
 /// The same places, seen from behind.
 fn turned(mesh: &Mesh) -> Mesh {
     Mesh {
-        name: format!("{} {WRONG_SIDE}", mesh.name),
+        name: format!("{}{WRONG_SIDE}", mesh.name),
         normals: mesh.normals.iter().map(|n| -n).collect(),
         triangles: mesh.triangles.iter().map(|[a, b, c]| [*a, *c, *b]).collect(),
         ..mesh.clone()
@@ -44,7 +44,7 @@ fn sides(materials: &mut Vec<Material>, of: usize) -> (usize, usize) {
     let wrong = match materials[of].wrong_side {
         None => right.clone(),
         Some(colour) => Material {
-            name: format!("{} {WRONG_SIDE}", right.name),
+            name: format!("{}{WRONG_SIDE}", right.name),
             colour,
             texture: None,
             normal_texture: None,

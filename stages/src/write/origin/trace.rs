@@ -2,6 +2,7 @@
 
 use super::result::{Group, groups};
 use super::{FILE, Origins, PanelOrigin};
+use crate::write::sides::WRONG_SIDE;
 
 /// Where a triangle comes from.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,11 +64,16 @@ fn locate<'o>(
         first += panel.triangles.len();
     }
     let mut last = 0;
-    let name = groups.iter().find(|(_, count)| {
+    let group = groups.iter().find(|(_, count)| {
         last += count;
         face < last
     });
-    let name = name.map_or("", |(name, _)| name.as_str());
+    let (name, count) = group.map_or(("", 0), |(name, count)| (name.as_str(), *count));
+    // The wrong side has the panel's triangles in the panel's order.
+    let of = name.strip_suffix(WRONG_SIDE);
+    if let Some(panel) = panels().find(|p| Some(p.name.as_str()) == of && p.triangles.len() == count) {
+        return Ok((panel, face + count - last));
+    }
     Err(format!("face {face} belongs to \"{name}\", which is no panel of the garment"))
 }
 
@@ -160,6 +166,9 @@ mod tests {
     fn what_cannot_be_followed_is_said() {
         let says = |obj: &str, kind: &str, face| trace(&origin(), obj.as_bytes(), kind, face).unwrap_err();
         assert_eq!(says(OBJ, "obj", 5), "face 5 is out of range: the file has 5 triangles, counted from 0");
+        let wrong = OBJ.replace("g body", "g front wrong side");
+        let message = "face 4 belongs to \"front wrong side\", which is no panel of the garment";
+        assert_eq!(says(&wrong, "obj", 4), message, "it has another number of triangles");
         assert_eq!(says(OBJ, "obj", 4), "face 4 belongs to \"body\", which is no panel of the garment");
         assert_eq!(
             says("g front\nf 1 2 3\n", "obj", 0),
