@@ -75,7 +75,8 @@ fn keep<T>(items: &mut Vec<T>, place: &[Option<usize>]) {
     items.retain(|_| at.next().is_some_and(Option::is_some));
 }
 
-fn drop_unread_uv(model: &mut Model) {
+/// Takes off texture coordinates that no look of their mesh reads.
+pub(super) fn drop_unread_uv(model: &mut Model) {
     let reads = |m: &Material| m.texture.is_some() || m.normal_texture.is_some();
     for (i, mesh) in model.meshes.iter_mut().enumerate() {
         let mut looks = model.variants.iter().map(|v| v.materials[i]).chain([mesh.material]);
