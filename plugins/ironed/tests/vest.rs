@@ -10,9 +10,11 @@ fn dress(texturer: &str, out: &Path) {
     let vest = std::fs::read_to_string(root.join("pipelines/vest.ron")).unwrap();
     let (stages, _) = vest.split_once("    qualities: [").unwrap();
     let is_rest = |l: &&str| ["StaticEquilibrium(", "Subdivide("].iter().any(|s| l.trim().starts_with(s));
-    let unsewn: String = stages.lines().filter(|l| !is_rest(l)).map(|l| format!("{l}\n")).collect();
+    let line = |l: &str| {
+        if l.trim().starts_with("PhotoTexturer(") { format!("{texturer},\n") } else { format!("{l}\n") }
+    };
+    let unsewn: String = stages.lines().filter(|l| !is_rest(l)).map(line).collect();
     let text = (unsewn + ")\n")
-        .replace("PhotoTexturer(light: Modulate)", texturer)
         .replace("GridMesher(edge: \"16 mm\")", "GridMesher(edge: \"30 mm\")")
         .replace("Glb(), Obj(), Preview(), Report(),", "Preview(), Obj(),")
         .replace("samples/", &format!("{}/pipelines/samples/", root.display()));
