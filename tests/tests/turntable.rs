@@ -83,8 +83,12 @@ const SHOW: &str = "<script>const wait = setInterval(() => {
 /// What the page shows at a turn and a height, degrees.
 fn shown(browser: &Path, dir: &Path, page: &Path, azimuth: f64, elevation: f64) -> RgbaImage {
     let at = PathBuf::from(format!("{}#azimuth={azimuth}&elevation={elevation}", page.display()));
-    let dom = String::from_utf8(chromium(browser, dir, &["--dump-dom"], &at)).unwrap();
-    let (_, rest) = dom.split_once("shot:data:image/png;base64,").unwrap();
+    // A browser's time may run out before the page has drawn: it is asked anew.
+    let ask = |_| {
+        let dom = String::from_utf8(chromium(browser, dir, &["--dump-dom"], &at)).unwrap();
+        dom.split_once("shot:data:image/png;base64,").map(|(_, rest)| rest.to_owned())
+    };
+    let rest = (0..4).find_map(ask).unwrap();
     let bytes = STANDARD.decode(rest.split_once(":end").unwrap().0).unwrap();
     image::load_from_memory(&bytes).unwrap().into_rgba8()
 }
