@@ -85,7 +85,9 @@ fn shown(browser: &Path, dir: &Path, page: &Path, azimuth: f64, elevation: f64) 
     let at = PathBuf::from(format!("{}#azimuth={azimuth}&elevation={elevation}", page.display()));
     // A browser's time may run out before the page has drawn: it is asked anew.
     let ask = |_| {
-        let dom = String::from_utf8(chromium(browser, dir, &["--dump-dom"], &at)).unwrap();
+        let dom =
+            String::from_utf8(chromium(browser, dir, &["--dump-dom", "--virtual-time-budget=60000"], &at))
+                .unwrap();
         dom.split_once("shot:data:image/png;base64,").map(|(_, rest)| rest.to_owned())
     };
     let rest = (0..4).find_map(ask).unwrap();
