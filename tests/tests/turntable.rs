@@ -90,7 +90,7 @@ fn shown(browser: &Path, dir: &Path, page: &Path, azimuth: f64, elevation: f64) 
                 .unwrap();
         dom.split_once("shot:data:image/png;base64,").map(|(_, rest)| rest.to_owned())
     };
-    let rest = (0..4).find_map(ask).unwrap();
+    let rest = (0..20).find_map(ask).unwrap();
     let bytes = STANDARD.decode(rest.split_once(":end").unwrap().0).unwrap();
     image::load_from_memory(&bytes).unwrap().into_rgba8()
 }
