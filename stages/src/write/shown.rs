@@ -49,7 +49,8 @@ fn renumbered(count: usize, used: impl Iterator<Item = usize>) -> Vec<Option<usi
     is_used.into_iter().map(|used| if used { next.next() } else { None }).collect()
 }
 
-fn keep_used_materials(model: &mut Model) {
+/// Takes off materials that no mesh wears in any look.
+pub(super) fn keep_used_materials(model: &mut Model) {
     let own = model.meshes.iter().map(|m| m.material);
     let used = own.chain(model.variants.iter().flat_map(|v| v.materials.iter().copied()));
     let place = renumbered(model.materials.len(), used);

@@ -3,7 +3,7 @@
 //! The wrong side has the same places, turned about. Both are seen from their own side only, so neither shows through the other and no
 //! room is needed between them. Cost: one copy of the mesh.
 
-use super::shown::drop_unread_uv;
+use super::shown::{drop_unread_uv, keep_used_materials};
 use toile_core::artifact::{Material, Mesh, Model};
 
 /// What is added to the names of a mesh and its material.
@@ -27,6 +27,7 @@ pub(super) fn with_wrong_sides(model: &mut Model) {
             model.variants[v].materials.push(wrong);
         }
     }
+    keep_used_materials(model);
     drop_unread_uv(model);
 }
 
@@ -96,6 +97,7 @@ mod tests {
         let (right, wrong) = (&both.meshes[0], &both.meshes[1]);
         assert_eq!((wrong.name.as_str(), wrong.triangles[0]), ("front wrong side", [0, 2, 1]));
         assert_eq!(wrong.normals[0], -right.normals[0]);
+        assert_eq!(both.materials.len(), 4, "two sides of two looks");
         assert!(wrong.uv.is_empty(), "plain cloth reads no picture");
         let looks = [right.material, wrong.material].map(|m| &both.materials[m]);
         assert!(looks.iter().all(|m| !m.double_sided && m.wrong_side.is_none()));
