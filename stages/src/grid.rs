@@ -30,19 +30,17 @@ pub(crate) struct End {
 }
 
 impl Grid {
-    /// The values; where `fixed` gives one, it stays. Those of a part that is joined to no fixed value are
-    /// known but for a constant.
+    /// The values between those that `fixed` gives, with steps of zero. Those of a part that is joined to no fixed value stay zero.
     ///
     /// Errors: the run was stopped.
-    pub(crate) fn solve(
+    pub(crate) fn between_fixed(
         &self,
-        steps: Option<&Steps<'_>>,
         fixed: &[Option<f64>],
         end: &End,
         cx: &Context,
     ) -> Result<Vec<f64>, StageError> {
         let x: Vec<f64> = fixed.iter().map(|f| f.unwrap_or(0.0)).collect();
-        self.improved(x, steps, fixed, end, cx)
+        self.improved(x, None, fixed, end, cx)
     }
 
     /// The values that have these steps, known but for a constant: first on grids of half, a quarter and so on of the cells, each a start for
@@ -201,7 +199,7 @@ mod tests {
     #[test]
     fn between_two_fixed_ends_values_rise_evenly() {
         let fixed = [Some(0.0), None, None, None, Some(4.0)];
-        let x = joined(5, 1).solve(None, &fixed, &END, &Context::quiet()).unwrap();
+        let x = joined(5, 1).between_fixed(&fixed, &END, &Context::quiet()).unwrap();
         x.iter().enumerate().for_each(|(i, x)| assert!((x - i as f64).abs() < 1e-9, "{x}"));
     }
 
@@ -223,9 +221,7 @@ mod tests {
     fn steps_of_a_plane_give_the_plane() {
         let grid = joined(6, 4);
         let (right, down) = (vec![0.5; 24], vec![-0.25; 24]);
-        let x = grid
-            .solve(Some(&Steps { right: &right, down: &down }), &[None; 24], &END, &Context::quiet())
-            .unwrap();
+        let x = grid.sum_of(&Steps { right: &right, down: &down }, &END, &Context::quiet()).unwrap();
         let x0 = x[0];
         for (i, x) in x.iter().enumerate() {
             let plane = x0 + 0.5 * (i % 6) as f64 - 0.25 * (i / 6) as f64;

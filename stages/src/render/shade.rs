@@ -22,6 +22,7 @@ pub(super) struct Lights {
     /// Strengths and colours of the key light and of what comes from all sides.
     key_light: f64,
     fill_light: f64,
+    sky_light: f64,
     key_tint: [f32; 3],
     tint: [f32; 3],
     /// Towards the viewer: taken as the same for the whole picture.
@@ -30,9 +31,16 @@ pub(super) struct Lights {
 
 impl Lights {
     pub(super) fn new(camera: &Camera) -> Lights {
-        let (key_light, fill_light) = (KEY_LIGHT, FILL_LIGHT);
-        let (key, fill, view) = (camera.to_world(KEY), camera.to_world(FILL), camera.back);
-        Lights { key, fill, key_light, fill_light, key_tint: [1.0; 3], tint: [1.0; 3], view }
+        Lights {
+            key: camera.to_world(KEY),
+            fill: camera.to_world(FILL),
+            key_light: KEY_LIGHT,
+            fill_light: FILL_LIGHT,
+            sky_light: SKY_LIGHT,
+            key_tint: [1.0; 3],
+            tint: [1.0; 3],
+            view: camera.back,
+        }
     }
 
     /// Those of a panorama, which stay where they are when the camera turns.
@@ -40,8 +48,9 @@ impl Lights {
         Lights {
             key: surroundings.key,
             key_light: KEY_LIGHT * surroundings.strength,
-            // What fills the shadows comes from all sides already.
+            // What fills the shadows comes from all sides already: pictures are as bright.
             fill_light: 0.0,
+            sky_light: SKY_LIGHT + FILL_LIGHT,
             key_tint: surroundings.key_tint,
             tint: surroundings.tint,
             ..Lights::new(camera)
@@ -52,10 +61,8 @@ impl Lights {
     /// the key light reach it.
     pub(super) fn on(&self, n: &Vector3, ambient: f64, key: f64) -> [f32; 3] {
         let cosine = |l: &Vector3| n.dot(l).max(0.0);
-        // Without fill light the sky gives its share as well, so that pictures are as bright.
-        let sky = if self.fill_light > 0.0 { SKY_LIGHT } else { SKY_LIGHT + FILL_LIGHT };
         let key = (self.key_light * key * cosine(&self.key)) as f32;
-        let around = ((self.fill_light * cosine(&self.fill) + sky) * ambient) as f32;
+        let around = ((self.fill_light * cosine(&self.fill) + self.sky_light) * ambient) as f32;
         [0, 1, 2].map(|c| key * self.key_tint[c] + around * self.tint[c])
     }
 
@@ -63,8 +70,7 @@ impl Lights {
     pub(super) fn sheen(&self, sheen: &Sheen, n: &Vector3, ambient: f64, key: f64) -> f64 {
         let alpha = f64::from(sheen.roughness).max(LEAST_ROUGHNESS).powi(2);
         let of = |l: &Vector3| charlie(n, l, &self.view, alpha);
-        let fill = if self.fill_light > 0.0 { self.fill_light * ambient * of(&self.fill) } else { 0.0 };
-        self.key_light * key * of(&self.key) + fill
+        self.key_light * key * of(&self.key) + self.fill_light * ambient * of(&self.fill)
     }
 }
 

@@ -56,10 +56,8 @@ pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
 
 /// The commonest colour of a picture that is cloth all over, linear light.
 pub(super) fn cloth_colour(pixels: &RgbImage) -> Option<[f32; 3]> {
-    let (w, h) = pixels.dimensions();
-    let scale = (f64::from(SMALL) / f64::from(w.max(h))).min(1.0);
-    let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
-    let small = resize(pixels, size(w), size(h), FilterType::Triangle);
+    let (w, h) = small_size(pixels);
+    let small = resize(pixels, w, h, FilterType::Triangle);
     let colours: Vec<Vector3<f64>> = small.pixels().map(|p| lab(p.0.map(f64::from))).collect();
     let cloth = commonest(&colours, &vec![true; colours.len()])?;
     let far = |c: &Vector3<f64>| (c - cloth).norm() > HUE;
@@ -71,14 +69,21 @@ pub(super) fn cloth_colour(pixels: &RgbImage) -> Option<[f32; 3]> {
     (count > 0.0).then(|| sum.map(|s| s / count))
 }
 
-/// Where the picture shows print, at its own size.
-fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
+/// The size at which print is looked for.
+fn small_size(pixels: &RgbImage) -> (u32, u32) {
     let (w, h) = pixels.dimensions();
     let scale = (f64::from(SMALL) / f64::from(w.max(h))).min(1.0);
     let size = |n: u32| ((f64::from(n) * scale).round() as u32).max(1);
-    let small = resize(pixels, size(w), size(h), FilterType::Triangle);
-    let inside = resize(sure, size(w), size(h), FilterType::Triangle);
-    let inside = GrayImage::from_fn(size(w), size(h), |x, y| {
+    (size(w), size(h))
+}
+
+/// Where the picture shows print, at its own size.
+fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
+    let (w, h) = pixels.dimensions();
+    let (small_w, small_h) = small_size(pixels);
+    let small = resize(pixels, small_w, small_h, FilterType::Triangle);
+    let inside = resize(sure, small_w, small_h, FilterType::Triangle);
+    let inside = GrayImage::from_fn(small_w, small_h, |x, y| {
         Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255])
     });
     let found = print_of(&small, &inside)?;

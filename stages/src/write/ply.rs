@@ -5,12 +5,13 @@
 
 use super::check::check_model;
 use super::names::check_name;
+use super::shown::sheets;
 use crate::render::{Mips, encode};
 use toile_core::prelude::*;
 
 /// Writes the model as one PLY file with vertex colours, for tools that know no textures.
 ///
-/// Binary, little endian, metres, Y up.
+/// Binary, little endian, metres, Y up. Every panel is one sheet: the thickness of open edges is left out.
 #[stage(
     role = Writer,
     source = "Turk, The PLY Polygon File Format, 1994",
@@ -28,7 +29,7 @@ impl Ply {
     pub(super) fn run(&self, model: &Model, _cx: &Context) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         check_model(model)?;
-        Ok(OutputFiles::one(&format!("{}.ply", self.name), ply(model)))
+        Ok(OutputFiles::one(&format!("{}.ply", self.name), ply(&sheets(model))))
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {

@@ -25,7 +25,7 @@ const SCRIPT: &str = include_str!("report.js");
 /// does as well.
 #[stage(
     role = Writer,
-    version = 2,
+    version = 3,
     source = "none",
     example = "Report(name: \"report\", pictures: 300)",
     contracts(Deterministic)

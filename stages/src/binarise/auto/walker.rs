@@ -33,7 +33,7 @@ pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Re
         })
         .collect();
     let (right, down) = weights(small, inside);
-    Grid { width: w, right, down }.solve(None, &fixed, &END, cx)
+    Grid { width: w, right, down }.between_fixed(&fixed, &END, cx)
 }
 
 /// How readily a walker passes to the right and down; zero past the frame. Steps within what is known to be garment do not count
