@@ -74,10 +74,15 @@ pub(crate) trait Parallel: Send + Sync {
     fn run(&self, count: usize, body: &(dyn Fn(usize) + Sync));
 }
 
+/// Makes a part of a stage's work.
+pub type MakePart<'a> = Box<dyn FnOnce() -> Result<Vec<u8>, StageError> + 'a>;
+
 /// Keeps parts of a stage's work beyond the run.
 pub trait Memo: Send + Sync {
     /// The part of the stage `id` under that key: as it was kept, else as it is made now.
-    fn part(&self, id: &str, key: &Digester, make: Box<dyn FnOnce() -> Vec<u8> + '_>) -> Vec<u8>;
+    ///
+    /// Errors: those of `make`, of which nothing is kept.
+    fn part(&self, id: &str, key: &Digester, make: MakePart<'_>) -> Result<Vec<u8>, StageError>;
 }
 
 /// Handed to every run of a stage.
@@ -126,7 +131,13 @@ impl Context {
     /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
     /// earlier run made it, else made by `make` and kept. For parts that outlive a change of the others, such as
     /// the light on a garment whose texture is edited.
-    pub fn memo(&self, key: &Digester, make: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
+    ///
+    /// Errors: those of `make`, such as that of a stop; then nothing is kept.
+    pub fn memo(
+        &self,
+        key: &Digester,
+        make: impl FnOnce() -> Result<Vec<u8>, StageError>,
+    ) -> Result<Vec<u8>, StageError> {
         match &self.memo {
             Some(memo) => memo.part(&self.stage, key, Box::new(make)),
             None => make(),

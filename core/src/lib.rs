@@ -59,7 +59,7 @@ pub mod text;
 mod typed;
 
 pub use artifact::{Artifact, ArtifactType, Kind};
-pub use context::{Cancel, Context, Event, Listener, Memo};
+pub use context::{Cancel, Context, Event, Listener, MakePart, Memo};
 pub use error::{ErrorCode, StageError};
 pub use files::{MAX_FILE_BYTES, NoFile, ordinary, read_file, read_text};
 pub use migration::{Change, Migration};

@@ -12,6 +12,7 @@
 use super::camera::Projected;
 use super::cover::{Patch, below};
 use rayon::prelude::*;
+use toile_core::Cancel;
 use toile_core::artifact::{Mesh, Model, Point3, Vector3};
 
 /// Side of a depth map, px: a trade of sharp shadows for time. About 3 mm a pixel on a torso.
@@ -66,14 +67,16 @@ pub(super) fn studio(d: &Vector3) -> f64 {
     NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0
 }
 
-/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes from each direction.
+/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes from each direction; once it is to stop,
+/// what has been gathered.
 pub(super) fn ambient(
     model: &Model,
     region: Region,
     fineness: Fineness,
     sky: impl Fn(&Vector3) -> f64 + Sync,
+    stop: &Cancel,
 ) -> Vec<Vec<[f32; 2]>> {
-    let sums = gather(model, region, &sphere(fineness.ambient), |map, p, n| {
+    let sums = gather(model, region, &sphere(fineness.ambient), stop, |map, p, n| {
         let cos = n.dot(&map.towards);
         let free = BOUNCE + (1.0 - BOUNCE) * map.free(p + n * LIFT.copysign(cos));
         let light = cos.abs() * sky(&map.towards) * free;
@@ -83,9 +86,16 @@ pub(super) fn ambient(
     each_vertex(sums, |s| [share(s[0], s[1]), share(s[2], s[3])])
 }
 
-/// The share of a soft box around the direction `towards` that every vertex sees from its lit face.
-pub(super) fn soft_box(model: &Model, region: Region, towards: Vector3, fineness: Fineness) -> Vec<Vec<f32>> {
-    let sums = gather(model, region, &cone(towards, fineness.soft_box), |map, p, n| {
+/// The share of a soft box around the direction `towards` that every vertex sees from its lit face; once it is to stop, what has been
+/// gathered.
+pub(super) fn soft_box(
+    model: &Model,
+    region: Region,
+    towards: Vector3,
+    fineness: Fineness,
+    stop: &Cancel,
+) -> Vec<Vec<f32>> {
+    let sums = gather(model, region, &cone(towards, fineness.soft_box), stop, |map, p, n| {
         [map.free(p + n * LIFT.copysign(n.dot(&towards))), 1.0]
     });
     each_vertex(sums, |s| (s[0] / s[1]) as f32)
@@ -98,11 +108,12 @@ const TASKS: usize = 8;
 /// One value for every vertex of every mesh.
 type PerVertex<T> = Vec<Vec<T>>;
 
-/// For every vertex the sum over all directions of `light(map, position, normal)`.
+/// For every vertex the sum over all directions of `light(map, position, normal)`; over fewer once it is to stop.
 fn gather<const N: usize>(
     model: &Model,
     region: Region,
     directions: &[Vector3],
+    stop: &Cancel,
     light: impl Fn(&DepthMap, Point3, Vector3) -> [f64; N] + Sync,
 ) -> PerVertex<[f64; N]> {
     let triangles = near_triangles(model, region);
@@ -111,7 +122,7 @@ fn gather<const N: usize>(
     };
     let task = |directions: &[Vector3]| {
         let mut sums = zero();
-        for direction in directions {
+        for direction in directions.iter().take_while(|_| !stop.is_cancelled()) {
             let map = DepthMap::new(model, &triangles, region, *direction);
             for (mesh, sums) in model.meshes.iter().zip(&mut sums) {
                 for ((p, n), sum) in mesh.positions.iter().zip(&mesh.normals).zip(sums) {

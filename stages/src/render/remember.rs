@@ -1,7 +1,7 @@
 //! Light that an earlier run found on the same shape: the textures of a garment may change without it.
 
-use toile_core::Context;
 use toile_core::artifact::{Digest, Digester, Model};
+use toile_core::{Context, StageError};
 
 /// Where light is looked for before it is worked out, and the shape that it falls on.
 #[derive(Clone, Copy)]
@@ -34,18 +34,24 @@ impl<'a> Remember<'a> {
         Remember { cx, shape: d.finish() }
     }
 
-    /// Light at every vertex of every mesh, which `key` and the shape fix.
+    /// Light at every vertex of every mesh, which `key` and the shape fix. Of a run that is stopped meanwhile nothing is kept.
+    ///
+    /// Errors: that of a stop.
     pub(super) fn light<const N: usize>(
         &self,
         key: impl FnOnce(&mut Digester),
         make: impl Fn() -> Vec<Vec<[f32; N]>>,
-    ) -> Vec<Vec<[f32; N]>> {
+    ) -> Result<Vec<Vec<[f32; N]>>, StageError> {
         let mut d = Digester::new();
         d.text("light").bytes(&self.shape.0).count(N);
         key(&mut d);
         let mut made = None;
-        let bytes = self.cx.memo(&d, || bytes_of(made.insert(make())));
-        made.or_else(|| light_of(&bytes)).unwrap_or_else(make)
+        let whole = || {
+            let light = make();
+            self.cx.check().map(|()| light)
+        };
+        let bytes = self.cx.memo(&d, || Ok(bytes_of(made.insert(whole()?))))?;
+        made.or_else(|| light_of(&bytes)).map_or_else(whole, Ok)
     }
 }
 

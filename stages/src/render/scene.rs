@@ -16,8 +16,8 @@ use crate::texture::tangents::{Tangent, tangents};
 use image::{RgbImage, RgbaImage};
 use nalgebra::Matrix2;
 use rayon::prelude::*;
-use toile_core::Context;
 use toile_core::artifact::{Digester, Material, Mesh, Model, Point3, Texture, Vector3};
+use toile_core::{Cancel, Context, StageError};
 
 use super::BODY;
 /// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that nearly
@@ -40,44 +40,77 @@ pub struct Scene<'a> {
     ambient: Vec<Vec<[f32; 2]>>,
     remember: Option<Remember<'a>>,
     surroundings: Option<Surroundings>,
+    stop: Cancel,
 }
 
 impl<'a> Scene<'a> {
     /// Prepares a model.
     pub fn new(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::FINE, None, None)
+        Scene::prepare(model, light::FINE, None)
     }
 
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
-    pub fn new_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
-        Scene::prepare(model, light::FINE, Some(Remember::new(model, cx)), None)
+    ///
+    /// Errors: that of a stop.
+    pub fn new_in(model: &'a Model, cx: &'a Context) -> Result<Scene<'a>, StageError> {
+        Scene::prepare_in(model, light::FINE, None, cx)
     }
 
     /// Prepares a model for small pictures: the light is coarser and almost three times as fast.
     pub fn draft(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, None, None)
+        Scene::prepare(model, light::DRAFT, None)
     }
 
     /// Prepares a model for thumbnails: twice as fast again.
     pub fn sketch(model: &'a Model) -> Scene<'a> {
-        Scene::prepare(model, light::SKETCH, None, None)
+        Scene::prepare(model, light::SKETCH, None)
     }
 
     /// The same in a stage, which finds the light on an unchanged shape in the run's cache.
-    pub fn draft_in(model: &'a Model, cx: &'a Context) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)), None)
+    ///
+    /// Errors: that of a stop.
+    pub fn draft_in(model: &'a Model, cx: &'a Context) -> Result<Scene<'a>, StageError> {
+        Scene::draft_within(model, None, cx)
     }
 
     /// The same in the light of a panorama, where one is given.
-    pub fn draft_within(model: &'a Model, surroundings: Option<Surroundings>, cx: &'a Context) -> Scene<'a> {
-        Scene::prepare(model, light::DRAFT, Some(Remember::new(model, cx)), surroundings)
+    pub fn draft_within(
+        model: &'a Model,
+        surroundings: Option<Surroundings>,
+        cx: &'a Context,
+    ) -> Result<Scene<'a>, StageError> {
+        Scene::prepare_in(model, light::DRAFT, surroundings, cx)
     }
 
-    fn prepare(
+    fn prepare_in(
         model: &'a Model,
         fineness: Fineness,
-        remember: Option<Remember<'a>>,
         surroundings: Option<Surroundings>,
+        cx: &'a Context,
+    ) -> Result<Scene<'a>, StageError> {
+        let scene = Scene::unlit(model, fineness, surroundings, cx.cancel().clone());
+        let remember = Remember::new(model, cx);
+        let key = |d: &mut Digester| {
+            d.text("ambient").count(fineness.ambient);
+            if let Some(s) = &scene.surroundings {
+                s.digest(d);
+            }
+        };
+        let ambient = remember.light(key, || scene.ambient())?;
+        Ok(Scene { ambient, remember: Some(remember), ..scene })
+    }
+
+    fn prepare(model: &'a Model, fineness: Fineness, surroundings: Option<Surroundings>) -> Scene<'a> {
+        let scene = Scene::unlit(model, fineness, surroundings, Cancel::new());
+        Scene { ambient: scene.ambient(), ..scene }
+    }
+
+    /// A scene whose ambient light is still to be found.
+    fn unlit(
+        model: &'a Model,
+        fineness: Fineness,
+        surroundings: Option<Surroundings>,
+        stop: Cancel,
     ) -> Scene<'a> {
         let mips = |(i, t): (usize, &Texture)| {
             if model.is_normal_map(i) { Mips::of_normals(t) } else { Mips::new(t) }
@@ -86,27 +119,26 @@ impl<'a> Scene<'a> {
         let has_map = |m: &Mesh| model.materials.get(m.material).is_some_and(|m| m.normal_texture.is_some());
         let frames = |m: &Mesh| if has_map(m) { tangents(m) } else { Vec::new() };
         let tangents = model.meshes.par_iter().map(frames).collect();
-        let region = region(model);
-        let make = || match is_unlit(model) {
-            true => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
-            false => match &surroundings {
-                None => light::ambient(model, region, fineness, light::studio),
-                Some(s) => light::ambient(model, region, fineness, |d| s.towards(d)),
-            },
-        };
-        let ambient = match &remember {
-            None => make(),
-            Some(r) => {
-                let key = |d: &mut Digester| {
-                    d.text("ambient").count(fineness.ambient);
-                    if let Some(s) = &surroundings {
-                        s.digest(d);
-                    }
-                };
-                r.light(key, make)
-            }
-        };
-        Scene { model, textures, tangents, region, fineness, ambient, remember, surroundings }
+        Scene {
+            model,
+            textures,
+            tangents,
+            region: region(model),
+            fineness,
+            ambient: Vec::new(),
+            remember: None,
+            surroundings,
+            stop,
+        }
+    }
+
+    fn ambient(&self) -> Vec<Vec<[f32; 2]>> {
+        let Scene { model, region, fineness, stop, .. } = self;
+        match &self.surroundings {
+            _ if is_unlit(model) => model.meshes.iter().map(|m| vec![[0.0; 2]; m.positions.len()]).collect(),
+            None => light::ambient(model, *region, *fineness, light::studio, stop),
+            Some(s) => light::ambient(model, *region, *fineness, |d| s.towards(d), stop),
+        }
     }
 
     /// The lights of a view.
@@ -116,19 +148,21 @@ impl<'a> Scene<'a> {
 
     /// The soft box's light from a direction.
     fn soft_box(&self, towards: Vector3) -> Vec<Vec<f32>> {
+        let dark = || self.model.meshes.iter().map(|m| vec![0.0; m.positions.len()]).collect();
         if is_unlit(self.model) {
-            return self.model.meshes.iter().map(|m| vec![0.0; m.positions.len()]).collect();
+            return dark();
         }
-        let make = || light::soft_box(self.model, self.region, towards, self.fineness);
+        let make = || light::soft_box(self.model, self.region, towards, self.fineness, &self.stop);
         let Some(r) = &self.remember else { return make() };
         let key = |d: &mut Digester| {
             d.text("soft box").count(self.fineness.soft_box).floats([towards.x, towards.y, towards.z]);
         };
         let wide = || make().into_iter().map(|m| m.into_iter().map(|v| [v]).collect()).collect();
-        r.light::<1>(key, wide).into_iter().map(|m| m.into_iter().map(|[v]| v).collect()).collect()
+        let Ok(light) = r.light::<1>(key, wide) else { return dark() };
+        light.into_iter().map(|m| m.into_iter().map(|[v]| v).collect()).collect()
     }
 
-    /// A picture.
+    /// A picture; an unfinished one where the run has been stopped meanwhile.
     pub fn render(&self, view: &View) -> RgbImage {
         self.render_with(view, &[])
     }
@@ -152,7 +186,7 @@ impl<'a> Scene<'a> {
 
     /// Views from an orbit, at one turn about the vertical and several heights above the horizon, radians, without a background: the
     /// colour of a pixel is the mean of what it shows of the model, and alpha is the share that the model has in it. The lights turn with
-    /// the camera, but do not rise with it; those of a panorama stay.
+    /// the camera, but do not rise with it; those of a panorama stay. Unfinished where the run has been stopped meanwhile.
     pub fn cut_outs(&self, orbit: &Orbit, azimuth: f64, elevations: &[f64]) -> Vec<RgbaImage> {
         let lights = self.lights(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
         let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height);
@@ -261,6 +295,9 @@ struct Shot<'a> {
 impl Shot<'_> {
     fn draw_band(&self, top: usize, band: &mut [u8]) {
         let rows = band.len() / (self.width * 3);
+        if self.scene.stop.is_cancelled() {
+            return;
+        }
         let seen = self.visible(top, rows);
         let lines = band.chunks_exact_mut(self.width * 3).zip(seen.chunks_exact(self.width * SAMPLES.len()));
         for (y, (line, seen)) in (top..).zip(lines) {
@@ -276,6 +313,9 @@ impl Shot<'_> {
         let mut picture = RgbaImage::new(self.width as u32, self.height);
         let band_bytes = (self.width * 4 * BAND_ROWS).max(1);
         picture.par_chunks_mut(band_bytes).enumerate().for_each(|(i, band)| {
+            if self.scene.stop.is_cancelled() {
+                return;
+            }
             let (top, rows) = (i * BAND_ROWS, band.len() / (self.width * 4));
             let seen = self.visible(top, rows);
             for (k, (pixel, samples)) in

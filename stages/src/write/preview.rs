@@ -55,7 +55,7 @@ impl Preview {
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
-        let scene = Scene::new_in(model, cx);
+        let scene = Scene::new_in(model, cx)?;
         let frame = match self.frame {
             Framing::Garment => Frame::Garment,
             Framing::Whole => Frame::Whole,
@@ -72,6 +72,7 @@ impl Preview {
             cx.progress(i as f64 / 3.0, path);
             pictures.push((path, scene.render(&View { frame, ..view(self.size) })));
         }
+        cx.check()?;
         let files: Vec<Result<OutputFile, StageError>> = pictures.par_iter().map(file).collect();
         let mut files: Vec<OutputFile> = files.into_iter().collect::<Result<_, _>>()?;
         if let Some(height) = self.sheet {
@@ -81,6 +82,7 @@ impl Preview {
                 cx.check()?;
                 row.push(scene.render(&View { frame, ..view(height) }));
             }
+            cx.check()?;
             let Some(Form::Jpeg(bytes)) = jpeg(&beside(&row)) else {
                 return Err(StageError::internal("sheet.jpg cannot be encoded"));
             };

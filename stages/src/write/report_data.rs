@@ -109,7 +109,7 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     let total = run.stages.iter().fold(0.0, |sum, s| sum + s.wall_s);
     let mut budget = PICTURE_BUDGET;
     let model = last::<Model>(run, run.stages.len());
-    let heads = model.map_or_else(Vec::new, |model| heads(run, model, views, cx));
+    let heads = model.map_or(Ok(Vec::new()), |model| heads(run, model, views, cx))?;
     let draw = Draw { run, height, model, heads, cx };
     let views = within(shown(draw.heads_at(VIEW_HEIGHT)), &mut budget).0;
     let garment = last::<Garment>(run, run.stages.len());
@@ -237,8 +237,8 @@ impl Draw<'_> {
         if let (Some(_), Some(behind)) = (is::<Garment>(artifact), body.and_then(|b| stored::encode(b))) {
             key.bytes(&behind);
         }
-        let bytes = self.cx.memo(&key, || serde_json::to_vec(&draw()).unwrap_or_default());
-        serde_json::from_slice(&bytes).unwrap_or_else(|_| draw())
+        let bytes = self.cx.memo(&key, || Ok(serde_json::to_vec(&draw()).unwrap_or_default()));
+        bytes.ok().and_then(|b| serde_json::from_slice(&b).ok()).unwrap_or_else(draw)
     }
 
     /// The views at the head, at most so high.
@@ -285,15 +285,21 @@ fn fit(files: &OutputFiles) -> Vec<Vec<Figure>> {
 }
 
 /// The three views at the head.
-fn heads(run: &RunLog, model: &Model, views: Views, cx: &Context) -> Vec<(&'static str, RgbImage)> {
+fn heads(
+    run: &RunLog,
+    model: &Model,
+    views: Views,
+    cx: &Context,
+) -> Result<Vec<(&'static str, RgbImage)>, StageError> {
     let names = ["front", "back", "left side"];
     if let Some(pictures) = (views == Views::Taken).then(|| taken(run, VIEW_HEIGHT)).flatten() {
-        return names.into_iter().zip(pictures).collect();
+        return Ok(names.into_iter().zip(pictures).collect());
     }
-    let scene = Scene::draft_in(model, cx);
+    let scene = Scene::draft_in(model, cx)?;
     let drawn = [View::front as fn(u32) -> View, View::back, View::side];
     let named: Vec<_> = names.into_iter().zip(drawn).collect();
-    named.par_iter().map(|(name, view)| (*name, scene.render(&view(VIEW_HEIGHT)))).collect()
+    let heads = named.par_iter().map(|(name, view)| (*name, scene.render(&view(VIEW_HEIGHT)))).collect();
+    cx.check().map(|()| heads)
 }
 
 fn caption(name: &str, detail: &str) -> String {

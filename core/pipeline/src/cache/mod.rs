@@ -37,7 +37,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use store::{Shelf, Store};
 use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
-use toile_core::{Card, Memo, PortValue};
+use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
 /// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with photos
 /// of 12 megapixels.
@@ -195,7 +195,12 @@ impl Cache {
     }
 
     /// A part of the work of the stage `id`, kept under that name.
-    fn part(&self, id: &str, name: &Digest, make: impl FnOnce() -> Vec<u8>) -> Vec<u8> {
+    fn part(
+        &self,
+        id: &str,
+        name: &Digest,
+        make: impl FnOnce() -> Result<Vec<u8>, StageError>,
+    ) -> Result<Vec<u8>, StageError> {
         if !self.keeps {
             return make();
         }
@@ -204,16 +209,16 @@ impl Cache {
             Ok(Some(bytes)) => match manifest::open(&bytes) {
                 Ok(part) => {
                     self.store.touch(&path);
-                    return part.to_vec();
+                    return Ok(part.to_vec());
                 }
                 Err(why) => self.warn(format!("damaged cache entry of {id}: {why}; it is made anew")),
             },
             Ok(None) => {}
             Err(e) => self.warn(format!("damaged cache entry of {id}: {e}; it is made anew")),
         }
-        let part = make();
+        let part = make()?;
         self.write(&path, &manifest::seal(&part));
-        part
+        Ok(part)
     }
 
     /// Tells the user something about the cache itself.
@@ -295,7 +300,7 @@ impl Parts {
 }
 
 impl Memo for Parts {
-    fn part(&self, id: &str, key: &Digester, make: Box<dyn FnOnce() -> Vec<u8> + '_>) -> Vec<u8> {
+    fn part(&self, id: &str, key: &Digester, make: MakePart<'_>) -> Result<Vec<u8>, StageError> {
         let mut d = Digester::new();
         d.text("toile part").bytes(&self.stage.0).bytes(&key.finish().0);
         self.cache.part(id, &d.finish(), make)

@@ -113,11 +113,13 @@ impl Turntable {
             .into_par_iter()
             .step_by(PER_SHEET)
             .map(|from| {
+                cx.check()?;
                 let to = (from + PER_SHEET).min(views.len());
                 let own: Vec<&RgbaImage> = views[from..to].iter().collect();
-                sheet::packed(&own, &spans[from..to].iter().map(Vec::as_slice).collect::<Vec<_>>())
+                let spans: Vec<&[[u8; 2]]> = spans[from..to].iter().map(Vec::as_slice).collect();
+                Ok(sheet::packed(&own, &spans))
             })
-            .collect();
+            .collect::<Result<_, StageError>>()?;
         let mut data = json!({
             "title": self.name,
             "label": "the garment from all sides",
@@ -142,7 +144,7 @@ impl Turntable {
             .into();
         }
         let room = (1000 * self.page).saturating_sub(page(&data).len());
-        data["sheets"] = self.encoded(&sheets, room)?.into();
+        data["sheets"] = self.encoded(&sheets, room, cx)?.into();
         Ok(data)
     }
 
@@ -155,7 +157,7 @@ impl Turntable {
         tiers: &[f64],
         cx: &Context,
     ) -> Result<Vec<RgbaImage>, StageError> {
-        let scene = Scene::draft_within(model, panorama.map(Surroundings::new), cx);
+        let scene = Scene::draft_within(model, panorama.map(Surroundings::new), cx)?;
         let elevations: Vec<f64> = tiers.iter().map(|t| t.to_radians()).collect();
         let mut by_azimuth = Vec::new();
         let turns: Vec<f64> =
@@ -168,16 +170,18 @@ impl Turntable {
                 some.par_iter().map(|turn| scene.cut_outs(orbit, *turn, &elevations)).collect();
             by_azimuth.extend(made.into_iter().map(Vec::into_iter));
         }
+        cx.check()?;
         Ok((0..tiers.len())
             .flat_map(|_| by_azimuth.iter_mut().filter_map(Iterator::next).collect::<Vec<_>>())
             .collect())
     }
 
     /// The sheets as data URIs, of the greatest quality with which they fit into so many bytes.
-    fn encoded(&self, sheets: &[RgbImage], room: usize) -> Result<Vec<String>, StageError> {
+    fn encoded(&self, sheets: &[RgbImage], room: usize, cx: &Context) -> Result<Vec<String>, StageError> {
         let mut quality = self.quality;
         loop {
             let uri = |s: &RgbImage| {
+                cx.check()?;
                 Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(sheet::jpeg(s, quality)?)))
             };
             let uris: Vec<String> = sheets.par_iter().map(uri).collect::<Result<_, StageError>>()?;

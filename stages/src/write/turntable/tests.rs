@@ -80,7 +80,7 @@ fn a_panorama_stands_in_the_page_and_lights_the_model_from_its_own_side() {
     assert!(data(&html(&small(), &cx)).get("panorama").is_none());
     let (model, orbit) = (dress::model(), Orbit::around(&dress::model(), 72, 96, TIERS[0]));
     let room = read_panorama("room.png", &cx).unwrap();
-    let scene = Scene::draft_within(&model, Some(Surroundings::new(&room)), &cx);
+    let scene = Scene::draft_within(&model, Some(Surroundings::new(&room)), &cx).unwrap();
     let brightness = |turn: f64| {
         let view = scene.cut_outs(&orbit, turn, &[0.0]).remove(0);
         let seen: Vec<u64> = view

@@ -1,12 +1,14 @@
 //! What runs again after an edit, and what does not.
 
 use super::bench::{ALL, Bench, STAGES, file};
+use crate::cache::Parts;
 use crate::cost::{Expect, Meter, Predicted, Used};
 use crate::load::Pipeline;
 use crate::{RunOptions, RunResult, run};
 use std::fs;
 use std::sync::{Arc, Mutex};
-use toile_core::{Cancel, Event, Listener};
+use toile_core::artifact::Digester;
+use toile_core::{Cancel, ErrorCode, Event, Listener, StageError};
 
 #[test]
 fn a_second_run_runs_nothing_and_gives_the_same() {
@@ -150,6 +152,18 @@ fn errors_are_not_kept() {
     assert_eq!(bench.run(&[]).0.unwrap_err().error.message, "cannot read \"front.txt\": no such file");
     bench.write("front", 7);
     assert_eq!(bench.run(&[]).1, ALL);
+}
+
+#[test]
+fn a_part_is_kept_once_it_is_made_and_not_where_its_making_was_stopped() {
+    let bench = Bench::new("parts", STAGES);
+    let parts = Parts::of(&bench.cache(), &bench.pipeline(&[]).nodes[0].card);
+    let key = Digester::new();
+    let part = |made: Result<Vec<u8>, StageError>| parts.part("Levels", &key, Box::new(|| made));
+    let stopped = part(Err(StageError::new(ErrorCode::Cancelled, "stopped on request")));
+    assert_eq!(stopped.unwrap_err().message, "stopped on request");
+    assert_eq!(part(Ok(vec![1])).unwrap(), [1]);
+    assert_eq!(part(Ok(vec![2])).unwrap(), [1], "as it was kept");
 }
 
 #[test]
