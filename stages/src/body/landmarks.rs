@@ -37,7 +37,14 @@ pub(crate) fn landmarks(figure: &Figure, positions: &[Point3], triangles: &[[u32
     let left = [
         ("elbow", elbow),
         ("wrist", wrist),
-        ("armpit", armpit(cut, [(level::BUST + level::WAIST) / 2.0, level::SHOULDER].map(|l| figure.y(l)))?),
+        (
+            "armpit",
+            armpit(
+                cut,
+                [(level::BUST + level::WAIST) / 2.0, (level::SHOULDER + level::NECK) / 2.0]
+                    .map(|l| figure.y(l)),
+            )?,
+        ),
         ("shoulder", ridge(positions, triangles, half, chin)?),
         ("neck", ridge(positions, triangles, neck * 1.15, chin)?),
     ];

@@ -27,7 +27,7 @@ const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0
 /// Sizes are those of EN 13402-3. Children from 80 cm on have larger heads and shorter limbs.
 #[stage(
     role = Body,
-    version = 3,
+    version = 4,
     source = "measures: ISO 8559-1, 2017; sizes: EN 13402-3; proportions: Gordon and others, 1989; surface nets: Gibson, 1998",
     example = "Mannequin(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")",
     contracts(Deterministic, ThreadInvariant)

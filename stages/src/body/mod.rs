@@ -18,6 +18,7 @@ mod limb;
 mod loft;
 mod mannequin;
 mod measure;
+mod pose_body;
 mod profile;
 mod refine;
 mod relief;
@@ -25,6 +26,7 @@ mod shape;
 mod sizes;
 mod slice;
 mod spline;
+mod swing;
 mod thin;
 mod topology;
 mod torso;
@@ -34,7 +36,9 @@ mod wearer;
 pub use body_obj::{BodyObj, Units, Up};
 pub(crate) use bridge::bridged;
 pub use mannequin::Mannequin;
+pub use pose_body::PoseBody;
 pub(crate) use slice::{convex_hull, slice, trunk};
+pub(crate) use swing::Swing;
 pub(crate) use thin::grown;
 pub use wearer::Wearer;
 
@@ -44,6 +48,7 @@ use toile_core::Registry;
 pub fn register(registry: &mut Registry) {
     registry.add::<Mannequin>();
     registry.add::<BodyObj>();
+    registry.add::<PoseBody>();
 }
 
 #[cfg(test)]

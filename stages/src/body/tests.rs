@@ -77,7 +77,7 @@ fn shoulders_slope_like_a_persons() {
     let body = mannequin("()").unwrap();
     let (neck, shoulder) = (body.landmarks["neck_left"], body.landmarks["shoulder_left"]);
     let slope = ((neck.y - shoulder.y) / (shoulder.x - neck.x)).atan().to_degrees();
-    assert!((17.0..36.0).contains(&slope), "{slope} degrees");
+    assert!((21.0..25.0).contains(&slope), "{slope} degrees");
     assert!((shoulder.x - 0.193).abs() < 0.002);
 }
 

@@ -5,6 +5,7 @@ mod depth;
 mod fit;
 mod lift;
 mod panels;
+mod pose_garment;
 mod sew;
 mod subdivide;
 mod transfer;
@@ -13,6 +14,7 @@ mod whole;
 pub use arrange::Arrange;
 pub use lift::Lift;
 pub use panels::Place;
+pub use pose_garment::PoseGarment;
 pub use subdivide::Subdivide;
 pub use transfer::Transfer;
 
@@ -24,6 +26,7 @@ pub fn register(registry: &mut Registry) {
     registry.add::<Arrange>();
     registry.add::<Transfer>();
     registry.add::<Subdivide>();
+    registry.add::<PoseGarment>();
     registry.migrate(Migration::stage("Refine", "Subdivide"));
     registry.migrate(Migration::stage("Carry", "Transfer"));
     registry.migrate(Migration::renamed("Place", "ease", "start_offset"));

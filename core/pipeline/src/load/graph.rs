@@ -1,7 +1,8 @@
 //! Which stage feeds which: stages follow each other by type.
 //!
 //! A port is fed by the one *live* maker of its kind. A stage that takes a kind and gives the same
-//! kind supersedes what it took; a port that wants the original goes back to the first maker. Where
+//! kind supersedes what it took; a stage that makes a kind of something remade supersedes what was made of its
+//! former state; a port that wants the original goes back to the first maker. Where
 //! two makers are live the file must say `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends underlined.
 //!
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
@@ -24,9 +25,18 @@ type Source = (usize, usize);
 /// Finds the feeds of every stage; what does not fit becomes a fault.
 pub(super) fn connect(drafts: &[Draft], registry: &Registry, faults: &mut Vec<Fault>) -> Vec<Vec<Feed>> {
     let ids = drafts.iter().enumerate().rev().map(|(i, d)| (d.id.as_str(), i)).collect();
-    let mut graph =
-        Graph { drafts, registry, faults, ids, live: Makers::new(), roots: Makers::new(), blind: false };
-    (0..drafts.len()).map(|i| graph.add(i)).collect()
+    let mut graph = Graph {
+        drafts,
+        registry,
+        faults,
+        ids,
+        fed: Vec::new(),
+        live: Makers::new(),
+        roots: Makers::new(),
+        blind: false,
+    };
+    (0..drafts.len()).for_each(|i| graph.add(i));
+    graph.fed
 }
 
 type Makers = BTreeMap<Kind, Vec<Source>>;
@@ -36,6 +46,8 @@ struct Graph<'a> {
     registry: &'a Registry,
     faults: &'a mut Vec<Fault>,
     ids: BTreeMap<&'a str, usize>,
+    /// The feeds of the stages so far.
+    fed: Vec<Vec<Feed>>,
     /// Makers whose output is not superseded.
     live: Makers,
     /// Makers that made their kind from other kinds.
@@ -46,11 +58,12 @@ struct Graph<'a> {
 
 impl<'a> Graph<'a> {
     /// Feeds stage `i`, then adds what it makes.
-    fn add(&mut self, i: usize) -> Vec<Feed> {
+    fn add(&mut self, i: usize) {
         let drafts = self.drafts;
         let Some(card) = drafts[i].card.as_ref() else {
             self.blind = true;
-            return Vec::new();
+            self.fed.push(Vec::new());
+            return;
         };
         let from = self.from(i, card);
         let feeds: Vec<Feed> = card.inputs.iter().map(|port| self.feed(i, port, from.as_deref())).collect();
@@ -60,7 +73,7 @@ impl<'a> Graph<'a> {
             }
         }
         self.publish(i, card, &feeds);
-        feeds
+        self.fed.push(feeds);
     }
 
     /// The stages that `from` names; none where it has a fault, which then stands for all others.
@@ -223,6 +236,20 @@ impl<'a> Graph<'a> {
         self.faults.push(fault);
     }
 
+    /// The live makers of a kind that have taken something of which a stage with these feeds takes a later state.
+    fn stale(&self, kind: Kind, card: &Card, feeds: &[Feed]) -> Vec<Source> {
+        let is_live = |kind: Kind, source: &Source| self.live.get(&kind).is_some_and(|l| l.contains(source));
+        let taken: BTreeSet<Kind> =
+            sources(card, feeds).filter(|(k, s)| is_live(*k, s)).map(|(k, _)| k).collect();
+        let was_remade = |(maker, _): &&Source| {
+            let (Some(card), Some(fed)) = (&self.drafts[*maker].card, self.fed.get(*maker)) else {
+                return false;
+            };
+            sources(card, fed).any(|(k, s)| taken.contains(&k) && !is_live(k, &s))
+        };
+        self.live.get(&kind).into_iter().flatten().filter(was_remade).copied().collect()
+    }
+
     /// Takes off what the stage supersedes and adds what it makes.
     fn publish(&mut self, i: usize, card: &Card, feeds: &[Feed]) {
         let kinds: BTreeSet<Kind> = card.outputs.iter().map(|o| o.kind).collect();
@@ -243,12 +270,23 @@ impl<'a> Graph<'a> {
         }
         for kind in kinds {
             let Some(port) = self.output(i, kind) else { continue };
-            self.live.entry(kind).or_default().push((i, port));
-            if !remade.contains(&kind) {
+            let stale = self.stale(kind, card, feeds);
+            let live = self.live.entry(kind).or_default();
+            live.retain(|source| !stale.contains(source));
+            live.push((i, port));
+            if !remade.contains(&kind) && stale.is_empty() {
                 self.roots.entry(kind).or_default().push((i, port));
             }
         }
     }
+}
+
+/// What `feeds` bring to a card's ports, by kind; originals are left out.
+fn sources<'a>(card: &'a Card, feeds: &'a [Feed]) -> impl Iterator<Item = (Kind, Source)> + 'a {
+    card.inputs.iter().zip(feeds).filter_map(|(port, feed)| match feed {
+        Feed::Node { node, port: output } if !port.original => Some((port.kind, (*node, *output))),
+        _ => None,
+    })
 }
 
 /// Names the stages that make a wanted kind out of a given one.

@@ -77,6 +77,20 @@ fn what_is_remade_is_superseded_and_the_original_stays_at_hand() {
 }
 
 #[test]
+fn what_is_made_anew_of_something_remade_supersedes_what_was_made_of_its_former_state() {
+    wired(
+        &["Otsu()", "Mean()", "Otsu()", "Canny()"],
+        &["Otsu < Photos", "Mean < Photos", "Otsu2 < Mean", "Canny < Mean, Otsu2"],
+    );
+    // Both of the same photos: neither supersedes the other.
+    clash(
+        &["Mean()", "Otsu()", "Local()", "Canny()"],
+        "vest.ron:6:1: `Canny` takes a mask, but `Otsu` and `Local` each make one; say which: `from: \"Local\"`",
+        &[("Canny()", "takes a mask"), ("Otsu()", "makes a mask"), ("Local()", "makes a mask")],
+    );
+}
+
+#[test]
 fn from_goes_back_to_what_is_superseded_and_chooses_between_equals() {
     wired(
         &["Mean()", "Otsu(from: \"Photos\")", "Local(id: \"rough\")", "Canny(from: [\"Photos\", \"rough\"])"],
