@@ -53,6 +53,8 @@ const UNSEEN: &[&str] = &[
     "Difference.shadow",
     "Difference.holes",
     "Difference.touch",
+    "FabricTexturer.ribs",
+    "FabricTexturer.stitches",
     "FabricTexturer.variants",
     "Fit.comfort",
     "Fit.over",

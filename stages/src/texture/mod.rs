@@ -5,6 +5,7 @@ mod bleed;
 mod crop;
 pub(crate) mod edge;
 mod fabric_texturer;
+mod finish;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod inside;

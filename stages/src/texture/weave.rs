@@ -5,7 +5,7 @@
 //! next, by numbers that follow from its place alone. Colours are linear light; the mean of a cloth of one colour is that colour.
 
 use super::relief::Relief;
-use crate::render::encode;
+use crate::render::{LINEAR, encode};
 use image::{Rgb, RgbImage};
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -32,6 +32,18 @@ pub(super) enum Cloth {
     Stripe { first: Colour, second: Colour },
 }
 
+impl Cloth {
+    /// Its colour; the first of two.
+    pub(super) fn first(self) -> Colour {
+        match self {
+            Cloth::Plain(c) | Cloth::Twill(c) | Cloth::Rib(c) | Cloth::Jersey(c) => c,
+            Cloth::Denim { warp: c, .. } | Cloth::Check { first: c, .. } | Cloth::Stripe { first: c, .. } => {
+                c
+            }
+        }
+    }
+}
+
 /// A picture that repeats, and the cloth that it shows.
 #[derive(Debug)]
 pub(super) struct Tile {
@@ -51,6 +63,58 @@ impl Tile {
         let metres = (THICKNESS * self.pitch) as f32;
         let heights = self.heights.iter().map(|h| h * metres).collect();
         Relief { heights, width, height, texel: self.side / width as f64, repeats: true }.normal_map(strength)
+    }
+}
+
+/// The cloth of a tile in larger texels, of which a whole number makes a repeat.
+#[derive(Debug)]
+pub(super) struct Swatch {
+    texels: Vec<(Colour, f32)>,
+    count: usize,
+    /// Side of a texel, metres.
+    pub(super) texel: f64,
+}
+
+/// A swatch's texels are this large at least, metres: a thread of a seam is.
+const SWATCH_TEXEL: f64 = 0.4e-3;
+
+impl Tile {
+    /// The mean of the threads over texels as near to 0.4 mm as a whole number in a repeat allows, or as near to `least`, metres, where that is
+    /// more.
+    pub(super) fn swatch(&self, least: f64) -> Swatch {
+        let n = self.pixels.width() as usize;
+        let count = ((self.side / SWATCH_TEXEL.max(least)).floor() as usize).clamp(1, n);
+        let spans: Vec<Vec<(usize, f32)>> = (0..count).map(|k| shares(k, count, n)).collect();
+        let metres = (THICKNESS * self.pitch) as f32;
+        let mean = |k: usize| {
+            let (mut colour, mut height) = ([0.0; 3], 0.0);
+            for (j, of_row) in &spans[k / count] {
+                for (i, of_column) in &spans[k % count] {
+                    let share = of_row * of_column;
+                    let own = self.pixels.get_pixel(*i as u32, *j as u32).0;
+                    (0..3).for_each(|c| colour[c] += LINEAR[own[c] as usize] * share);
+                    height += self.heights[j * n + i] * metres * share;
+                }
+            }
+            (colour, height)
+        };
+        let texels = (0..count * count).into_par_iter().map(mean).collect();
+        Swatch { texels, count, texel: self.side / count as f64 }
+    }
+}
+
+/// The shares of `n` texels in the k-th of `count` equal parts of their row.
+fn shares(k: usize, count: usize, n: usize) -> Vec<(usize, f32)> {
+    let [from, to] = [k, k + 1].map(|k| (k * n) as f64 / count as f64);
+    let share = |i: usize| ((to.min(i as f64 + 1.0) - from.max(i as f64)) / (to - from)) as f32;
+    (from as usize..(to.ceil() as usize).min(n)).map(|i| (i, share(i))).collect()
+}
+
+impl Swatch {
+    /// Colour and height, metres, of a texel of the plane that the cloth fills.
+    pub(super) fn at(&self, i: i64, j: i64) -> (Colour, f32) {
+        let [i, j] = [i, j].map(|k| k.rem_euclid(self.count as i64) as usize);
+        self.texels[j * self.count + i]
     }
 }
 
@@ -190,7 +254,18 @@ fn noise(a: usize, b: usize) -> f64 {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::render::LINEAR;
+
+    #[test]
+    fn a_swatch_is_the_mean_of_its_tile() {
+        let tile = tile(Cloth::Twill(BLUE), 0.02, 100);
+        let swatch = tile.swatch(0.064 / 7.0);
+        assert_eq!(swatch.count, 7);
+        let sum: f32 = (0..49).map(|k| swatch.at(k % 7, k / 7).0[2]).sum();
+        let whole: f32 = tile.pixels.pixels().map(|p| LINEAR[p.0[2] as usize]).sum();
+        assert!((sum / 49.0 - whole / 1e4).abs() < 1e-4, "{} {}", sum / 49.0, whole / 1e4);
+        assert_eq!(swatch.at(-1, 8), swatch.at(6, 1), "it repeats");
+        assert!((0..7).all(|k| (shares(k, 7, 100).iter().map(|s| s.1).sum::<f32>() - 1.0).abs() < 1e-6));
+    }
 
     const BLUE: Colour = [0.05, 0.1, 0.3];
     const WHITE: Colour = [0.8, 0.8, 0.8];

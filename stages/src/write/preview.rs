@@ -23,6 +23,7 @@ pub enum Framing {
 /// Writes `front.png`, `back.png` and `side.png`, and on request `sheet.jpg`: the photo, front, back, left side and three-quarter view in one row.
 #[stage(
     role = Writer,
+    version = 2,
     source = "z-buffer: Catmull, 1974; shadows: Williams, 1978; mip-maps: Williams, 1983",
     example = "Preview(size: 900)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -55,7 +56,7 @@ impl Preview {
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         super::check::check_model(model)?;
-        let scene = Scene::new_in(model, cx)?;
+        let scene = Scene::draft_in(model, cx)?;
         let frame = match self.frame {
             Framing::Garment => Frame::Garment,
             Framing::Whole => Frame::Whole,

@@ -351,9 +351,9 @@ fn the_report_tells_of_every_stage() {
 fn the_reports_views_are_those_of_a_preview_that_has_drawn_the_model() {
     let mut run = run_log();
     let drawn = report(&run, "(pictures: 32)");
-    let preview = params::<Preview>("(size: 640)");
+    let preview = params::<Preview>("(size: 700)");
     let mut record = run.stages[4].clone();
-    (record.id, record.name, record.params) = ("Preview".into(), "Preview".into(), "(size: 640)".into());
+    (record.id, record.name, record.params) = ("Preview".into(), "Preview".into(), "(size: 700)".into());
     record.outputs = vec![one(preview.run(&model(), None, &Context::quiet()).unwrap())];
     run.stages.insert(5, record);
     let heads = |html: &str| {
@@ -362,7 +362,7 @@ fn the_reports_views_are_those_of_a_preview_that_has_drawn_the_model() {
     };
     let (taken, own) = (report(&run, "(pictures: 32)"), report(&run, "(pictures: 32, views: Drawn)"));
     assert_eq!(heads(&own), heads(&drawn), "drawn for the page");
-    assert_ne!(heads(&taken), heads(&drawn), "in the finer light of the preview");
+    assert_ne!(heads(&taken), heads(&drawn), "the preview's, reduced");
     let count = |html: &str| html.matches("<img ").count();
     assert_eq!(count(&taken), count(&own));
     // A smaller preview will not do.

@@ -3,10 +3,13 @@
 //! Every panel is covered by a small picture of cloth that repeats, upright along the panel's grain. Cost: one picture of `size` squared
 //! pixels a kind of cloth. Limit: stripes and checks of two panels do not meet at their seam; each panel's begin at its own origin.
 
+mod edges;
 #[cfg(test)]
 mod tests;
 
+use self::edges::finishes;
 use super::edge::add_edges;
+use super::finish::{Finish, MOST_PX, Sheet};
 use super::weave::{Cloth, Colour, Tile, tile};
 use super::{BodyShown, parts};
 use crate::render::LINEAR;
@@ -48,10 +51,10 @@ pub enum FabricTexture {
 /// Dresses every panel in cloth of a weave and a colour.
 ///
 /// For patterns, which come without photos. The cloth lies along the grain: the y axis of the flat panel. Its picture repeats, so texture
-/// coordinates go beyond 0 to 1.
+/// coordinates go beyond 0 to 1. A panel with a rib or a stitched hem has a picture of its own, in which nothing is smaller than 0.4 mm.
 #[stage(
     role = Texturer,
-    version = 3,
+    version = 4,
     source = "Adanur, Handbook of Weaving, 2001: plain, twill and denim weaves; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "FabricTexturer(texture: Denim, colour: \"#2b3f5c\")",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -76,6 +79,12 @@ pub struct FabricTexturer {
     /// Thickness of open edges, as of a hem, neckline or cuff that is turned under; 0 for none.
     #[param(default = Length::mm(2.0), min = 0.0, max = 0.02)]
     edge: Length,
+    /// Edges that are bound with a knitted rib, by their names in the pattern, and its width: `{"neck": "20 mm", "left_cuff.wrist": "6 cm"}`.
+    #[param(default = BTreeMap::new(), min = 0.002, max = 0.3)]
+    ribs: BTreeMap<String, Length>,
+    /// Edges that are turned under and stitched, by their names in the pattern, and the distance of the stitches: `{"hem": "25 mm"}`.
+    #[param(default = BTreeMap::new(), min = 0.002, max = 0.3)]
+    stitches: BTreeMap<String, Length>,
     /// Whether the body stands in the model.
     #[param(default = BodyShown::Show)]
     body: BodyShown,
@@ -104,7 +113,13 @@ const BANDS: f64 = 0.02;
 
 #[stage]
 impl FabricTexturer {
-    fn run(&self, garment: &Garment, body: Option<&Body>, cx: &Context) -> Result<Model, StageError> {
+    fn run(
+        &self,
+        garment: &Garment,
+        panels: Option<Set<Panel>>,
+        body: Option<&Body>,
+        cx: &Context,
+    ) -> Result<Model, StageError> {
         crate::engine::check_garment(garment)?;
         self.fault().map_or(Ok(()), Err)?;
         let mut kinds = Vec::new();
@@ -118,16 +133,20 @@ impl FabricTexturer {
         if self.texture == FabricTexture::Auto && self.second.is_some() && !has_denim {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
         }
-        let mut model = self.dressed(garment, &kinds, cx)?;
+        let finishes = finishes(&self.ribs, &self.stitches, garment, panels.as_ref())?;
+        let dress = Dress { garment, kinds: &kinds, finishes: &finishes };
+        let pictures = self.pictures(&dress, self.colour.as_deref(), cx)?;
+        let mut model = self.dressed(&dress, pictures, cx)?;
         self.body.add(&mut model, body)?;
         let own = model.clone();
         for (name, colour) in &self.variants {
-            cx.check()?;
+            let pictures = self.pictures(&dress, Some(colour), cx)?;
             let mut other = own.clone();
-            for (k, shows) in kinds.iter().enumerate() {
-                let Tile { pixels, .. } = self.tile(*shows, Some(colour))?;
-                other.textures[k].name = format!("{} {name}", own.textures[k].name);
-                other.textures[k].pixels = Shared::new(pixels);
+            let tiles = pictures.tiles.into_iter().map(|t| t.pixels);
+            let looks = tiles.chain(pictures.sheets.into_iter().flatten().map(|s| s.pixels));
+            for (texture, pixels) in other.textures.iter_mut().zip(looks) {
+                texture.name = format!("{} {name}", texture.name);
+                texture.pixels = Shared::new(pixels);
             }
             model.add_variant(ORIGINAL, name, &other).map_err(StageError::internal)?;
         }
@@ -140,40 +159,87 @@ impl FabricTexturer {
 }
 
 impl FabricTexturer {
-    /// The panels in their cloth: a texture a kind, then a normal map a kind where they are asked for.
-    fn dressed(&self, garment: &Garment, kinds: &[FabricTexture], cx: &Context) -> Result<Model, StageError> {
-        let mut model = Model::default();
-        let (mut sides, mut reliefs) = (Vec::new(), Vec::new());
-        for shows in kinds {
+    /// What is seen: a picture of each kind of cloth that repeats, then one of each panel with finished edges.
+    fn pictures(
+        &self,
+        dress: &Dress<'_>,
+        colour: Option<&str>,
+        cx: &Context,
+    ) -> Result<Pictures, StageError> {
+        let tiles: Vec<Tile> =
+            dress.kinds.iter().map(|k| self.tile(*k, colour)).collect::<Result<_, StageError>>()?;
+        let mut sheets = Vec::new();
+        for (panel, finishes) in dress.garment.panels.iter().zip(dress.finishes) {
             cx.check()?;
-            let tile = self.tile(*shows, self.colour.as_deref())?;
-            let name = format!("{shows:?}").to_lowercase();
-            if self.detail == FabricDetail::Weave {
-                let map = Shared::new(tile.normal_map(self.strength.unwrap_or(1.0)));
-                reliefs.push(Texture { name: format!("{name} normals"), pixels: map, repeats: true });
+            if finishes.is_empty() {
+                sheets.push(None);
+                continue;
             }
-            sides.push(tile.side);
-            model.textures.push(Texture { name, pixels: Shared::new(tile.pixels), repeats: true });
+            let flat = &dress.garment.rest[panel.vertices.clone()];
+            let kind = dress.kind_of(self.shows(&panel.fabric.name));
+            let swatch = tiles[kind].swatch(longest(flat) / MOST_PX);
+            let rib = self.cloth(dress.kinds[kind], colour)?.first();
+            sheets.push(Some(Sheet::new(flat, &swatch, finishes, rib)));
         }
+        Ok(Pictures { tiles, sheets })
+    }
+
+    /// The panels in their cloth: its pictures, then their normal maps where they are asked for.
+    fn dressed(&self, dress: &Dress<'_>, pictures: Pictures, cx: &Context) -> Result<Model, StageError> {
+        let garment = dress.garment;
+        let mut model = Model::default();
         let normals = garment.vertex_normals();
+        let mut next = dress.kinds.len();
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.check()?;
-            let shows = self.shows(&panel.fabric.name);
-            let k = kinds.iter().position(|kind| *kind == shows);
-            let side = k.map_or(1.0, |k| sides[k]);
+            let kind = dress.kind_of(self.shows(&panel.fabric.name));
             let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
             let flat = &garment.rest[panel.vertices.clone()];
-            mesh.uv = flat.iter().map(|p| [(p.x / side) as f32, (-p.y / side) as f32]).collect();
+            let texture = match &pictures.sheets[i] {
+                Some(sheet) => {
+                    mesh.uv = flat.iter().map(|p| sheet.uv(p)).collect();
+                    next += 1;
+                    next - 1
+                }
+                None => {
+                    let side = pictures.tiles[kind].side;
+                    mesh.uv = flat.iter().map(|p| [(p.x / side) as f32, (-p.y / side) as f32]).collect();
+                    kind
+                }
+            };
             model.meshes.push(mesh);
-            model.materials.push(Material {
-                texture: k,
-                normal_texture: k.filter(|_| !reliefs.is_empty()).map(|k| kinds.len() + k),
-                ..parts::panel_cloth(panel, [1.0; 3], self.sheen)
-            });
+            model
+                .materials
+                .push(Material { texture: Some(texture), ..parts::panel_cloth(panel, [1.0; 3], self.sheen) });
         }
-        model.textures.extend(reliefs);
+        self.hang(&mut model, dress, pictures);
         add_edges(&mut model, garment, &normals, self.edge.metres());
         Ok(model)
+    }
+
+    /// Gives a model its pictures.
+    fn hang(&self, model: &mut Model, dress: &Dress<'_>, pictures: Pictures) {
+        let mut reliefs = Vec::new();
+        let mut hang = |name: String, pixels, map: &dyn Fn(f64) -> image::RgbImage, repeats| {
+            if self.detail == FabricDetail::Weave {
+                let map = Shared::new(map(self.strength.unwrap_or(1.0)));
+                reliefs.push(Texture { name: format!("{name} normals"), pixels: map, repeats });
+            }
+            model.textures.push(Texture { name, pixels: Shared::new(pixels), repeats });
+        };
+        for (kind, tile) in dress.kinds.iter().zip(pictures.tiles) {
+            let name = format!("{kind:?}").to_lowercase();
+            hang(name, tile.pixels.clone(), &|strength| tile.normal_map(strength), true);
+        }
+        for (panel, sheet) in dress.garment.panels.iter().zip(pictures.sheets) {
+            let Some(sheet) = sheet else { continue };
+            hang(panel.name.clone(), sheet.pixels.clone(), &|strength| sheet.normal_map(strength), false);
+        }
+        if !reliefs.is_empty() {
+            let count = reliefs.len();
+            model.materials.iter_mut().for_each(|m| m.normal_texture = m.texture.map(|t| t + count));
+            model.textures.extend(reliefs);
+        }
     }
 
     fn tile(&self, shows: FabricTexture, colour: Option<&str>) -> Result<Tile, StageError> {
@@ -232,6 +298,34 @@ impl FabricTexturer {
             FabricTexture::Stripe => Cloth::Stripe { first: colour, second },
         })
     }
+}
+
+/// What is to be dressed: a garment, the kinds of its cloth, and the finished edges of each panel.
+struct Dress<'a> {
+    garment: &'a Garment,
+    kinds: &'a [FabricTexture],
+    finishes: &'a [Vec<Finish>],
+}
+
+impl Dress<'_> {
+    fn kind_of(&self, shows: FabricTexture) -> usize {
+        self.kinds.iter().position(|kind| *kind == shows).unwrap_or(0)
+    }
+}
+
+/// A picture of each kind of cloth, and of each panel that has one of its own.
+struct Pictures {
+    tiles: Vec<Tile>,
+    sheets: Vec<Option<Sheet>>,
+}
+
+/// The longer side of the box around a flat panel, metres.
+fn longest(flat: &[Point2]) -> f64 {
+    let side = |of: fn(&Point2) -> f64| {
+        let (lo, hi) = flat.iter().map(of).fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(v), h.max(v)));
+        hi - lo
+    };
+    side(|p| p.x).max(side(|p| p.y))
 }
 
 /// Refuses a variant without a name or colour of its own.

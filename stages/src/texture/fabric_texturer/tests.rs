@@ -18,7 +18,7 @@ fn fault(texturer: &FabricTexturer) -> (String, String) {
 #[test]
 fn every_panel_gets_its_cloth_along_the_grain_once_a_kind() {
     let garment = dress::garment();
-    let model = texturer(FabricTexture::Twill).run(&garment, None, &Context::quiet()).unwrap();
+    let model = texturer(FabricTexture::Twill).run(&garment, None, None, &Context::quiet()).unwrap();
     assert_eq!((model.meshes.len(), model.textures.len()), (garment.panels.len(), 1));
     assert!(model.textures[0].repeats && model.textures[0].name == "twill");
     let (uv, flat) = (&model.meshes[0].uv, &garment.rest[garment.panels[0].vertices.clone()]);
@@ -45,7 +45,7 @@ fn what_does_nothing_is_refused() {
     assert_eq!(fault(&two).0, "`second` does nothing with `texture: Plain`");
     // No panel of the garment is of denim.
     let auto = FabricTexturer { texture: FabricTexture::Auto, ..two };
-    let e = auto.run(&dress::garment(), None, &Context::quiet()).unwrap_err();
+    let e = auto.run(&dress::garment(), None, None, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "`second` does nothing with `texture: Auto`, which found no denim");
     assert_eq!(e.hint.unwrap(), "it is for denim, checks and stripes: leave it out, or choose one of these");
 }
@@ -53,7 +53,7 @@ fn what_does_nothing_is_refused() {
 #[test]
 fn a_normal_map_of_the_same_threads_lies_beside_the_cloth() {
     let woven = FabricTexturer { detail: FabricDetail::Weave, ..texturer(FabricTexture::Twill) };
-    let model = woven.run(&dress::garment(), None, &Context::quiet()).unwrap();
+    let model = woven.run(&dress::garment(), None, None, &Context::quiet()).unwrap();
     let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
     assert_eq!(names, ["twill", "twill normals"]);
     assert!(model.is_normal_map(1) && !model.is_normal_map(0));
@@ -70,7 +70,7 @@ fn variants_are_looks_in_other_colours_of_one_relief() {
     let many = FabricTexturer { variants: variants.into(), detail, ..texturer(FabricTexture::Plain) };
     let (garment, body) = (dress::garment(), dress::body());
     let many = FabricTexturer { body: BodyShown::Show, ..many };
-    let model = many.run(&garment, Some(&body), &Context::quiet()).unwrap();
+    let model = many.run(&garment, None, Some(&body), &Context::quiet()).unwrap();
     let names: Vec<&str> = model.variants.iter().map(|v| v.name.as_str()).collect();
     assert_eq!(names, ["original", "navy", "red"]);
     let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
@@ -103,4 +103,54 @@ fn a_colour_is_six_digits() {
     assert_eq!(fault(&red), ("\"red\" is no colour".into(), hint.into()));
     assert_eq!(parse("#ff0000").unwrap(), [1.0, 0.0, 0.0]);
     assert!(parse("#ff00é").is_err());
+}
+
+/// The suite's garment with its panels, whose edges have names.
+fn with_panels(texturer: &FabricTexturer) -> Result<Model, StageError> {
+    let garment = dress::garment();
+    let panels = garment.panels.iter().map(|p| (p.name.clone(), dress::garment_panel())).collect();
+    texturer.run(&garment, Some(panels), None, &Context::quiet())
+}
+
+fn widths(given: &[(&str, f64)]) -> BTreeMap<String, Length> {
+    given.iter().map(|(name, mm)| ((*name).to_owned(), Length::mm(*mm))).collect()
+}
+
+#[test]
+fn a_panel_with_a_finished_edge_has_a_picture_of_its_own() {
+    let names = |model: &Model| model.textures.iter().map(|t| t.name.clone()).collect::<Vec<_>>();
+    let (detail, plain) = (FabricDetail::Weave, texturer(FabricTexture::Jersey));
+    let one = FabricTexturer { ribs: widths(&[("front.neck", 20.0)]), detail, ..plain.clone() };
+    let model = with_panels(&one).unwrap();
+    assert_eq!(names(&model), ["jersey", "front", "jersey normals", "front normals"]);
+    let looks = model.materials.iter().map(|m| (m.name.as_str(), m.texture, m.normal_texture));
+    assert_eq!(looks.collect::<Vec<_>>(), [("front", Some(1), Some(3)), ("back", Some(0), Some(2))]);
+    assert!(
+        !model.textures[1].repeats && model.meshes[0].uv.iter().flatten().all(|c| (0.0..=1.0).contains(c))
+    );
+    let variants = BTreeMap::from([("red".to_owned(), "#a03028".to_owned())]);
+    let both = FabricTexturer { stitches: widths(&[("hem", 25.0)]), variants, ..plain };
+    let model = with_panels(&both).unwrap();
+    assert_eq!(names(&model), ["jersey", "front", "back", "jersey red", "front red", "back red"]);
+    assert_eq!(model.check(), Ok(()));
+}
+
+#[test]
+fn edges_that_are_not_there_or_have_two_finishes_are_refused() {
+    let told = |ribs: &[(&str, f64)], stitches: &[(&str, f64)]| {
+        let (ribs, stitches) = (widths(ribs), widths(stitches));
+        let e =
+            with_panels(&FabricTexturer { ribs, stitches, ..texturer(FabricTexture::Plain) }).unwrap_err();
+        (e.message, e.hint.unwrap())
+    };
+    let edges = "the edges are hem, neck, shoulder_left, shoulder_right, side_left, side_right; a panel's own is `panel.edge`";
+    assert_eq!(told(&[("collar", 20.0)], &[]), ("no panel has an edge \"collar\"".into(), edges.into()));
+    assert_eq!(
+        told(&[("neck", 20.0)], &[("front.neck", 5.0)]),
+        ("the edge `front.neck` has two finishes".into(), "name it once, in `ribs` or in `stitches`".into())
+    );
+    let ribbed = FabricTexturer { ribs: widths(&[("neck", 20.0)]), ..texturer(FabricTexture::Plain) };
+    let e = ribbed.run(&dress::garment(), None, None, &Context::quiet()).unwrap_err();
+    assert_eq!(e.message, "no panels stand before it, whose edges could be looked up");
+    assert_eq!(e.hint.unwrap(), "let a mesher stand before it, or leave `ribs` and `stitches` out");
 }

@@ -1,0 +1,66 @@
+//! Which edges of which panels are finished, and how.
+
+use super::super::finish::{Finish, Kind};
+use std::collections::{BTreeMap, BTreeSet};
+use toile_core::prelude::*;
+
+/// The finished edges of each panel of the garment; `ribs` and `stitches` are widths by an edge's name, alone or after that of its panel.
+///
+/// Errors: a name that no edge has, an edge with two finishes, no panels to look it up in.
+pub(super) fn finishes(
+    ribs: &BTreeMap<String, Length>,
+    stitches: &BTreeMap<String, Length>,
+    garment: &Garment,
+    panels: Option<&Set<Panel>>,
+) -> Result<Vec<Vec<Finish>>, StageError> {
+    let wanted: Vec<(Kind, &String, f64)> = [(Kind::Rib, ribs), (Kind::Stitches, stitches)]
+        .into_iter()
+        .flat_map(|(kind, widths)| widths.iter().map(move |(name, width)| (kind, name, width.metres())))
+        .collect();
+    let mut all = vec![Vec::new(); garment.panels.len()];
+    let Some((first, ..)) = wanted.first() else { return Ok(all) };
+    let Some(panels) = panels else {
+        let text = "no panels stand before it, whose edges could be looked up";
+        return Err(StageError::invalid(text)
+            .hint("let a mesher stand before it, or leave `ribs` and `stitches` out")
+            .at(field(*first)));
+    };
+    let mut found = BTreeSet::new();
+    for (of_panel, panel) in all.iter_mut().zip(&garment.panels) {
+        let Some(flat) = panels.get(&panel.name) else { continue };
+        for edge in &flat.edges {
+            let full = format!("{}.{}", panel.name, edge.name);
+            let own: Vec<_> = wanted.iter().filter(|(_, n, _)| **n == edge.name || **n == full).collect();
+            if own.len() > 1 {
+                return Err(StageError::invalid(format!("the edge `{full}` has two finishes"))
+                    .hint("name it once, in `ribs` or in `stitches`")
+                    .at(field(own[1].0)));
+            }
+            for (kind, name, width) in own {
+                found.insert(*name);
+                let line = edge.vertices.iter().map(|v| flat.positions[*v as usize]).collect();
+                of_panel.push(Finish { kind: *kind, width: *width, line });
+            }
+        }
+    }
+    match wanted.iter().find(|(_, name, _)| !found.contains(name)) {
+        None => Ok(all),
+        Some((kind, name, _)) => Err(no_edge(*kind, name, panels)),
+    }
+}
+
+fn field(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Rib => "ribs",
+        Kind::Stitches => "stitches",
+    }
+}
+
+fn no_edge(kind: Kind, name: &str, panels: &Set<Panel>) -> StageError {
+    let names: BTreeSet<&str> =
+        panels.0.values().flat_map(|p| p.edges.iter().map(|e| e.name.as_str())).collect();
+    let names = names.into_iter().collect::<Vec<_>>().join(", ");
+    StageError::invalid(format!("no panel has an edge \"{name}\""))
+        .hint(format!("the edges are {names}; a panel's own is `panel.edge`"))
+        .at(field(kind))
+}
