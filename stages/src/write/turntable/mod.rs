@@ -51,14 +51,15 @@ const QUALITY_STEP: u8 = 5;
 pub enum Interpolation {
     /// The mesh says which pixels of the nearest views each place is.
     Depth,
-    /// Pixels of the nearest views move along the flow between them, found by block matching, and are blended: outlines blur where views are far apart.
+    /// Pixels of the nearest views move along the flow between them, found by block matching, and are blended: far outlines are double.
     Flow,
 }
 
 /// Writes one page that shows the model from all sides: drag to turn it, zoom into it; no network, no WebGL.
 ///
-/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do, or with `interpolate: Flow`
-/// moves pixels from view to view without the mesh, which costs more at each view and is less exact. A click on the model dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
+/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do. `interpolate: Flow` moves
+/// pixels from view to view instead, without the mesh: a larger page, made in about twice the time, and less exact. A click on the model
+/// dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
     version = 3,
