@@ -47,7 +47,7 @@ pub use report::Report;
 pub use report_views::Views;
 pub use scene_json::SceneJson;
 pub use texture_file::TextureFormat;
-pub use turntable::Turntable;
+pub use turntable::{Interpolation, Turntable};
 pub use usdz::Usdz;
 
 use toile_core::Registry;

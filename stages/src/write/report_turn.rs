@@ -3,7 +3,7 @@
 //! A `Turntable` that ran before the report has made the views: the report shows them and draws none itself.
 
 use super::origin::{self, Origins, PanelOrigin};
-use super::turntable::{SCRIPT, STYLE, data_of};
+use super::turntable::{STYLE, data_of, script};
 use serde::Serialize;
 use serde_json::{Value, json};
 use toile_core::artifact::OutputFiles;
@@ -12,7 +12,7 @@ use toile_core::artifact::OutputFiles;
 #[derive(Debug, Serialize)]
 pub(super) struct Turn {
     style: &'static str,
-    script: &'static str,
+    script: String,
     /// JSON in which `<` is escaped.
     data: String,
     origins: String,
@@ -30,10 +30,11 @@ pub(super) fn turn<'a>(files: impl Iterator<Item = &'a OutputFiles>) -> Option<T
     }
     let origins = origins
         .map_or_else(|| json!({}), |o| o.panels.iter().map(|p| (p.name.clone(), compact(p))).collect());
+    let data = data?;
     Some(Turn {
         style: STYLE,
-        script: SCRIPT,
-        data: data?,
+        script: script(&data),
+        data,
         origins: origins.to_string().replace('<', "\\u003c"),
     })
 }

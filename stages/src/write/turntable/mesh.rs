@@ -44,18 +44,12 @@ pub(super) fn mesh(model: &Model) -> Value {
     })
 }
 
-/// Each number as its difference to the one before, its sign in the lowest bit (zigzag), seven bits a byte, low bits first (LEB128).
+/// Each number as its difference to the one before.
 fn differences(numbers: &[u32]) -> Vec<u8> {
     let (mut bytes, mut last) = (Vec::new(), 0i64);
     for &number in numbers {
-        let d = i64::from(number) - last;
+        super::numbers::push(&mut bytes, i64::from(number) - last);
         last = i64::from(number);
-        let mut z = ((d << 1) ^ (d >> 63)) as u64;
-        while z > 127 {
-            bytes.push((z & 127) as u8 | 128);
-            z >>= 7;
-        }
-        bytes.push(z as u8);
     }
     bytes
 }

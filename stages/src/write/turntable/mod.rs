@@ -1,10 +1,13 @@
 //! `Turntable`: the model from all sides, in one page that any browser opens.
 //!
 //! Views around the model are rendered once; between them the page finds through the mesh which pixel of the nearest views each place is
-//! (view interpolation: Chen, Williams 1993; with a mesh in between: Buehler and others 2001). What the page holds is set down in
+//! (view interpolation: Chen, Williams 1993; with a mesh in between: Buehler and others 2001), or moves the pixels of the nearest views along
+//! the flow that block matching finds between them (`flow`). What the page holds is set down in
 //! `docs/reference/turntable.md`. Cost: one picture a view. Limits: 255 parts, 2040 px of width.
 
+mod flow;
 mod mesh;
+mod numbers;
 mod sheet;
 
 use super::check::check_model;
@@ -19,7 +22,9 @@ use serde_json::{Value, json};
 use toile_core::prelude::*;
 
 /// The viewer: defines `turntable(root, data)`.
-pub(super) const SCRIPT: &str = include_str!("page/turntable.js");
+const SCRIPT: &str = include_str!("page/turntable.js");
+/// Its part that shows views along the flow.
+const FLOW_SCRIPT: &str = include_str!("page/flow.js");
 /// Its looks; every class begins with `tt-`.
 pub(super) const STYLE: &str = include_str!("page/turntable.css");
 const PAGE: &str = include_str!("page/page.html");
@@ -40,14 +45,25 @@ const LEAST_QUALITY: u8 = 30;
 /// Steps by which the quality is lowered.
 const QUALITY_STEP: u8 = 5;
 
+/// How the page shows what lies between two views.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Interpolation {
+    /// The mesh says which pixels of the nearest views each place is.
+    Depth,
+    /// Pixels of the nearest views move along the flow between them, found by block matching, and are blended: far outlines are double.
+    Flow,
+}
+
 /// Writes one page that shows the model from all sides: drag to turn it, zoom into it; no network, no WebGL.
 ///
-/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do. A click on the model
+/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do. `interpolate: Flow` moves
+/// pixels from view to view instead, without the mesh: a larger page, made in about twice the time, and less exact. A click on the model
 /// dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
-    version = 2,
-    source = "Chen and Williams 1993; Buehler and others 2001; light of a panorama: Debevec 1998",
+    version = 3,
+    source = "Chen and Williams 1993; Buehler and others 2001; flow: Jain and Jain 1981, Bierling 1988; light of a panorama: Debevec 1998",
     example = "Turntable(views: 24, tiers: 3)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
 )]
@@ -73,6 +89,9 @@ pub struct Turntable {
     /// A panorama that surrounds the model and lights it: a picture twice as wide as high, of which the middle is seen behind the wearer.
     #[param(default = None)]
     panorama: Option<String>,
+    /// How the page shows what lies between two views.
+    #[param(default = Interpolation::Depth, trades)]
+    interpolate: Interpolation,
 }
 
 #[stage]
@@ -109,17 +128,7 @@ impl Turntable {
         let orbit = Orbit::around(model, self.size * 3 / 4, self.size, tiers);
         let views = self.render(model, panorama, &orbit, tiers, cx)?;
         let spans: Vec<Vec<[u8; 2]>> = views.par_iter().map(sheet::spans).collect();
-        let sheets: Vec<RgbImage> = (0..views.len())
-            .into_par_iter()
-            .step_by(PER_SHEET)
-            .map(|from| {
-                cx.check()?;
-                let to = (from + PER_SHEET).min(views.len());
-                let own: Vec<&RgbaImage> = views[from..to].iter().collect();
-                let spans: Vec<&[[u8; 2]]> = spans[from..to].iter().map(Vec::as_slice).collect();
-                Ok(sheet::packed(&own, &spans))
-            })
-            .collect::<Result<_, StageError>>()?;
+        let sheets = by_sheet(&views, &spans, cx, |own, spans| Ok(sheet::packed(own, spans)))?;
         let mut data = json!({
             "title": self.name,
             "label": "the garment from all sides",
@@ -142,6 +151,10 @@ impl Turntable {
                 STANDARD.encode(sheet::jpeg(panorama, PANORAMA_QUALITY)?)
             )
             .into();
+        }
+        if self.interpolate == Interpolation::Flow {
+            data["covers"] = by_sheet(&views, &spans, cx, flow::cover)?.into();
+            data["flow"] = flow::flow(&views, &spans, self.views, cx)?;
         }
         let room = (1000 * self.page).saturating_sub(page(&data).len());
         data["sheets"] = self.encoded(&sheets, room, cx)?.into();
@@ -193,6 +206,21 @@ impl Turntable {
     }
 }
 
+/// What is made of the views of each sheet and of their spans.
+fn by_sheet<T: Send>(
+    views: &[RgbaImage],
+    spans: &[Vec<[u8; 2]>],
+    cx: &Context,
+    make: impl Fn(&[&RgbaImage], &[&[[u8; 2]]]) -> Result<T, StageError> + Sync,
+) -> Result<Vec<T>, StageError> {
+    let one = |(views, spans): (&[RgbaImage], &[Vec<[u8; 2]>])| {
+        cx.check()?;
+        let spans: Vec<&[[u8; 2]]> = spans.iter().map(Vec::as_slice).collect();
+        make(&views.iter().collect::<Vec<_>>(), &spans)
+    };
+    views.par_chunks(PER_SHEET).zip(spans.par_chunks(PER_SHEET)).map(one).collect()
+}
+
 /// A panorama, brought down to what the page shows of it.
 fn read_panorama(file: &str, cx: &Context) -> Result<RgbImage, StageError> {
     let at = |e: StageError| e.at("panorama");
@@ -214,11 +242,17 @@ pub(super) fn data_of(html: &str) -> Option<&str> {
     Some(html.split_once("id=\"tt-data\">")?.1.split_once("</script>")?.0)
 }
 
+/// The viewer for such data, as JSON: what shows views along the flow is there where they have one.
+pub(super) fn script(data: &str) -> String {
+    // A name that reads like the field brings more script than the page needs, and changes nothing.
+    if data.contains("\"flow\":") { [SCRIPT, FLOW_SCRIPT].concat() } else { SCRIPT.to_owned() }
+}
+
 /// The page, whole.
 fn page(data: &Value) -> String {
     let json = data.to_string().replace('<', "\\u003c");
     // The data come last: names in them may look like a mark.
-    PAGE.replacen("/*CSS*/", STYLE, 1).replacen("/*JS*/", SCRIPT, 1).replacen("/*DATA*/", &json, 1)
+    PAGE.replacen("/*CSS*/", STYLE, 1).replacen("/*JS*/", &script(&json), 1).replacen("/*DATA*/", &json, 1)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! pixels mixes them with a background.
 
 use image::codecs::jpeg::JpegEncoder;
-use image::{Rgb, RgbImage, RgbaImage};
+use image::{ImageBuffer, PixelWithColorType, Rgb, RgbImage, RgbaImage};
 use toile_core::StageError;
 
 /// Side of a block, px: JPEG's own.
@@ -112,7 +112,10 @@ pub(super) fn packed(views: &[&RgbaImage], spans: &[&[[u8; 2]]]) -> RgbImage {
 }
 
 /// A sheet as JPEG, colours at full resolution.
-pub(super) fn jpeg(sheet: &RgbImage, quality: u8) -> Result<Vec<u8>, StageError> {
+pub(super) fn jpeg<P>(sheet: &ImageBuffer<P, Vec<u8>>, quality: u8) -> Result<Vec<u8>, StageError>
+where
+    P: PixelWithColorType<Subpixel = u8>,
+{
     let mut bytes = Vec::new();
     let fault = |e| StageError::internal(format!("a sheet of views cannot be encoded: {e}"));
     sheet.write_with_encoder(JpegEncoder::new_with_quality(&mut bytes, quality)).map_err(fault)?;

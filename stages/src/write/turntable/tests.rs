@@ -61,6 +61,45 @@ fn a_page_that_cannot_be_as_small_as_asked_says_what_to_do() {
     );
 }
 
+/// How many numbers these bytes hold: each ends in a byte below 128.
+fn numbers(base64: &Value) -> usize {
+    STANDARD.decode(base64.as_str().unwrap()).unwrap().iter().filter(|b| **b < 128).count()
+}
+
+#[test]
+fn flow_brings_vectors_for_all_neighbours_and_the_script_that_reads_them() {
+    let (depth, cx) = (html(&small(), &Context::quiet()), Context::quiet());
+    assert!(data(&depth).get("flow").is_none() && data(&depth).get("covers").is_none());
+    assert!(!depth.contains("turntable.alongFlow ="));
+    let flow = html(&Turntable { interpolate: Interpolation::Flow, ..small() }, &cx);
+    assert!(flow.contains("turntable.alongFlow =") && !flow.contains("/*JS*/"));
+    let found = data(&flow);
+    assert_eq!(found["covers"].as_array().unwrap().len(), 1);
+    assert_eq!((found["flow"]["block"].as_u64(), found["flow"]["parts"].as_u64()), (Some(16), Some(4)));
+    // Right, left and one more: each of 8 views has three fields, of all blocks that the spans touch.
+    let spans = STANDARD.decode(found["spans"].as_str().unwrap()).unwrap();
+    let blocks = |view: &[u8]| -> usize {
+        let rows = view.as_chunks::<4>().0;
+        let in_row = |c: u8, r: &[u8; 4]| {
+            [[r[0], r[1]], [r[2], r[3]]].iter().any(|[a, n]| *a < 2 * c + 2 && a + n > 2 * c)
+        };
+        rows.iter().map(|r| (0..5).filter(|c| in_row(*c, r)).count()).sum()
+    };
+    let kept: usize = spans.chunks(24).map(blocks).sum();
+    assert!(kept > 8);
+    assert_eq!(numbers(&found["flow"]["vectors"]), 3 * 2 * kept);
+}
+
+#[test]
+fn flow_is_the_same_for_any_number_of_threads() {
+    let t = Turntable { interpolate: Interpolation::Flow, ..small() };
+    let with = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| html(&t, &Context::quiet()))
+    };
+    assert!(with(1) == with(3));
+}
+
 /// A context whose folder holds a panorama of this size, dark but for a lamp to the wearer's left.
 fn with_panorama(folder: &tempfile::TempDir, width: u32, height: u32) -> Context {
     let lamp = |x: u32, y: u32| x > width * 11 / 16 && x < width * 13 / 16 && y < height / 2;

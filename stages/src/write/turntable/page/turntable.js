@@ -470,8 +470,24 @@ const turntable = (() => {
     return { width: canvas.width, height: canvas.height, pixels: new Uint32Array(pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer) };
   }
 
+  // How the picture between views comes about: here through the mesh; flow.js has the other way.
+  function throughMesh(data, mesh) {
+    return {
+      makeTarget, // (width, height, fine)
+      readSheet: async sheet => (await readPicture(data.sheets[sheet])).pixels,
+      prepare: (index, pixels) => prepareView(data, mesh, index, pixels),
+      // Fills target.rgba. `picks` are views and weights.
+      draw(target, camera, at, picks, store, fine) {
+        const sources = picks.map(p => ({ view: store.view(p.index), weight: p.weight })), [first] = picks;
+        const standing = fine && first.weight > 0.9999 && at.zoom === 1 && Math.abs(tierOf(data, first.index) - at.elevation) < 0.01;
+        drawPicture(mesh, target, camera, sources, standing ? sources[0].view.pixels : null, store.others(picks, at));
+      },
+      pick: (target, camera, x, y) => pickAt(mesh, target, camera, x, y), // px of the target
+    };
+  }
+
   // Sheets are decoded one after the other, and views made ready when they are needed; the least recently used one goes.
-  function makeStore(data, mesh) {
+  function makeStore(data, way) {
     const spans = readSpans(data), sheets = new Array(data.sheets.length).fill(null), ready = new Map(), count = data.views * data.tiers.length;
     const nearestOf = (at, fits) => {
       let best = -1;
@@ -485,7 +501,7 @@ const turntable = (() => {
         .map(([index, view]) => ({ view, weight: otherWeight(data, index, at) })).filter(o => o.weight > 0.001),
       nearest: at => nearestOf(at, sheet => sheets[sheet] !== null),
       view(index) {
-        const view = ready.get(index) || prepareView(data, mesh, index, unpackView(data, spans, sheets[Math.floor(index / data.perSheet)], index));
+        const view = ready.get(index) || way.prepare(index, unpackView(data, spans, sheets[Math.floor(index / data.perSheet)], index));
         ready.delete(index);
         ready.set(index, view);
         if (ready.size > KEEP) ready.delete(ready.keys().next().value);
@@ -494,7 +510,7 @@ const turntable = (() => {
       async load(at, afterEach) {
         for (let left = sheets.length; left > 0; left--) {
           const sheet = Math.floor(nearestOf(at, k => sheets[k] === null) / data.perSheet);
-          sheets[sheet] = (await readPicture(data.sheets[sheet])).pixels;
+          sheets[sheet] = await way.readSheet(sheet);
           afterEach();
           await new Promise(done => setTimeout(done)); // lets a frame through
         }
@@ -504,14 +520,14 @@ const turntable = (() => {
   }
 
   // Draws what is asked on a canvas: coarse and fast while moving, fine at rest.
-  function makePainter(data, mesh, store, canvas) {
+  function makePainter(data, way, store, canvas) {
     const pen = canvas.getContext('2d'), targets = new Map();
     let cost = 15, scale = 1, frames = 0, last = null;
     const scaleCost = (from, to) => 0.4 + 0.6 * (to / from) ** 2; // part of the work does not depend on the size
     const resize = to => { cost *= scaleCost(scale, to); scale = to; };
     const targetFor = fine => {
       const key = fine ? 'fine' : scale, size = fine ? 1 : scale;
-      if (!targets.has(key)) targets.set(key, makeTarget(Math.round(data.width * size), Math.round(data.height * size), fine));
+      if (!targets.has(key)) targets.set(key, way.makeTarget(Math.round(data.width * size), Math.round(data.height * size), fine));
       return targets.get(key);
     };
     return {
@@ -522,10 +538,9 @@ const turntable = (() => {
         // In a fast turn making views ready would take longer than the turn: one view a frame has to do.
         const fast = !fine && last && Math.abs(at.azimuth - last.at.azimuth) > 180 / data.views;
         if (fast && !picks.every(p => store.isReady(p.index))) picks = [{ index: picks[0].index, weight: 1 }];
-        const sources = picks.map(p => ({ view: store.view(p.index), weight: p.weight })), begun = performance.now();
-        const target = targetFor(fine), camera = makeCamera(data, target.width, target.height, at), [first] = picks;
-        const standing = fine && first.weight > 0.9999 && at.zoom === 1 && Math.abs(tierOf(data, first.index) - at.elevation) < 0.01;
-        drawPicture(mesh, target, camera, sources, standing ? sources[0].view.pixels : null, store.others(picks, at));
+        for (const { index } of picks) store.view(index);
+        const begun = performance.now(), target = targetFor(fine), camera = makeCamera(data, target.width, target.height, at);
+        way.draw(target, camera, at, picks, store, fine);
         if (canvas.width !== target.width) { canvas.width = target.width; canvas.height = target.height; }
         pen.putImageData(new ImageData(target.rgba, target.width, target.height), 0, 0);
         last = { target, camera, at: { ...at } };
@@ -539,7 +554,7 @@ const turntable = (() => {
         return true;
       },
       // x and y run from 0 to 1 across and down the canvas.
-      pick: (x, y) => last && pickAt(mesh, last.target, last.camera, x * last.target.width, y * last.target.height),
+      pick: (x, y) => last && way.pick(last.target, last.camera, x * last.target.width, y * last.target.height),
     };
   }
 
@@ -614,7 +629,8 @@ const turntable = (() => {
 
   function turntable(root, data) {
     const { stage, behind, front, tools, state } = buildPage(root, data);
-    const mesh = readMesh(data), store = makeStore(data, mesh), painter = makePainter(data, mesh, store, front);
+    const mesh = readMesh(data), way = data.flow ? turntable.alongFlow(data, mesh) : throughMesh(data, mesh);
+    const store = makeStore(data, way), painter = makePainter(data, way, store, front);
     const low = Math.min(...data.tiers), high = Math.max(...data.tiers), home = { azimuth: 0, elevation: limit(5, low, high), zoom: 1, panX: 0, panY: 0 };
     const calm = matchMedia('(prefers-reduced-motion: reduce)');
     // `goal` is what the person asked for; `now` is what is shown, and follows it. `spin` goes on after a drag, in degrees a millisecond.
@@ -749,7 +765,9 @@ const turntable = (() => {
   }
 
   // The parts without a page, for measuring and testing.
-  turntable.core = { otherWeight, readMesh, readSpans, unpackView, prepareView, makeCamera, pickViews, makeTarget, drawPicture, pickAt, rasterise, makeBuffer };
+  turntable.core = {
+    bytesOf, readPicture, azimuthOf, tierOf, limit, otherWeight, readMesh, readSpans, unpackView, prepareView, makeCamera, pickViews, makeTarget, drawPicture, pickAt, rasterise, makeBuffer,
+  };
   if (typeof module === 'object') module.exports = turntable;
   return turntable;
 })();
