@@ -11,7 +11,7 @@ use toile_core::prelude::*;
 #[stage(
     role = Body,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",
-    example = "PoseBody(arm_angle: 28)",
+    example = "PoseBody()",
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct PoseBody {

@@ -109,13 +109,13 @@ fn seat(shape: &Shape) -> Ellipsoid {
     }
 }
 
-/// The shoulder line: from the neck down to the shoulder joint. The skin over it slopes by some 23 degrees from the neck to the shoulder point, as
+/// The shoulder line: from the neck down to the shoulder joint. The skin over it slopes by some 24 degrees from the neck to the shoulder point, as
 /// is usual (Taniyama and others 1970: 22 to 24; mean body of GarmentCode: 22).
 pub(crate) fn girdle(shape: &Shape) -> Limb {
     let s = shape.stature;
     let [inner, outer] = [0.047 * s, 0.046 * shape.arm_build()];
     let half = shape.size.shoulder_width / 2.0;
-    let slope = 17.0_f64.to_radians();
+    let slope = 18.5_f64.to_radians();
     let neck = Point3::new(0.02 * s, shape.y(level::NECK) - inner * 0.9, -0.026 * s);
     let joint = Point3::new(half - outer * 0.85, 0.0, -0.020 * s);
     let drop = (joint.x - neck.x) * slope.tan();
