@@ -72,6 +72,7 @@ const UNSEEN: &[&str] = &[
     "NeighbourhoodMean.pixel",
     "Obj.weld",
     "PhotoTexturer.unseen",
+    "PhotoTexturer.variants",
     "Report.pictures",
     "Report.views",
     "Scene.distances",

@@ -135,11 +135,11 @@ impl Side {
             let text = format!("at {:.0} degrees the {side} arm does not clear the {what}", to.to_degrees());
             StageError::invalid(text).at("arm_angle")
         };
-        // The angle as it was found, but for rounding.
         if arm.from - ARM <= arm.trunk {
             return Err(StageError::invalid(format!("the body's {side} arm lies at its trunk"))
                 .hint("leave its pose as it is"));
         }
+        // The least angle as it was found, but for rounding.
         if to < arm.least() - 1e-6 {
             let least = arm.least().to_degrees().ceil();
             return Err(

@@ -112,7 +112,7 @@ impl Sheet {
                 (lo.inf(p), hi.sup(p))
             });
         let texel = swatch.texel;
-        // Begins at a repeat of the cloth, so that all panels of one cloth show it alike.
+        // Texels are those of the cloth, which begins at the origin of every panel.
         let corner = Point2::new((lo.x / texel).floor() * texel, (hi.y / texel).ceil() * texel);
         let count = |length: f64| (length / texel).ceil().max(1.0) as usize + 1;
         let (width, height) = (count(hi.x - corner.x), count(corner.y - lo.y));

@@ -19,6 +19,7 @@ pub(crate) mod tangents;
 #[cfg(test)]
 mod tests;
 mod texture_size;
+mod variants;
 mod weave;
 
 pub use fabric_texturer::{FabricDetail, FabricTexture, FabricTexturer};

@@ -9,8 +9,9 @@ use super::edge::add_edges;
 use super::inside::{PixelBox, cover, keep_shown};
 use super::shading::Shading;
 use super::texture_size::{self, LARGEST};
-use super::{bleed, crop, of_panel, parts, photo_detail, plain};
+use super::{bleed, crop, of_panel, parts, photo_detail, plain, variants};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use toile_core::cost::Size;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
@@ -100,7 +101,7 @@ pub enum WrongSide {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 6,
+    version = 7,
     source = "garment modelling thesis, 2012: replace and modulate; Land, McCann 1971 and Grosse and others 2009: light apart from colour; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -142,6 +143,10 @@ pub struct PhotoTexturer {
     /// The soft shine of fibres at grazing angles, as a share of white; 0.1 where it is not given.
     #[param(default = None, min = 0.0, max = 1.0)]
     sheen: Option<f64>,
+    /// Further looks of the model by name, each with the photos that differ: `{"red": {"front": "red.jpg"}}`. They show the garment where the
+    /// first ones do. The look without them is then named `original`.
+    #[param(default = BTreeMap::new())]
+    variants: BTreeMap<String, BTreeMap<String, String>>,
 }
 
 /// A panel with its photo, that photo's mask, whether its print is to be taken off, and the panel's part of the photo.
@@ -165,18 +170,63 @@ impl PhotoTexturer {
     ) -> Result<Model, StageError> {
         self.fault().map_or(Ok(()), Err)?;
         check_garment(garment)?;
+        let mut model = self.dressed(garment, photos.as_ref(), masks.as_ref(), cx)?;
+        let mut looks = Vec::new();
+        for (name, files) in &self.variants {
+            cx.check()?;
+            let photos = photos.as_ref().ok_or_else(no_photos)?;
+            let own = variants::replaced(photos, files, garment, cx)?;
+            looks.push((name, self.dressed(garment, Some(&own), masks.as_ref(), cx)?));
+        }
+        self.body.add(&mut model, body)?;
+        for (name, mut look) in looks {
+            for (own, texture) in look.textures.iter_mut().zip(&model.textures) {
+                match own.pixels == texture.pixels {
+                    true => *own = texture.clone(),
+                    false => own.name = format!("{} {name}", own.name),
+                }
+            }
+            self.body.add(&mut look, body)?;
+            model.add_variant(variants::ORIGINAL, name, &look).map_err(StageError::internal)?;
+        }
+        Ok(model)
+    }
+
+    /// How many texels it will make.
+    fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
+        texture_size::foreseen(given, self.size)
+    }
+
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        texture_size::rule(known, self.size).into_iter().collect()
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        self.fault().into_iter().collect()
+    }
+}
+
+impl PhotoTexturer {
+    /// The panels in their photos, without the body.
+    fn dressed(
+        &self,
+        garment: &Garment,
+        photos: Option<&Set<Photo>>,
+        masks: Option<&Set<Mask>>,
+        cx: &Context,
+    ) -> Result<Model, StageError> {
         let normals = garment.vertex_normals();
         let (mut model, mut pictures) = (Model::default(), Vec::new());
         for (i, panel) in garment.panels.iter().enumerate() {
             cx.check()?;
             let mut mesh = parts::panel_mesh(garment, panel, &normals, i);
             let mut material = parts::panel_cloth(panel, parts::UNDYED, self.sheen.unwrap_or(parts::SHEEN));
-            match photo_of(panel, photos.as_ref(), cx) {
+            match photo_of(panel, photos, cx) {
                 Some(photo) => {
                     let area = PixelBox::around(&panel.photo_px, self.margin, photo.pixels.dimensions())
                         .ok_or_else(|| off_photo(panel, photo))?;
-                    let mask = masks.as_ref().and_then(|m| of_panel(m, &panel.name));
-                    pictures.push((panel, photo, mask, self.hides(photo, photos.as_ref()), area));
+                    let mask = masks.and_then(|m| of_panel(m, &panel.name));
+                    pictures.push((panel, photo, mask, self.hides(photo, photos), area));
                     mesh.uv = panel.photo_px.iter().map(|px| area.uv(px)).collect();
                     material.colour = [1.0; 3];
                     material.texture = Some(pictures.len() - 1);
@@ -222,25 +272,9 @@ impl PhotoTexturer {
             }
         }
         add_edges(&mut model, garment, &normals, self.edge.metres());
-        self.body.add(&mut model, body)?;
         Ok(model)
     }
 
-    /// How many texels it will make.
-    fn foresee(&self, given: &Size, _cx: &Context) -> Option<Size> {
-        texture_size::foreseen(given, self.size)
-    }
-
-    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
-        texture_size::rule(known, self.size).into_iter().collect()
-    }
-
-    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        self.fault().into_iter().collect()
-    }
-}
-
-impl PhotoTexturer {
     /// The first parameter that does nothing beside the others.
     fn fault(&self) -> Option<StageError> {
         let (detail, unlit) = (self.detail == PhotoDetail::Photo, self.light == Light::Replace);
@@ -254,7 +288,7 @@ impl PhotoTexturer {
             () if !detail && self.strength.is_some() => {
                 idle("strength", "detail: None", "leave it out, or give `detail: Photo`")
             }
-            () => None,
+            () => self.variants.iter().find_map(variants::bad_variant),
         }
     }
 
@@ -405,6 +439,12 @@ fn check_garment(garment: &Garment) -> Result<(), StageError> {
         }
     }
     Ok(())
+}
+
+fn no_photos() -> StageError {
+    StageError::invalid("there are no photos that variants could stand for")
+        .hint("leave `variants` out")
+        .at("variants")
 }
 
 fn off_photo(panel: &GarmentPanel, photo: &Photo) -> StageError {

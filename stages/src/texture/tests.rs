@@ -389,3 +389,76 @@ fn uneven_light_goes_only_where_it_is_asked_to() {
     };
     assert!(spread("()") > 30 && spread("(shading: Remove)") < 8, "{}", spread("(shading: Remove)"));
 }
+
+/// A folder with the fixture's front in other colours: in its place, from farther away, and cut off.
+fn other_fronts() -> (tempfile::TempDir, Context) {
+    let folder = tempfile::tempdir().unwrap();
+    let first = fixture::photos();
+    let front = &first.get("front").unwrap().pixels;
+    let (w, h) = front.dimensions();
+    let swapped = |p: Rgb<u8>| if p.0 == fixture::GROUND { p } else { Rgb([p.0[2], p.0[1], p.0[0]]) };
+    let blue = RgbImage::from_fn(w, h, |x, y| swapped(*front.get_pixel(x, y)));
+    blue.save(folder.path().join("blue.png")).unwrap();
+    let mut far = RgbImage::from_pixel(w, h, Rgb(fixture::GROUND));
+    let small = image::imageops::thumbnail(&blue, w * 7 / 10, h * 7 / 10);
+    image::imageops::replace(&mut far, &small, i64::from(w) / 7, i64::from(h) / 7);
+    far.save(folder.path().join("far.png")).unwrap();
+    image::imageops::crop_imm(&blue, 0, 0, w - 9, h).to_image().save(folder.path().join("cut.png")).unwrap();
+    let cx = Context::new("PhotoTexturer", folder.path(), toile_core::Cancel::new(), std::sync::Arc::new(()));
+    (folder, cx)
+}
+
+fn varied(variants: &str, cx: &Context) -> Result<Model, StageError> {
+    let stage = texturer(&format!("(body: Hide, variants: {variants})"));
+    stage.run(&fixture::garment(8), Some(fixture::photos()), None, None, cx)
+}
+
+#[test]
+fn a_variant_takes_its_own_photos_and_leaves_the_others() {
+    let (_folder, cx) = other_fronts();
+    let model = varied("{\"blue\": {\"front\": \"blue.png\"}}", &cx).unwrap();
+    let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["front", "back", "front blue"], "the back is the same in both");
+    assert_eq!(model.variants.iter().map(|v| v.name.as_str()).collect::<Vec<_>>(), ["original", "blue"]);
+    let front = |variant: usize| {
+        let material = model.variants[variant].materials[0];
+        texel(&model.textures[model.materials[material].texture.unwrap()], [0.3, 0.5])
+    };
+    let [[r, g, b], other] = [front(0), front(1)];
+    assert_eq!(other, [b, g, r]);
+    assert_eq!(model.check(), Ok(()));
+    // The back is the front's mirror image: then it is so in the variant.
+    let mut photos = fixture::photos();
+    let front = photos.get("front").unwrap().clone();
+    photos.0.insert("back".into(), std::sync::Arc::new(Photo { mirrored: true, ..front }));
+    let stage = texturer("(body: Hide, variants: {\"blue\": {\"front\": \"blue.png\"}})");
+    let model = stage.run(&fixture::garment(8), Some(photos), None, None, &cx).unwrap();
+    let names: Vec<&str> = model.textures.iter().map(|t| t.name.as_str()).collect();
+    assert_eq!(names, ["front", "back", "front blue", "back blue"]);
+}
+
+#[test]
+fn variants_that_show_the_garment_elsewhere_or_are_not_there_are_refused() {
+    let (_folder, cx) = other_fronts();
+    let told = |variants: &str| {
+        let e = varied(variants, &cx).unwrap_err();
+        (e.message, e.hint.unwrap_or_default())
+    };
+    let alike = "photos of variants show the garment where the first one does: take them from the same place, and crop them alike";
+    assert_eq!(
+        told("{\"blue\": {\"front\": \"cut.png\"}}"),
+        ("\"cut.png\" is 360 x 441 px, and not 369 x 441 px as \"photo.png\"".into(), alike.into())
+    );
+    let (message, hint) = told("{\"blue\": {\"front\": \"far.png\"}}");
+    assert!(message.starts_with("the garment lies elsewhere in \"far.png\": "), "{message}");
+    assert!(message.ends_with(" % of panel \"front\" is on it") && hint == alike, "{message}");
+    assert_eq!(
+        told("{\"blue\": {\"side\": \"blue.png\"}}"),
+        ("no photo is called \"side\"".into(), "the photos are back, front".into())
+    );
+    assert_eq!(told("{\"blue\": {}}").0, "the variant \"blue\" has no photo");
+    assert_eq!(
+        told("{\"original\": {\"front\": \"blue.png\"}}").0,
+        "the variant \"original\" has the name of the model's own look, or none"
+    );
+}

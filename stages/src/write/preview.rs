@@ -66,16 +66,14 @@ impl Preview {
             ("back.png", View::back),
             ("side.png", View::side),
         ];
-        let mut pictures = Vec::new();
-        for (i, (path, view)) in views.into_iter().enumerate() {
-            // One after the other, each on all threads: so a stop waits for one view at most.
+        let drawn = |(path, view): (&str, fn(u32) -> View)| {
+            let picture = scene.render(&View { frame, ..view(self.size) });
+            // What is made after a stop is unfinished.
             cx.check()?;
-            cx.progress(i as f64 / 3.0, path);
-            pictures.push((path, scene.render(&View { frame, ..view(self.size) })));
-        }
-        cx.check()?;
-        let files: Vec<Result<OutputFile, StageError>> = pictures.par_iter().map(file).collect();
-        let mut files: Vec<OutputFile> = files.into_iter().collect::<Result<_, _>>()?;
+            file(path, &picture)
+        };
+        let mut files: Vec<OutputFile> =
+            views.into_par_iter().map(drawn).collect::<Result<_, StageError>>()?;
         if let Some(height) = self.sheet {
             let mut row: Vec<RgbImage> =
                 photo_of(photos.as_ref()).map(|p| thumbnail(&p.pixels, height)).into_iter().collect();
@@ -112,9 +110,9 @@ fn beside(row: &[RgbImage]) -> RgbImage {
     sheet
 }
 
-fn file((path, picture): &(&str, RgbImage)) -> Result<OutputFile, StageError> {
+fn file(path: &str, picture: &RgbImage) -> Result<OutputFile, StageError> {
     let mut bytes = Cursor::new(Vec::new());
     let fault = |e| StageError::internal(format!("{path} cannot be encoded: {e}"));
     picture.write_to(&mut bytes, ImageFormat::Png).map_err(fault)?;
-    Ok(OutputFile::new(*path, bytes.into_inner()))
+    Ok(OutputFile::new(path, bytes.into_inner()))
 }

@@ -117,12 +117,15 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     let outlines = within(shown(outlines(run, height)), &mut budget).0;
     let maps =
         within(shown(fit_files(run).map_or_else(Vec::new, |f| pictures_of(f, None, height))), &mut budget).0;
-    let mut stages = Vec::new();
-    for (i, record) in run.stages.iter().enumerate() {
+    let drawn = |i: usize| {
         cx.check()?;
-        cx.progress(i as f64 / run.stages.len() as f64, format!("pictures of {}", record.id));
-        stages.push(section(&draw, i, longest, &mut budget));
-    }
+        cx.progress(i as f64 / run.stages.len() as f64, format!("pictures of {}", run.stages[i].id));
+        Ok(draw.stage(i))
+    };
+    let pictures: Vec<Vec<Shown>> =
+        (0..run.stages.len()).into_par_iter().map(drawn).collect::<Result<_, StageError>>()?;
+    let sections = run.stages.iter().zip(pictures);
+    let stages = sections.map(|(record, shown)| section(record, shown, longest, &mut budget)).collect();
     let skipped = run.skipped.iter().map(|(name, why)| Figure { name: name.clone(), value: why.clone() });
     Ok(Page {
         title: if run.pipeline.is_empty() { "A garment".to_owned() } else { run.pipeline.clone() },
@@ -149,9 +152,8 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
     })
 }
 
-fn section(draw: &Draw<'_>, index: usize, longest: f64, budget: &mut usize) -> Section {
-    let record = &draw.run.stages[index];
-    let (pictures, left_out) = within(draw.stage(index), budget);
+fn section(record: &StageRecord, shown: Vec<Shown>, longest: f64, budget: &mut usize) -> Section {
+    let (pictures, left_out) = within(shown, budget);
     Section {
         id: record.id.clone(),
         name: record.name.clone(),
