@@ -86,7 +86,7 @@ fn what_is_made_anew_of_something_remade_supersedes_what_was_made_of_its_former_
     clash(
         &["Mean()", "Otsu()", "Local()", "Canny()"],
         "vest.ron:6:1: `Canny` takes a mask, but `Otsu` and `Local` each make one; say which: `from: \"Local\"`",
-        &[("Canny()", "takes a mask"), ("Otsu()", "makes a mask"), ("Local()", "makes a mask")],
+        &[("Canny", "takes a mask"), ("Otsu", "makes a mask"), ("Local", "makes a mask")],
     );
 }
 
