@@ -200,7 +200,7 @@ fn the_reference_may_have_values_of_its_own() {
         ),
         (
             "StaticEquilibrium.bending_continuation=yes",
-            "`StaticEquilibrium.bending_continuation`: `graded` wants true | false, found `yes`",
+            "`StaticEquilibrium.bending_continuation`: `bending_continuation` wants true | false, found `yes`",
             "",
         ),
     ] {
