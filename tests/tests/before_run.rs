@@ -295,3 +295,30 @@ fn values_out_of_range_come_out_with_all_other_faults_in_the_order_of_the_file()
     assert_eq!((answer.code, answer.err.matches('×').count()), (3, 1), "{}", answer.err);
     assert!(words(&answer).contains("`high` is 6000, above its greatest value"), "{}", answer.err);
 }
+
+#[test]
+fn a_garment_is_brought_along_from_the_body_that_it_is_draped_on() {
+    let dir = tempfile::tempdir().unwrap();
+    let told = |before: &str, after: &str| {
+        let text = fs::read_to_string(pipeline("photo_tee.ron")).unwrap();
+        let text = text.replace("samples/", &format!("{}samples/", pipeline("")));
+        let text = text.replace("Arrange(),", &format!("{before}Arrange(),"));
+        let text = text.replace("PoseBody(), PoseGarment(), ", after);
+        let text = text.replace("id: \"Settle\"", "id: \"Settle\", from: \"Hanging\"");
+        let file = dir.path().join("tee.ron");
+        fs::write(&file, text).unwrap();
+        let answer = toile(&["validate", file.to_str().unwrap()]);
+        (answer.code, words(&answer))
+    };
+    assert_eq!(told("", "PoseBody(), PoseGarment(), ").0, 0);
+    let (code, said) = told("PoseBody(id: \"Lower\", arm_angle: 40), ", "PoseBody(), PoseGarment(), ");
+    assert_eq!(code, 3);
+    assert!(
+        said.contains("the garment is draped on the body of `Lower`, and not on the first one"),
+        "{said}"
+    );
+    assert!(said.contains("let `PoseBody` stand between the drape and `PoseGarment`"), "{said}");
+    let (code, said) = told("", "PoseGarment(), ");
+    assert_eq!(code, 3);
+    assert!(said.contains("the body has one pose alone"), "{said}");
+}

@@ -4,6 +4,7 @@
 //! Cost: linear in vertices.
 
 use crate::body::Swing;
+use toile_core::needed_for;
 use toile_core::prelude::*;
 
 /// Brings a draped garment along with a body that `PoseBody` has given another pose.
@@ -34,5 +35,29 @@ impl PoseGarment {
             velocities: vec![Vector3::zeros(); garment.velocities.len()],
             ..garment.clone()
         })
+    }
+
+    /// The map begins at the first body: a garment that was draped on another one would be moved too far.
+    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let index = |port: &str| {
+            let maker = placed.maker(port)?;
+            placed.nodes.iter().position(|n| std::ptr::eq(n, maker))
+        };
+        let (Some(garment), Some(first)) = (index("garment"), index("before")) else { return Vec::new() };
+        let needed = needed_for(placed.nodes, &[garment]);
+        let makes_body = |n: &toile_core::Node| n.card.outputs.iter().any(|o| o.kind == Body::KIND);
+        let worn = placed.nodes.iter().zip(needed).enumerate();
+        let other = worn.filter(|(k, (n, needed))| *needed && *k != first && makes_body(n)).last();
+        let refused = |text: String| {
+            vec![StageError::invalid(text).hint("let `PoseBody` stand between the drape and `PoseGarment`")]
+        };
+        match (other, index("after") == Some(first)) {
+            (Some((_, (body, _))), _) => refused(format!(
+                "the garment is draped on the body of `{}`, and not on the first one",
+                body.id
+            )),
+            (None, true) => refused("the body has one pose alone".to_owned()),
+            (None, false) => Vec::new(),
+        }
     }
 }

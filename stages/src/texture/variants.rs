@@ -17,15 +17,19 @@ const COVERED: f64 = 0.9;
 /// What photos of variants must be like.
 const ALIKE: &str = "photos of variants show the garment where the first one does: take them from the same place, and crop them alike";
 
+/// Whether a variant may be called so.
+pub(super) fn is_name(name: &str) -> bool {
+    !name.trim().is_empty() && name != ORIGINAL
+}
+
 /// Refuses a variant without a name, photo or meaning of its own.
 pub(super) fn bad_variant((name, files): (&String, &BTreeMap<String, String>)) -> Option<StageError> {
-    let named = !name.trim().is_empty() && name != ORIGINAL;
     let refused = |text: String| {
         let hint = "a variant is a name with the file of a photo for each side that differs, such as \"red\": {\"front\": \"red.jpg\"}";
         Some(StageError::invalid(text).hint(hint).at("variants"))
     };
     match () {
-        () if !named => {
+        () if !is_name(name) => {
             refused(format!("the variant {name:?} has the name of the model's own look, or none"))
         }
         () if files.is_empty() => refused(format!("the variant \"{name}\" has no photo")),

@@ -11,7 +11,7 @@ use self::edges::finishes;
 use super::edge::add_edges;
 use super::finish::{Finish, MOST_PX, Sheet};
 use super::weave::{Cloth, Colour, Tile, tile};
-use super::{BodyShown, parts};
+use super::{BodyShown, parts, variants};
 use crate::render::LINEAR;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
@@ -106,8 +106,6 @@ pub struct FabricTexturer {
 const INDIGO: &str = "#34486b";
 const NATURAL: &str = "#d9d2c3";
 const WHITE: &str = "#f2f0ea";
-/// The name of the look without variants.
-const ORIGINAL: &str = "original";
 /// Bands of a check or a stripe, metres.
 const BANDS: f64 = 0.02;
 
@@ -148,7 +146,7 @@ impl FabricTexturer {
                 texture.name = format!("{} {name}", texture.name);
                 texture.pixels = Shared::new(pixels);
             }
-            model.add_variant(ORIGINAL, name, &other).map_err(StageError::internal)?;
+            model.add_variant(variants::ORIGINAL, name, &other).map_err(StageError::internal)?;
         }
         Ok(model)
     }
@@ -212,15 +210,15 @@ impl FabricTexturer {
                 .materials
                 .push(Material { texture: Some(texture), ..parts::panel_cloth(panel, [1.0; 3], self.sheen) });
         }
-        self.hang(&mut model, dress, pictures);
+        self.add_textures(&mut model, dress, pictures);
         add_edges(&mut model, garment, &normals, self.edge.metres());
         Ok(model)
     }
 
     /// Gives a model its pictures.
-    fn hang(&self, model: &mut Model, dress: &Dress<'_>, pictures: Pictures) {
+    fn add_textures(&self, model: &mut Model, dress: &Dress<'_>, pictures: Pictures) {
         let mut reliefs = Vec::new();
-        let mut hang = |name: String, pixels, map: &dyn Fn(f64) -> image::RgbImage, repeats| {
+        let mut add = |name: String, pixels, map: &dyn Fn(f64) -> image::RgbImage, repeats| {
             if self.detail == FabricDetail::Weave {
                 let map = Shared::new(map(self.strength.unwrap_or(1.0)));
                 reliefs.push(Texture { name: format!("{name} normals"), pixels: map, repeats });
@@ -229,11 +227,11 @@ impl FabricTexturer {
         };
         for (kind, tile) in dress.kinds.iter().zip(pictures.tiles) {
             let name = format!("{kind:?}").to_lowercase();
-            hang(name, tile.pixels.clone(), &|strength| tile.normal_map(strength), true);
+            add(name, tile.pixels.clone(), &|strength| tile.normal_map(strength), true);
         }
         for (panel, sheet) in dress.garment.panels.iter().zip(pictures.sheets) {
             let Some(sheet) = sheet else { continue };
-            hang(panel.name.clone(), sheet.pixels.clone(), &|strength| sheet.normal_map(strength), false);
+            add(panel.name.clone(), sheet.pixels.clone(), &|strength| sheet.normal_map(strength), false);
         }
         if !reliefs.is_empty() {
             let count = reliefs.len();
@@ -332,8 +330,7 @@ fn longest(flat: &[Point2]) -> f64 {
 fn bad_variant((name, colour): (&String, &String)) -> Option<StageError> {
     let hint = "a variant is a name with a colour, such as \"red\": \"#a03028\"";
     let text = format!("the variant {name:?} has the name of the model's own look, or none");
-    let named = !name.trim().is_empty() && name != ORIGINAL;
-    (!named)
+    (!variants::is_name(name))
         .then(|| StageError::invalid(text).hint(hint))
         .or_else(|| parse(colour).err())
         .map(|e| e.at("variants"))
