@@ -46,8 +46,8 @@ impl PoseGarment {
         let (Some(garment), Some(first)) = (index("garment"), index("before")) else { return Vec::new() };
         let needed = needed_for(placed.nodes, &[garment]);
         let makes_body = |n: &toile_core::Node| n.card.outputs.iter().any(|o| o.kind == Body::KIND);
-        let worn = placed.nodes.iter().zip(needed).enumerate();
-        let other = worn.filter(|(k, (n, needed))| *needed && *k != first && makes_body(n)).last();
+        let mut worn = placed.nodes.iter().zip(needed).enumerate();
+        let other = worn.rfind(|(k, (n, needed))| *needed && *k != first && makes_body(n));
         let refused = |text: String| {
             vec![StageError::invalid(text).hint("let `PoseBody` stand between the drape and `PoseGarment`")]
         };
