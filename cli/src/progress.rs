@@ -8,7 +8,7 @@ use std::sync::Mutex;
 use std::sync::PoisonError;
 use std::sync::mpsc::channel;
 use std::time::Duration;
-use toile_core::{Event, Listener, StageError};
+use toile_core::{Event, Listener, Remarks, StageError};
 use toile_pipeline::Pipeline;
 use toile_trade::ablate::Progress;
 
@@ -19,7 +19,8 @@ const STEPS: u64 = 100;
 pub(crate) struct Bar {
     bar: ProgressBar,
     ids: Vec<String>,
-    warnings: Mutex<Vec<String>>,
+    notes: Mutex<Vec<(String, String)>>,
+    warnings: Mutex<Vec<(String, String)>>,
 }
 
 impl Bar {
@@ -28,13 +29,17 @@ impl Bar {
         let template = "{spinner} {elapsed:>4} [{bar:28}] {prefix}: {wide_msg}";
         let bar = drawn(ids.len() as u64 * STEPS, template, streams);
         tick(&bar, 120);
-        Bar { bar, ids, warnings: Mutex::default() }
+        Bar { bar, ids, notes: Mutex::default(), warnings: Mutex::default() }
     }
 
-    /// Takes the bar away and gives the warnings that came.
-    pub(crate) fn finish(&self) -> Vec<String> {
+    /// Takes the bar away and gives what the stages told, each with its stage.
+    pub(crate) fn finish(&self) -> Remarks {
         self.bar.finish_and_clear();
-        std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner))
+        let take = |told: &Mutex<Vec<(String, String)>>| {
+            let told = std::mem::take(&mut *told.lock().unwrap_or_else(PoisonError::into_inner));
+            told.into_iter().map(|(who, text)| format!("{who}: {text}")).collect()
+        };
+        Remarks { notes: take(&self.notes), warnings: take(&self.warnings) }
     }
 }
 
@@ -49,10 +54,24 @@ impl Listener for Bar {
                 self.bar.set_prefix(who);
                 self.bar.set_message(text.clone());
             }
+            Event::Note(text) => {
+                told(&self.notes, who, text);
+            }
             Event::Warning(text) => {
-                self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(format!("{who}: {text}"));
+                told(&self.warnings, who, text);
             }
         }
+    }
+}
+
+/// Keeps what `who` told, unless another stage has told the same.
+fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
+    let mut list = list.lock().unwrap_or_else(PoisonError::into_inner);
+    let stage = |who: &str| who.split(" (").next().map(str::to_owned);
+    // Entries of one stage may say the same, each of itself.
+    let said = |(other, told): &(String, String)| told == text && (*other == who || stage(other) != stage(&who));
+    if !list.iter().any(said) {
+        list.push((who, text.to_owned()));
     }
 }
 

@@ -9,7 +9,7 @@ use crate::{Streams, cache, exit, interrupt, lock, reads, stdin, threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;
-use toile_core::{Cancel, Listener, Registry, StageError};
+use toile_core::{Cancel, Listener, Registry, Remarks, StageError};
 use toile_pipeline::cache::Cache;
 use toile_pipeline::{
     Metrics, Pipeline, Reads, RunError, RunOptions, RunResult, SoFar, check_folder, run as run_stages,
@@ -68,7 +68,7 @@ pub(crate) fn once(
         cache,
         reads: reads.cloned(),
     };
-    let outcome = under_a_bar(&pipeline, &options, args.threads, streams);
+    let outcome = under_a_bar(&pipeline, &options, args.threads, args.verbose, streams);
     match outcome {
         Err(e) => {
             let code = fail_run(&pipeline, &e, args.json, streams);
@@ -130,11 +130,12 @@ fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>
     }
 }
 
-/// Runs with a progress line; tells the warnings of the stages, then those of the cache.
+/// Runs with a progress line; tells the notes and warnings of the stages, then the warnings of the cache.
 fn under_a_bar(
     pipeline: &Pipeline,
     options: &RunOptions,
     threads: Option<u16>,
+    verbose: bool,
     streams: &mut Streams<'_>,
 ) -> Result<RunResult, RunError> {
     let pool = threads::pool(threads, streams);
@@ -143,7 +144,14 @@ fn under_a_bar(
     let outcome =
         threads::in_pool(pool, || run_stages(pipeline, options, &interrupt::on_ctrl_c(), &listener));
     let of_cache = options.cache.iter().flat_map(|c| c.take_warnings());
-    for warning in bar.finish().into_iter().chain(of_cache) {
+    let Remarks { notes, warnings } = bar.finish();
+    match (notes.len(), verbose) {
+        (0, _) => {}
+        (_, true) => notes.iter().for_each(|note| streams.notice(format!("note: {note}"))),
+        (1, false) => streams.notice("1 decision was noted: --verbose and the report show it"),
+        (n, false) => streams.notice(format!("{n} decisions were noted: --verbose and the report show them")),
+    }
+    for warning in warnings.into_iter().chain(of_cache) {
         streams.warn(warning);
     }
     outcome

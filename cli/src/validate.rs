@@ -55,10 +55,10 @@ fn warn(warnings: &Faults, streams: &mut Streams<'_>) {
     warnings.lines().iter().for_each(|line| streams.warn(line));
 }
 
-/// Shows the stages whose results a run does not use.
+/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a run may be for.
 pub(crate) fn warn_unused(pipeline: &Pipeline, registry: &Registry, streams: &mut Streams<'_>) {
     if let Some(mut warnings) = pipeline.warnings(registry) {
-        warnings.faults.retain(|w| w.code == "unused");
+        warnings.faults.retain(|w| w.code != "no_garment");
         warn(&warnings, streams);
     }
 }

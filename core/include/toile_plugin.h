@@ -16,7 +16,7 @@ extern "C" {
 
 #define TOILE_ABI_MAJOR 1
 #ifndef TOILE_ABI_MINOR
-#define TOILE_ABI_MINOR 1
+#define TOILE_ABI_MINOR 2
 #endif
 
 #define TOILE_MAGIC {'T', 'O', 'I', 'L', 'E', 'P', 'L', 'G'}
@@ -203,6 +203,9 @@ typedef struct toile_host {
     void (*parallel_for)(void *ctx, size_t count, void *data, void (*body)(void *data, size_t index));
     /* A file was read: run again when it changes. digest: BLAKE3 of its content, 32 bytes, or null. */
     void (*reads)(void *ctx, toile_text path, const uint8_t *digest);
+#endif
+#if TOILE_ABI_MINOR >= 2
+    void (*note)(void *ctx, toile_text text); /* what was decided; warn: what the user should look at */
 #endif
 } toile_host;
 

@@ -2,10 +2,10 @@
 
 use crate::artifact::{ArtifactType, Digest, Digester, Measure};
 use crate::files::MAX_FILE_BYTES;
-use crate::{ErrorCode, PortValue, StageError, parallel};
+use crate::{ErrorCode, PortValue, Remarks, StageError, parallel};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A flag that asks everything to stop.
 #[derive(Clone, Default)]
@@ -53,7 +53,9 @@ pub enum Event {
         /// What it is at: `seam gap 3.2 mm, energy 0.41 J`.
         text: String,
     },
-    /// Something that the user should know.
+    /// What was decided, for a user who wants to know.
+    Note(String),
+    /// Something that the user should look at.
     Warning(String),
 }
 
@@ -93,11 +95,13 @@ pub struct Context {
     cancel: Cancel,
     listener: Arc<dyn Listener>,
     figures: Mutex<Vec<Measure>>,
-    warnings: Mutex<Vec<String>>,
+    remarks: Mutex<Remarks>,
     so_far: Mutex<Option<PortValue>>,
     reads: Mutex<Vec<(String, Option<Digest>)>>,
     parallel: Option<Arc<dyn Parallel>>,
     memo: Option<Arc<dyn Memo>>,
+    work: Mutex<f64>,
+    allowance: Option<f64>,
 }
 
 impl Context {
@@ -110,11 +114,13 @@ impl Context {
             cancel,
             listener,
             figures: Mutex::default(),
-            warnings: Mutex::default(),
+            remarks: Mutex::default(),
             so_far: Mutex::default(),
             reads: Mutex::default(),
             parallel: None,
             memo: None,
+            work: Mutex::default(),
+            allowance: None,
         }
     }
 
@@ -126,6 +132,22 @@ impl Context {
     /// The same context with a place for [`Context::memo`].
     pub fn with_memo(self, memo: Option<Arc<dyn Memo>>) -> Self {
         Context { memo, ..self }
+    }
+
+    /// The same context for a stage that may take so much [`Context::work`]; any amount for none.
+    pub fn with_allowance(self, allowance: Option<f64>) -> Self {
+        Context { allowance, ..self }
+    }
+
+    /// Counts work that was done: 1 for a step over all vertices of the garment. A stage that only improves on a result may take as much as that
+    /// result took; beyond, [`Context::check`] errs. Steps count, not seconds: a result does not depend on the machine.
+    pub fn work(&self, steps: f64) {
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner) += steps;
+    }
+
+    /// The work counted so far.
+    pub fn work_so_far(&self) -> f64 {
+        *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
@@ -179,6 +201,7 @@ impl Context {
             entry: entry.to_owned(),
             parallel: self.parallel.clone(),
             memo: self.memo.clone(),
+            allowance: self.allowance,
             ..Context::new(&self.stage, &self.base, self.cancel.clone(), self.listener.clone())
         }
     }
@@ -188,11 +211,17 @@ impl Context {
         &self.entry
     }
 
-    /// Errs once the user has asked to stop. Call it at least every 50 ms.
+    /// Errs once the user has asked to stop, or the stage has taken more work than it may. Call it at least every 50 ms.
     pub fn check(&self) -> Result<(), StageError> {
-        match self.cancel.is_cancelled() {
-            true => Err(StageError::new(ErrorCode::Cancelled, "stopped on request")),
-            false => Ok(()),
+        if self.cancel.is_cancelled() {
+            return Err(StageError::new(ErrorCode::Cancelled, "stopped on request"));
+        }
+        match self.allowance {
+            Some(allowance) if self.work_so_far() > allowance => Err(StageError::new(
+                ErrorCode::Timeout,
+                format!("it was not done after {allowance:.0} steps, as many as the garment before it took"),
+            )),
+            _ => Ok(()),
         }
     }
 
@@ -207,11 +236,23 @@ impl Context {
         self.listener.event(&self.stage, &self.entry, &event);
     }
 
-    /// Tells the user something; it also stands in the report.
+    /// Tells what was decided, and by what fact: "the front is taken for a T-shirt". It stands in the report, and in the
+    /// terminal where the user asks for more.
+    pub fn note(&self, text: impl Into<String>) {
+        let text = text.into();
+        self.listener.event(&self.stage, &self.entry, &Event::Note(text.clone()));
+        self.remarks().notes.push(text);
+    }
+
+    /// Tells what the user should look at. It stands in the terminal and in the report.
     pub fn warn(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Warning(text.clone()));
-        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(text);
+        self.remarks().warnings.push(text);
+    }
+
+    fn remarks(&self) -> MutexGuard<'_, Remarks> {
+        self.remarks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Keeps what the stage has come to, for a look should it fail: a garment with an open seam, the mask of a photo that is refused. The last
@@ -304,19 +345,20 @@ impl Context {
     }
 
     /// Takes over what one entry of a set noted, under the entry's name.
-    pub fn absorb(&self, entry: &str, figures: Vec<Measure>, warnings: Vec<String>) {
+    pub fn absorb(&self, entry: &str, figures: Vec<Measure>, remarks: Remarks) {
         let named = figures.into_iter().map(|m| Measure { name: format!("{entry}.{}", m.name), ..m });
         self.figures.lock().unwrap_or_else(PoisonError::into_inner).extend(named);
-        let named = warnings.into_iter().map(|w| format!("{entry}: {w}"));
-        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).extend(named);
+        self.remarks().absorb(entry, remarks);
     }
 
-    /// The figures and warnings given so far.
-    pub fn take_notes(&self) -> (Vec<Measure>, Vec<String>) {
-        let take = |e: PoisonError<_>| e.into_inner();
-        let figures = std::mem::take(&mut *self.figures.lock().unwrap_or_else(take));
-        let warnings = std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner));
-        (figures, warnings)
+    /// The figures given so far.
+    pub fn take_figures(&self) -> Vec<Measure> {
+        std::mem::take(&mut *self.figures.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The notes and warnings given so far.
+    pub fn take_remarks(&self) -> Remarks {
+        std::mem::take(&mut *self.remarks())
     }
 }
 

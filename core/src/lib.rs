@@ -50,6 +50,7 @@ pub mod param;
 #[allow(unsafe_code)]
 pub mod plugin;
 mod registry;
+mod remarks;
 mod stage;
 #[cfg(any(test, feature = "testkit"))]
 pub mod testkit;
@@ -66,6 +67,7 @@ pub use migration::{Change, Migration};
 pub use near::{hint, nearest, quoted};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
+pub use remarks::Remarks;
 pub use stage::{
     Arity, Card, Contract, Feed, InPort, Input, Inputs, Node, OutPort, Output, Placed, PluginId, PortValue,
     Role, Set, Stage, StageMeta, StageType, needed_for,

@@ -35,7 +35,7 @@ pub(crate) struct RunArgs {
     /// Compare with PIPELINE.lock and say what differs
     #[arg(long)]
     pub(crate) locked: bool,
-    /// Say what each stage was expected to take beside what it took
+    /// Say what was decided, and what each stage was expected to take beside what it took
     #[arg(long, short, conflicts_with = "json")]
     pub(crate) verbose: bool,
     #[command(flatten)]

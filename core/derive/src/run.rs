@@ -28,6 +28,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
     let ports = ports(run)?;
     let out = output(run)?;
     let (sizes, decisions, faults) = (sizes(&item), decisions(&item), faults(&item));
+    let (warnings, improves) = (warnings(&item), improves(&item));
     let in_ports = ports.iter().map(|Port { name, ty, original }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -54,6 +55,8 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                 #sizes
                 #decisions
                 #faults
+                #warnings
+                #improves
                 fn run_ports(
                     &self,
                     inputs: &::toile_core::Inputs,
@@ -118,6 +121,33 @@ fn faults(item: &ItemImpl) -> TokenStream {
                 placed: &::toile_core::Placed<'_>,
             ) -> ::std::vec::Vec<::toile_core::StageError> {
                 Self::precheck(self, placed)
+            }
+        },
+    }
+}
+
+/// The trait's `warnings`, where the author gives some by a function of that name.
+fn warnings(item: &ItemImpl) -> TokenStream {
+    match has(item, "warnings") {
+        false => TokenStream::new(),
+        true => quote! {
+            fn warnings(
+                &self,
+                placed: &::toile_core::Placed<'_>,
+            ) -> ::std::vec::Vec<::toile_core::StageError> {
+                Self::warnings(self, placed)
+            }
+        },
+    }
+}
+
+/// The trait's `improves`, where the author says by a function of that name with which parameters it does.
+fn improves(item: &ItemImpl) -> TokenStream {
+    match has(item, "improves") {
+        false => TokenStream::new(),
+        true => quote! {
+            fn improves(&self) -> bool {
+                Self::improves(self)
             }
         },
     }

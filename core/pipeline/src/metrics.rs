@@ -3,6 +3,7 @@
 use crate::cost::{Predicted, Used};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use toile_core::Remarks;
 use toile_core::artifact::{Figures, GarmentFigures, Measure, PanelFigures};
 
 /// One stage's line.
@@ -21,9 +22,9 @@ pub struct StageMetrics {
     /// Figures that the stage gave: name to value (units stand in its card).
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub figures: BTreeMap<String, f64>,
-    /// Warnings that the stage gave.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub warnings: Vec<String>,
+    /// `notes` and `warnings` that the stage gave.
+    #[serde(flatten)]
+    pub remarks: Remarks,
     /// What its own work took, where it ran whole and somebody measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub used: Option<Used>,

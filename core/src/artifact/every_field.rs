@@ -7,7 +7,7 @@ use super::stored::tests::{body, fabric, figures, garment, model, outline, panel
 use super::*;
 use crate::cost::Used;
 use crate::stage::PortValue;
-use crate::{ErrorCode, Role};
+use crate::{ErrorCode, Remarks, Role};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
@@ -449,7 +449,7 @@ fn of_run_logs() {
         wall_s: 1.0,
         outputs: vec![],
         figures: vec![],
-        warnings: vec![],
+        remarks: Remarks::default(),
         used: None,
         predicted: None,
     };
@@ -481,7 +481,7 @@ fn of_run_logs() {
             wall_s: 2.0,
             outputs: vec![PortValue::One(Arc::new(fabric()))],
             figures: vec![measure.clone()],
-            warnings: vec!["dark".into()],
+            remarks: Remarks { notes: vec![], warnings: vec!["dark".into()] },
             used: Some(Used::default()),
             predicted: Some(Default::default()),
         }

@@ -2,6 +2,7 @@
 
 use super::{Artifact, ArtifactType, Digester, Kind, Measure, Measures};
 use crate::cost::{Predicted, Used};
+use crate::Remarks;
 use crate::stage::PortValue;
 
 /// One stage as it ran.
@@ -21,8 +22,8 @@ pub struct StageRecord {
     pub outputs: Vec<PortValue>,
     /// Figures that the stage gave through its context.
     pub figures: Vec<Measure>,
-    /// Warnings that the stage gave through its context.
-    pub warnings: Vec<String>,
+    /// What the stage told through its context.
+    pub remarks: Remarks,
     /// What its own work took, where it ran whole and somebody measured.
     pub used: Option<Used>,
     /// What it was expected to take, where that was asked.
@@ -65,7 +66,7 @@ impl StageRecord {
             params,
             outputs,
             figures,
-            warnings,
+            remarks,
             wall_s: _,
             used: _,
             predicted: _,
@@ -78,10 +79,12 @@ impl StageRecord {
         for Measure { name, value, unit, tolerance } in figures {
             d.text(name).text(unit).floats([*value, *tolerance]);
         }
-        d.count(warnings.len());
-        warnings.iter().for_each(|w| {
-            d.text(w);
-        });
+        for texts in [&remarks.notes, &remarks.warnings] {
+            d.count(texts.len());
+            texts.iter().for_each(|text| {
+                d.text(text);
+            });
+        }
     }
 }
 

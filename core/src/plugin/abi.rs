@@ -10,8 +10,8 @@ use std::ffi::c_void;
 pub const MAGIC: [u8; 8] = *b"TOILEPLG";
 /// Raised when a plugin built before can no longer be understood.
 pub const MAJOR: u32 = 1;
-/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`, `Host::reads`.
-pub const MINOR: u32 = 1;
+/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`, `Host::reads`. 2: `Host::note`.
+pub const MINOR: u32 = 2;
 
 /// What a call gives back: done.
 pub const OK: i32 = 0;
@@ -222,7 +222,7 @@ pub struct Host {
     /// and the parameter at fault (may be empty; of a check, the reason without the parameter's name).
     pub fail:
         Option<unsafe extern "C" fn(ctx: *mut c_void, code: Text, message: Text, hint: Text, about: Text)>,
-    /// Tells the user something; it also stands in the report.
+    /// Tells what the user should look at; it also stands in the report.
     pub warn: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
     /// Tells how far the work has come, 0 to 1, and what it is at.
     pub progress: Option<unsafe extern "C" fn(ctx: *mut c_void, share: f64, text: Text)>,
@@ -244,6 +244,8 @@ pub struct Host {
     /// the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null: the program then
     /// looks itself.
     pub reads: Option<unsafe extern "C" fn(ctx: *mut c_void, path: Text, digest: *const u8)>,
+    /// Since 1.2. Tells what was decided, for a user who wants to know; it also stands in the report.
+    pub note: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
 }
 
 /// A stage type.

@@ -210,7 +210,7 @@ fn run_stage<S: StageType>(
     for (path, digest) in cx.take_reads() {
         remote.reads(&path, digest.map(|d| d.0));
     }
-    for figure in cx.take_notes().0 {
+    for figure in cx.take_figures() {
         remote.figure(&figure.name, figure.value, figure.unit);
     }
     made
@@ -337,12 +337,22 @@ impl Remote {
     }
 }
 
+/// The program's own way to take a note; none in programs before 1.2, whose structure ends before it.
+fn host_note(host: &abi::Host) -> Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)> {
+    host.note.filter(|_| host.minor >= 2)
+}
+
 impl Listener for Remote {
     fn event(&self, _: &str, _: &str, event: &Event) {
         self.with(|h| match event {
             Event::Progress { share, text } => {
                 if let Some(f) = h.progress {
                     unsafe { f(h.ctx, *share, Text::of(text)) };
+                }
+            }
+            Event::Note(text) => {
+                if let Some(f) = host_note(h).or(h.warn) {
+                    unsafe { f(h.ctx, Text::of(text)) };
                 }
             }
             Event::Warning(text) => {

@@ -21,11 +21,13 @@ pub enum Contract {
     RefusesEmpty,
     /// Stops within 50 ms of being asked.
     Cancellable,
+    /// Only improves on what it is given: where it fails, that goes on.
+    Improves,
 }
 
 impl Contract {
     /// Every contract.
-    pub const ALL: [Contract; 9] = [
+    pub const ALL: [Contract; 10] = [
         Contract::Deterministic,
         Contract::ThreadInvariant,
         Contract::TranslationEquivariant,
@@ -35,6 +37,7 @@ impl Contract {
         Contract::BoundaryPreserving,
         Contract::RefusesEmpty,
         Contract::Cancellable,
+        Contract::Improves,
     ];
 
     /// The contract as one word: `thread_invariant`.
@@ -49,6 +52,7 @@ impl Contract {
             Contract::BoundaryPreserving => "boundary_preserving",
             Contract::RefusesEmpty => "refuses_empty",
             Contract::Cancellable => "cancellable",
+            Contract::Improves => "improves",
         }
     }
 

@@ -47,6 +47,18 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
         Vec::new()
     }
 
+    /// What the user should look at before anything runs, such as a name of no edge of a file, each at its own parameter. It is asked after
+    /// [`Stage::faults`] found nothing, and must be as quick.
+    fn warnings(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        Vec::new()
+    }
+
+    /// Whether it only improves on what it is given, which is good without it: where it fails, or takes more work than what it was given took, the
+    /// run goes on with that (docs/reference/pipeline.md).
+    fn improves(&self) -> bool {
+        self.card().contracts.contains(&Contract::Improves)
+    }
+
     /// Runs it on its ports' values, in the order of the card's inputs.
     fn run_ports(&self, inputs: &Inputs, cx: &Context) -> Result<Vec<PortValue>, StageError>;
 }

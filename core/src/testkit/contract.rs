@@ -42,6 +42,7 @@ pub fn is_checked(card: &Card, contract: Contract) -> bool {
     known
         && match contract {
             Contract::Deterministic | Contract::ThreadInvariant | Contract::Cancellable => true,
+            Contract::Improves => true,
             Contract::TranslationEquivariant | Contract::RotationEquivariant | Contract::ScaleEquivariant => {
                 motion::of(contract).is_some_and(|m| motion::applies(card, m))
             }
@@ -73,6 +74,7 @@ pub fn check(trial: Trial<'_>, bare: Option<&dyn Stage>, contract: Contract) -> 
         Contract::BoundaryPreserving => boundary_preserving(&trial, &cases(&card)),
         Contract::RefusesEmpty => refuses_empty(&trial, bare, &card),
         Contract::Cancellable => cancellable(&trial, &card),
+        Contract::Improves => improves(&card),
     }
 }
 
@@ -316,6 +318,15 @@ fn refuses_empty(trial: &Trial<'_>, bare: Option<&dyn Stage>, card: &Card) -> Re
         cases += 1;
     }
     Ok(Kept { cases, answered: 0 })
+}
+
+/// Looks whether the stage takes each kind that it makes, so that this can go on in the place of its result.
+fn improves(card: &Card) -> Result<Kept, String> {
+    let takes = |out: &&crate::OutPort| card.inputs.iter().any(|p| p.kind == out.kind && !p.original);
+    match card.outputs.iter().find(|out| !takes(out)) {
+        Some(out) => Err(format!("it makes a {} and takes none", out.kind)),
+        None => Ok(Kept { cases: card.outputs.len(), answered: card.outputs.len() }),
+    }
 }
 
 /// Asks a run on large input to stop at several times, and looks how long it takes.

@@ -112,7 +112,7 @@ macro_rules! contracts {
                         translation_equivariant TranslationEquivariant,
                         rotation_equivariant RotationEquivariant, scale_equivariant ScaleEquivariant,
                         idempotent Idempotent, boundary_preserving BoundaryPreserving, refuses_empty RefusesEmpty,
-                        cancellable Cancellable);
+                        cancellable Cancellable, improves Improves);
                 }
             )+
         }

@@ -113,7 +113,7 @@ fn run(stage: &dyn Stage, photo: &Photo, given: Option<&Mask>) -> Result<Found, 
     let start = Instant::now();
     let mask = made(stage, vec![one(photo.clone()), given.and_then(|m| one(m.clone()))], &cx)?;
     let seconds = start.elapsed().as_secs_f64();
-    let confidence = cx.take_notes().0.into_iter().find(|m| m.name == "confidence").map(|m| m.value);
+    let confidence = cx.take_figures().into_iter().find(|m| m.name == "confidence").map(|m| m.value);
     Ok(Found { mask, confidence, seconds })
 }
 

@@ -12,7 +12,7 @@ use toile_core::prelude::*;
     role = Body,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",
     example = "PoseBody()",
-    contracts(Deterministic, ThreadInvariant)
+    contracts(Deterministic, ThreadInvariant, Improves)
 )]
 pub struct PoseBody {
     /// Angle between the upper arms and the vertical, from the middle between shoulder and armpit to the elbow; where it is not given, 28 degrees or

@@ -330,7 +330,7 @@ fn a_body_as_exporters_leave_it_is_the_clean_one_and_what_was_mended_is_told() {
         (clean.positions.len(), clean.triangles.len())
     );
     assert_eq!(found.measurements, clean.measurements);
-    let (_, warnings) = cx.take_notes();
+    let warnings = cx.take_remarks().warnings;
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(
         warnings[0].ends_with(

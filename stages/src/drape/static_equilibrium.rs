@@ -142,7 +142,7 @@ impl StaticEquilibrium {
         let friction = card.map_or(0.0, |c| c.friction);
         let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
         let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
-        let mut progress = Progress { cx, wanted: self.speed, steps: 0 };
+        let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
         let clock = Instant::now();
         let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
         if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
@@ -193,6 +193,11 @@ impl StaticEquilibrium {
             rested.status.on_body = engine::both(&garment.status.on_body, kept);
         }
         Ok(rested)
+    }
+
+    /// Going on from a garment at rest on a finer mesh, or in another pose.
+    fn improves(&self) -> bool {
+        self.from_here
     }
 
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
@@ -268,12 +273,15 @@ impl StaticEquilibrium {
 struct Progress<'a> {
     cx: &'a Context,
     wanted: f64,
+    /// Vertices of the garment.
+    vertices: usize,
     steps: usize,
 }
 
 impl Progress<'_> {
     fn tell(&mut self, level: &LevelReport) -> ControlFlow<()> {
         self.steps += 1;
+        self.cx.work(level.nodes as f64 / self.vertices.max(1) as f64);
         if self.cx.check().is_err() {
             return ControlFlow::Break(());
         }

@@ -35,7 +35,7 @@ fn cloth_in_the_air_falls_until_the_time_is_over_and_says_so() {
     let cx = Context::quiet();
     let fallen = stage.run(&g, None, &cx).unwrap();
     assert!(!fallen.status.converged);
-    let (_, warnings) = cx.take_notes();
+    let warnings = cx.take_remarks().warnings;
     assert_eq!(warnings.len(), 1);
     assert_eq!(
         warnings[0],
@@ -65,7 +65,7 @@ fn rest_tells_what_force_is_left_and_how_often_it_began_again() {
     let draped =
         StaticEquilibrium::default().run(&vest(&plain(6000.0, 80.0, 1e-5)), Some(&body), None, &cx).unwrap();
     assert!(draped.status.converged);
-    let figures = cx.take_notes().0;
+    let figures = cx.take_figures();
     let told: Vec<(&str, &str)> = figures.iter().map(|f| (f.name.as_str(), f.unit)).collect();
     assert_eq!(told, [("residual", "N"), ("non_static", ""), ("restarts", "")]);
     assert!(figures[0].value > 0.0 && figures[0].value < 0.1, "{figures:?}");

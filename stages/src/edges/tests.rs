@@ -270,7 +270,7 @@ fn a_garment_that_was_cut_out_is_not_cut_by_the_frame() {
     let told = |photo: &Photo, mask: &Mask| {
         let cx = Context::quiet();
         Canny::default().run(photo, mask, &cx).unwrap();
-        cx.take_notes().1
+        cx.take_remarks().warnings
     };
     let file = &cut_out.file;
     let warning = format!("the garment in \"{file}\" touches the photo's left border, and ends there");

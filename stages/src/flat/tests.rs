@@ -17,7 +17,7 @@ fn read_as(file: &str, bytes: &[u8], rest: &str) -> Result<(Garment, Vec<String>
     let stage: Garment3d = ron_options().from_str(&format!("(file: {file:?}{rest})")).unwrap();
     let garment = stage.run(None, &cx)?;
     garment.check().unwrap();
-    Ok((garment, cx.take_notes().1))
+    Ok((garment, cx.take_remarks().warnings))
 }
 
 fn read(text: &str, rest: &str) -> Result<(Garment, Vec<String>), StageError> {
@@ -222,7 +222,7 @@ fn a_dart_takes_out_of_a_cone_what_cannot_lie_flat() {
     assert!(plain.seams.is_empty() && plain.pieces[0].lines.is_empty());
     let (proposed, _) = run("Propose");
     assert!(proposed.seams.is_empty() && !proposed.pieces[0].lines.is_empty());
-    assert!(cx.take_notes().1.iter().any(|w| w.starts_with("dart 1 of \"piece_1\" saves ")));
+    assert!(cx.take_remarks().warnings.iter().any(|w| w.starts_with("dart 1 of \"piece_1\" saves ")));
     let (cut, flat) = run("Auto(max_strain: 1.5)");
     assert_eq!(cut.seams[0].kind, SeamKind::Dart);
     let lengths: Vec<f64> = cut.seams[0].sides.iter().map(|s| cut.side_length(s)).collect();

@@ -255,7 +255,7 @@ mod tests {
         let told = |level: &str, cloth_m: f64, body_m: f64| {
             let cx = Context::quiet();
             tell(&BTreeMap::from([(level.to_owned(), GirthFigures { cloth_m, body_m })]), &cx);
-            cx.take_notes().1
+            cx.take_remarks().warnings
         };
         let small = "around the bust there are 84 cm of cloth for 96 cm of body: the garment is too small for this body, or its cloth must \
                      stretch";

@@ -251,7 +251,7 @@ mod tests {
             let (sheet, collider) = sheet(stretch, 1e-3);
             let cx = Context::quiet();
             let missed = Tight::of(&sheet, Some(&collider)).judge(&sheet, 0.05, limit, &cx);
-            (missed.map(|s| s.message), cx.take_notes().1)
+            (missed.map(|s| s.message), cx.take_remarks().warnings)
         };
         assert_eq!(judge(0.04, 0.25), (None, vec![]));
         let told =

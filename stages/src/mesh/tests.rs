@@ -256,7 +256,7 @@ fn a_rough_outline_is_told() {
     let panel = GridMesher { edge: Length::mm(12.0) }.run(&outline, &cx).unwrap();
     check_sound(&panel);
     assert_eq!(panel.edges[0].vertices.len(), hem.gauge.divisions(0.012) + 1);
-    let warnings = cx.take_notes().1;
+    let warnings = cx.take_remarks().warnings;
     assert_eq!(
         warnings,
         [

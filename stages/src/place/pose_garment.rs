@@ -15,7 +15,7 @@ use toile_core::prelude::*;
     role = Placement,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",
     example = "PoseGarment()",
-    contracts(Deterministic, ThreadInvariant)
+    contracts(Deterministic, ThreadInvariant, Improves)
 )]
 pub struct PoseGarment;
 
@@ -33,6 +33,7 @@ impl PoseGarment {
         Ok(Garment {
             positions,
             velocities: vec![Vector3::zeros(); garment.velocities.len()],
+            status: SolveStatus { converged: false, ..garment.status.clone() },
             ..garment.clone()
         })
     }

@@ -31,7 +31,7 @@ const MOST_VERTICES: usize = 4_000_000;
     role = Placement,
     source = "uniform subdivision of triangles, a textbook method",
     example = "Subdivide(parts: 2)",
-    contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable, Improves)
 )]
 pub struct Subdivide {
     /// Parts that every edge is cut into.

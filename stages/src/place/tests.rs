@@ -197,7 +197,7 @@ fn sleeves_take_the_arms_between_them() {
     let scene = tee();
     let cx = Context::quiet();
     place("()").run(scene.panels.clone(), &scene.plan, &scene.body, &scene.fabric, &cx).unwrap();
-    assert_eq!(cx.take_notes().1, Vec::<String>::new());
+    assert_eq!(cx.take_remarks().warnings, Vec::<String>::new());
 }
 
 /// The message of a placement that is refused.

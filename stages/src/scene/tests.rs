@@ -151,7 +151,7 @@ fn what_nothing_holds_falls_as_galileo_says_in_every_solver_and_rest_says_why() 
         let fell = g.positions[5].y - f.positions[5].y;
         assert!((fell - way).abs() < 1e-4, "{k}: {fell} m, not {way} m");
     }
-    let (_, warnings) = cx.take_notes();
+    let warnings = cx.take_remarks().warnings;
     assert_eq!(
         warnings,
         ["nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases"]
@@ -228,7 +228,7 @@ fn what_a_garment_cannot_hold_is_named() {
         std::fs::write(dir.path().join("body.obj"), body_to_obj(scene)).unwrap();
         let cx = Context::new("Scene", dir.path(), Cancel::new(), Arc::new(()));
         Scene { file: "scene.json".into(), ..Scene::default() }.run(&cx).unwrap();
-        cx.take_notes().1
+        cx.take_remarks().warnings
     };
     assert_eq!(warnings(&generate::tube(4, 5)), Vec::<String>::new());
     assert_eq!(warnings(&generate::banded(4, 4, 0.7)), Vec::<String>::new());
@@ -376,7 +376,7 @@ fn what_was_mended_of_a_scene_is_told_and_faces_by_themselves_are_refused_or_wel
         Scene { file: "scene.json".into(), weld: true, ..Scene::default() }.run(&cx).unwrap();
     assert_eq!((garment.positions.len(), garment.seams[0].pairs.len()), (96, 71));
     assert_eq!(read.triangles.len(), body.triangles.len());
-    let (_, warnings) = cx.take_notes();
+    let warnings = cx.take_remarks().warnings;
     assert_eq!(
         warnings,
         [

@@ -558,7 +558,7 @@ mod tests {
         let told = format!(
             "the neck of \"front\" would be too tight for the body: its front is cut {depth:.0} mm deep (`Neckline(depth: ...)` sets it)"
         );
-        assert_eq!(cx.take_notes().1, [told]);
+        assert_eq!(cx.take_remarks().warnings, [told]);
         let wide = necked(0.08, 0.08);
         let kept = Neckline::default().run(both(&shirt()), both(&photo(0.05)), Some(&wide), &cx).unwrap();
         assert!((lowest(kept.get("front").unwrap()) - 0.05).abs() < 0.004);

@@ -154,7 +154,7 @@ fn a_panel_alone_is_named_and_told() {
     assert_eq!(named.get("front").unwrap().edges.len(), 8);
     assert!(plan.seams.is_empty());
     assert_eq!(
-        cx.take_notes().1,
+        cx.take_remarks().warnings,
         ["the panel \"front\" has no partner and stays unsewn; give a photo of the other side, or \
           `MirrorOf(\"front\")` in its place"]
     );
@@ -319,7 +319,7 @@ fn small_differences_are_eased_with_a_word() {
     back.outer.points.iter_mut().for_each(|p| *p *= 1.02);
     Vest {}.run(outlines.into_iter().collect(), &cx).unwrap();
     assert_eq!(
-        cx.take_notes().1[0],
+        cx.take_remarks().warnings[0],
         "front.shoulder_left is 100.0 mm long, back.shoulder_left 102.0 mm; the longer one is eased in by 2.0 %"
     );
 }

@@ -153,7 +153,7 @@ fn a_panel_without_a_photo_is_plain_and_says_so() {
     let cx = Context::quiet();
     let model = texturer("()").run(&fixture::garment(4), None, None, None, &cx).unwrap();
     assert!(model.textures.is_empty() && model.meshes.iter().all(|m| m.uv.is_empty()));
-    assert_eq!(cx.take_notes().1[0], "panel \"front\" has no photo and gets a plain cloth");
+    assert_eq!(cx.take_remarks().warnings[0], "panel \"front\" has no photo and gets a plain cloth");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::report_outline::outlined;
 use super::report_pieces::pieces;
-use super::report_top::{Verdict, Warning, verdict, warnings};
+use super::report_top::{self, Told, Verdict, verdict, warnings};
 use super::report_turn::{Turn, turn};
 use super::report_views::{Views, taken};
 use crate::measure::Fit;
@@ -39,7 +39,9 @@ pub(super) struct Page {
     /// Why the run ended early; none of one that came to its end.
     failure: Option<Ended>,
     verdict: Verdict,
-    warnings: Vec<Warning>,
+    warnings: Vec<Told>,
+    /// What stages decided.
+    decisions: Vec<Told>,
     views: Vec<Shown>,
     turn: Option<Turn>,
     outlines: Vec<Shown>,
@@ -139,6 +141,7 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
         }),
         verdict: verdict(run, garment, missed.len()),
         warnings: warnings(run),
+        decisions: report_top::notes(run),
         turn: turn(run.stages.iter().flat_map(entries).filter_map(|(_, a)| is(a))),
         outlines,
         pieces: shown(garment.and_then(pieces).into_iter().collect()),
@@ -162,7 +165,7 @@ fn section(record: &StageRecord, shown: Vec<Shown>, longest: f64, budget: &mut u
         wall: seconds(record.wall_s),
         expected: record.predicted.and_then(|p| p.wall_s).map_or_else(String::new, expected),
         share: format!("{:.1}", (record.wall_s / longest * 100.0).clamp(0.0, 100.0)),
-        warnings: record.warnings.clone(),
+        warnings: record.remarks.warnings.clone(),
         figures: record.figures.iter().map(figure).collect(),
         pictures,
         left_out,

@@ -1,7 +1,8 @@
-//! What the report says first: the verdict, and every warning with the stage that gave it.
+//! What the report says first: the verdict, and every warning and note with the stage that gave it.
 
 use serde::Serialize;
-use toile_core::artifact::{Garment, RunLog, SeamState};
+use toile_core::Remarks;
+use toile_core::artifact::{Garment, RunLog, SeamState, StageRecord};
 
 /// Whether the result is good, in a word and a sentence.
 #[derive(Debug, Serialize, PartialEq, Eq)]
@@ -12,9 +13,9 @@ pub(super) struct Verdict {
     pub sentence: String,
 }
 
-/// A warning and its stage.
+/// What a stage told.
 #[derive(Debug, Serialize, PartialEq, Eq)]
-pub(super) struct Warning {
+pub(super) struct Told {
     pub stage: String,
     pub text: String,
 }
@@ -45,10 +46,18 @@ fn made(garment: &Garment) -> String {
 }
 
 /// Every warning, in the order of the stages.
-pub(super) fn warnings(run: &RunLog) -> Vec<Warning> {
-    let of = |s: &toile_core::artifact::StageRecord| {
-        let id = s.id.clone();
-        s.warnings.clone().into_iter().map(move |text| Warning { stage: id.clone(), text })
+pub(super) fn warnings(run: &RunLog) -> Vec<Told> {
+    told(run, |remarks| &remarks.warnings)
+}
+
+/// Every note, in the order of the stages.
+pub(super) fn notes(run: &RunLog) -> Vec<Told> {
+    told(run, |remarks| &remarks.notes)
+}
+
+fn told(run: &RunLog, texts: impl Fn(&Remarks) -> &Vec<String>) -> Vec<Told> {
+    let of = |s: &StageRecord| -> Vec<Told> {
+        texts(&s.remarks).iter().map(|text| Told { stage: s.id.clone(), text: text.clone() }).collect()
     };
     run.stages.iter().flat_map(of).collect()
 }

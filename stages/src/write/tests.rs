@@ -11,6 +11,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use toile_core::cost::{Estimate, Predicted};
 use toile_core::param::ron_options;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 use toile_core::{Inputs, PortValue};
 
@@ -261,7 +262,7 @@ fn run_log() -> RunLog {
             unit: "grey levels",
             tolerance: 0.0,
         }],
-        warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()],
+        remarks: Remarks { warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()], ..Remarks::default() },
         used: None,
         predicted: (id == "Glb").then(|| Predicted {
             wall_s: Some(Estimate { value: 0.2, low: 0.1, high: 0.4 }),
@@ -441,7 +442,7 @@ proptest! {
             wall_s: seconds,
             outputs: Vec::new(),
             figures: Vec::new(),
-            warnings: vec![text.clone()],
+            remarks: Remarks { warnings: vec![text.clone()], ..Remarks::default() },
             used: None,
             predicted: None,
         };

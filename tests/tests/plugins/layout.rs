@@ -40,7 +40,7 @@ fn the_header_has_the_layout_of_the_rust_types() {
         "toile_host" = abi::Host { "size" = size, "major" = major, "minor" = minor, "threads" = threads,
             "ctx" = ctx, "alloc" = alloc, "give" = give, "give_collider" = give_collider, "answer" = answer,
             "fail" = fail, "warn" = warn, "progress" = progress, "figure" = figure, "cancelled" = cancelled,
-            "parallel_for" = parallel_for, "reads" = reads }
+            "parallel_for" = parallel_for, "reads" = reads, "note" = note }
         "toile_stage_table" = abi::StageTable { "version" = version, "name" = name, "role" = role,
             "doc" = doc, "source" = source, "example" = example, "contracts" = contracts,
             "contract_count" = contract_count, "params" = params, "param_count" = param_count,

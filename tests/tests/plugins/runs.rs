@@ -166,7 +166,7 @@ fn progress_warnings_figures_and_loops_reach_the_program() {
     let cx = Context::new("Loops2", Path::new("."), Cancel::new(), told.clone()).for_entry("front");
     let stage = make(&registry_with(&["toile_faulty"]), "Loops", "()");
     run_in(stage.as_ref(), vec![Arc::new(photo())], &cx).unwrap();
-    let (figures, warnings) = cx.take_notes();
+    let (figures, warnings) = (cx.take_figures(), cx.take_remarks().warnings);
     assert_eq!((figures[0].name.as_str(), figures[0].value), ("squares", 328_350.0));
     assert_eq!(warnings, ["front of Loops2"]);
     let told = told.0.lock().unwrap();

@@ -6,6 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use toile_core::Remarks;
 use toile_core::artifact::{Digest, Measure};
 use toile_core::text::intern;
 
@@ -18,8 +19,9 @@ pub(crate) struct Manifest {
     pub(crate) outputs: Vec<Kept>,
     /// Figures that it gave.
     figures: Vec<Figure>,
-    /// Warnings that it gave.
-    pub(crate) warnings: Vec<String>,
+    /// What it told.
+    #[serde(flatten)]
+    pub(crate) remarks: Remarks,
 }
 
 /// The value of an output port.
@@ -59,12 +61,12 @@ impl Manifest {
         reads: Vec<(String, Option<Digest>)>,
         outputs: Vec<Kept>,
         figures: &[Measure],
-        warnings: &[String],
+        remarks: &Remarks,
     ) -> Self {
         let figure =
             |m: &Measure| Figure(m.name.clone(), m.value.to_bits(), m.unit.into(), m.tolerance.to_bits());
         let figures = figures.iter().map(figure).collect();
-        Manifest { reads, outputs, figures, warnings: warnings.to_vec() }
+        Manifest { reads, outputs, figures, remarks: remarks.clone() }
     }
 
     /// The figures that the stage gave.
@@ -137,7 +139,7 @@ mod tests {
             vec![("a.jpg".into(), Some(Digest::of(b"a"))), ("gone.mtl".into(), None)],
             vec![Kept::One(blob), Kept::Set(set)],
             &[figure, Measure { name: "none".into(), value: f64::NAN, unit: "", tolerance: 0.0 }],
-            &["dark".into()],
+            &Remarks { notes: vec!["a vest".into()], warnings: vec!["dark".into()] },
         )
     }
 

@@ -168,7 +168,7 @@ impl Cache {
                 Kept::Set(set.iter().map(blob).collect())
             }
         });
-        let manifest = Manifest::new(reads, kept.collect(), &made.figures, &made.warnings);
+        let manifest = Manifest::new(reads, kept.collect(), &made.figures, &made.remarks);
         let bytes = manifest.to_bytes();
         for name in self.names(key, &manifest) {
             self.write(&self.store.path(Shelf::Runs, &name), &bytes);

@@ -19,6 +19,7 @@ pub const MAX_OUTPUT_BYTES: u64 = 4 << 30;
 /// What a plugin tells while it works; served by the thread that waits for it.
 pub(super) enum Message {
     Progress(f64, String),
+    Note(String),
     Warning(String),
     Figure(String, f64, String),
     /// A file was read, with the digest of its content where the plugin knows it.
@@ -116,6 +117,7 @@ impl Call {
             cancelled: Some(cancelled),
             parallel_for: Some(parallel_for),
             reads: Some(reads),
+            note: Some(note),
         }
     }
 
@@ -295,6 +297,10 @@ unsafe extern "C" fn fail(ctx: *mut c_void, code: Text, message: Text, hint: Tex
     // What the program itself found comes first: the plugin only repeats that it failed.
     let failure = Failure { code, message, hint, about };
     locked(&unsafe { call(ctx) }.failure).get_or_insert(failure);
+}
+
+unsafe extern "C" fn note(ctx: *mut c_void, text: Text) {
+    let _ = unsafe { call(ctx).messages.send(Message::Note(words(text))) };
 }
 
 unsafe extern "C" fn warn(ctx: *mut c_void, text: Text) {

@@ -316,6 +316,7 @@ impl Foreign {
         loop {
             match messages.recv_timeout(LOOK) {
                 Ok(Message::Progress(share, text)) => cx.progress(share, text),
+                Ok(Message::Note(text)) => cx.note(text),
                 Ok(Message::Warning(text)) => cx.warn(text),
                 Ok(Message::Figure(name, value, unit)) => cx.figure(&name, value, intern(&unit)),
                 Ok(Message::Read(path, digest)) => cx.note_read(&path, digest.map(Digest)),

@@ -3,7 +3,7 @@
 use super::Reads;
 use crate::load::{Fault, Faults, Pipeline};
 use std::sync::{Arc, PoisonError};
-use toile_core::{Cancel, Context, Node, Placed, panics};
+use toile_core::{Cancel, Context, Node, Placed, Stage, StageError, panics};
 
 /// Asks every stage of which `runs` says that it will run; all that they find wrong comes out at once, each at its place.
 ///
@@ -22,11 +22,25 @@ pub fn faults(
     if found.is_empty() { Ok(()) } else { Err(pipeline.faults(found)) }
 }
 
+/// What the stages warn of before anything runs, each at its place; nothing of a stage whose check panics.
+pub(crate) fn warnings(pipeline: &Pipeline) -> Vec<Fault> {
+    (0..pipeline.nodes.len()).flat_map(|index| asked(pipeline, index, None, |stage, placed| stage.warnings(placed))).collect()
+}
+
 fn of_stage(pipeline: &Pipeline, index: usize, reads: Option<&Reads>) -> Vec<Fault> {
+    asked(pipeline, index, reads, |stage, placed| stage.faults(placed))
+}
+
+fn asked(
+    pipeline: &Pipeline,
+    index: usize,
+    reads: Option<&Reads>,
+    ask: impl Fn(&dyn Stage, &Placed<'_>) -> Vec<StageError>,
+) -> Vec<Fault> {
     let node: &Node = &pipeline.nodes[index];
     let cx = Context::new(&node.id, &pipeline.base, Cancel::new(), Arc::new(()));
     let placed = Placed { nodes: &pipeline.nodes, index, cx: &cx };
-    let errors = panics::caught(|| node.stage.faults(&placed)).unwrap_or_default();
+    let errors = panics::caught(|| ask(node.stage.as_ref(), &placed)).unwrap_or_default();
     if let Some(reads) = reads {
         let seen = cx.take_reads().into_iter().map(|(path, hash)| (pipeline.base.join(path), hash));
         reads.lock().unwrap_or_else(PoisonError::into_inner).extend(seen);

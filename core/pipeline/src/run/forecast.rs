@@ -8,7 +8,7 @@ use crate::cache::{Cache, Cause, Found, Last, Miss};
 use crate::load::Pipeline;
 use std::sync::Arc;
 use toile_core::artifact::{ArtifactType, RunLog};
-use toile_core::{Cancel, Contract, Listener, Node};
+use toile_core::{Cancel, Contract, Listener, Node, Remarks};
 
 /// What would become of one stage.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,11 +43,12 @@ pub fn forecast(
         pipeline,
         cache: Some(cache),
         cancel: &cancel,
-        listener: &listener,
+        listener,
         reads: None,
         meter: None,
         expect: None,
         steps: Vec::new(),
+        undone: Default::default(),
         so_far: None,
     };
     let mut outlooks = Vec::new();
@@ -58,8 +59,8 @@ pub fn forecast(
             None => {
                 let (entries, outputs) = look(&run, node, cache)?;
                 outlook.entries = entries;
-                let (figures, warnings) = (Vec::new(), Vec::new());
-                Step::Ran(Ran { outputs, wall_s: 0.0, cached: true, figures, warnings, cost: None })
+                let (figures, remarks) = (Vec::new(), Remarks::default());
+                Step::Ran(Ran { outputs, wall_s: 0.0, cached: true, figures, remarks, cost: None })
             }
         };
         run.steps.push(step);

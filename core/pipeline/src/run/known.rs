@@ -1,12 +1,12 @@
 //! Results that are known: looked for in the cache, put together with what was made, and kept there.
 
 use super::node::{Failure, Made};
-use super::steps::{Ran, Run};
+use super::steps::{Ran, Run, Step};
 use super::value::{Held, gather};
 use crate::cache::{Cache, Found, Ingredients, Kept, Manifest, Miss};
 use rayon::prelude::*;
 use toile_core::artifact::Digest;
-use toile_core::{Arity, Context, Contract, Event, Node};
+use toile_core::{Arity, Context, Contract, Event, Node, Remarks};
 
 /// One run of a stage, as it is looked for in the cache.
 pub(super) struct Search {
@@ -38,14 +38,16 @@ impl Run<'_> {
         Some((self.cache?, ingredients.key().filter(|_| kept)?))
     }
 
-    /// Says what is wrong with the cache, and repeats the warnings of results that come from it.
+    /// Says what is wrong with the cache, and repeats the remarks of results that come from it.
     pub(super) fn tell(&self, node: &Node, searches: &[Search]) {
         for search in searches {
             match &search.found {
                 Found::Hit(manifest) => {
                     self.note_reads(manifest.reads.clone());
-                    for warning in &manifest.warnings {
-                        self.listener.event(&node.id, &search.entry, &Event::Warning(warning.clone()));
+                    let Remarks { notes, warnings } = manifest.remarks.clone();
+                    let events = notes.into_iter().map(Event::Note);
+                    for event in events.chain(warnings.into_iter().map(Event::Warning)) {
+                        self.listener.event(&node.id, &search.entry, &event);
                     }
                 }
                 Found::Miss(Miss::Damaged(why)) => self.damaged(node, &search.entry, why),
@@ -66,7 +68,7 @@ impl Run<'_> {
         let cached = made.is_empty() && self.cache.is_some();
         let kept = self.keep(node, &searches, &made);
         let mut made = made.into_iter().zip(kept).peekable();
-        let (mut notes, mut entries) = ((Vec::new(), Vec::new()), Vec::new());
+        let (mut figures, mut remarks, mut entries) = (Vec::new(), Remarks::default(), Vec::new());
         for Search { entry, ingredients, found } in searches {
             let (fresh, manifest) = match found {
                 Found::Hit(manifest) => (None, Some(manifest)),
@@ -80,23 +82,31 @@ impl Run<'_> {
             }
             entries.push((entry.clone(), held(node, fresh.as_ref(), manifest.as_ref())));
             let own = match (fresh, manifest) {
-                (Some(made), _) => (made.figures, made.warnings),
-                (None, Some(manifest)) => (manifest.figures(), manifest.warnings),
-                (None, None) => (Vec::new(), Vec::new()),
+                (Some(made), _) => (made.figures, made.remarks),
+                (None, Some(manifest)) => (manifest.figures(), manifest.remarks),
+                (None, None) => (Vec::new(), Remarks::default()),
             };
             match node.card.is_mapped() {
                 true => cx.absorb(&entry, own.0, own.1),
-                false => notes = own,
+                false => (figures, remarks) = own,
             }
         }
         let outputs = match node.card.is_mapped() {
             true => {
-                notes = cx.take_notes();
+                (figures, remarks) = (cx.take_figures(), cx.take_remarks());
                 gather(&node.card, &entries)
             }
             false => entries.pop().map(|(_, outputs)| outputs).unwrap_or_default(),
         };
-        Ran { outputs, wall_s: 0.0, cached, figures: notes.0, warnings: notes.1, cost: None }
+        self.told_before(&mut remarks);
+        Ran { outputs, wall_s: 0.0, cached, figures, remarks, cost: None }
+    }
+
+    /// Takes off what an earlier stage has told in the same words.
+    fn told_before(&self, remarks: &mut Remarks) {
+        let before: Vec<&Remarks> = self.steps.iter().filter_map(Step::ran).map(|ran| &ran.remarks).collect();
+        remarks.notes.retain(|text| before.iter().all(|r| !r.notes.contains(text)));
+        remarks.warnings.retain(|text| before.iter().all(|r| !r.warnings.contains(text)));
     }
 
     /// Puts into the cache what was made; none for what cannot be kept.

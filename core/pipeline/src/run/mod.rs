@@ -4,6 +4,7 @@ mod exports;
 mod faults;
 mod forecast;
 mod implicit;
+mod improve;
 mod known;
 mod node;
 mod pixels;
@@ -14,6 +15,7 @@ mod steps;
 mod value;
 
 pub use faults::faults;
+pub(crate) use faults::warnings;
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
 pub(crate) use node::Made;
@@ -31,7 +33,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Instant;
 use steps::{Run, Step};
 use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles, RunLog};
-use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, StageError, panics};
+use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
 
 /// What is asked of a run.
 #[derive(Debug, Clone, Default)]
@@ -119,26 +121,16 @@ pub fn run(
         pipeline,
         cache,
         cancel,
-        listener,
+        listener: listener.clone(),
         reads,
         meter: options.meter.as_deref(),
         expect: options.expect.as_deref(),
         steps: Vec::new(),
+        undone: BTreeMap::new(),
         so_far: None,
     };
-    for (node, skipped) in pipeline.nodes.iter().zip(plan) {
-        match skipped {
-            None => {
-                if let Err(error) = unbroken(node, || run.step()) {
-                    so_far::leave(&mut run, options, &error);
-                    return Err(error);
-                }
-            }
-            Some(reason) => run.steps.push(Step::Skipped(reason)),
-        }
-    }
+    let judged = unharmed(&mut run, &plan).inspect_err(|error| so_far::leave(&mut run, options, error))?;
     let files = files(&mut run, options)?;
-    let judged: Vec<Figures> = run.all()?.into_iter().map(|(_, f)| f).collect();
     if let Some(cache) = cache {
         cache.tidy();
     }
@@ -146,6 +138,56 @@ pub fn run(
     let results = run.results();
     let costs = run.costs();
     Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results, costs })
+}
+
+/// Runs all stages of the plan; a garment that misses limits with the stages that only improve on it, and misses none without them, is given
+/// without them. Gives the judgement.
+fn unharmed(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<Vec<Figures>, RunError> {
+    stages(run, plan)?;
+    let judged = judged(run)?;
+    let Some(missed) = judged.iter().find_map(|f| f.shortfalls.first()) else { return Ok(judged) };
+    let Some((base, last)) = run.improvements()? else { return Ok(judged) };
+    let why = format!(
+        "{}; without this the garment keeps all limits, and is shown as `{}` left it",
+        missed.message, run.pipeline.nodes[base].id
+    );
+    let (steps, undone) = (run.steps.clone(), run.undone.clone());
+    let listener = std::mem::replace(&mut run.listener, Arc::new(()));
+    run.turn_back(base, last, why);
+    let first = run.steps.len();
+    let without = stages(run, plan).and_then(|()| self::judged(run));
+    run.listener = listener;
+    match without {
+        Ok(without) if without.iter().all(|f| f.shortfalls.is_empty()) => {
+            run.tell_again(first);
+            Ok(without)
+        }
+        _ => {
+            (run.steps, run.undone) = (steps, undone);
+            Ok(judged)
+        }
+    }
+}
+
+/// The judgements of the garment.
+fn judged(run: &mut Run<'_>) -> Result<Vec<Figures>, RunError> {
+    Ok(run.all()?.into_iter().map(|(_, f)| f).collect())
+}
+
+/// Runs all stages of the plan that have not run yet.
+fn stages(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<(), RunError> {
+    while let Some(skipped) = plan.get(run.steps.len()) {
+        let index = run.steps.len();
+        let node = &run.pipeline.nodes[index];
+        match skipped {
+            None => match unbroken(node, || run.step()) {
+                Ok(()) => run.undo_unrest(index)?,
+                Err(failure) => run.undo(index, failure)?,
+            },
+            Some(reason) => run.steps.push(Step::Skipped(reason.clone())),
+        }
+    }
+    Ok(())
 }
 
 /// Does a part of a run for a stage; a panic in it is an error that names the stage.
@@ -276,7 +318,7 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
             cached: ran.cached,
             skipped: None,
             figures: StageMetrics::figure_map(&ran.figures),
-            warnings: ran.warnings.clone(),
+            remarks: ran.remarks.clone(),
             used: ran.cost.as_ref().map(|c| c.0),
             predicted: run.expected(i),
         }),
@@ -290,7 +332,7 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
             cached: false,
             skipped: Some(reason.clone()),
             figures: Default::default(),
-            warnings: Vec::new(),
+            remarks: Remarks::default(),
             used: None,
             predicted: None,
         }),

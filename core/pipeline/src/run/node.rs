@@ -1,12 +1,13 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
+use super::improve::WORK;
 use super::pixels::of_the_file;
 use crate::cache::file_hash;
 use crate::load::texts_of;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use toile_core::artifact::{Digest, Measure};
-use toile_core::{Context, Inputs, Node, PortValue, StageError, panics};
+use toile_core::{Context, Inputs, Node, PortValue, Remarks, StageError, panics};
 
 /// A failure with the entry at work.
 pub(super) type Failure = (String, StageError);
@@ -18,7 +19,7 @@ pub(crate) struct Made {
     pub(crate) entry: String,
     pub(crate) outputs: Vec<PortValue>,
     pub(crate) figures: Vec<Measure>,
-    pub(crate) warnings: Vec<String>,
+    pub(crate) remarks: Remarks,
     /// The files that it read.
     pub(crate) reads: Vec<(String, Option<Digest>)>,
 }
@@ -53,8 +54,11 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
             Err((entry, e))
         }
         Ok(outputs) => {
-            let (figures, warnings) = own.take_notes();
-            Ok(Made { entry, outputs, figures, warnings, reads })
+            if own.work_so_far() > 0.0 {
+                own.figure(WORK, own.work_so_far(), "steps");
+            }
+            let (figures, remarks) = (own.take_figures(), own.take_remarks());
+            Ok(Made { entry, outputs, figures, remarks, reads })
         }
     }
 }

@@ -92,7 +92,7 @@ impl Run<'_> {
             wall_s: ran.wall_s,
             outputs: outputs.unwrap_or_default(),
             figures: ran.figures.clone(),
-            warnings: ran.warnings.clone(),
+            remarks: ran.remarks.clone(),
             used: ran.cost.as_ref().map(|c| c.0),
             predicted: self.pipeline.find(&node.id).and_then(|i| self.expected(i)),
         }

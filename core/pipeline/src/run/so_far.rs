@@ -6,7 +6,7 @@ use super::{RunError, RunOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use toile_core::artifact::{Failure, OutputFile, OutputFiles, RunLog, StageRecord};
-use toile_core::{ArtifactType, ErrorCode, Feed, Inputs, Node, PortValue};
+use toile_core::{ArtifactType, ErrorCode, Feed, Inputs, Node, PortValue, Remarks};
 
 /// Takes what a run that fails has made until then.
 ///
@@ -59,7 +59,7 @@ fn record(node: &Node, so_far: Option<PortValue>) -> StageRecord {
         wall_s: 0.0,
         outputs: so_far.into_iter().collect(),
         figures: Vec::new(),
-        warnings: Vec::new(),
+        remarks: Remarks::default(),
         used: None,
         predicted: None,
     }

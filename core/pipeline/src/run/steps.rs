@@ -7,14 +7,16 @@ use super::{Reads, RunError, typed};
 use crate::cache::{Cache, Fed, Found, Ingredients, Parts, RUN_SO_FAR};
 use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used, size_of};
 use crate::load::Pipeline;
+use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 use toile_core::artifact::{Digest, Measure};
 use toile_core::{
-    Arity, ArtifactType, Cancel, Context, Contract, Feed, Inputs, Listener, Node, PortValue, StageError,
+    Arity, ArtifactType, Cancel, Context, Contract, Feed, Inputs, Listener, Node, PortValue, Remarks, StageError,
 };
 
 /// What became of a stage.
+#[derive(Clone)]
 pub(super) enum Step {
     /// Left out, with the reason.
     Skipped(String),
@@ -22,14 +24,25 @@ pub(super) enum Step {
     Ran(Ran),
 }
 
+impl Step {
+    /// The result of a stage that was not left out.
+    pub(super) fn ran(&self) -> Option<&Ran> {
+        match self {
+            Step::Ran(ran) => Some(ran),
+            Step::Skipped(_) => None,
+        }
+    }
+}
+
 /// A stage that gave its result.
+#[derive(Clone)]
 pub(super) struct Ran {
     pub(super) outputs: Vec<Held>,
     pub(super) wall_s: f64,
     /// True while nothing of it had to be run.
     pub(super) cached: bool,
     pub(super) figures: Vec<Measure>,
-    pub(super) warnings: Vec<String>,
+    pub(super) remarks: Remarks,
     /// What it took and how much it made, where it ran whole under a meter.
     pub(super) cost: Option<(Used, Size)>,
 }
@@ -39,11 +52,13 @@ pub(super) struct Run<'a> {
     pub(super) pipeline: &'a Pipeline,
     pub(super) cache: Option<&'a Arc<Cache>>,
     pub(super) cancel: &'a Cancel,
-    pub(super) listener: &'a Arc<dyn Listener>,
+    pub(super) listener: Arc<dyn Listener>,
     pub(super) reads: Option<&'a Reads>,
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<Step>,
+    /// Improving stages that pass on what they are given; the one that failed with what to tell the user.
+    pub(super) undone: BTreeMap<usize, Option<String>>,
     /// What the stage that failed had come to.
     pub(super) so_far: Option<PortValue>,
 }
@@ -57,6 +72,11 @@ impl Run<'_> {
         cx.progress(0.0, "");
         let started = Instant::now();
         cx.check().map_err(|e| located(self.pipeline, node, (String::new(), e)))?;
+        if self.undone.contains_key(&index) {
+            let ran = self.passed_on(index)?;
+            self.steps.push(Step::Ran(ran));
+            return Ok(());
+        }
         let searches = self.search(index).map_err(|e| located(self.pipeline, node, e))?;
         self.tell(node, &searches);
         let missing = searches.iter().filter(|s| matches!(s.found, Found::Miss(_)));
@@ -74,7 +94,8 @@ impl Run<'_> {
 
     pub(super) fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
         let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), listener);
-        cx.with_memo(self.cache.map(|cache| Parts::of(cache, &node.card)))
+        let index = self.pipeline.find(&node.id).unwrap_or_default();
+        cx.with_memo(self.cache.map(|cache| Parts::of(cache, &node.card))).with_allowance(self.allowance(index))
     }
 
     /// What every stage took.

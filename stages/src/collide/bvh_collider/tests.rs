@@ -79,7 +79,7 @@ fn refuses_an_open_body() {
 fn warns_where_nothing_is_left_to_collide() {
     let cx = Context::quiet();
     BvhCollider { self_collision: false, ..Default::default() }.run(None, &cx).unwrap();
-    assert_eq!(cx.take_notes().1, ["there is no body and self-collision is off: nothing is kept apart"]);
+    assert_eq!(cx.take_remarks().warnings, ["there is no body and self-collision is off: nothing is kept apart"]);
 }
 
 #[test]
@@ -88,7 +88,7 @@ fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
     let cx = Context::quiet();
     wide.run(Some(&cube(0.5)), &cx).unwrap();
     assert_eq!(
-        cx.take_notes().1,
+        cx.take_remarks().warnings,
         ["`bridge` has nothing to bridge: there is no body with landmarks of its armpits"]
     );
     let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";

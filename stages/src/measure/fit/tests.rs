@@ -89,7 +89,7 @@ fn a_tight_garment_is_told_and_written_with_its_maps() {
     assert_eq!(names, wanted);
     let json: Value = serde_json::from_slice(&files.0[0].bytes).unwrap();
     assert_eq!(json["pressure"]["too_tight"][0]["place"], "body");
-    let told = cx.take_notes().1;
+    let told = cx.take_remarks().warnings;
     assert!(told[0].starts_with("it is tight at the body: up to 0.2 kPa on 3770 cm2"), "{told:?}");
 }
 
@@ -99,5 +99,5 @@ fn every_sentence_of_a_loose_garment_is_left_out() {
     let files = Fit { pictures: 0, ..Fit::default() }
         .run(&tube(0.15, 0.05), Some(&cylinder(0.15)), None, &cx)
         .unwrap();
-    assert_eq!((files.0.len(), cx.take_notes().1.len()), (1, 0));
+    assert_eq!((files.0.len(), cx.take_remarks().warnings.len()), (1, 0));
 }

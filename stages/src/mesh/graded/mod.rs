@@ -83,10 +83,10 @@ impl GradedMesher {
         let meshed = each(cx, &jobs, |((name, outline), (panel, cuts)), cx| {
             let own = cx.for_entry(name);
             let panel = mesh(outline, panel, cuts.clone(), &own).map_err(|e| within(name, e))?;
-            Ok(((*name).to_owned(), panel, own.take_notes()))
+            Ok(((*name).to_owned(), panel, own.take_figures(), own.take_remarks()))
         })?;
-        let entry = |(name, panel, (figures, warnings)): (String, Panel, _)| {
-            cx.absorb(&name, figures, warnings);
+        let entry = |(name, panel, figures, remarks): (String, Panel, _, _)| {
+            cx.absorb(&name, figures, remarks);
             (name, panel)
         };
         Ok(meshed.into_iter().map(entry).collect())

@@ -235,7 +235,7 @@ fn run(
 ) -> Result<(Pattern, SewingPlan, OutputFiles, Vec<String>), StageError> {
     let cx = Context::new("DxfPattern", folder, Cancel::new(), Arc::new(()));
     let (pattern, _, plan, files) = stage.run(&cx)?;
-    Ok((pattern, plan, files, cx.take_notes().1))
+    Ok((pattern, plan, files, cx.take_remarks().warnings))
 }
 
 #[test]

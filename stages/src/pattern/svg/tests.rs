@@ -361,7 +361,7 @@ fn entities_and_clones_are_bounded() {
 fn run(folder: &FilePath, stage: &SvgPattern) -> Result<(Pattern, OutputFiles, Vec<String>), StageError> {
     let cx = Context::new("SvgPattern", folder, Cancel::new(), Arc::new(()));
     let (pattern, _, _, files) = stage.run(&cx)?;
-    Ok((pattern, files, cx.take_notes().1))
+    Ok((pattern, files, cx.take_remarks().warnings))
 }
 
 #[test]

@@ -216,7 +216,7 @@ fn auto_names_what_it_sees() {
         let cx = Context::quiet();
         let front = [("front".to_owned(), outline(garment(half)))].into_iter().collect();
         Block::default().run(front, &body(), None, &cx).unwrap();
-        let told = cx.take_notes().1.remove(0);
+        let told = cx.take_remarks().warnings.remove(0);
         assert!(told.ends_with(&format!("`Block(style: {word})` settles it")), "{told}");
     }
 }
@@ -349,7 +349,7 @@ fn fitted_to(points: Vec<Point2>, style: BlockStyle) -> ([f64; 2], Vec<String>) 
     let front = [("front".to_owned(), outline(points))].into_iter().collect();
     let body = Fitting { style, ..Fitting::default() }.run(front, None, &cx).unwrap();
     let of = |name: &str| (body.measurements[name] * 100.0).round();
-    ([of("height"), of("bust")], cx.take_notes().1)
+    ([of("height"), of("bust")], cx.take_remarks().warnings)
 }
 
 fn scaled(points: Vec<Point2>, by: f64) -> Vec<Point2> {

@@ -6,12 +6,15 @@ use toile_core::prelude::*;
 
 /// The finished edges of each panel of the garment; `ribs` and `stitches` are widths by an edge's name, alone or after that of its panel.
 ///
-/// Errors: a name that no edge has, an edge with two finishes, no panels to look it up in.
+/// A name that no edge has is warned of: it costs the look of an edge, not the garment.
+///
+/// Errors: an edge with two finishes, no panels to look it up in.
 pub(super) fn finishes(
     ribs: &BTreeMap<String, Length>,
     stitches: &BTreeMap<String, Length>,
     garment: &Garment,
     panels: Option<&Set<Panel>>,
+    cx: &Context,
 ) -> Result<Vec<Vec<Finish>>, StageError> {
     let wanted: Vec<(Kind, &String, f64)> = [(Kind::Rib, ribs), (Kind::Stitches, stitches)]
         .into_iter()
@@ -43,10 +46,27 @@ pub(super) fn finishes(
             }
         }
     }
-    match wanted.iter().find(|(_, name, _)| !found.contains(name)) {
-        None => Ok(all),
-        Some((kind, name, _)) => Err(no_edge(*kind, name, panels)),
+    let edges = panels.0.values().flat_map(|p| p.edges.iter().map(|e| e.name.as_str()));
+    let edges: BTreeSet<&str> = edges.collect();
+    for (kind, name, _) in wanted.iter().filter(|(_, name, _)| !found.contains(name)) {
+        let told = no_edge(*kind, name, &edges);
+        cx.warn(format!("{}; {}", told.message, told.hint.unwrap_or_default()));
     }
+    Ok(all)
+}
+
+/// Names of `ribs` and `stitches` that no edge of the outlines has.
+pub(super) fn lacking(
+    ribs: &BTreeMap<String, Length>,
+    stitches: &BTreeMap<String, Length>,
+    outlines: &[(&str, &Outline)],
+) -> Vec<StageError> {
+    let edges = || outlines.iter().flat_map(|(panel, o)| o.edges.iter().map(move |e| (*panel, e.name.as_str())));
+    let has = |name: &str| edges().any(|(panel, edge)| edge == name || format!("{panel}.{edge}") == name);
+    let names: BTreeSet<&str> = edges().map(|(_, edge)| edge).collect();
+    let wanted = [(Kind::Rib, ribs), (Kind::Stitches, stitches)].into_iter();
+    let wanted = wanted.flat_map(|(kind, widths)| widths.keys().map(move |name| (kind, name)));
+    wanted.filter(|(_, name)| !has(name)).map(|(kind, name)| no_edge(kind, name, &names)).collect()
 }
 
 fn field(kind: Kind) -> &'static str {
@@ -56,11 +76,9 @@ fn field(kind: Kind) -> &'static str {
     }
 }
 
-fn no_edge(kind: Kind, name: &str, panels: &Set<Panel>) -> StageError {
-    let names: BTreeSet<&str> =
-        panels.0.values().flat_map(|p| p.edges.iter().map(|e| e.name.as_str())).collect();
-    let names = names.into_iter().collect::<Vec<_>>().join(", ");
-    StageError::invalid(format!("no panel has an edge \"{name}\""))
+fn no_edge(kind: Kind, name: &str, edges: &BTreeSet<&str>) -> StageError {
+    let names = edges.iter().copied().collect::<Vec<_>>().join(", ");
+    StageError::invalid(format!("no panel has an edge \"{name}\" to finish"))
         .hint(format!("the edges are {names}; a panel's own is `panel.edge`"))
         .at(field(kind))
 }

@@ -7,7 +7,7 @@ mod edges;
 #[cfg(test)]
 mod tests;
 
-use self::edges::finishes;
+use self::edges::{finishes, lacking};
 use super::edge::add_edges;
 use super::finish::{Finish, MOST_PX, Sheet};
 use super::weave::{Cloth, Colour, Tile, tile};
@@ -131,7 +131,7 @@ impl FabricTexturer {
         if self.texture == FabricTexture::Auto && self.second.is_some() && !has_denim {
             return Err(idle("second", "`texture: Auto`, which found no denim", OF_SECOND));
         }
-        let finishes = finishes(&self.ribs, &self.stitches, garment, panels.as_ref())?;
+        let finishes = finishes(&self.ribs, &self.stitches, garment, panels.as_ref(), cx)?;
         let dress = Dress { garment, kinds: &kinds, finishes: &finishes };
         let pictures = self.pictures(&dress, self.colour.as_deref(), cx)?;
         let mut model = self.dressed(&dress, pictures, cx)?;
@@ -153,6 +153,29 @@ impl FabricTexturer {
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         self.fault().into_iter().collect()
+    }
+
+    /// Names of edges that the pattern's file lacks, where a file makes the outlines: reading it is quick.
+    fn warnings(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let makes_outlines = |n: &&toile_core::Node| n.card.outputs.iter().any(|o| o.kind == Outline::KIND);
+        let is_reader = |n: &&toile_core::Node| n.card.inputs.is_empty();
+        let names = self.ribs.len() + self.stitches.len();
+        let sources = placed.sources();
+        let Some(reader) = sources.iter().copied().find(makes_outlines).filter(is_reader).filter(|_| names > 0)
+        else {
+            return Vec::new();
+        };
+        let Ok(made) = reader.stage.run_ports(&toile_core::Inputs(Vec::new()), placed.cx) else {
+            return Vec::new();
+        };
+        let entries = made.iter().flat_map(toile_core::PortValue::entries);
+        let outlines: Vec<(&str, &Outline)> = entries
+            .filter_map(|(name, artifact)| {
+                let any: &dyn std::any::Any = artifact.as_ref();
+                Some((name, any.downcast_ref::<Outline>()?))
+            })
+            .collect();
+        lacking(&self.ribs, &self.stitches, &outlines)
     }
 }
 

@@ -112,6 +112,19 @@ fn with_panels(texturer: &FabricTexturer) -> Result<Model, StageError> {
     texturer.run(&garment, Some(panels), None, &Context::quiet())
 }
 
+#[test]
+fn an_edge_that_no_panel_has_is_warned_of_and_the_garment_is_dressed() {
+    let texturer =
+        FabricTexturer { ribs: widths(&[("collar", 20.0), ("neck", 20.0)]), ..texturer(FabricTexture::Plain) };
+    let garment = dress::garment();
+    let panels = garment.panels.iter().map(|p| (p.name.clone(), dress::garment_panel())).collect();
+    let cx = Context::quiet();
+    let model = texturer.run(&garment, Some(panels), None, &cx).unwrap();
+    assert_eq!(model.meshes.len(), 2);
+    let told = "no panel has an edge \"collar\" to finish; the edges are hem, neck, shoulder_left, shoulder_right, side_left, side_right; a panel's own is `panel.edge`";
+    assert_eq!(cx.take_remarks().warnings, [told]);
+}
+
 fn widths(given: &[(&str, f64)]) -> BTreeMap<String, Length> {
     given.iter().map(|(name, mm)| ((*name).to_owned(), Length::mm(*mm))).collect()
 }
@@ -136,15 +149,13 @@ fn a_panel_with_a_finished_edge_has_a_picture_of_its_own() {
 }
 
 #[test]
-fn edges_that_are_not_there_or_have_two_finishes_are_refused() {
+fn edges_that_have_two_finishes_or_no_panels_are_refused() {
     let told = |ribs: &[(&str, f64)], stitches: &[(&str, f64)]| {
         let (ribs, stitches) = (widths(ribs), widths(stitches));
         let e =
             with_panels(&FabricTexturer { ribs, stitches, ..texturer(FabricTexture::Plain) }).unwrap_err();
         (e.message, e.hint.unwrap())
     };
-    let edges = "the edges are hem, neck, shoulder_left, shoulder_right, side_left, side_right; a panel's own is `panel.edge`";
-    assert_eq!(told(&[("collar", 20.0)], &[]), ("no panel has an edge \"collar\"".into(), edges.into()));
     assert_eq!(
         told(&[("neck", 20.0)], &[("front.neck", 5.0)]),
         ("the edge `front.neck` has two finishes".into(), "name it once, in `ribs` or in `stitches`".into())

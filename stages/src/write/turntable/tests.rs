@@ -54,7 +54,7 @@ fn a_page_that_cannot_be_as_small_as_asked_says_what_to_do() {
     let t = Turntable { page: 50, size: 480, ..small() };
     let kilobytes = html(&t, &cx).len() / 1000;
     assert_eq!(
-        cx.take_notes().1,
+        cx.take_remarks().warnings,
         [format!(
             "the turntable's page has {kilobytes} kB and not 50, though the quality is lowered to 30: take fewer `views` or `tiers`, or a smaller `size`"
         )]

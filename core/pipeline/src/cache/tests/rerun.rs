@@ -24,10 +24,10 @@ fn a_second_run_runs_nothing_and_gives_the_same() {
     assert_eq!(cold.results, warm.results);
     for (a, b) in cold.metrics.stages.iter().zip(&warm.metrics.stages) {
         assert!(!a.cached && b.cached, "{}", a.id);
-        assert_eq!((&a.figures, &a.warnings), (&b.figures, &b.warnings));
+        assert_eq!((&a.figures, &a.remarks), (&b.figures, &b.remarks));
     }
     assert_eq!(warm.metrics.stages[1].figures["back.level"], 3.0);
-    assert_eq!(warm.metrics.stages[1].warnings, ["back: it is small", "front: it is small"]);
+    assert_eq!(warm.metrics.stages[1].remarks.warnings, ["back: it is small", "front: it is small"]);
 }
 
 /// Notes of which stages it was asked.

@@ -114,7 +114,7 @@ fn a_half_that_hides_its_sleeve_is_cut_as_the_other_ones_mirror_image() {
         let cuff = length(&pattern, &format!("{side}_sleeve_front"), "cuff");
         assert!((cuff - between(TEE, 3)).abs() < 8.0, "{side}: {cuff:.1}");
     }
-    let told = cx.take_notes().1;
+    let told = cx.take_remarks().warnings;
     let want = "only the right half of \"front\" in the photo looks like a T-shirt: the left one is cut as its mirror image";
     assert!(told.contains(&want.to_owned()), "{told:?}");
     // The hidden sleeve gets the colours of the one that is seen: its cuff lies at that one's.
