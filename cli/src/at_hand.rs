@@ -1,18 +1,53 @@
 //! Files named by `--set`: as on any command line, relative to the current folder.
 //!
-//! A pipeline's own paths are relative to the pipeline file. A value of a field `file` on the command line that is a
-//! file seen from the current folder becomes its full path; quotes may be left out.
+//! A pipeline's own paths are relative to the pipeline file. The value of a field that names a file (`FIELDS`) on the command line that is a
+//! file seen from the current folder becomes its full path; quotes may be left out. So does such a field within brackets:
+//! `--set 'body=BodyObj(file: "me.obj")'`.
 
 use std::path::Path;
 use toile_pipeline::Override;
 
+/// Fields whose values are paths of files that a stage reads.
+const FIELDS: [&str; 3] = ["file", "seams", "panorama"];
+
 /// The overrides with their files found.
 pub(crate) fn found(overrides: &[Override]) -> Vec<Override> {
-    overrides.iter().map(|o| if names_file(o) { with_file(o) } else { o.clone() }).collect()
+    overrides.iter().map(|o| if names_file(o) { with_file(o) } else { within(o) }).collect()
 }
 
 fn names_file(o: &Override) -> bool {
-    o.path.rsplit('.').next() == Some("file")
+    o.path.rsplit('.').next().is_some_and(|field| FIELDS.contains(&field))
+}
+
+/// The override with the files found that fields within its value name.
+fn within(o: &Override) -> Override {
+    let mut value = String::new();
+    let mut rest = o.value.as_str();
+    while let Some((before, text, after)) = next_text(rest) {
+        value.push_str(before);
+        let field = before.trim_end().strip_suffix(':').map_or("", |b| {
+            let b = b.trim_end();
+            &b[b.rfind(|c: char| !(c.is_alphanumeric() || c == '_')).map_or(0, |i| i + 1)..]
+        });
+        match std::path::absolute(text) {
+            Ok(full) if FIELDS.contains(&field) && Path::new(text).is_file() => {
+                value.push_str(&format!("{:?}", full.display().to_string()));
+            }
+            _ => value.push_str(&format!("\"{text}\"")),
+        }
+        rest = after;
+    }
+    value.push_str(rest);
+    Override { value, ..o.clone() }
+}
+
+/// What stands before the first plain text in quotes, the text, and what stands behind it; none where an escape or a raw text makes it
+/// another.
+fn next_text(value: &str) -> Option<(&str, &str, &str)> {
+    let (before, rest) = value.split_once('"')?;
+    let (text, after) = rest.split_once('"')?;
+    let is_plain = !text.contains('\\') && !before.ends_with(['r', '#', '\\']);
+    is_plain.then_some((before, text, after))
 }
 
 fn with_file(o: &Override) -> Override {
@@ -48,6 +83,21 @@ mod tests {
     fn a_file_that_is_not_there_stays_relative_to_the_pipeline() {
         assert_eq!(value("photos.front.file=\"front.jpg\""), "\"front.jpg\"");
         assert_eq!(value("scene.file=samples/skirt.json"), "\"samples/skirt.json\"");
+    }
+
+    #[test]
+    fn files_within_brackets_are_found_as_well() {
+        let here = std::env::current_dir().unwrap().join("Cargo.toml").display().to_string();
+        assert_eq!(
+            value("body=BodyObj(file: \"Cargo.toml\", unit: Metres)"),
+            format!("BodyObj(file: {here:?}, unit: Metres)")
+        );
+        let two = "pattern=SvgPattern(file : \"Cargo.toml\", seams: \"none.ron\", size: \"Cargo.toml\")";
+        let found = format!("SvgPattern(file : {here:?}, seams: \"none.ron\", size: \"Cargo.toml\")");
+        assert_eq!(value(two), found, "a size is no file");
+        assert_eq!(value("a=B(file: \"C:\\\\x\")"), "B(file: \"C:\\\\x\")");
+        assert_eq!(value("a=B(file: r\"Cargo.toml\")"), "B(file: r\"Cargo.toml\")");
+        assert_eq!(value("a=\"open"), "\"open");
     }
 
     #[test]

@@ -69,7 +69,8 @@ fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
     let mut list = list.lock().unwrap_or_else(PoisonError::into_inner);
     let stage = |who: &str| who.split(" (").next().map(str::to_owned);
     // Entries of one stage may say the same, each of itself.
-    let said = |(other, told): &(String, String)| told == text && (*other == who || stage(other) != stage(&who));
+    let said =
+        |(other, told): &(String, String)| told == text && (*other == who || stage(other) != stage(&who));
     if !list.iter().any(said) {
         list.push((who, text.to_owned()));
     }

@@ -8,6 +8,7 @@ mod bench_costs;
 mod full_disk;
 mod interrupt;
 mod manners;
+mod own_files;
 mod plugin_ends;
 mod readme;
 mod sheet;

@@ -26,7 +26,7 @@ const OWN_FILES: [(&str, &str); 8] = [
     ("pipelines/mine.ron", "vest.ron"),
 ];
 
-fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
@@ -103,7 +103,7 @@ fn validation(command: &str) -> String {
 }
 
 /// A folder with a copy of the shipped pipelines and a reader's files.
-fn scratch() -> tempfile::TempDir {
+pub(crate) fn scratch() -> tempfile::TempDir {
     let dir = tempfile::tempdir().unwrap();
     let pipelines = dir.path().join("pipelines");
     copy(&root().join("pipelines"), &pipelines);
@@ -149,7 +149,7 @@ fn shell(command: &str, folder: &Path, cache: &Path) -> Command {
     shell
 }
 
-fn passes(command: &str, folder: &Path, cache: &Path) {
+pub(crate) fn passes(command: &str, folder: &Path, cache: &Path) {
     let start = Instant::now();
     let out = shell(command, folder, cache).output().unwrap();
     let text = [out.stdout, out.stderr].map(|b| String::from_utf8_lossy(&b).into_owned()).concat();

@@ -58,7 +58,7 @@ pub fn pipeline(name: &str) -> String {
 }
 
 /// The shipped pipelines.
-pub const PIPELINES: [&str; 22] = [
+pub const PIPELINES: [&str; 23] = [
     "vest.ron",
     "tshirt.ron",
     "photo.ron",
@@ -67,6 +67,7 @@ pub const PIPELINES: [&str; 22] = [
     "scene.ron",
     "skirt.ron",
     "pattern.ron",
+    "shirt.ron",
     "trousers.ron",
     "dress.ron",
     "onepiece.ron",

@@ -1,8 +1,8 @@
 //! What has happened in a run so far, for stages that report on it.
 
 use super::{Artifact, ArtifactType, Digester, Kind, Measure, Measures};
-use crate::cost::{Predicted, Used};
 use crate::Remarks;
+use crate::cost::{Predicted, Used};
 use crate::stage::PortValue;
 
 /// One stage as it ran.

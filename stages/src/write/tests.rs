@@ -9,9 +9,9 @@ use crate::texture::{PhotoTexturer, fixture};
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use toile_core::Remarks;
 use toile_core::cost::{Estimate, Predicted};
 use toile_core::param::ron_options;
-use toile_core::Remarks;
 use toile_core::prelude::*;
 use toile_core::{Inputs, PortValue};
 
@@ -262,7 +262,10 @@ fn run_log() -> RunLog {
             unit: "grey levels",
             tolerance: 0.0,
         }],
-        remarks: Remarks { warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()], ..Remarks::default() },
+        remarks: Remarks {
+            warnings: vec!["<script>alert(1)</script> & \"more\"".to_owned()],
+            ..Remarks::default()
+        },
         used: None,
         predicted: (id == "Glb").then(|| Predicted {
             wall_s: Some(Estimate { value: 0.2, low: 0.1, high: 0.4 }),

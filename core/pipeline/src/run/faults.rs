@@ -24,7 +24,9 @@ pub fn faults(
 
 /// What the stages warn of before anything runs, each at its place; nothing of a stage whose check panics.
 pub(crate) fn warnings(pipeline: &Pipeline) -> Vec<Fault> {
-    (0..pipeline.nodes.len()).flat_map(|index| asked(pipeline, index, None, |stage, placed| stage.warnings(placed))).collect()
+    (0..pipeline.nodes.len())
+        .flat_map(|index| asked(pipeline, index, None, |stage, placed| stage.warnings(placed)))
+        .collect()
 }
 
 fn of_stage(pipeline: &Pipeline, index: usize, reads: Option<&Reads>) -> Vec<Fault> {

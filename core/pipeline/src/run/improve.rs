@@ -22,7 +22,10 @@ impl Run<'_> {
     /// Errors: the failure itself, where there is no such result, or where the user asked to stop.
     pub(super) fn undo(&mut self, index: usize, failure: RunError) -> Result<(), RunError> {
         let node = &self.pipeline.nodes[index];
-        if failure.error.code == ErrorCode::Cancelled || !node.stage.improves() || self.undone.contains_key(&index) {
+        if failure.error.code == ErrorCode::Cancelled
+            || !node.stage.improves()
+            || self.undone.contains_key(&index)
+        {
             return Err(failure);
         }
         let Some(base) = self.base(index)? else { return Err(failure) };
@@ -39,7 +42,8 @@ impl Run<'_> {
     /// later stage that improves may do so still.
     pub(super) fn undo_unrest(&mut self, index: usize) -> Result<(), RunError> {
         let nodes = &self.pipeline.nodes;
-        let fed_by = |n: &Node| n.inputs.iter().any(|f| matches!(f, Feed::Node { node, .. } if *node == index));
+        let fed_by =
+            |n: &Node| n.inputs.iter().any(|f| matches!(f, Feed::Node { node, .. } if *node == index));
         let goes_on = nodes.iter().any(|n| fed_by(n) && n.stage.improves() && gives_garment(n));
         let looks = nodes[index].stage.improves() && gives_garment(&nodes[index]) && !goes_on;
         if !looks || self.undone.contains_key(&index) || self.is_at_rest(index)? != Some(false) {
@@ -116,9 +120,9 @@ impl Run<'_> {
             return None;
         }
         let before = self.steps[..index.min(self.steps.len())].iter().zip(&self.pipeline.nodes).rev();
-        let mut work = before.filter(|(_, node)| !node.stage.improves()).filter_map(|(step, _)| {
-            step.ran()?.figures.iter().find(|m| m.name == WORK).map(|m| m.value)
-        });
+        let mut work = before
+            .filter(|(_, node)| !node.stage.improves())
+            .filter_map(|(step, _)| step.ran()?.figures.iter().find(|m| m.name == WORK).map(|m| m.value));
         work.next()
     }
 
@@ -126,7 +130,8 @@ impl Run<'_> {
     fn base(&mut self, index: usize) -> Result<Option<usize>, RunError> {
         let nodes = &self.pipeline.nodes;
         let passes = |i: usize| nodes[i].card.outputs.iter().all(|o| feed_of(&nodes[i], o.kind).is_some());
-        let makes = |i: &usize| gives_garment(&nodes[*i]) && !nodes[*i].stage.improves() && !self.is_skipped(*i);
+        let makes =
+            |i: &usize| gives_garment(&nodes[*i]) && !nodes[*i].stage.improves() && !self.is_skipped(*i);
         let Some(base) = (0..index.min(self.steps.len())).rev().find(makes) else { return Ok(None) };
         let all_pass = (base + 1..=index).filter(|&i| nodes[i].stage.improves()).all(passes);
         Ok((self.is_at_rest(base)? == Some(true) && all_pass).then_some(base))

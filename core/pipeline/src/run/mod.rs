@@ -5,6 +5,8 @@ mod faults;
 mod forecast;
 mod implicit;
 mod improve;
+#[cfg(test)]
+mod improve_tests;
 mod known;
 mod node;
 mod pixels;

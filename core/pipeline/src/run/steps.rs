@@ -12,7 +12,8 @@ use std::sync::{Arc, PoisonError};
 use std::time::Instant;
 use toile_core::artifact::{Digest, Measure};
 use toile_core::{
-    Arity, ArtifactType, Cancel, Context, Contract, Feed, Inputs, Listener, Node, PortValue, Remarks, StageError,
+    Arity, ArtifactType, Cancel, Context, Contract, Feed, Inputs, Listener, Node, PortValue, Remarks,
+    StageError,
 };
 
 /// What became of a stage.
@@ -95,7 +96,8 @@ impl Run<'_> {
     pub(super) fn context(&self, node: &Node, listener: Arc<dyn Listener>) -> Context {
         let cx = Context::new(&node.id, &self.pipeline.base, self.cancel.clone(), listener);
         let index = self.pipeline.find(&node.id).unwrap_or_default();
-        cx.with_memo(self.cache.map(|cache| Parts::of(cache, &node.card))).with_allowance(self.allowance(index))
+        cx.with_memo(self.cache.map(|cache| Parts::of(cache, &node.card)))
+            .with_allowance(self.allowance(index))
     }
 
     /// What every stage took.

@@ -79,7 +79,10 @@ fn refuses_an_open_body() {
 fn warns_where_nothing_is_left_to_collide() {
     let cx = Context::quiet();
     BvhCollider { self_collision: false, ..Default::default() }.run(None, &cx).unwrap();
-    assert_eq!(cx.take_remarks().warnings, ["there is no body and self-collision is off: nothing is kept apart"]);
+    assert_eq!(
+        cx.take_remarks().warnings,
+        ["there is no body and self-collision is off: nothing is kept apart"]
+    );
 }
 
 #[test]

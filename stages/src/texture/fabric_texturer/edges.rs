@@ -61,7 +61,8 @@ pub(super) fn lacking(
     stitches: &BTreeMap<String, Length>,
     outlines: &[(&str, &Outline)],
 ) -> Vec<StageError> {
-    let edges = || outlines.iter().flat_map(|(panel, o)| o.edges.iter().map(move |e| (*panel, e.name.as_str())));
+    let edges =
+        || outlines.iter().flat_map(|(panel, o)| o.edges.iter().map(move |e| (*panel, e.name.as_str())));
     let has = |name: &str| edges().any(|(panel, edge)| edge == name || format!("{panel}.{edge}") == name);
     let names: BTreeSet<&str> = edges().map(|(_, edge)| edge).collect();
     let wanted = [(Kind::Rib, ribs), (Kind::Stitches, stitches)].into_iter();

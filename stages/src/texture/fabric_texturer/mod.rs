@@ -161,7 +161,8 @@ impl FabricTexturer {
         let is_reader = |n: &&toile_core::Node| n.card.inputs.is_empty();
         let names = self.ribs.len() + self.stitches.len();
         let sources = placed.sources();
-        let Some(reader) = sources.iter().copied().find(makes_outlines).filter(is_reader).filter(|_| names > 0)
+        let Some(reader) =
+            sources.iter().copied().find(makes_outlines).filter(is_reader).filter(|_| names > 0)
         else {
             return Vec::new();
         };

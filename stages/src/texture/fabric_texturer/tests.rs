@@ -114,8 +114,10 @@ fn with_panels(texturer: &FabricTexturer) -> Result<Model, StageError> {
 
 #[test]
 fn an_edge_that_no_panel_has_is_warned_of_and_the_garment_is_dressed() {
-    let texturer =
-        FabricTexturer { ribs: widths(&[("collar", 20.0), ("neck", 20.0)]), ..texturer(FabricTexture::Plain) };
+    let texturer = FabricTexturer {
+        ribs: widths(&[("collar", 20.0), ("neck", 20.0)]),
+        ..texturer(FabricTexture::Plain)
+    };
     let garment = dress::garment();
     let panels = garment.panels.iter().map(|p| (p.name.clone(), dress::garment_panel())).collect();
     let cx = Context::quiet();
