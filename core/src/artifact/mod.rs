@@ -6,6 +6,7 @@
 //!
 //! One file holds one kind.
 
+mod arrow;
 mod body;
 mod collider;
 mod digest;

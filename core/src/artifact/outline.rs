@@ -237,7 +237,7 @@ impl Artifact for Outline {
 /// Named edges get alternating colours so that a wrong corner is seen at once.
 const EDGE_COLOURS: [&str; 6] = ["#c0392b", "#2471a3", "#1e8449", "#b9770e", "#6c3483", "#117a65"];
 
-/// The outline drawn in millimetres with its edges' names and its corners.
+/// The outline drawn in millimetres with its corners and its edges, each with its name and an arrow in the direction in which it runs.
 fn svg(outline: &Outline) -> String {
     use std::fmt::Write;
     let (lo, hi) = outline.bounds();
@@ -278,6 +278,7 @@ fn svg(outline: &Outline) -> String {
             "<path d=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"3\"/>",
             line(&points)
         );
+        let _ = writeln!(s, "<path d=\"{}Z\" fill=\"{colour}\"/>", line(&super::arrow::arrow(&points)));
         let _ = writeln!(
             s,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"{colour}\" text-anchor=\"middle\">{}</text>",

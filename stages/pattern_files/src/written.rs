@@ -8,6 +8,8 @@ pub struct Written {
     /// The file of seams beside it, by the names that the file has; RON, as `sidecar` tells. Empty where nothing reads the file
     /// back.
     pub seams: String,
-    /// What the file does not hold, and what was decided, a sentence each.
+    /// What was decided, and what the format has no place for, a sentence each.
     pub notes: Vec<String>,
+    /// What is lost that another may look for: seams, pieces, letters.
+    pub warnings: Vec<String>,
 }

@@ -1,6 +1,7 @@
 //! Open lines chained to a loop.
 
 use super::side::Side;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// Gaps of up to this are no gaps, metres.
@@ -18,7 +19,7 @@ pub(super) struct Gap {
 /// The lines as a loop, beginning with the first, each followed by the one that is nearest to its end.
 ///
 /// Errors: the first gap that is too wide to close; a gap of no width for a single open line.
-pub(super) fn chained(mut rest: Vec<Side>, piece: &str, told: &mut Vec<String>) -> Result<Vec<Side>, Gap> {
+pub(super) fn chained(mut rest: Vec<Side>, piece: &str, told: &mut Remarks) -> Result<Vec<Side>, Gap> {
     let mut sides = vec![rest.remove(0)];
     while !rest.is_empty() {
         let here = sides[sides.len() - 1].end();
@@ -33,7 +34,7 @@ pub(super) fn chained(mut rest: Vec<Side>, piece: &str, told: &mut Vec<String>) 
 }
 
 /// Lets each side begin where the one before ends.
-fn close(sides: &mut [Side], piece: &str, told: &mut Vec<String>) -> Result<(), Gap> {
+fn close(sides: &mut [Side], piece: &str, told: &mut Remarks) -> Result<(), Gap> {
     let n = sides.len();
     for k in 0..n {
         let end = sides[k].end();
@@ -43,7 +44,7 @@ fn close(sides: &mut [Side], piece: &str, told: &mut Vec<String>) -> Result<(), 
             return Err(Gap { at: end, wide: gap });
         }
         if gap > JOINT {
-            told.push(format!(
+            told.warnings.push(format!(
                 "the boundary of piece \"{piece}\" was open by {:.2} mm between \"{}\" and \"{}\": closed",
                 gap * 1e3,
                 sides[k].name,

@@ -1,17 +1,18 @@
 //! A piece as often as it is cut.
 
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// Copies of one piece.
 pub(super) const MOST_COPIES: usize = 12;
 
 /// The piece as often as it is cut: as drawn, and mirrored.
-pub(super) fn copies(piece: Piece, drawn: usize, turned: usize, told: &mut Vec<String>) -> Vec<Piece> {
+pub(super) fn copies(piece: Piece, drawn: usize, turned: usize, told: &mut Remarks) -> Vec<Piece> {
     let name = piece.name.clone();
     match (drawn, turned) {
-        (0, 0) => told.push(format!("piece \"{name}\" is cut 0 times: left out")),
+        (0, 0) => told.warnings.push(format!("piece \"{name}\" is cut 0 times: left out")),
         (1, 0) => {}
-        _ => told.push(format!("piece \"{name}\" is cut {drawn} times as drawn and {turned} times mirrored")),
+        _ => told.notes.push(format!("piece \"{name}\" is cut {drawn} times as drawn and {turned} times mirrored")),
     }
     let named = |mut p: Piece, k: usize, word: &str| {
         p.name = if k == 0 { format!("{name}{word}") } else { format!("{name}{word}_{}", k + 1) };

@@ -3,6 +3,8 @@
 mod chain;
 mod copies;
 mod dxf;
+mod faults;
+mod follow;
 mod garment_code;
 mod marks;
 mod propose;
@@ -11,13 +13,15 @@ mod side;
 mod sidecar;
 mod svg;
 mod unfold;
+mod unit;
 
 pub use dxf::DxfPattern;
 pub use garment_code::GarmentCode;
 pub use svg::SvgPattern;
+pub use unit::DrawingUnit;
 
 use std::path::Path;
-use toile_core::{ErrorCode, Registry, StageError};
+use toile_core::{Context, ErrorCode, Registry, Remarks, StageError};
 
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
@@ -39,4 +43,10 @@ fn named(file: &str, example: &str) -> Result<(), StageError> {
 fn stem(file: &str) -> String {
     let stem = Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     stem.strip_suffix("_specification").unwrap_or(&stem).to_owned()
+}
+
+/// Tells what a reader has found.
+fn tell(told: Remarks, cx: &Context) {
+    told.notes.into_iter().for_each(|what| cx.note(what));
+    told.warnings.into_iter().for_each(|what| cx.warn(what));
 }

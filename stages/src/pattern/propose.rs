@@ -35,6 +35,10 @@ const LEVEL: f64 = 0.5;
 const GOES_ON: f64 = 0.02;
 /// Edges and chains of a garment that are compared; with more nothing is proposed.
 const MOST: usize = 2_000;
+/// Edges that lie on each other to this are a slit, metres.
+const SLIT: f64 = 2e-3;
+/// The confidence of a slit.
+const SURE: f64 = 0.99;
 /// Nothing of less confidence is proposed.
 const LEAST: f64 = 0.5;
 
@@ -92,6 +96,10 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     };
     let mut taken: BTreeSet<(usize, usize)> = BTreeSet::new();
     let mut out = Vec::new();
+    for (i, j) in slits(&all, pieces) {
+        taken.extend(edges(i, j));
+        out.push(seam(&all[i], &all[j], SURE, pieces));
+    }
     loop {
         pairs.retain(|&(score, i, j)| score >= LEAST && edges(i, j).iter().all(|e| !taken.contains(e)));
         // Surest first, that which goes on where another seam ends before others; then in the order of the file.
@@ -109,6 +117,25 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
         taken.extend(edges(i, j));
         out.push(seam(&all[i], &all[j], score, pieces));
     }
+}
+
+/// Pairs of edges of a piece that lie on each other, one run through backwards: a ring that is cut open to be sewn again.
+fn slits(all: &[Candidate], pieces: &[Piece]) -> Vec<(usize, usize)> {
+    let single = |i: &usize| all[*i].edges.len() == 1;
+    let ends = |c: &Candidate| {
+        let path = pieces[c.piece].outer.path(c.edges[0]);
+        (path.at(0.0), path.at(path.length()))
+    };
+    let meet = |i: usize, j: usize| {
+        let ((a, b), (c, d)) = (ends(&all[i]), ends(&all[j]));
+        (a - d).norm() <= SLIT && (b - c).norm() <= SLIT && (all[i].length - all[j].length).abs() <= SLIT
+    };
+    let mut out = Vec::new();
+    for i in (0..all.len()).filter(single) {
+        let same = |j: &usize| all[*j].piece == all[i].piece && single(j);
+        out.extend((i + 1..all.len()).filter(same).filter(|&j| meet(i, j)).map(|j| (i, j)));
+    }
+    out
 }
 
 /// Whether the edge before or behind it in its loop is sewn already and runs the same way.

@@ -143,8 +143,21 @@ pub(super) fn smooth(one: &Side, other: &Side, degrees: f64) -> bool {
     u.perp(&v).atan2(u.dot(&v)).abs() <= degrees.to_radians()
 }
 
-/// A closed line split where it turns; at least two parts of some length.
+/// The curves of a closed line, of which there are two at least: one that comes back to its start is halved.
+fn halved(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<(EdgeCurve, Point2)> {
+    let [(EdgeCurve::Cubic { controls: [b, c] }, d)] = parts else { return parts.to_vec() };
+    let middle = |p: &Point2, q: &Point2| nalgebra::center(p, q);
+    let (ab, bc, cd) = (middle(&start, b), middle(b, c), middle(c, d));
+    let (abc, bcd) = (middle(&ab, &bc), middle(&bc, &cd));
+    vec![
+        (EdgeCurve::Cubic { controls: [ab, abc] }, middle(&abc, &bcd)),
+        (EdgeCurve::Cubic { controls: [bcd, cd] }, *d),
+    ]
+}
+
+/// A closed line split where it turns; two parts at least where it has two curves or one that can be halved.
 pub(super) fn split(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<Side> {
+    let parts = halved(start, parts);
     let n = parts.len();
     let one = |k: usize| {
         let from = if k == 0 { start } else { parts[k - 1].1 };

@@ -12,6 +12,7 @@
 //! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to its start. All sides of a
 //! seam run the same way: their starts meet, and their ends.
 
+use super::faults::Fault;
 use serde::Deserialize;
 use std::fmt::Write;
 use toile_core::nearest;
@@ -76,32 +77,36 @@ impl Kind {
 
 /// The seams of a file's bytes, along edges that the pieces have.
 ///
-/// Errors: text that is no such RON, with line and column; a seam along an edge that there is none of, with its number.
-pub(super) fn read(bytes: &[u8], file: &str, pieces: &[Piece]) -> Result<Vec<PatternSeam>, StageError> {
-    let refused =
-        |what: String| StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}")).at("seams");
-    if bytes.len() > MOST_BYTES {
-        return Err(refused(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len())));
-    }
-    let text = std::str::from_utf8(bytes).map_err(|_| refused("it is not UTF-8 text".into()))?;
-    let sidecar: Sidecar = ron::from_str(text).map_err(|e| {
-        refused(format!("line {} column {}: {}", e.span.start.line, e.span.start.col, e.code))
-            .hint("write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`")
-    })?;
-    let seam = |(i, entry): (usize, &Entry)| {
-        let sides = entry.sides.iter().map(|side| side.iter().map(|u| edge_use(u, pieces)).collect());
-        let sides: Vec<Vec<EdgeUse>> =
-            sides.collect::<Result<_, (String, Option<String>)>>().map_err(|(what, near)| {
-                let e = refused(format!("seam {i}: {what}"));
-                match near {
-                    Some(near) => e.hint(near),
-                    None => e,
-                }
-            })?;
-        let name = if entry.name.is_empty() { name(&sides) } else { entry.name.clone() };
-        Ok(PatternSeam { name, kind: entry.kind.seam(), sides })
+/// Errors: text that is no such RON, with line and column; every edge that there is none of, with the number of its seam.
+pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<Fault>> {
+    let fault = |what: String, remedy: Option<String>| Fault {
+        code: ErrorCode::PatternLoading,
+        param: "seams",
+        what,
+        remedy,
     };
-    sidecar.seams.iter().enumerate().map(seam).collect()
+    if bytes.len() > MOST_BYTES {
+        return Err(vec![fault(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len()), None)]);
+    }
+    let text =
+        std::str::from_utf8(bytes).map_err(|_| vec![fault("it is not UTF-8 text".into(), Some("save it as UTF-8".into()))])?;
+    let sidecar: Sidecar = ron::from_str(text).map_err(|e| {
+        let what = format!("line {} column {}: {}", e.span.start.line, e.span.start.col, e.code);
+        vec![fault(what, Some("write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`".into()))]
+    })?;
+    let mut faults = Vec::new();
+    let mut edge = |i: usize, text: &String| {
+        let found = edge_use(text, pieces);
+        found.map_err(|(what, near)| faults.push(fault(format!("seam {i}: {what}"), near))).ok()
+    };
+    let mut seams = Vec::with_capacity(sidecar.seams.len());
+    for (i, entry) in sidecar.seams.iter().enumerate() {
+        let sides = entry.sides.iter().map(|side| side.iter().filter_map(|u| edge(i, u)).collect());
+        let sides: Vec<Vec<EdgeUse>> = sides.collect();
+        let name = if entry.name.is_empty() { name(&sides) } else { entry.name.clone() };
+        seams.push(PatternSeam { name, kind: entry.kind.seam(), sides });
+    }
+    if faults.is_empty() { Ok(seams) } else { Err(faults) }
 }
 
 /// What a seam without a name is called.
@@ -187,35 +192,36 @@ mod tests {
         };
         let seams: Vec<(PatternSeam, String)> =
             SeamKind::all().map(|k| (seam(k), "why".to_owned())).collect();
-        let again = read(write(&seams).as_bytes(), "seams.ron", &pieces()).unwrap();
+        let again = read(write(&seams).as_bytes(), &pieces()).unwrap();
         assert_eq!(again, seams.into_iter().map(|(s, _)| s).collect::<Vec<_>>());
     }
 
     #[test]
     fn what_is_wrong_is_named_with_its_place() {
-        let refused = |text: &str| {
-            let e = read(text.as_bytes(), "s.ron", &pieces()).unwrap_err();
-            assert_eq!((e.code, e.param), (ErrorCode::PatternLoading, Some("seams")));
-            (e.message, e.hint.unwrap_or_default())
+        let all = |text: &str| {
+            let faults = read(text.as_bytes(), &pieces()).unwrap_err().into_iter();
+            faults.map(|f| (f.what, f.remedy.unwrap_or_default())).collect::<Vec<_>>()
         };
+        let refused = |text: &str| all(text).remove(0);
         let seam = |a: &str, b: &str| format!("(seams: [(sides: [[\"{a}\"], [\"{b}\"]])])");
         assert_eq!(
             refused(&seam("front.right", "bakc.left")),
-            ("\"s.ron\": seam 0: there is no piece \"bakc\"".into(), "did you mean \"back\"?".into())
+            ("seam 0: there is no piece \"bakc\"".into(), "did you mean \"back\"?".into())
         );
         assert_eq!(
             refused(&seam("front.rigth", "back.left")),
             (
-                "\"s.ron\": seam 0: piece \"front\" has no edge \"rigth\"".into(),
+                "seam 0: piece \"front\" has no edge \"rigth\"".into(),
                 "did you mean \"front.right\"?".into()
             )
         );
         assert_eq!(
             refused(&seam("front", "back.left")).0,
-            "\"s.ron\": seam 0: \"front\" is not an edge; write \"panel.edge\", like \"front.hem\""
+            "seam 0: \"front\" is not an edge; write \"panel.edge\", like \"front.hem\""
         );
+        assert_eq!(all(&seam("front.rigth", "bakc.left")).len(), 2);
         let (message, hint) = refused("(\n  seams: [(side: [])])");
-        assert!(message.starts_with("\"s.ron\": line 2 column "), "{message}");
+        assert!(message.starts_with("line 2 column "), "{message}");
         assert_eq!(hint, "write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`");
     }
 }

@@ -40,9 +40,10 @@ pub(super) fn files(
     cx: &Context,
 ) -> Result<OutputFiles, StageError> {
     check_name(name)?;
-    let Written { bytes, seams, notes } =
+    let Written { bytes, seams, notes, warnings } =
         written.map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
-    notes.into_iter().for_each(|what| cx.warn(what));
+    notes.into_iter().for_each(|what| cx.note(what));
+    warnings.into_iter().for_each(|what| cx.warn(what));
     let mut files = vec![OutputFile::new(format!("{name}{ending}"), bytes)];
     if !seams.is_empty() {
         files.push(OutputFile::new(format!("{name}{ending}.seams.ron"), seams.into_bytes()));

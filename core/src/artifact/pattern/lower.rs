@@ -26,8 +26,10 @@ pub struct Lowered {
     pub outlines: BTreeMap<String, Outline>,
     /// The seams, edge to edge; no placements, which are another stage's work.
     pub plan: SewingPlan,
-    /// What was decided on the way, a sentence each: seams that are gathered, slits that are left out.
+    /// What was decided on the way, a sentence each: seams that are gathered.
     pub notes: Vec<String>,
+    /// What is left out, a sentence each: slits.
+    pub warnings: Vec<String>,
 }
 
 impl Pattern {
@@ -48,7 +50,7 @@ impl Pattern {
         let names: Vec<Names> = self.pieces.iter().map(|p| Names::of(p, &cuts)).collect();
         let sewn: BTreeSet<&EdgeRef> =
             self.seams.iter().flat_map(|s| s.sides.iter().flatten()).map(|u| &u.edge).collect();
-        let mut notes = Vec::new();
+        let (mut notes, mut warnings) = (Vec::new(), Vec::new());
         let drawn = parallel::map(self.pieces.len(), parallel::each, |k| {
             let p = &self.pieces[k];
             (p.name.clone(), outline(p, &names[k], &cuts, &sewn))
@@ -56,7 +58,7 @@ impl Pattern {
         let mut outlines: BTreeMap<String, Outline> = drawn.into_iter().collect();
         for p in &self.pieces {
             let slits = p.lines.iter().filter(|l| l.purpose == LinePurpose::Cut);
-            notes
+            warnings
                 .extend(slits.map(|l| format!("the slit \"{}\" of piece \"{}\" is not cut", l.name, p.name)));
         }
         let by_name: BTreeMap<&str, &Names> =
@@ -76,7 +78,7 @@ impl Pattern {
         }
         share_gauges(&mut outlines, &seams);
         notes.extend(told(&gathers));
-        Ok(Lowered { outlines, plan: SewingPlan { seams, placements: BTreeMap::new() }, notes })
+        Ok(Lowered { outlines, plan: SewingPlan { seams, placements: BTreeMap::new() }, notes, warnings })
     }
 }
 

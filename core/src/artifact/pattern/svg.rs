@@ -1,5 +1,7 @@
-//! A pattern as a drawing: pieces side by side, millimetres, every edge named and in the colour of its seam.
+//! A pattern as a drawing: pieces side by side, millimetres, every edge named and in the colour of its seam, an arrow in the direction in
+//! which it runs.
 
+use super::super::arrow::arrow;
 use super::super::{Point2, polygon_area};
 use super::{Pattern, Piece};
 use std::collections::BTreeMap;
@@ -104,6 +106,7 @@ impl<'a> Drawn<'a> {
                 "<path d=\"{}\" fill=\"none\" stroke=\"{stroke}\" stroke-width=\"{width}\"/>",
                 line(&path.points())
             );
+            let _ = writeln!(out, "<path d=\"{}Z\" fill=\"{stroke}\"/>", line(&arrow(&path.points())));
             let [tx, ty] = at(&path.at(path.length() / 2.0));
             let name = escaped(&e.name);
             let _ = writeln!(

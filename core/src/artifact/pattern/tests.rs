@@ -114,7 +114,7 @@ fn a_lowered_pattern_keeps_every_length_and_carries_every_kind() {
     let inner: Vec<(&str, bool)> =
         lowered.outlines["front"].inner.iter().map(|l| (l.name.as_str(), l.gauge.is_some())).collect();
     assert_eq!(inner, [("dart_a", false), ("pocket", true)]);
-    assert_eq!(lowered.notes, ["the slit \"slit\" of piece \"front\" is not cut"]);
+    assert_eq!(lowered.warnings, ["the slit \"slit\" of piece \"front\" is not cut"]);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is drawn of a piece, millimetres.
 
 use super::Standard;
-use super::text::Tags;
+use super::text::{Tags, encoded};
 use crate::flatten::{flatten, loop_points};
 use crate::inside::bounds;
 use crate::marks::{self, NotchMark, SeamMark};
@@ -116,9 +116,9 @@ impl<'a> Block<'a> {
         mm(self.bounds().0)
     }
 
-    pub(super) fn write(&self, tags: &mut Tags, standard: Standard, size: &str) {
+    pub(super) fn write(&self, tags: &mut Tags, standard: Standard, size: &str, ascii: bool) {
         tags.tag(0, "BLOCK").tag(8, 0).tag(2, &self.name).tag(70, 64).point(10, [0.0, 0.0]);
-        self.texts(tags, standard, size);
+        self.texts(tags, standard, size, ascii);
         for line in self.boundary() {
             let line = all_mm(line);
             tags.polyline(1, &line);
@@ -142,10 +142,10 @@ impl<'a> Block<'a> {
     }
 
     /// The texts by which programs know a piece, and those for people.
-    fn texts(&self, tags: &mut Tags, standard: Standard, size: &str) {
+    fn texts(&self, tags: &mut Tags, standard: Standard, size: &str, ascii: bool) {
         let (lo, hi) = self.bounds();
         let [x, y] = mm(nalgebra::center(&lo, &hi));
-        let name = &self.names.piece;
+        let name = encoded(&self.names.piece, ascii);
         let quantity = match standard {
             Standard::Aama => "Quantity: 1",
             Standard::Astm => "Quantity: 1,0",

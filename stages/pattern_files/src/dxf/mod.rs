@@ -22,7 +22,7 @@ use crate::sidecar;
 use crate::written::Written;
 use block::Block;
 use std::collections::BTreeSet;
-use text::{Tags, encoded};
+use text::{Tags, encoded, held};
 use toile_core::artifact::{Pattern, Piece};
 
 /// Characters of a piece's name.
@@ -60,8 +60,7 @@ pub fn to_dxf(pattern: &Pattern, standard: Standard, options: &Options) -> Resul
 }
 
 fn made(pattern: &Pattern, standard: Standard, options: &Options, cut: &CutLines, ascii: bool) -> Written {
-    let mut notes = cut.notes.clone();
-    notes.extend(left_out(&pattern.pieces));
+    let (mut notes, mut warnings) = (left_out(&pattern.pieces), cut.notes.clone());
     let numbers = marks::seam_marks(pattern);
     let size = match one_line(&options.size, MOST_NAME) {
         size if size.is_empty() => ONE_SIZE.to_owned(),
@@ -70,26 +69,26 @@ fn made(pattern: &Pattern, standard: Standard, options: &Options, cut: &CutLines
     let (mut names, mut taken, mut block_names) = (FileNames::default(), BTreeSet::new(), BTreeSet::new());
     let mut blocks = Vec::with_capacity(pattern.pieces.len());
     for (k, p) in pattern.pieces.iter().enumerate() {
-        let label = unique(&mut taken, &sewable(&encoded(&one_line(&p.name, MOST_NAME), ascii)));
+        let label = unique(&mut taken, &sewable(&held(&one_line(&p.name, MOST_NAME))));
         if label != p.name {
             notes.push(format!("piece \"{}\" is called \"{label}\" in the file", p.name));
         }
         let name = block_name(&label, &size, &mut block_names);
         let block = Block::new(p, cut.lines[k].as_deref(), &cut.widths[k], &numbers[k], [name, label]);
-        notes.extend(block.notes.iter().cloned());
+        warnings.extend(block.notes.iter().cloned());
         names.insert(&p.name, block.names.clone());
         blocks.push(block);
     }
     let mut tags = Tags::default();
     tags.section("HEADER").tag(9, "$ACADVER").tag(1, "AC1009").tag(9, "$DWGCODEPAGE").tag(3, "ansi_1252");
     tags.end().section("BLOCKS");
-    blocks.iter().for_each(|b| b.write(&mut tags, standard, &size));
+    blocks.iter().for_each(|b| b.write(&mut tags, standard, &size, ascii));
     tags.end().section("ENTITIES");
     entities(&mut tags, pattern, &blocks, standard, options, &size, ascii);
     tags.end().tag(0, "EOF");
     let (seams, mut told) = sidecar::along(pattern, &names);
-    notes.append(&mut told);
-    Written { bytes: tags.bytes(), seams, notes }
+    warnings.append(&mut told);
+    Written { bytes: tags.bytes(), seams, notes, warnings }
 }
 
 /// What the format has no place for, a sentence for each kind.

@@ -66,6 +66,11 @@ fn number(n: f64) -> String {
     if text == "-0.000000" { "0.000000".to_owned() } else { text }
 }
 
+/// A text with what a file holds of it: characters beyond sixteen bits become a `_`.
+pub(super) fn held(text: &str) -> String {
+    text.chars().map(|c| if u32::from(c) < 0x1_0000 { c } else { '_' }).collect()
+}
+
 /// A text as it is written: characters that are not of Latin-1, and those that begin codes, as `\U+XXXX`; beyond those a `_`. All
 /// that are no ASCII where `ascii` is asked for.
 pub(super) fn encoded(text: &str, ascii: bool) -> String {

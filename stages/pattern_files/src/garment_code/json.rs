@@ -18,10 +18,12 @@ impl<T: Serialize> Serialize for InOrder<'_, T> {
     }
 }
 
-/// A whole file.
+/// A whole file. GarmentCode reads none without `parameters` and their order, of which a pattern that is drawn has none.
 #[derive(Serialize)]
 pub(super) struct File<'a> {
     pattern: Body<'a>,
+    parameters: InOrder<'a, ()>,
+    parameter_order: [&'a str; 0],
     properties: Properties,
 }
 
@@ -58,8 +60,12 @@ pub(super) struct Edge {
     endpoints: [usize; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     curvature: Option<Curvature>,
+    /// GarmentCode wants both edges of a stitch to have the same one, or one of them none.
     #[serde(skip_serializing_if = "Option::is_none")]
     label: Option<String>,
+    /// What it is called where it may have no label; GarmentCode does not look at it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    name: Option<String>,
 }
 
 #[derive(Serialize)]
@@ -109,7 +115,8 @@ impl<'a> File<'a> {
             normalized_edge_loops: true,
             units_in_meter: UNITS,
         };
-        File { pattern: Body { panels, stitches, panel_order }, properties }
+        let (parameters, parameter_order) = (InOrder(Vec::new()), []);
+        File { pattern: Body { panels, stitches, panel_order }, parameters, parameter_order, properties }
     }
 
     pub(super) fn text(&self) -> String {
@@ -120,7 +127,17 @@ impl<'a> File<'a> {
 
 impl Edge {
     pub(super) fn new(endpoints: [usize; 2], curve: &Curve, label: Option<String>) -> Self {
-        Edge { endpoints, curvature: curvature(curve), label }
+        Edge { endpoints, curvature: curvature(curve), label, name: None }
+    }
+
+    /// What it is called.
+    pub(super) fn called(&self) -> Option<&str> {
+        self.label.as_deref()
+    }
+
+    /// Its label becomes a name.
+    pub(super) fn unlabelled(&mut self) {
+        self.name = self.label.take();
     }
 }
 

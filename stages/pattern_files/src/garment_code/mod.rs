@@ -29,15 +29,16 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.15..=5.0;
 
 /// A pattern as a file of GarmentCode, with all its seams in the file beside it.
 ///
-/// An edge keeps its name as its label; `edge_0`, `edge_1`, ... by their place need none. A piece without a place is put beside
+/// An edge keeps its name as its label, as a `name` where GarmentCode would refuse two labels in one stitch; `edge_0`, `edge_1`, ... by their
+/// place need none. A piece without a place is put beside
 /// the others. Numbers are written so that they are read back to the last bit.
 ///
 /// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond [`FARTHEST`](crate::FARTHEST).
 pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
     writable(pattern)?;
-    let mut notes = left_out(&pattern.pieces);
+    let (mut notes, mut warnings) = (left_out(&pattern.pieces), Vec::new());
     let mut drawn: stitches::Curves = pattern.pieces.iter().map(|p| curves::curves(&p.outer)).collect();
-    let sewn = stitches::stitches(pattern, &mut drawn, &mut notes);
+    let sewn = stitches::stitches(pattern, &mut drawn, &mut warnings);
     let poses = places::poses(&pattern.pieces, &drawn, &sewn, &mut notes);
     let mut names = FileNames::default();
     let mut panels = Vec::with_capacity(pattern.pieces.len());
@@ -46,19 +47,31 @@ pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
         names.insert(&p.name, of_piece);
         panels.push((p.name.as_str(), panel));
     }
-    size(&pattern.pieces, &mut notes);
+    size(&pattern.pieces, &mut warnings);
+    // The panel and its edge that a side of a stitch is, by their numbers.
+    let number = |(piece, edge, k): (usize, usize, usize)| {
+        (piece, drawn[piece][..edge].iter().map(Vec::len).sum::<usize>() + k)
+    };
+    labelled_alike(&mut panels, sewn.iter().map(|s| s.sides.map(number)));
     let stitches = sewn.iter().map(|s| {
-        let side = |(piece, edge, k): (usize, usize, usize)| Side {
-            panel: &pattern.pieces[piece].name,
-            edge: drawn[piece][..edge].iter().map(Vec::len).sum::<usize>() + k,
-        };
-        Sewn::new(s.sides.map(side), s.right_wrong)
+        let side = |(piece, edge): (usize, usize)| Side { panel: &pattern.pieces[piece].name, edge };
+        Sewn::new(s.sides.map(|s| side(number(s))), s.right_wrong)
     });
     let order = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
     let text = File::new(InOrder(panels), stitches.collect(), order).text();
     let (seams, mut told) = sidecar::along(pattern, &names);
-    notes.append(&mut told);
-    Ok(Written { bytes: text.into_bytes(), seams, notes })
+    warnings.append(&mut told);
+    Ok(Written { bytes: text.into_bytes(), seams, notes, warnings })
+}
+
+/// Takes the labels from the edges of stitches whose sides are called differently: GarmentCode refuses those.
+fn labelled_alike(panels: &mut [(&str, Panel<'_>)], stitches: impl Iterator<Item = [(usize, usize); 2]>) {
+    for sides in stitches {
+        let [a, b] = sides.map(|(panel, edge)| panels[panel].1.edges[edge].called().map(str::to_owned));
+        if a.is_some() && b.is_some() && a != b {
+            sides.iter().for_each(|(panel, edge)| panels[*panel].1.edges[*edge].unlabelled());
+        }
+    }
 }
 
 /// What the format has no place for, a sentence for each kind.
@@ -79,14 +92,14 @@ fn left_out(pieces: &[Piece]) -> Vec<String> {
 }
 
 /// Tells a size that readers take for that of other units.
-fn size(pieces: &[Piece], notes: &mut Vec<String>) {
+fn size(pieces: &[Piece], told: &mut Vec<String>) {
     let span = |p: &Piece, of: fn(&toile_core::artifact::Point2) -> f64| {
         let all = || p.outer.corners.iter().map(of);
         all().fold(f64::NEG_INFINITY, f64::max) - all().fold(f64::INFINITY, f64::min)
     };
     let largest = pieces.iter().map(|p| span(p, |c| c.x).max(span(p, |c| c.y))).fold(0.0, f64::max);
     if !PLAUSIBLE.contains(&largest) {
-        notes.push(format!(
+        told.push(format!(
             "the largest piece is {largest:.3} m long: readers that look whether a garment is of its usual size take it for one in other units"
         ));
     }

@@ -90,10 +90,10 @@ pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &Options) -> Result<Writ
         }
         None => pages.push(front::whole(pattern, &sheet)),
     }
-    let mut notes = cut.notes;
-    notes.extend(unknown_letters(pattern));
+    let mut warnings = cut.notes;
+    warnings.extend(unknown_letters(pattern));
     let bytes = document(&pattern.name, pages, drawing, sheet.size);
-    Ok(Written { bytes, seams: String::new(), notes })
+    Ok(Written { bytes, seams: String::new(), notes: Vec::new(), warnings })
 }
 
 /// Lays the pieces on one sheet, the narrowest that is short enough.

@@ -56,8 +56,8 @@ const ARROW: f64 = 5e-3;
 pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;
-    let CutLines { lines: cut, mut notes, .. } = cut;
-    notes.extend(left_out(&pattern.pieces));
+    let CutLines { lines: cut, notes: mut warnings, .. } = cut;
+    let mut notes = left_out(&pattern.pieces);
     let numbers = marks::seam_marks(pattern);
     let mut names = FileNames::default();
     let mut taken = BTreeSet::new();
@@ -69,7 +69,7 @@ pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteErro
         }
         let one = Drawn::new(p, cut.as_deref(), numbers, &label);
         if one.area < LEAST_AREA {
-            notes.push(format!(
+            warnings.push(format!(
                 "piece \"{}\" is smaller than 4 cm2: readers of drawings leave it out",
                 p.name
             ));
@@ -79,8 +79,8 @@ pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteErro
     }
     let text = page(&drawn, options);
     let (seams, mut told) = sidecar::along(pattern, &names);
-    notes.append(&mut told);
-    Ok(Written { bytes: text.into_bytes(), seams, notes })
+    warnings.append(&mut told);
+    Ok(Written { bytes: text.into_bytes(), seams, notes, warnings })
 }
 
 /// What a drawing has no place for, a sentence for each kind.

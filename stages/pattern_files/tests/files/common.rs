@@ -163,7 +163,8 @@ pub(crate) fn read_json(bytes: &[u8]) -> (Vec<Piece>, Vec<Stitch>) {
                 }
                 _ => EdgeCurve::Line,
             };
-            let label = e["label"].as_str().map_or_else(|| format!("edge_{i}"), str::to_owned);
+            let name = e["label"].as_str().or(e["name"].as_str());
+            let label = name.map_or_else(|| format!("edge_{i}"), str::to_owned);
             outer.corners.push(start * unit);
             outer.edges.push(edge(&label, curve));
         }

@@ -105,7 +105,7 @@ fn names_that_a_format_cannot_hold_are_changed_and_told() {
     let names: Vec<String> = read_dxf(&dxf.bytes).into_iter().map(|(name, _)| name).collect();
     assert_eq!(names, ["Ärmel <1> \"a\" & b", "fold", "\\U+8896_v2", "_x"]);
     let pdf = to_pdf(&pattern, Paper::A4, &Options::default()).unwrap();
-    assert_eq!(pdf.notes, ["1 names have letters that the fonts do not: question marks stand for them"]);
+    assert_eq!(pdf.warnings, ["1 names have letters that the fonts do not: question marks stand for them"]);
     let (pieces, _) = read_json(&to_json(&pattern).unwrap().bytes);
     assert!(pieces.iter().zip(&pattern.pieces).all(|(a, b)| a.name == b.name));
 }

@@ -1,7 +1,8 @@
 //! What may be wrong with a DXF file beyond repair.
 
+use super::super::faults::Fault;
 use thiserror::Error;
-use toile_core::{ErrorCode, StageError};
+use toile_core::ErrorCode;
 
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -37,6 +38,8 @@ pub(super) enum Damage {
     #[error("piece \"{piece}\" (line {line}): {what}")]
     Piece { piece: String, line: usize, what: String },
     #[error("{what}")]
+    Size { what: String, remedy: String },
+    #[error("{what}")]
     Unsewable { what: String, remedy: String },
 }
 
@@ -56,12 +59,12 @@ impl Damage {
                 "draw the boundary as one closed line that meets itself nowhere".into()
             }
             Damage::Mirror { .. } => "let the mirror line run along a straight edge of the boundary".into(),
-            Damage::Unsewable { remedy, .. } => remedy.clone(),
+            Damage::Size { remedy, .. } | Damage::Unsewable { remedy, .. } => remedy.clone(),
         }
     }
 
-    /// As an error of the stage that reads `file`.
-    pub(super) fn error(&self, file: &str) -> StageError {
+    /// As a fault of the file.
+    pub(super) fn fault(&self) -> Fault {
         let param = if matches!(self, Damage::NoSize { .. }) { "size" } else { "file" };
         let code = match self {
             Damage::Crosses { .. } => ErrorCode::DegenerateTriangles,
@@ -77,8 +80,9 @@ impl Damage {
             | Damage::Open { .. }
             | Damage::Mirror { .. }
             | Damage::Piece { .. }
+            | Damage::Size { .. }
             | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at(param)
+        Fault { code, param, what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

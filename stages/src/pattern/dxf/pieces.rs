@@ -3,22 +3,23 @@
 //! Method: the boundary's polylines are chained into a loop, each of them an edge (CAD programs split the boundary where seams
 //! end); a boundary in one line is split at its turn points. The grain is turned to y, a half piece unfolded at its mirror line,
 //! and everything drawn on it goes along. Where a sew line (layer 14) closes, it is the outline: the boundary is then the cut
-//! line, with the seam allowance. Limits: curve points are joined by straight lines, those of layer 84 where they are given.
+//! line, with the seam allowance. Limits: points of a polyline are joined by straight lines, those of layer 84 where they are given.
 
 use super::super::chain::{HAIR, JOINT, chained};
 use super::super::marks::{hole, notched};
 use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
-use super::super::unfold::Fold;
+use super::super::unfold::{Fold, distinct, image_word, open_ring};
 use super::damage::Damage;
-use super::entities::Block;
+use super::entities::{Block, Stroke};
 use crate::mesh::crossing::first_crossing;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// The piece of a block; `unit` is the length of the file's unit in metres.
-pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Vec<String>) -> Result<Piece, Damage> {
+pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Remarks) -> Result<Piece, Damage> {
     let at = Place { block, name, unit };
     let mut sides = at.boundary(told)?;
-    let grain = at.line(7);
+    let grain = at.line(7).next();
     // The grain turned up.
     let turn = grain.and_then(|(a, b)| (b - a).try_normalize(1e-9)).map_or([1.0, 0.0], |d| [d.y, d.x]);
     let up = move |p: Point2| Point2::new(turn[0] * p.x - turn[1] * p.y, turn[1] * p.x + turn[0] * p.y);
@@ -28,12 +29,24 @@ pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Vec<String>
     let mut drills: Vec<Point2> = block.points(&[13]).map(|(p, _)| up(p * unit)).collect();
     let mut notches: Vec<(Point2, f64)> =
         block.points(&[4, 80, 81, 82, 83]).map(|(p, d)| (up(p * unit), d * unit)).collect();
-    if let Some((a, b)) = at.line(6).map(|(a, b)| (up(a), up(b))) {
-        let fold = Fold::through(a, b).ok_or_else(|| at.mirror())?;
-        sides = fold.unfolded(&sides).ok_or_else(|| at.mirror())?;
+    let folds = at.line(6).filter_map(|(a, b)| Some((Fold::through(up(a), up(b))?, ())));
+    let folds = distinct(folds);
+    let whole = sides.clone();
+    for (k, (fold, ())) in folds.iter().enumerate() {
+        let word = image_word(k);
+        let lies = fold.holds(&whole);
+        if !lies && k > 0 {
+            told.warnings.push(format!(
+                "piece \"{name}\" (line {}): a mirror line beside the first does not lie on its boundary: left out",
+                block.line
+            ));
+            continue;
+        }
+        let unfolded = fold.unfolded(&sides, &word).filter(|_| lies).ok_or_else(|| at.mirror())?;
+        sides = unfolded.sides;
         let to = |p: Point2| fold.mirror(p);
         let doubled = |l: &PieceLine| PieceLine {
-            name: format!("{}_m", l.name),
+            name: format!("{}{word}", l.name),
             points: l.points.iter().map(|p| to(*p)).collect(),
             ..l.clone()
         };
@@ -41,7 +54,8 @@ pub(super) fn piece(block: &Block, name: &str, unit: f64, told: &mut Vec<String>
         holes.extend(holes.clone().iter().map(|h| h.iter().map(|p| to(*p)).collect()));
         drills.extend(drills.clone().iter().map(|p| to(*p)));
         notches.extend(notches.clone().iter().map(|(p, d)| (to(*p), *d)));
-        told.push(format!("piece \"{name}\" is unfolded at its mirror line"));
+        told.notes.push(format!("piece \"{name}\" is unfolded at its mirror line"));
+        told.warnings.extend(unfolded.open.iter().map(|pair| open_ring(name, pair)));
     }
     let sides = counter_clockwise(sides);
     at.simple(&sides, turn)?;
@@ -69,29 +83,31 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    fn scaled(&self, points: &[Point2]) -> Vec<Point2> {
-        let mut out: Vec<Point2> = Vec::with_capacity(points.len());
-        for p in points.iter().map(|p| p * self.unit) {
-            if out.last().is_none_or(|q| (p - q).norm() > 1e-6) {
-                out.push(p);
+    /// A line in metres, without what is shorter than a hair is wide.
+    fn scaled(&self, stroke: &Stroke) -> Side {
+        let to = |p: Point2| p * self.unit;
+        let mut side = Side { name: String::new(), start: to(stroke.start), parts: Vec::new() };
+        for (curve, end) in &stroke.parts {
+            let (curve, end) = (curve.moved(to, false), to(*end));
+            if EdgePath::new(side.end(), end, &curve).length() > 1e-6 {
+                side.parts.push((curve, end));
             }
         }
-        out
+        side
     }
 
-    /// The first line of a layer, from its first to its last point.
-    fn line(&self, layer: i32) -> Option<(Point2, Point2)> {
-        let (_, points, _) = self.block.lines(layer).next()?;
-        let (a, b) = (points[0] * self.unit, points[points.len() - 1] * self.unit);
-        ((b - a).norm() > 1e-6).then_some((a, b))
+    /// The lines of a layer, each from its first to its last point.
+    fn line(&self, layer: i32) -> impl Iterator<Item = (Point2, Point2)> {
+        let ends = self.block.lines(layer).map(|(_, s)| (s.start * self.unit, s.end() * self.unit));
+        ends.filter(|(a, b)| (b - a).norm() > 1e-6)
     }
 
     fn inner(&self, up: impl Fn(Point2) -> Point2) -> Vec<PieceLine> {
-        let all = self.block.lines(8).map(|(_, points, _)| self.scaled(points)).filter(|p| p.len() >= 2);
-        let line = |(k, points): (usize, Vec<Point2>)| PieceLine {
+        let all = self.block.lines(8).map(|(_, s)| self.scaled(s)).filter(|s| !s.parts.is_empty());
+        let line = |(k, side): (usize, Side)| PieceLine {
             name: format!("line_{k}"),
             purpose: LinePurpose::Mark,
-            points: points.into_iter().map(&up).collect(),
+            points: side.points().into_iter().map(&up).collect(),
         };
         all.enumerate().map(line).collect()
     }
@@ -99,12 +115,12 @@ impl Place<'_> {
     /// Cut-outs, not repeating their first points.
     fn holes(&self, up: impl Fn(Point2) -> Point2) -> Result<Vec<Vec<Point2>>, Damage> {
         let mut out = Vec::new();
-        for (line, points, closed) in self.block.lines(11) {
-            let mut points = self.scaled(points);
+        for (line, stroke) in self.block.lines(11) {
+            let mut points = self.scaled(stroke).points();
             let gap = (points[0] - points[points.len() - 1]).norm();
             if gap <= HAIR && points.len() > 1 {
                 points.pop();
-            } else if !closed {
+            } else if !stroke.closed {
                 let what = format!("a cut-out (line {line}) is open by {:.1} mm", gap * 1e3);
                 return Err(self.fault(what));
             }
@@ -125,11 +141,11 @@ impl Place<'_> {
     }
 
     /// The boundary, closed, its sides in order.
-    fn boundary(&self, told: &mut Vec<String>) -> Result<Vec<Side>, Damage> {
+    fn boundary(&self, told: &mut Remarks) -> Result<Vec<Side>, Damage> {
         if self.block.lines(14).next().is_some()
-            && let Ok(sides) = self.around(14, &mut Vec::new())
+            && let Ok(sides) = self.around(14, &mut Remarks::default())
         {
-            told.push(format!(
+            told.notes.push(format!(
                 "piece \"{}\" is cut along its sew line; the boundary is its cut line",
                 self.name
             ));
@@ -138,32 +154,38 @@ impl Place<'_> {
         self.around(1, told)
     }
 
-    fn around(&self, layer: i32, told: &mut Vec<String>) -> Result<Vec<Side>, Damage> {
+    fn around(&self, layer: i32, told: &mut Remarks) -> Result<Vec<Side>, Damage> {
         let mut rest: Vec<Side> = Vec::new();
-        let mut whole = None;
-        for (_, points, closed) in self.block.lines(layer) {
-            let mut points = self.scaled(&self.finer(layer, points));
-            if points.len() < 2 {
+        let mut closed: Vec<(f64, usize, Side)> = Vec::new();
+        for (line, stroke) in self.block.lines(layer) {
+            let mut side = self.scaled(&self.finer(layer, stroke));
+            let gap = (side.end() - side.start).norm();
+            if side.parts.is_empty() {
                 continue;
             }
-            let ends = (points[0] - points[points.len() - 1]).norm();
-            if closed || ends <= JOINT {
-                if ends <= JOINT {
-                    points.pop();
+            if stroke.closed || gap <= JOINT {
+                match gap <= JOINT {
+                    true => side.end_at(side.start),
+                    false => side.parts.push((EdgeCurve::Line, side.start)),
                 }
-                // The largest closed line is the outline.
-                let area = polygon_area(&points).abs();
-                if whole.as_ref().is_none_or(|(a, _)| area > *a) {
-                    whole = Some((area, points));
-                }
+                closed.push((polygon_area(&side.points()).abs(), line, side));
             } else {
-                rest.push(Side::polyline(format!("edge_{}", rest.len()), &points));
+                rest.push(Side { name: format!("edge_{}", rest.len()), ..side });
             }
         }
-        if let Some((_, points)) = whole.filter(|(_, p)| p.len() >= 3 && rest.is_empty()) {
-            let around = Side::polyline(String::new(), &[points.as_slice(), &points[..1]].concat());
-            return Ok(split(around.start, &around.parts));
+        // The largest closed line is the outline.
+        let outline = (0..closed.len()).max_by(|&i, &j| closed[i].0.total_cmp(&closed[j].0).then(j.cmp(&i)));
+        if let Some(k) = outline.filter(|_| rest.is_empty()) {
+            let (_, _, side) = closed.swap_remove(k);
+            self.left_out(layer, closed.iter().map(|(_, line, _)| *line), told);
+            let sides = split(side.start, &side.parts);
+            return if side.parts.len() < 2 && sides.len() < 2 {
+                Err(self.fault("it encloses no area".into()))
+            } else {
+                Ok(sides)
+            };
         }
+        self.left_out(layer, closed.iter().map(|(_, line, _)| *line), told);
         if rest.is_empty() {
             return Err(self.fault("it has no boundary".into()));
         }
@@ -180,23 +202,41 @@ impl Place<'_> {
         }
     }
 
-    /// The points of the quality curve (layer 84) that runs from end to end of a boundary line; its own where there is none.
-    fn finer(&self, layer: i32, points: &[Point2]) -> Vec<Point2> {
+    /// Tells lines of the boundary's layer that are no part of it.
+    fn left_out(&self, layer: i32, lines: impl Iterator<Item = usize>, told: &mut Remarks) {
+        let lines: Vec<String> = lines.map(|line| line.to_string()).collect();
+        if !lines.is_empty() {
+            told.warnings.push(format!(
+                "piece \"{}\": beside its boundary there are closed lines on layer {layer} (line {}): left out",
+                self.name,
+                lines.join(", ")
+            ));
+        }
+    }
+
+    /// The quality curve (layer 84) that runs from end to end of a boundary line; the line itself where there is none.
+    fn finer(&self, layer: i32, stroke: &Stroke) -> Stroke {
+        let points = stroke.corners();
         let near = |a: &Point2, b: &Point2| (a - b).norm() * self.unit <= JOINT;
         let (a, b) = (points[0], points[points.len() - 1]);
-        let length = polyline_length(points);
-        let alike = |fine: &[Point2]| {
-            fine.len() > points.len() && (polyline_length(fine) - length).abs() <= 0.02 * length
+        let length = polyline_length(&points);
+        let alike = |fine: &Stroke| {
+            fine.parts.len() > stroke.parts.len()
+                && (polyline_length(&fine.corners()) - length).abs() <= 0.02 * length
         };
-        let fine = self.block.lines(84).map(|(_, p, _)| p).filter(|p| layer == 1 && alike(p)).find_map(|p| {
-            let (c, d) = (p[0], p[p.len() - 1]);
+        let straight = layer == 1 && stroke.is_straight();
+        let fine = self.block.lines(84).map(|(_, s)| s).filter(|s| straight && alike(s)).find_map(|s| {
+            let (c, d) = (s.start, s.end());
             match (near(&a, &c) && near(&b, &d), near(&a, &d) && near(&b, &c)) {
-                (true, _) => Some(p.to_vec()),
-                (_, true) => Some(p.iter().rev().copied().collect()),
+                (true, _) => Some(s.clone()),
+                (_, true) => {
+                    let side = Side { name: String::new(), start: s.start, parts: s.parts.clone() }.turned();
+                    Some(Stroke { start: side.start, parts: side.parts, closed: s.closed })
+                }
                 _ => None,
             }
         });
-        fine.unwrap_or_else(|| points.to_vec())
+        fine.unwrap_or_else(|| stroke.clone())
     }
 
     fn simple(&self, sides: &[Side], turn: [f64; 2]) -> Result<(), Damage> {

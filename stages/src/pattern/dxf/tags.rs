@@ -1,9 +1,10 @@
 //! DXF as pairs of a group code and a value, with the line of each.
 //!
-//! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB. Bytes that are no UTF-8 are read as
-//! Latin-1, as old programs write them.
+//! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB. [`super::decode`] finds the letters.
 
 use super::damage::Damage;
+use super::{decode, words};
+use toile_core::Remarks;
 
 const MOST_BYTES: usize = 32 << 20;
 
@@ -25,17 +26,14 @@ impl Tag {
 }
 
 /// The pairs of a file.
-pub(super) fn tags(bytes: &[u8]) -> Result<Vec<Tag>, Damage> {
+pub(super) fn tags(bytes: &[u8], told: &mut Remarks) -> Result<Vec<Tag>, Damage> {
     if bytes.starts_with(b"AutoCAD Binary DXF") {
         return Err(Damage::Binary);
     }
     if bytes.len() > MOST_BYTES {
         return Err(Damage::Large { bytes: bytes.len(), most: MOST_BYTES });
     }
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.strip_prefix('\u{feff}').unwrap_or(text).to_owned(),
-        Err(_) => bytes.iter().map(|b| char::from(*b)).collect(),
-    };
+    let text = decode::text(bytes, told);
     let mut lines = text.lines().enumerate();
     let mut out = Vec::new();
     while let Some((i, code)) = lines.next() {
@@ -49,9 +47,18 @@ pub(super) fn tags(bytes: &[u8]) -> Result<Vec<Tag>, Damage> {
             return if ended { Ok(out) } else { Err(Damage::Code { value: short(code), line }) };
         };
         let Some((_, value)) = lines.next() else { return Err(Damage::Early { line }) };
-        out.push(Tag { code: number, value: value.trim_end_matches('\r').to_owned(), line });
+        let value = value.trim_end_matches('\r');
+        // Names of blocks and layers; texts are read where they are formed.
+        let value = if matches!(number, 2 | 8) { words::letters(value) } else { value.to_owned() };
+        out.push(Tag { code: number, value, line });
     }
     if out.is_empty() { Err(Damage::Early { line: 1 }) } else { Ok(out) }
+}
+
+/// The number that a variable of the header has.
+pub(super) fn variable(tags: &[Tag], name: &str) -> Option<i64> {
+    let at = tags.iter().position(|t| t.code == 9 && t.value.trim() == name)?;
+    tags.get(at + 1)?.value.trim().parse().ok()
 }
 
 /// A value as it stands in a message.

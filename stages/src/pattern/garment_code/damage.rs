@@ -1,7 +1,8 @@
 //! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what to do.
 
+use super::super::faults::Fault;
 use thiserror::Error;
-use toile_core::{ErrorCode, StageError, nearest};
+use toile_core::{ErrorCode, nearest};
 
 /// Why a file is refused.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -135,8 +136,8 @@ impl Damage {
         }
     }
 
-    /// As an error of the stage that reads `file`.
-    pub(super) fn error(&self, file: &str) -> StageError {
+    /// As a fault of the file.
+    pub(super) fn fault(&self) -> Fault {
         let code = match self {
             Damage::Crosses { .. } | Damage::NoArea { .. } => ErrorCode::DegenerateTriangles,
             Damage::Empty
@@ -173,6 +174,6 @@ impl Damage {
             | Damage::Twice { .. }
             | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at("file")
+        Fault { code, param: "file", what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

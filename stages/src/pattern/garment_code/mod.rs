@@ -13,12 +13,14 @@ mod stitches;
 mod tests;
 mod units;
 
+use super::faults;
 use damage::Damage;
 use json::Json;
 use panel::{Scale, made};
 use read::RawFile;
 use std::collections::BTreeSet;
 use std::sync::Arc;
+use toile_core::Remarks;
 use toile_core::artifact::Artifact;
 use toile_core::prelude::*;
 
@@ -27,7 +29,7 @@ use toile_core::prelude::*;
 /// Takes the place of photos, outlines and a style. Every panel becomes a piece as seen from outside the wearer; edges are
 /// called by the file's labels, or `edge_0`, `edge_1`, ... by their place in the file. Small damage is repaired where the
 /// intent is certain, and every repair is told: a loop open by a hair, a stitch that runs the wrong way or stands twice, units
-/// that cannot be. Other damage is refused by panel, edge and place.
+/// that cannot be. Other damage is refused by panel, edge and place, all of it at once.
 #[stage(
     role = Reader,
     source = "Korosteleva and Sorkine-Hornung 2023, pygarment 2.0",
@@ -46,13 +48,14 @@ impl GarmentCode {
     pub fn run(&self, cx: &Context) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
-        let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(|d| d.error(&self.file))?;
-        told.into_iter().for_each(|what| cx.warn(what));
+        let refused = |all: Vec<Damage>| faults::refused(&self.file, all.iter().map(Damage::fault).collect());
+        let (pattern, told) = pattern(&bytes, &super::stem(&self.file)).map_err(refused)?;
+        super::tell(told, cx);
         cx.check()?;
         let lowered = pattern
             .lower()
-            .map_err(|e| Damage::Unsewable { what: e.to_string(), remedy: e.remedy() }.error(&self.file))?;
-        lowered.notes.into_iter().for_each(|what| cx.warn(what));
+            .map_err(|e| refused(vec![Damage::Unsewable { what: e.to_string(), remedy: e.remedy() }]))?;
+        super::tell(Remarks { notes: lowered.notes, warnings: lowered.warnings }, cx);
         let outlines = lowered.outlines.into_iter().map(|(name, o)| (name, Arc::new(o))).collect();
         Ok((pattern, Set(outlines), lowered.plan))
     }
@@ -69,20 +72,43 @@ impl GarmentCode {
 }
 
 /// The pattern of a file's bytes, and what was repaired.
-fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Vec<String>), Damage> {
-    let file = RawFile::of(&Json::parse(bytes)?)?;
-    let mut told = Vec::new();
-    let scale = Scale { unit: units::metres(&file, &mut told)?, absolute: file.absolute };
+///
+/// Errors: all that is wrong with the file, in its order.
+fn pattern(bytes: &[u8], name: &str) -> Result<(Pattern, Remarks), Vec<Damage>> {
+    let one = |damage| vec![damage];
+    let json = Json::parse(bytes).map_err(one)?;
+    let mut file = RawFile::of(&json).map_err(one)?;
+    let mut faults = std::mem::take(&mut file.faults);
+    let mut told = Remarks::default();
+    // Without its unit the lengths of a file mean nothing.
+    if faults.iter().any(|f| matches!(f, Damage::Units { .. })) || file.panels.is_empty() {
+        return Err(faults);
+    }
+    let unit = match units::metres(&file, &mut told) {
+        Ok(unit) => unit,
+        Err(damage) => {
+            faults.push(damage);
+            return Err(faults);
+        }
+    };
+    let scale = Scale { unit, absolute: file.absolute };
     let mut pieces = Vec::with_capacity(file.panels.len());
     for (i, raw) in file.panels.iter().enumerate() {
         let sides = file.stitches.iter().flat_map(|s| s.sides).filter(|(p, _)| *p == i);
         let stitched: BTreeSet<usize> = sides.map(|(_, e)| e).collect();
-        pieces.push(made(raw, &stitched, scale, &mut told)?);
+        match made(raw, &stitched, scale, &mut told) {
+            Ok(made) => pieces.push(made),
+            Err(mut of_panel) => faults.append(&mut of_panel),
+        }
     }
-    let seams = stitches::seams(&file.stitches, &file.panels, &pieces, &mut told)?;
+    faults.append(&mut stitches::doubled(&file.stitches, &file.panels));
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let seams = stitches::seams(&file.stitches, &file.panels, &pieces, &mut told).map_err(one)?;
     let pattern =
         Pattern { name: name.to_owned(), pieces: pieces.into_iter().map(|m| m.piece).collect(), seams };
     let remedy = "draw the panel again; each edge needs length, and each loop area";
-    pattern.check().map_err(|what| Damage::Unsewable { what, remedy })?;
+    pattern.check().map_err(|what| one(Damage::Unsewable { what, remedy }))?;
     Ok((pattern, told))
 }

@@ -9,6 +9,7 @@ use super::damage::Damage;
 use super::read::{RawCurve, RawEdge, RawPanel};
 use crate::mesh::crossing::first_crossing;
 use std::collections::{BTreeMap, BTreeSet};
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// A gap between edges of up to this is closed, metres.
@@ -52,23 +53,28 @@ struct Link {
 }
 
 /// Makes the piece; `stitched` are the edges that stitches name. Repairs are told.
+///
+/// Errors: all that is wrong with its edges; else that it crosses itself.
 pub(super) fn made(
     raw: &RawPanel,
     stitched: &BTreeSet<usize>,
     scale: Scale,
-    told: &mut Vec<String>,
-) -> Result<Made, Damage> {
+    told: &mut Remarks,
+) -> Result<Made, Vec<Damage>> {
     let links = chained(raw, stitched, scale.unit, told)?;
-    links.iter().try_for_each(|l| drawable(raw, l, scale))?;
+    let faults: Vec<Damage> = links.iter().filter_map(|l| drawable(raw, l, scale).err()).collect();
+    if !faults.is_empty() {
+        return Err(faults);
+    }
     let names = edge_names(raw);
     let corners: Vec<Point2> = links.iter().map(|l| l.start * scale.unit).collect();
     let edges =
         links.iter().map(|l| PieceEdge { name: names[l.edge].clone(), curve: curve(raw, l, scale, told) });
     let outer = PatternLoop { edges: edges.collect(), corners };
-    let points = simple(raw, &links, &outer, scale.unit)?;
+    let points = simple(raw, &links, &outer, scale.unit).map_err(|damage| vec![damage])?;
     let area = polygon_area(&points);
     if area.abs() < LEAST_AREA {
-        return Err(Damage::NoArea { panel: raw.name.clone() });
+        return Err(vec![Damage::NoArea { panel: raw.name.clone() }]);
     }
     let inside_out = area < 0.0;
     let mut edges = vec![None; raw.edges.len()];
@@ -92,22 +98,25 @@ fn chained(
     raw: &RawPanel,
     stitched: &BTreeSet<usize>,
     unit: f64,
-    told: &mut Vec<String>,
-) -> Result<Vec<Link>, Damage> {
+    told: &mut Remarks,
+) -> Result<Vec<Link>, Vec<Damage>> {
     let ends = |e: &RawEdge| e.ends.map(|v| raw.vertices[v]);
-    let mut kept = Vec::new();
+    let (mut kept, mut faults) = (Vec::new(), Vec::new());
     for (i, e) in raw.edges.iter().enumerate() {
         let [a, b] = ends(e);
         match (b - a).norm() * unit > SPECK {
             true => kept.push(i),
             false if stitched.contains(&i) => {
-                return Err(Damage::NoLength { panel: raw.name.clone(), edge: i });
+                faults.push(Damage::NoLength { panel: raw.name.clone(), edge: i });
             }
-            false => told.push(format!("edge {i} of panel \"{}\" has no length: left out", raw.name)),
+            false => told.warnings.push(format!("edge {i} of panel \"{}\" has no length: left out", raw.name)),
         }
     }
     if kept.len() < 2 {
-        return Err(Damage::FewEdges { panel: raw.name.clone(), edges: kept.len() });
+        faults.push(Damage::FewEdges { panel: raw.name.clone(), edges: kept.len() });
+    }
+    if !faults.is_empty() {
+        return Err(faults);
     }
     let ends: Vec<[Point2; 2]> = kept.iter().map(|&i| ends(&raw.edges[i])).collect();
     let gap = |p: Point2, q: Point2| (p - q).norm() * unit;
@@ -131,11 +140,11 @@ fn chained(
         let shortest = gap(here.start, here.end).min(gap(next.start, next.end));
         if open > HAIR || open > HAIR_SHARE * shortest {
             let (panel, gap_mm) = (raw.name.clone(), open * 1e3);
-            return Err(Damage::Open { panel, edge: here.edge, next: next.edge, gap_mm });
-        }
-        if open > 0.0 {
+            faults.push(Damage::Open { panel, edge: here.edge, next: next.edge, gap_mm });
+        } else if open > 0.0 {
             links[(k + 1) % n].start = here.end;
-            told.push(format!(
+            let level = if open > SPECK { &mut told.warnings } else { &mut told.notes };
+            level.push(format!(
                 "the loop of panel \"{}\" was open by {:.3} mm between edges {} and {}: closed",
                 raw.name,
                 open * 1e3,
@@ -144,7 +153,7 @@ fn chained(
             ));
         }
     }
-    Ok(links)
+    if faults.is_empty() { Ok(links) } else { Err(faults) }
 }
 
 /// A name for each edge of the file: its label, numbered where several have it, or its number.
@@ -196,7 +205,7 @@ fn drawable(raw: &RawPanel, link: &Link, scale: Scale) -> Result<(), Damage> {
 }
 
 /// The curve of a link in the direction of the loop, metres.
-fn curve(raw: &RawPanel, link: &Link, scale: Scale, told: &mut Vec<String>) -> EdgeCurve {
+fn curve(raw: &RawPanel, link: &Link, scale: Scale, told: &mut Remarks) -> EdgeCurve {
     let (start, end) = if link.flipped { (link.end, link.start) } else { (link.start, link.end) };
     let chord = end - start;
     let across = Vector2::new(-chord.y, chord.x);
@@ -211,7 +220,7 @@ fn curve(raw: &RawPanel, link: &Link, scale: Scale, told: &mut Vec<String>) -> E
         RawCurve::Circle { radius, large, right } => {
             let (chord, radius) = (chord.norm() * scale.unit, radius.abs() * scale.unit);
             if radius < chord / 2.0 * (1.0 - 1e-6) {
-                told.push(format!(
+                told.warnings.push(format!(
                     "edge {} of panel \"{}\" is an arc of radius {:.2} mm over {:.2} mm: taken as a half circle",
                     link.edge,
                     raw.name,
@@ -257,11 +266,11 @@ fn pose(raw: &RawPanel, unit: f64) -> Pose {
     }
 }
 
-fn body_part(raw: &RawPanel, told: &mut Vec<String>) -> Option<BodyPart> {
+fn body_part(raw: &RawPanel, told: &mut Remarks) -> Option<BodyPart> {
     let label = raw.label.as_deref()?;
     let found = BodyPart::WORDS.iter().find(|(word, _)| *word == label).map(|(_, part)| *part);
     if found.is_none() {
-        told.push(format!("panel \"{}\" has the label \"{label}\", which is no part of the body", raw.name));
+        told.notes.push(format!("panel \"{}\" has the label \"{label}\", which is no part of the body", raw.name));
     }
     found
 }

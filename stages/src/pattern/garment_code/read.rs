@@ -23,6 +23,8 @@ pub(super) struct RawFile {
     pub absolute: bool,
     pub panels: Vec<RawPanel>,
     pub stitches: Vec<RawStitch>,
+    /// What is wrong, in the order of the file; panels and stitches at fault are not among the others, nor stitches of such panels.
+    pub faults: Vec<Damage>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +43,7 @@ pub(super) struct RawEdge {
     /// The vertices at its start and end.
     pub ends: [usize; 2],
     pub curve: RawCurve,
+    /// What it is called: by its label, or where the format's own label would say something else, by its name.
     pub label: Option<String>,
 }
 
@@ -57,93 +60,129 @@ pub(super) type Side = (usize, usize);
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct RawStitch {
+    /// Its number in the file.
+    pub number: usize,
     pub sides: [Side; 2],
     /// Whether start meets start.
     pub right_wrong: bool,
 }
 
 impl RawFile {
+    /// Errors: what leaves nothing to look at.
     pub(super) fn of(json: &Json) -> Result<Self, Damage> {
         let pattern = object(json, "pattern", "the file")?;
+        let mut faults = Vec::new();
         let properties = json.field("properties").filter(|p| **p != Json::Null);
         let units = properties.and_then(|p| p.field("units_in_meter")).filter(|u| **u != Json::Null);
-        let units = units.map(|u| number(u, "`units_in_meter`")).transpose()?;
-        if let Some(value) = units.filter(|u| !(*u > 0.0 && *u <= FARTHEST)) {
-            return Err(Damage::Units { value });
-        }
-        let absolute = match properties.and_then(|p| p.field("curvature_coords")) {
-            None | Some(Json::Null) => false,
-            Some(Json::Text(word)) if word == "relative" => false,
-            Some(Json::Text(word)) if word == "absolute" => true,
-            Some(Json::Text(word)) => return Err(Damage::Coordinates { word: short(word) }),
-            Some(other) => return Err(wrong("`curvature_coords`", other, "a text")),
+        let units = units.and_then(|u| kept(number(u, "`units_in_meter`"), &mut faults));
+        let sound = |value: &f64| *value > 0.0 && *value <= FARTHEST;
+        faults.extend(units.filter(|u| !sound(u)).map(|value| Damage::Units { value }));
+        let coordinates = match properties.and_then(|p| p.field("curvature_coords")) {
+            None | Some(Json::Null) => Ok(false),
+            Some(Json::Text(word)) if word == "relative" => Ok(false),
+            Some(Json::Text(word)) if word == "absolute" => Ok(true),
+            Some(Json::Text(word)) => Err(Damage::Coordinates { word: short(word) }),
+            Some(other) => Err(wrong("`curvature_coords`", other, "a text")),
         };
-        let panels = panels(pattern)?;
-        order(pattern, &panels)?;
-        let stitches = list(pattern, "stitches", "`pattern`")?;
-        most("stitches", "the file", stitches.len(), MOST_STITCHES)?;
-        let stitches = stitches.iter().enumerate().map(|(i, s)| stitch(i, s, &panels));
-        let stitches = stitches.collect::<Result<_, _>>()?;
-        Ok(RawFile { units, absolute, panels, stitches })
+        let absolute = kept(coordinates, &mut faults).unwrap_or(false);
+        let known = panels(pattern, &mut faults)?;
+        order(pattern, &known, &mut faults);
+        let stitches = list(pattern, "stitches", "`pattern`").and_then(|found| {
+            most("stitches", "the file", found.len(), MOST_STITCHES)?;
+            Ok(found)
+        });
+        let stitches = kept(stitches, &mut faults).unwrap_or_default();
+        let stitches = stitches.iter().enumerate().filter_map(|(i, s)| stitch(i, s, &known, &mut faults));
+        let stitches: Vec<RawStitch> = stitches.collect();
+        Ok(RawFile { units: units.filter(sound), absolute, panels: sound_panels(known), stitches, faults })
     }
 }
 
-fn panels(pattern: &Json) -> Result<Vec<RawPanel>, Damage> {
+/// What was read; a fault goes to the others.
+fn kept<T>(read: Result<T, Damage>, faults: &mut Vec<Damage>) -> Option<T> {
+    read.map_err(|damage| faults.push(damage)).ok()
+}
+
+/// A panel that the file has.
+struct Known {
+    name: String,
+    /// Its number among those without faults, and it; none where it has one.
+    sound: Option<(usize, RawPanel)>,
+}
+
+fn sound_panels(known: Vec<Known>) -> Vec<RawPanel> {
+    known.into_iter().filter_map(|k| k.sound).map(|(_, panel)| panel).collect()
+}
+
+fn panels(pattern: &Json, faults: &mut Vec<Damage>) -> Result<Vec<Known>, Damage> {
     let Json::Object(fields) = object(pattern, "panels", "`pattern`")? else { return Err(Damage::NoPanels) };
     if fields.is_empty() {
         return Err(Damage::NoPanels);
     }
     most("panels", "the file", fields.len(), MOST_PANELS)?;
     let mut names = BTreeSet::new();
-    let (mut out, mut edges, mut vertices) = (Vec::new(), 0, 0);
+    let (mut out, mut edges, mut vertices, mut count) = (Vec::new(), 0, 0, 0);
     for (name, value) in fields {
         if !names.insert(name) {
-            return Err(Damage::Doubled { panel: short(name) });
+            faults.push(Damage::Doubled { panel: short(name) });
+            continue;
         }
-        let panel = panel(name, value)?;
-        (edges, vertices) = (edges + panel.edges.len(), vertices + panel.vertices.len());
-        most("edges", "the file", edges, MOST_EDGES)?;
-        most("vertices", "the file", vertices, MOST_EDGES)?;
-        out.push(panel);
+        let sound = panel(name, value, faults).map(|panel| (count, panel));
+        if let Some((_, panel)) = &sound {
+            count += 1;
+            (edges, vertices) = (edges + panel.edges.len(), vertices + panel.vertices.len());
+            most("edges", "the file", edges, MOST_EDGES)?;
+            most("vertices", "the file", vertices, MOST_EDGES)?;
+        }
+        out.push(Known { name: name.clone(), sound });
     }
     Ok(out)
 }
 
 /// Every panel that the file's order of panels names is there.
-fn order(pattern: &Json, panels: &[RawPanel]) -> Result<(), Damage> {
-    let Some(Json::List(order)) = pattern.field("panel_order") else { return Ok(()) };
+fn order(pattern: &Json, panels: &[Known], faults: &mut Vec<Damage>) {
+    let Some(Json::List(order)) = pattern.field("panel_order") else { return };
     let known: BTreeSet<&str> = panels.iter().map(|p| p.name.as_str()).collect();
-    let missing = order.iter().find_map(|n| match n {
+    let missing = order.iter().filter_map(|n| match n {
         Json::Text(name) if !known.contains(name.as_str()) => Some(name),
         _ => None,
     });
-    missing.map_or(Ok(()), |panel| Err(Damage::MissingPanel { panel: short(panel) }))
+    faults.extend(missing.map(|panel| Damage::MissingPanel { panel: short(panel) }));
 }
 
-fn panel(name: &str, value: &Json) -> Result<RawPanel, Damage> {
+/// The panel, where nothing of it is at fault.
+fn panel(name: &str, value: &Json, faults: &mut Vec<Damage>) -> Option<RawPanel> {
+    let before = faults.len();
     let at = format!("panel \"{}\"", short(name));
     let three = |field: &str| -> Result<Vector3, Damage> {
         let [x, y, z] = numbers(part(value, field, &at)?, &format!("`{field}` of {at}"))?;
         Ok(Vector3::new(x, y, z))
     };
-    let vertices = list(value, "vertices", &at)?;
-    most("vertices", &at, vertices.len(), MOST_EDGES)?;
+    let listed = |field: &'static str| {
+        let found = list(value, field, &at)?;
+        most(field, &at, found.len(), MOST_EDGES)?;
+        Ok(found)
+    };
+    let vertices = kept(listed("vertices"), faults)?;
     let vertex = |(i, v): (usize, &Json)| point(v, &format!("vertex {i} of {at}"));
-    let vertices = vertices.iter().enumerate().map(vertex).collect::<Result<Vec<_>, _>>()?;
-    let edges = list(value, "edges", &at)?;
-    most("edges", &at, edges.len(), MOST_EDGES)?;
-    let edges = edges.iter().enumerate().map(|(i, e)| edge(i, e, name, vertices.len()));
-    let edges = edges.collect::<Result<Vec<_>, _>>()?;
+    let points = vertices.iter().enumerate().filter_map(|v| kept(vertex(v), faults)).collect();
+    let edges = kept(listed("edges"), faults)?;
     if edges.len() < 2 {
-        return Err(Damage::FewEdges { panel: short(name), edges: edges.len() });
+        faults.push(Damage::FewEdges { panel: short(name), edges: edges.len() });
     }
-    Ok(RawPanel {
+    let edges = edges.iter().enumerate().filter_map(|(i, e)| kept(edge(i, e, name, vertices.len()), faults));
+    let edges = edges.collect();
+    let (translation, rotation) = (kept(three("translation"), faults), kept(three("rotation"), faults));
+    if faults.len() > before {
+        return None;
+    }
+    Some(RawPanel {
         name: name.to_owned(),
-        translation: three("translation")?,
-        rotation: three("rotation")?,
-        vertices,
+        translation: translation?,
+        rotation: rotation?,
+        vertices: points,
         edges,
-        label: label(value),
+        label: text(value, "label"),
     })
 }
 
@@ -158,7 +197,7 @@ fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, Da
         None | Some(Json::Null) => RawCurve::Line,
         Some(c) => curve(i, c, panel, &at)?,
     };
-    Ok(RawEdge { ends: [vertex(ends[0])?, vertex(ends[1])?], curve, label: label(value) })
+    Ok(RawEdge { ends: [vertex(ends[0])?, vertex(ends[1])?], curve, label: text(value, "label").or_else(|| text(value, "name")) })
 }
 
 fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Damage> {
@@ -186,7 +225,24 @@ fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Dama
     }
 }
 
-fn stitch(i: usize, value: &Json, panels: &[RawPanel]) -> Result<RawStitch, Damage> {
+/// The stitch; none where it is at fault, or a panel of it is.
+fn stitch(i: usize, value: &Json, panels: &[Known], faults: &mut Vec<Damage>) -> Option<RawStitch> {
+    let (parts, right_wrong) = kept(parts(i, value), faults)?;
+    // Both sides are looked at, whatever the first one is.
+    let [a, b] = parts.map(|side| kept(self::side(i, side, panels), faults));
+    let sides = [a??, b??];
+    if sides[0] == sides[1] {
+        let (panel, edge) = sides[0];
+        let name = panels.iter().find(|p| p.sound.as_ref().is_some_and(|(k, _)| *k == panel));
+        let panel = name.map_or_else(String::new, |p| short(&p.name));
+        faults.push(Damage::Itself { stitch: i, panel, edge });
+        return None;
+    }
+    Some(RawStitch { number: i, sides, right_wrong })
+}
+
+/// The two sides of a stitch, and whether its word stands with them.
+fn parts(i: usize, value: &Json) -> Result<([&Json; 2], bool), Damage> {
     let Json::List(parts) = value else { return Err(wrong(&format!("stitch {i}"), value, "a list")) };
     let sides = parts.iter().filter(|p| !matches!(p, Json::Text(_))).count();
     let [a, b, words @ ..] = parts.as_slice() else { return Err(Damage::Sides { stitch: i, sides }) };
@@ -201,32 +257,31 @@ fn stitch(i: usize, value: &Json, panels: &[RawPanel]) -> Result<RawStitch, Dama
             _ => return Err(Damage::Sides { stitch: i, sides: parts.len() }),
         }
     }
-    let side = |value: &Json| {
-        let at = format!("a side of stitch {i}");
-        let Json::Text(name) = part(value, "panel", &at)? else {
-            return Err(wrong(&format!("`panel` of {at}"), value.field("panel").unwrap_or(value), "a text"));
-        };
-        let known = || panels.iter().map(|p| p.name.clone()).collect();
-        let panel = panels.iter().position(|p| p.name == *name);
-        let panel = panel.ok_or_else(|| Damage::NoPanel { stitch: i, panel: short(name), known: known() })?;
-        let edge = number(part(value, "edge", &at)?, &format!("`edge` of {at}"))?;
-        let count = panels[panel].edges.len();
-        match edge >= 0.0 && edge.fract() == 0.0 && edge < count as f64 {
-            true => Ok((panel, edge as usize)),
-            false => Err(Damage::NoEdge { stitch: i, panel: short(name), edge, count }),
-        }
-    };
-    let sides = [side(a)?, side(b)?];
-    if sides[0] == sides[1] {
-        let (panel, edge) = sides[0];
-        return Err(Damage::Itself { stitch: i, panel: short(&panels[panel].name), edge });
-    }
-    Ok(RawStitch { sides, right_wrong })
+    Ok(([a, b], right_wrong))
 }
 
-fn label(value: &Json) -> Option<String> {
-    match value.field("label") {
-        Some(Json::Text(label)) if !label.is_empty() => Some(label.clone()),
+/// The edge of a stitch's side; none where its panel is at fault itself.
+fn side(i: usize, value: &Json, panels: &[Known]) -> Result<Option<Side>, Damage> {
+    let at = format!("a side of stitch {i}");
+    let Json::Text(name) = part(value, "panel", &at)? else {
+        return Err(wrong(&format!("`panel` of {at}"), value.field("panel").unwrap_or(value), "a text"));
+    };
+    let known = || panels.iter().map(|p| p.name.clone()).collect();
+    let panel = panels.iter().find(|p| p.name == *name);
+    let panel = panel.ok_or_else(|| Damage::NoPanel { stitch: i, panel: short(name), known: known() })?;
+    let edge = number(part(value, "edge", &at)?, &format!("`edge` of {at}"))?;
+    let Some((k, panel)) = &panel.sound else { return Ok(None) };
+    let count = panel.edges.len();
+    match edge >= 0.0 && edge.fract() == 0.0 && edge < count as f64 {
+        true => Ok(Some((*k, edge as usize))),
+        false => Err(Damage::NoEdge { stitch: i, panel: short(name), edge, count }),
+    }
+}
+
+/// A text that is not empty.
+fn text(value: &Json, field: &str) -> Option<String> {
+    match value.field(field) {
+        Some(Json::Text(text)) if !text.is_empty() => Some(text.clone()),
         _ => None,
     }
 }

@@ -13,6 +13,7 @@ use super::damage::Damage;
 use super::panel::Made;
 use super::read::{RawPanel, RawStitch};
 use std::collections::BTreeMap;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// Edges whose directions in space agree by more than this cosine run clearly the same way.
@@ -37,31 +38,40 @@ pub(super) fn seams(
     stitches: &[RawStitch],
     panels: &[RawPanel],
     made: &[Made],
-    told: &mut Vec<String>,
+    told: &mut Remarks,
 ) -> Result<Vec<PatternSeam>, Damage> {
-    let once = once(stitches, panels, told)?;
+    let once = once(stitches, panels, told, &mut Vec::new());
     let turned: Vec<bool> = wrong_ways(&once, panels, made)?;
     unturned(&once, &turned, panels)?;
     let mut out = Vec::with_capacity(once.len());
     for (s, turn) in once.iter().zip(turned) {
         if turn {
-            told.push(format!("stitch {} ({}) runs the wrong way: turned", s.number, words(s.raw, panels)));
+            told.warnings.push(format!("stitch {} ({}) runs the wrong way: turned", s.number, words(s.raw, panels)));
         }
         out.push(seam(s.raw, s.start_to_end != turn, made));
     }
     Ok(out)
 }
 
-/// Every stitch once; no edge is sewn by two.
+/// Edges that more than one stitch sews, and stitches that contradict each other.
+pub(super) fn doubled(stitches: &[RawStitch], panels: &[RawPanel]) -> Vec<Damage> {
+    let mut faults = Vec::new();
+    once(stitches, panels, &mut Remarks::default(), &mut faults);
+    faults
+}
+
+/// Every stitch once; no edge is sewn by two, which is a fault.
 fn once<'a>(
     stitches: &'a [RawStitch],
     panels: &[RawPanel],
-    told: &mut Vec<String>,
-) -> Result<Vec<Stitch<'a>>, Damage> {
+    told: &mut Remarks,
+    faults: &mut Vec<Damage>,
+) -> Vec<Stitch<'a>> {
     let mut seen: BTreeMap<[(usize, usize); 2], usize> = BTreeMap::new();
     let mut sewn: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     let mut out: Vec<Stitch<'a>> = Vec::new();
-    for (number, raw) in stitches.iter().enumerate() {
+    for raw in stitches {
+        let number = raw.number;
         let mut key = raw.sides;
         key.sort_unstable();
         match seen.get(&key).map(|&i| &out[i]) {
@@ -69,21 +79,21 @@ fn once<'a>(
                 for side in key {
                     if let Some(stitch) = sewn.insert(side, number) {
                         let (panel, edge) = (panels[side.0].name.clone(), side.1);
-                        return Err(Damage::Shared { panel, edge, stitch, other: number });
+                        faults.push(Damage::Shared { panel, edge, stitch, other: number });
                     }
                 }
                 seen.insert(key, out.len());
                 out.push(Stitch { number, raw, start_to_end: !raw.right_wrong });
             }
-            Some(first) if first.start_to_end != raw.right_wrong => told.push(format!(
+            Some(first) if first.start_to_end != raw.right_wrong => told.warnings.push(format!(
                 "stitch {number} ({}) is stitch {} again: left out",
                 words(raw, panels),
                 first.number
             )),
-            Some(first) => return Err(Damage::Contradiction { stitch: first.number, other: number }),
+            Some(first) => faults.push(Damage::Contradiction { stitch: first.number, other: number }),
         }
     }
-    Ok(out)
+    out
 }
 
 fn words(s: &RawStitch, panels: &[RawPanel]) -> String {

@@ -6,6 +6,7 @@
 
 use super::damage::Damage;
 use super::read::RawFile;
+use toile_core::Remarks;
 use toile_core::artifact::Point2;
 
 /// The size of the largest panel, metres.
@@ -19,12 +20,12 @@ const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
 const DEFAULT: f64 = 100.0;
 
 /// Metres in a unit.
-pub(super) fn metres(file: &RawFile, told: &mut Vec<String>) -> Result<f64, Damage> {
+pub(super) fn metres(file: &RawFile, told: &mut Remarks) -> Result<f64, Damage> {
     let size = file.panels.iter().map(|p| extent(&p.vertices)).fold(0.0, f64::max);
     let fits = |units: f64| (PLAUSIBLE.0..=PLAUSIBLE.1).contains(&(size / units));
     let said = file.units.unwrap_or(DEFAULT);
     if file.units.is_none() {
-        told.push("the file does not say its units: read as centimetres".to_owned());
+        told.notes.push("the file does not say its units: read as centimetres".to_owned());
     }
     if fits(said) {
         return Ok(1.0 / said);
@@ -33,7 +34,7 @@ pub(super) fn metres(file: &RawFile, told: &mut Vec<String>) -> Result<f64, Dama
     let likely = |units: &f64| (LIKELY.0..=LIKELY.1).contains(&(size / units));
     match USUAL.into_iter().find(likely) {
         Some(units) => {
-            told.push(format!(
+            told.warnings.push(format!(
                 "with {said} units in a metre the largest panel is {:.3} m long: read with {units:.4} units in a metre, {:.3} m",
                 size / said,
                 size / units

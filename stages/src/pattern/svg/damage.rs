@@ -1,8 +1,9 @@
 //! What may be wrong with an SVG file beyond repair.
 
+use super::super::faults::Fault;
 use std::fmt;
 use thiserror::Error;
-use toile_core::{ErrorCode, StageError};
+use toile_core::ErrorCode;
 
 /// An element with its place in the file, both counted from 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +56,8 @@ pub(super) enum Damage {
     #[error("piece \"{piece}\", {place}: {what}")]
     Piece { piece: String, place: Place, what: &'static str },
     #[error("{what}")]
+    Size { what: String, remedy: String },
+    #[error("{what}")]
     Unsewable { what: String, remedy: String },
 }
 
@@ -79,12 +82,12 @@ impl Damage {
                 "draw the outline as one closed line that meets itself nowhere".into()
             }
             Damage::Fold { .. } => "let the line called fold run along a straight edge of the outline".into(),
-            Damage::Unsewable { remedy, .. } => remedy.clone(),
+            Damage::Size { remedy, .. } | Damage::Unsewable { remedy, .. } => remedy.clone(),
         }
     }
 
-    /// As an error of the stage that reads `file`.
-    pub(super) fn error(&self, file: &str) -> StageError {
+    /// As a fault of the file.
+    pub(super) fn fault(&self) -> Fault {
         let code = match self {
             Damage::Crosses { .. } => ErrorCode::DegenerateTriangles,
             Damage::Compressed
@@ -101,8 +104,9 @@ impl Damage {
             | Damage::Open { .. }
             | Damage::Fold { .. }
             | Damage::Piece { .. }
+            | Damage::Size { .. }
             | Damage::Unsewable { .. } => ErrorCode::PatternLoading,
         };
-        StageError::new(code, format!("\"{file}\": {self}")).hint(self.remedy()).at("file")
+        Fault { code, param: "file", what: self.to_string(), remedy: Some(self.remedy()) }
     }
 }

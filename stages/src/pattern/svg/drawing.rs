@@ -17,6 +17,8 @@ use toile_core::prelude::*;
 
 const MOST_ELEMENTS: usize = 100_000;
 const MOST_DEPTH: usize = 100;
+/// A line leads to a dimension's arrow that ends as near as this, metres.
+const LEADER: f64 = 5e-4;
 /// Greater coordinates are no garment's, metres.
 const FAR: f64 = 1e4;
 
@@ -68,6 +70,8 @@ pub(super) struct Drawing<'t> {
     pub texts: Vec<Words>,
     /// Pictures of pixels.
     pub pictures: usize,
+    /// Arrows of dimensions, and the lines that lead to them.
+    pub dimensions: usize,
 }
 
 /// What holds where the walk is.
@@ -96,7 +100,31 @@ pub(super) fn drawing<'t>(root: Node<'t, 't>, unit: f64) -> Result<Drawing<'t>, 
     let mut walk = Walk { drawing, ids: ids.collect(), hidden, visited: 0 };
     let to = Affine::scale_non_uniform(unit, -unit);
     walk.children(root, &State { to, group: 0, role: None, depth: 0 })?;
+    walk.drawing.without_dimensions();
     Ok(walk.drawing)
+}
+
+impl Drawing<'_> {
+    /// Leaves out the arrows of dimensions, and the marks that lead straight to an end of one in their group.
+    fn without_dimensions(&mut self) {
+        let is = |s: &&Shape<'_>| s.role == Some(Role::Dimension);
+        let ends = |s: &Shape<'_>| s.lines.iter().flat_map(|l| [l.start, l.end()]).collect::<Vec<_>>();
+        let arrows: Vec<(usize, Vec<Point2>)> =
+            self.shapes.iter().filter(is).map(|s| (s.group, ends(s))).collect();
+        if arrows.is_empty() {
+            return;
+        }
+        let leads = |s: &Shape<'_>| {
+            let straight = matches!(&s.lines[..], [l] if matches!(l.parts[..], [(EdgeCurve::Line, _)]));
+            let meets = |p: &Point2| {
+                arrows.iter().any(|(group, ends)| *group == s.group && ends.iter().any(|q| (p - q).norm() <= LEADER))
+            };
+            s.role == Some(Role::Mark) && straight && ends(s).iter().any(meets)
+        };
+        let before = self.shapes.len();
+        self.shapes.retain(|s| s.role != Some(Role::Dimension) && !leads(s));
+        self.dimensions = before - self.shapes.len();
+    }
 }
 
 trait Local {
@@ -176,7 +204,7 @@ fn unescaped(id: &str) -> String {
 
 /// All that may say what an element is for.
 fn names<'t>(node: Node<'t, 't>) -> Vec<&'t str> {
-    let told = ["class", "id", "data-name", "data-text", "marker-start", "href"];
+    let told = ["class", "id", "data-name", "data-text", "marker-start", "marker-end", "href"];
     let title = node.children().find(|n| n.has_tag_name_local("title")).and_then(|n| n.text());
     let label = node.attributes().find(|a| a.name() == "label" && a.namespace().is_some()).map(|a| a.value());
     told.iter().filter_map(|name| local(node, name)).chain(title).chain(label).collect()
@@ -245,7 +273,7 @@ impl<'t> Walk<'t> {
             });
         let freesewing = id.starts_with("fs-");
         let own = if freesewing { None } else { of_group(names(node)) };
-        if own == Some(Role::Nothing) {
+        if matches!(own, Some(Role::Nothing | Role::Dimension)) {
             return Ok(());
         }
         self.drawing.groups.push(Group {

@@ -5,6 +5,7 @@
 
 mod damage;
 mod drawing;
+mod nested;
 mod path;
 mod pieces;
 mod role;
@@ -13,8 +14,10 @@ mod source;
 mod tests;
 mod units;
 
-use super::seams;
+use super::unit::{By, DrawingUnit, longest, worn};
+use super::{faults, seams};
 use damage::Damage;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// Reads the pieces of a garment from an SVG: of FreeSewing, Inkscape, Illustrator.
@@ -23,6 +26,9 @@ use toile_core::prelude::*;
 /// `grain`, `fold`, `notch`, `drill`, `hole` and `seam allowance` are what they say. Half pieces are unfolded at their fold, and cut as often
 /// as a text in them says (`cut 2` is a pair, the second mirrored). SVG knows no seams: give them in a file, or take those that
 /// `seams.ron` proposes and you have looked through. Nothing is sewn that nobody confirmed.
+///
+/// Edges run counter-clockwise around their piece, whichever way it is drawn; the pictures of `--keep` show them with arrows. A garment of a size
+/// that no one wears is refused with the `unit` that fits.
 #[stage(
     role = Reader,
     source = "SVG 1.1; FreeSewing 4",
@@ -33,6 +39,9 @@ pub struct SvgPattern {
     /// The file, relative to the pipeline.
     #[param(default = String::new())]
     pub file: String,
+    /// The unit of the drawing's numbers, those of its viewBox.
+    #[param(default = DrawingUnit::Auto)]
+    pub unit: DrawingUnit,
     /// The file with the seams, relative to the pipeline; empty where they are to be proposed.
     #[param(default = String::new())]
     pub seams: String,
@@ -44,11 +53,11 @@ impl SvgPattern {
     pub fn run(&self, cx: &Context) -> Result<(Pattern, Set<Outline>, SewingPlan, OutputFiles), StageError> {
         self.named()?;
         let bytes = cx.read(&self.file).map_err(|e| e.at("file"))?;
-        let mut told = Vec::new();
-        let pieces = pieces_of(&bytes, &mut told).map_err(|d| d.error(&self.file))?;
-        let unsewable = |what: String, remedy: &str| {
-            Damage::Unsewable { what, remedy: remedy.to_owned() }.error(&self.file)
-        };
+        let mut told = Remarks::default();
+        let refused = |all: Vec<Damage>| faults::refused(&self.file, all.iter().map(Damage::fault).collect());
+        let pieces = pieces_of(&bytes, self.unit, &mut told).map_err(refused)?;
+        let unsewable =
+            |what: String, remedy: &str| refused(vec![Damage::Unsewable { what, remedy: remedy.to_owned() }]);
         seams::sewn((super::stem(&self.file), pieces), &self.seams, told, unsewable, cx)
     }
 
@@ -63,26 +72,29 @@ impl SvgPattern {
 }
 
 /// The pieces of a file, each as often as it is cut.
-fn pieces_of(bytes: &[u8], told: &mut Vec<String>) -> Result<Vec<Piece>, Damage> {
-    let text = source::text(bytes)?;
-    let tree = source::tree(text)?;
+///
+/// Errors: all that is wrong with them.
+fn pieces_of(bytes: &[u8], unit: DrawingUnit, told: &mut Remarks) -> Result<Vec<Piece>, Vec<Damage>> {
+    let one = |damage| vec![damage];
+    let text = source::text(bytes).map_err(one)?;
+    let tree = source::tree(text).map_err(one)?;
     let root = tree.root_element();
-    let unit = units::unit(root, text)?;
-    let drawing = drawing::drawing(root, unit.metres)?;
+    let taken = units::unit(root, text, unit).map_err(one)?;
+    let drawing = drawing::drawing(root, taken.metres).map_err(one)?;
+    if drawing.dimensions > 0 {
+        told.notes.push(format!("{} dimension lines are left out", drawing.dimensions));
+    }
     // FreeSewing says which pairs are mirrored; a person who writes "cut 2" means a pair.
     let by_word = root.has_attribute("freesewing");
-    let mut of_pieces = Vec::new();
-    let pieces = pieces::pieces(&drawing, by_word, &mut of_pieces)?;
-    told.push(match unit.said {
-        true => unit.words,
-        false => {
-            let tall = pieces.iter().flat_map(|p| p.outer.corners.iter().map(|c| c.y));
-            let (lo, hi) = tall.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), y| (a.min(y), b.max(y)));
-            let words = unit.words;
-            format!("the page's size is given in no unit of length: read as {words}, with which the pieces are {:.0} mm tall together; \
-                     write width and height in mm where that is wrong", (hi - lo) * 1e3)
-        }
-    });
-    told.append(&mut of_pieces);
+    let pieces = pieces::pieces(&drawing, by_word, told)?;
+    worn(&pieces, &taken).map_err(|m| one(Damage::Size { what: m.what, remedy: m.remedy }))?;
+    match taken.by {
+        By::Guess => told.warnings.push(format!(
+            "{}, and the largest piece {} long; say the drawing's unit where that is wrong, such as `--set pattern.unit=Millimetres`",
+            taken.fact,
+            longest(&pieces)
+        )),
+        By::Parameter | By::File => told.notes.push(taken.fact),
+    }
     Ok(pieces)
 }

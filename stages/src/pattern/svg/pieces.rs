@@ -1,23 +1,25 @@
 //! Pieces of what is drawn: which line is an outline, what belongs to it, how often it is cut.
 //!
 //! Method: a group that FreeSewing calls a part is a piece. Elsewhere a closed line is one: alone in its group under the group's name, else under
-//! its own. A line called a seam or an outline goes before others; of lines within each other the outermost is the outline. Lines that meet end to end are
-//! chained where a group has no closed one. Marks belong to the piece of their group, else to the piece that they lie on. Cost: shapes
-//! times pieces. Limits: a piece is larger than [`LEAST`].
+//! its own. A line called a seam or an outline goes before others; of lines within each other the outermost is the outline ([`nested`]). Lines
+//! that meet end to end are chained where a group has no closed one. Marks belong to the piece of their group, else to the piece that they lie on.
+//! What is left out is told with its place. Cost: shapes times pieces. Limits: a piece is larger than [`LEAST`].
 
 use super::super::chain::{JOINT, chained};
 use super::super::copies::{MOST_COPIES, copies};
 use super::super::marks::{hole, notched};
 use super::super::side::{Side, counter_clockwise, pattern_loop, points, split};
-use super::super::unfold::Fold;
+use super::super::unfold::{Fold, distinct, image_word, open_ring};
 use super::damage::{Damage, Place};
 use super::drawing::{Drawing, Name, Shape};
+use super::nested;
 use super::path::Line;
 use super::role::{Role, cut};
 use super::source::place;
 use crate::mesh::crossing::first_crossing;
 use crate::mesh::predicates::inside;
 use std::collections::BTreeMap;
+use toile_core::Remarks;
 use toile_core::prelude::*;
 
 /// No smaller closed line is a piece, square metres.
@@ -30,22 +32,26 @@ const MOST_PIECES: usize = 500;
 const MOST_OUTLINES: usize = 3_000;
 /// Curves shorter than this are none, metres.
 const POINT: f64 = 1e-7;
+/// Places of what is left out that are told one by one.
+const MOST_TOLD: usize = 4;
+/// Shorter lines that are left out are not told, metres.
+const SHORT: f64 = 0.01;
 /// A grain line this near to the horizontal says itself which end is up, as the sine of its angle.
 const LEVEL: f64 = 0.02;
 
 /// An outline with what it is drawn by.
-struct Outlined<'d, 't> {
-    shape: &'d Shape<'t>,
+pub(super) struct Outlined<'d, 't> {
+    pub shape: &'d Shape<'t>,
     /// Its sides, or the open lines that are to be its sides.
     sides: Vec<Side>,
     closed: bool,
     holes: Vec<Vec<Point2>>,
-    polygon: Vec<Point2>,
-    area: f64,
+    pub polygon: Vec<Point2>,
+    pub area: f64,
 }
 
 impl Outlined<'_, '_> {
-    fn has(&self, p: Point2) -> bool {
+    pub(super) fn has(&self, p: Point2) -> bool {
         inside(&self.polygon, p)
     }
 
@@ -55,44 +61,70 @@ impl Outlined<'_, '_> {
 }
 
 /// The pieces of a drawing; what was found and left out is told.
-pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Vec<String>) -> Result<Vec<Piece>, Damage> {
-    let outlines = outlines(d, told)?;
+///
+/// Errors: all that is wrong with them.
+pub(super) fn pieces(d: &Drawing<'_>, by_word: bool, told: &mut Remarks) -> Result<Vec<Piece>, Vec<Damage>> {
+    let outlines = outlines(d, told).map_err(|damage| vec![damage])?;
     if outlines.is_empty() {
-        return Err(match (d.shapes.is_empty(), d.pictures > 0, d.texts.is_empty()) {
+        return Err(vec![match (d.shapes.is_empty(), d.pictures > 0, d.texts.is_empty()) {
             (true, true, _) => Damage::PictureAlone,
             (true, false, false) => Damage::TextAlone,
             _ => Damage::NoPieces,
-        });
+        }]);
     }
     if d.pictures > 0 {
-        told.push(format!("{} pictures of pixels are left out", d.pictures));
+        told.warnings.push(format!("{} pictures of pixels are left out", d.pictures));
     }
     let names = named(d, &outlines);
     let owners = Owners::of(d, &outlines);
-    let lost = d.shapes.iter().filter(|s| is_mark(s.role) && owners.of_shape(s).is_none()).count();
-    if lost > 0 {
-        told.push(format!("{lost} marks lie on no piece: left out"));
-    }
-    let mut out = Vec::new();
+    let lost = d.shapes.iter().filter(|s| is_mark(s.role) && owners.of_shape(s).is_none());
+    left_out("marks lie on no piece", lost, told);
+    let (mut out, mut faults, mut clockwise) = (Vec::new(), Vec::new(), 0);
     for (k, outline) in outlines.iter().enumerate() {
         let mine: Vec<&Shape<'_>> = d.shapes.iter().filter(|s| owners.of_shape(s) == Some(k)).collect();
-        let piece =
-            Drawn { name: &names[k], place: place(outline.shape.node) }.piece(outline, &mine, told)?;
+        let drawn = Drawn { name: &names[k], place: place(outline.shape.node) };
+        clockwise += usize::from(outline.closed && polygon_area(&outline.polygon) < 0.0);
+        let piece = match drawn.piece(outline, &mine, told) {
+            Ok(piece) => piece,
+            Err(damage) => {
+                faults.push(damage);
+                continue;
+            }
+        };
         let texts = d.texts.iter().filter(|t| owners.at(t.group, t.at) == Some(k));
         let (plain, turned) =
             texts.filter_map(|t| cut(&t.text, by_word, MOST_COPIES)).next().unwrap_or((1, 0));
         out.extend(copies(piece, plain, turned, told));
         if out.len() > MOST_PIECES {
-            return Err(Damage::Many { what: "pieces", most: MOST_PIECES });
+            return Err(vec![Damage::Many { what: "pieces", most: MOST_PIECES }]);
         }
     }
-    if out.is_empty() { Err(Damage::NoPieces) } else { Ok(out) }
+    if clockwise > 0 {
+        told.notes.push(format!(
+            "{clockwise} pieces are drawn clockwise: their edges run counter-clockwise all the same, as the arrows in their pictures show"
+        ));
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    if out.is_empty() { Err(vec![Damage::NoPieces]) } else { Ok(out) }
+}
+
+/// Tells what is left out, and where it stands in the file.
+fn left_out<'d, 't: 'd>(why: &str, shapes: impl Iterator<Item = &'d Shape<'t>>, told: &mut Remarks) {
+    let places: Vec<&Shape<'_>> = shapes.collect();
+    if !places.is_empty() {
+        let first: Vec<String> = places.iter().take(MOST_TOLD).map(|s| place(s.node).to_string()).collect();
+        let more = places.len().saturating_sub(MOST_TOLD);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        told.warnings.push(format!("{} {why}: left out ({}{more})", places.len(), first.join(", ")));
+    }
 }
 
 fn is_mark(role: Option<Role>) -> bool {
     match role {
         Some(Role::Grain { .. } | Role::Fold | Role::Notch | Role::Drill | Role::Hole | Role::Mark) => true,
-        Some(Role::Outline | Role::Allowance | Role::Nothing) | None => false,
+        Some(Role::Outline | Role::Allowance | Role::Nothing | Role::Dimension) | None => false,
     }
 }
 
@@ -115,7 +147,7 @@ fn part(d: &Drawing<'_>, mut group: usize) -> Option<usize> {
 }
 
 /// One outline a piece, in the order of the file.
-fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Outlined<'d, 't>>, Damage> {
+fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlined<'d, 't>>, Damage> {
     let freesewing = d.groups.iter().any(|g| g.part.is_some());
     let home = |s: &Shape<'_>| if freesewing { part(d, s.group) } else { Some(owner(d, s.group)) };
     let mut groups: BTreeMap<usize, Vec<&'d Shape<'t>>> = BTreeMap::new();
@@ -126,58 +158,75 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Vec<String>) -> Result<Vec<Ou
     }
     let folds = d.shapes.iter().filter(|s| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true })));
     let folded: Vec<usize> = folds.filter_map(home).collect();
-    let mut found = Vec::new();
-    let mut small = 0;
+    let mut found: Vec<Outlined<'d, 't>> = Vec::new();
+    let (mut small, mut inner, mut loose, mut frames) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for (group, shapes) in &groups {
-        let closed: Vec<Outlined<'_, '_>> = shapes.iter().filter_map(|s| closed(s)).collect();
-        small += closed.iter().filter(|o| o.area < LEAST).count();
-        let mut closed: Vec<Outlined<'_, '_>> = closed.into_iter().filter(|o| o.area >= LEAST).collect();
+        let all = shapes.iter().flat_map(|s| closed(s));
+        let (mut closed, tiny): (Vec<Outlined<'_, '_>>, Vec<_>) = all.partition(|o| o.area >= LEAST);
+        small.extend(tiny.iter().map(|o| o.shape));
+        if closed.is_empty() {
+            found.extend(open(shapes, folded.contains(group)));
+            continue;
+        }
         if closed.iter().any(Outlined::says) {
             closed.retain(Outlined::says);
+        } else {
+            loose.extend(shapes.iter().filter(|s| is_loose(s)).copied());
         }
-        match closed.is_empty() {
-            true => found.extend(open(shapes, folded.contains(group))),
-            false if freesewing => found.extend(closed.into_iter().max_by(|a, b| a.area.total_cmp(&b.area))),
-            false => found.extend(outermost(closed)),
-        }
+        let is_sheet = *group == 0 || d.groups[*group].layer;
+        let chosen = match freesewing {
+            true => nested::largest(closed),
+            false => nested::outermost(closed, is_sheet),
+        };
+        found.extend(chosen.pieces);
+        inner.extend(chosen.within.iter().map(|o| o.shape));
+        frames.extend(chosen.frames.iter().map(|o| o.shape));
         if found.len() > MOST_OUTLINES {
             return Err(Damage::Many { what: "closed lines", most: MOST_OUTLINES });
         }
     }
-    if small > 0 {
-        told.push(format!("{small} closed lines are too small for pieces: left out"));
-    }
-    let frames = frames(d, &found);
-    if !frames.is_empty() {
-        told.push(format!(
-            "{} closed lines around pieces of other groups are taken for frames: left out",
-            frames.len()
-        ));
-    }
+    let around = around_others(d, &found);
+    frames.extend(around.iter().map(|k| found[*k].shape));
+    left_out("closed lines are too small for pieces", small.into_iter(), told);
+    left_out("closed lines lie on a piece of their group and are not called anything", inner.into_iter(), told);
+    left_out("open lines belong to no outline and are not called anything", loose.into_iter(), told);
+    left_out("closed lines around other pieces are taken for frames", frames.into_iter(), told);
     let mut k = 0;
     found.retain(|_| {
         k += 1;
-        !frames.contains(&(k - 1))
+        !around.contains(&(k - 1))
     });
     Ok(found)
 }
 
-/// A shape whose largest closed line may be an outline; those within it are holes.
-fn closed<'d, 't>(shape: &'d Shape<'t>) -> Option<Outlined<'d, 't>> {
+/// Whether a shape has open lines alone, of some length.
+fn is_loose(shape: &Shape<'_>) -> bool {
+    let open = |l: &Line| !l.closed && (l.end() - l.start).norm() > JOINT;
+    let length = |l: &Line| Side { name: String::new(), start: l.start, parts: l.parts.clone() }.length();
+    shape.lines.iter().all(open) && shape.lines.iter().map(length).sum::<f64>() > SHORT
+}
+
+/// The closed lines of a shape that may be outlines, the largest first; those that lie within one are its holes.
+fn closed<'d, 't>(shape: &'d Shape<'t>) -> Vec<Outlined<'d, 't>> {
     let ends = |l: &&Line| l.closed || (l.end() - l.start).norm() <= JOINT;
     let mut loops: Vec<(f64, Vec<Side>, Vec<Point2>)> = Vec::new();
     for line in shape.lines.iter().filter(ends) {
-        let parts = around(line);
-        if parts.len() >= 2 {
-            let sides = split(line.start, &parts);
+        let sides = split(line.start, &around(line));
+        if sides.len() >= 2 {
             let polygon = points(&sides);
             loops.push((polygon_area(&polygon).abs(), sides, polygon));
         }
     }
-    let largest = (0..loops.len()).max_by(|&i, &j| loops[i].0.total_cmp(&loops[j].0))?;
-    let (area, sides, polygon) = loops.swap_remove(largest);
-    let holes = loops.into_iter().filter(|(a, _, p)| *a > 1e-6 && inside(&polygon, p[0])).map(|(_, _, p)| p);
-    Some(Outlined { shape, sides, closed: true, holes: holes.collect(), polygon, area })
+    loops.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut out: Vec<Outlined<'d, 't>> = Vec::new();
+    for (area, sides, polygon) in loops {
+        match out.iter_mut().find(|o| o.has(polygon[0])) {
+            Some(around) if area > 1e-6 => around.holes.push(polygon),
+            Some(_) => {}
+            None => out.push(Outlined { shape, sides, closed: true, holes: Vec::new(), polygon, area }),
+        }
+    }
+    out
 }
 
 /// The curves of a closed line that have a length; a line from its end to its start where there is a gap.
@@ -188,16 +237,6 @@ fn around(line: &Line) -> Vec<(EdgeCurve, Point2)> {
         Some((_, end)) if gap <= JOINT => *end = line.start,
         Some(_) => parts.push((EdgeCurve::Line, line.start)),
         None => {}
-    }
-    // One curve that comes back to its start has two halves.
-    if let [(EdgeCurve::Cubic { controls: [b, c] }, d)] = parts[..] {
-        let (a, middle) = (line.start, |p: Point2, q: Point2| nalgebra::center(&p, &q));
-        let (ab, bc, cd) = (middle(a, b), middle(b, c), middle(c, d));
-        let (abc, bcd) = (middle(ab, bc), middle(bc, cd));
-        return vec![
-            (EdgeCurve::Cubic { controls: [ab, abc] }, middle(abc, bcd)),
-            (EdgeCurve::Cubic { controls: [bcd, cd] }, d),
-        ];
     }
     parts
 }
@@ -251,18 +290,8 @@ fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, '
     })
 }
 
-/// Those that lie in no other of them.
-fn outermost<'d, 't>(all: Vec<Outlined<'d, 't>>) -> Vec<Outlined<'d, 't>> {
-    let within = |i: usize| {
-        let other = |j: usize| j != i && all[j].area > all[i].area && all[j].has(all[i].polygon[0]);
-        (0..all.len()).any(other)
-    };
-    let inner: Vec<bool> = (0..all.len()).map(within).collect();
-    all.into_iter().zip(inner).filter(|(_, inner)| !inner).map(|(o, _)| o).collect()
-}
-
 /// The numbers of outlines that only go around those of other groups.
-fn frames(d: &Drawing<'_>, all: &[Outlined<'_, '_>]) -> Vec<usize> {
+fn around_others(d: &Drawing<'_>, all: &[Outlined<'_, '_>]) -> Vec<usize> {
     let frame = |i: &usize| {
         let a = &all[*i];
         let around = |b: &Outlined<'_, '_>| {
@@ -379,21 +408,31 @@ impl Drawn<'_> {
         &self,
         outline: &Outlined<'_, '_>,
         mine: &[&Shape<'_>],
-        told: &mut Vec<String>,
+        told: &mut Remarks,
     ) -> Result<Piece, Damage> {
-        let fold = self.fold(mine)?;
-        let mut sides = self.closed(outline, fold.as_ref().map(|(fold, _)| fold), told)?;
+        let folds = self.folds(mine)?;
+        let mut sides = self.closed(outline, folds.first().map(|(fold, _)| fold), told)?;
+        if let Some((_, at)) = folds.iter().find(|(fold, _)| !fold.holds(&sides)) {
+            return Err(self.no_fold(at.clone()));
+        }
         let grain = longest(mine, |role| matches!(role, Role::Grain { .. })).map(|(line, _)| ends(line));
         let turn = turn(grain);
         let up = move |p: Point2| Point2::new(turn.x * p.x - turn.y * p.y, turn.y * p.x + turn.x * p.y);
         sides = sides.iter().map(|s| s.moved(up, false)).collect();
         let mut marks = Marks::of(outline, mine, up);
-        if let Some((fold, at)) = fold {
-            let (a, b) = (up(fold.at), up(fold.at + fold.way));
-            let turned = Fold::through(a, b).ok_or_else(|| self.no_fold(at.clone()))?;
-            sides = turned.unfolded(&sides).ok_or_else(|| self.no_fold(at))?;
-            marks.unfold(&turned);
-            told.push(format!("piece \"{}\" is unfolded at its fold", self.name));
+        for (k, (fold, at)) in folds.iter().enumerate() {
+            let word = image_word(k);
+            let turned = Fold::through(up(fold.at), up(fold.at + fold.way));
+            let turned = turned.ok_or_else(|| self.no_fold(at.clone()))?;
+            let unfolded = turned.unfolded(&sides, &word).ok_or_else(|| self.no_fold(at.clone()))?;
+            sides = unfolded.sides;
+            marks.unfold(&turned, &word);
+            told.warnings.extend(unfolded.open.iter().map(|pair| open_ring(self.name, pair)));
+        }
+        match folds.len() {
+            0 => {}
+            1 => told.notes.push(format!("piece \"{}\" is unfolded at its fold", self.name)),
+            n => told.notes.push(format!("piece \"{}\" is unfolded at its {n} folds", self.name)),
         }
         let sides = counter_clockwise(sides);
         self.simple(&sides, turn)?;
@@ -410,14 +449,19 @@ impl Drawn<'_> {
         })
     }
 
-    /// The line at which the piece is cut on the fold, and where it stands in the file.
-    fn fold(&self, mine: &[&Shape<'_>]) -> Result<Option<(Fold, Place)>, Damage> {
-        let Some((line, shape)) = longest(mine, |r| matches!(r, Role::Fold | Role::Grain { fold: true }))
-        else {
-            return Ok(None);
+    /// The lines at which the piece is cut on the fold, the longest first, and where they stand in the file.
+    fn folds(&self, mine: &[&Shape<'_>]) -> Result<Vec<(Fold, Place)>, Damage> {
+        let is_fold = |s: &&&Shape<'_>| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true }));
+        let lines = mine.iter().filter(is_fold).flat_map(|s| s.lines.iter().map(move |l| (ends(l), *s)));
+        let mut lines: Vec<((Point2, Point2), &Shape<'_>)> =
+            lines.filter(|((a, b), _)| (b - a).norm() > 1e-4).collect();
+        lines.sort_by(|((a, b), _), ((c, d), _)| (d - c).norm().total_cmp(&(b - a).norm()));
+        let fold = |((a, b), shape): ((Point2, Point2), &Shape<'_>)| {
+            let at = place(shape.node);
+            Fold::through(a, b).map(|fold| (fold, at.clone())).ok_or_else(|| self.no_fold(at))
         };
-        let (at, (a, b)) = (place(shape.node), ends(line));
-        Fold::through(a, b).map(|fold| Some((fold, at.clone()))).ok_or_else(|| self.no_fold(at))
+        let all: Vec<(Fold, Place)> = lines.into_iter().map(fold).collect::<Result<_, _>>()?;
+        Ok(distinct(all))
     }
 
     /// The outline as a loop.
@@ -425,7 +469,7 @@ impl Drawn<'_> {
         &self,
         outline: &Outlined<'_, '_>,
         fold: Option<&Fold>,
-        told: &mut Vec<String>,
+        told: &mut Remarks,
     ) -> Result<Vec<Side>, Damage> {
         if outline.closed {
             return Ok(outline.sides.clone());
@@ -518,8 +562,11 @@ impl Marks {
         let with = |role: Role| mine.iter().filter(move |s| s.role == Some(role));
         let at = |s: &&&Shape<'_>| up(middle(s));
         let drawn_in = outline.holes.iter().map(|h| h.iter().map(|p| up(*p)).collect());
-        let around = |s: &&Shape<'_>| closed(s).map(|o| o.polygon.iter().map(|p| up(*p)).collect::<Vec<_>>());
-        let polygons = with(Role::Hole).filter_map(around).filter(|p| polygon_area(p).abs() > 1e-6);
+        let around = |s: &&Shape<'_>| {
+            let polygon = |o: Outlined<'_, '_>| o.polygon.iter().map(|p| up(*p)).collect::<Vec<_>>();
+            closed(s).into_iter().map(polygon).collect::<Vec<_>>()
+        };
+        let polygons = with(Role::Hole).flat_map(around).filter(|p| polygon_area(p).abs() > 1e-6);
         let own_lines = with(Role::Mark).flat_map(|s| s.lines.iter().map(move |l| (own_name(s), l)));
         let lines = own_lines.filter_map(|(name, l)| {
             let side = Side { name: String::new(), start: l.start, parts: drawn(l) }.moved(up, false);
@@ -546,13 +593,13 @@ impl Marks {
     }
 
     /// Adds the image of each.
-    fn unfold(&mut self, fold: &Fold) {
+    fn unfold(&mut self, fold: &Fold, word: &str) {
         let to = |p: &Point2| fold.mirror(*p);
         self.notches.extend(self.notches.clone().iter().map(|(p, d)| (to(p), *d)));
         self.drills.extend(self.drills.clone().iter().map(to));
         self.holes.extend(self.holes.clone().iter().map(|h| h.iter().map(to).collect()));
         let image = |l: &PieceLine| PieceLine {
-            name: format!("{}_m", l.name),
+            name: format!("{}{word}", l.name),
             points: l.points.iter().map(to).collect(),
             ..l.clone()
         };

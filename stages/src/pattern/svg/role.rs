@@ -22,6 +22,8 @@ pub(super) enum Role {
     Hole,
     /// A line inside that changes nothing.
     Mark,
+    /// The arrow of a dimension.
+    Dimension,
     /// What is no part of the pattern.
     Nothing,
 }
@@ -41,6 +43,7 @@ pub(super) fn role<'a>(names: impl IntoIterator<Item = &'a str>) -> Option<Role>
     let fold = begins("cutonfold") || has(&FOLD);
     match () {
         () if has(&["hidden", "logo", "scalebox"]) => Some(Role::Nothing),
+        () if begins("dimension") => Some(Role::Dimension),
         () if has(&ALLOWANCE) => Some(Role::Allowance),
         () if grain => Some(Role::Grain { fold }),
         () if fold => Some(Role::Fold),
@@ -102,6 +105,7 @@ mod tests {
         assert_eq!(is(&["note", "plugin-annotations:cutOnFold"]), Some(Role::Fold));
         assert_eq!(is(&["#bnotch"]), Some(Role::Notch));
         assert_eq!(is(&["contrast help"]), Some(Role::Mark));
+        assert_eq!(is(&["mark", "fs-18", "url(#dimensionFrom)"]), Some(Role::Dimension));
         assert_eq!(is(&["Seam allowance"]), Some(Role::Allowance));
         assert_eq!(is(&["front"]), None);
         assert_eq!(of_group(["Seam lines"]), Some(Role::Outline));

@@ -1,8 +1,9 @@
 //! The length of the file's own unit.
 //!
-//! `width` and `height` say how large the page is, `viewBox` how many units that is. Where neither is an absolute length, a unit is a
-//! pixel of CSS, of which an inch has 96; Illustrator's have 72.
+//! `width` and `height` say how large the page is, `viewBox` how many units that is. Lengths in pixels are those of CSS, of which an inch has
+//! 96; Illustrator's have 72. They say how large a page is on a screen, which need not be how large the garment is.
 
+use super::super::unit::{By, DrawingUnit, Taken};
 use super::damage::Damage;
 use super::source::{place, short};
 use roxmltree::Node;
@@ -25,52 +26,58 @@ pub(super) fn pixels(length: Length) -> Option<f64> {
     Some(length.number * unit)
 }
 
-/// How many metres a unit of the file is, and what was found.
-pub(super) struct Unit {
-    pub metres: f64,
-    /// Whether the file says it.
-    pub said: bool,
-    pub words: String,
-}
-
-/// The unit of a whole file.
-pub(super) fn unit(root: Node<'_, '_>, text: &str) -> Result<Unit, Damage> {
+/// The unit of a whole file, by the parameter `unit`, by the page's size, else as a pixel.
+pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result<Taken, Damage> {
     let view = match root.attribute("viewBox") {
         Some(value) => Some(view_box(root, value)?),
         None => None,
     };
-    let absolute = |name: &str| {
-        let length = root.attribute(name)?.trim().parse::<Length>().ok()?;
-        let says = !matches!(length.unit, LengthUnit::None | LengthUnit::Px);
-        Some(pixels(length)?).filter(|n| says && *n > 0.0).map(|n| (n * PIXEL, length.unit))
-    };
-    let name = |unit: LengthUnit| match unit {
-        LengthUnit::Mm => "millimetres",
-        LengthUnit::Cm => "centimetres",
-        LengthUnit::In => "inches",
-        _ => "points",
-    };
-    // Without a viewBox a unit is a pixel, whatever the page's size.
-    let found = [("width", view.map(|v| v.w)), ("height", view.map(|v| v.h))].into_iter().filter_map(
-        |(side, units)| {
-            let (metres, unit) = absolute(side)?;
-            Some((units.map_or(PIXEL, |n| metres / n), unit))
-        },
-    );
-    let found: Vec<(f64, LengthUnit)> = found.collect();
-    // Pictures are scaled alike both ways, to the lesser of the two.
-    if let Some((metres, unit)) = found.iter().copied().min_by(|a, b| a.0.total_cmp(&b.0)) {
-        let words = format!(
-            "the page's size is given in {}: a unit of the file is {:.4} mm",
-            name(unit),
-            metres * 1e3
-        );
-        return Ok(Unit { metres, said: true, words });
+    if let Some(metres) = asked.metres() {
+        let fact = format!("`unit` says that the drawing's units are {}", asked.word());
+        return Ok(Taken { metres, fact, by: By::Parameter });
     }
+    let sides = [("width", view.map(|v| v.w)), ("height", view.map(|v| v.h))];
     let illustrator = text.get(..4096).unwrap_or(text).contains("Adobe Illustrator");
-    let (metres, words) =
-        if illustrator { (0.0254 / 72.0, "points of Illustrator") } else { (PIXEL, "pixels, 96 an inch") };
-    Ok(Unit { metres, said: false, words: words.to_owned() })
+    let (pixel, inch) = if illustrator { (0.0254 / 72.0, 72) } else { (PIXEL, 96) };
+    // Lengths of a ruler first; pictures are scaled alike both ways, to the lesser of the two.
+    let found = |ruler: bool| {
+        let side = |(side, units): (&'static str, Option<f64>)| {
+            let length = root.attribute(side)?.trim().parse::<Length>().ok()?;
+            let is_ruler = !matches!(length.unit, LengthUnit::None | LengthUnit::Px);
+            let metres = Some(pixels(length)?).filter(|n| is_ruler == ruler && *n > 0.0)?;
+            let metres = metres * if ruler { PIXEL } else { pixel };
+            // Without a viewBox a unit is a pixel, whatever the page's size.
+            let per_unit = match units.filter(|n| *n > 0.0) {
+                Some(n) => metres / n,
+                None if ruler => PIXEL,
+                None => pixel,
+            };
+            Some((per_unit, side, root.attribute(side)?.trim(), units))
+        };
+        sides.into_iter().filter_map(side).min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let taken = |metres: f64, fact: String, by: By| {
+        let fact = format!("{fact}: a unit of the drawing is {:.4} mm", metres * 1e3);
+        Ok(Taken { metres, fact, by })
+    };
+    match (found(true), found(false)) {
+        (Some((metres, side, length, Some(units))), _) => {
+            let length = short(length);
+            taken(metres, format!("the page's {side} is {length}, {units} units of its viewBox"), By::File)
+        }
+        (Some((metres, side, length, None)), _) => {
+            let length = short(length);
+            taken(metres, format!("the page's {side} is {length}, and without a viewBox a unit is a pixel"), By::File)
+        }
+        (None, Some((metres, side, length, Some(units)))) => {
+            let length = short(length).trim_end_matches("px").to_owned();
+            let fact = format!(
+                "the page's {side} is {length} pixels, {inch} an inch, and {units} units of its viewBox"
+            );
+            taken(metres, fact, By::Guess)
+        }
+        (None, _) => taken(pixel, format!("the page's size is given in no unit of length, and pixels are {inch} an inch"), By::Guess),
+    }
 }
 
 fn view_box(root: Node<'_, '_>, value: &str) -> Result<ViewBox, Damage> {
