@@ -23,6 +23,10 @@ __attribute__((unused)) static void ends(void *data, size_t i) {
     if (i == 3) exit(0);
 }
 
+#if defined(CASE_LACKS_FUNCTION) || defined(CASE_LACKS_LIBRARY)
+int toile_helper(void);
+#endif
+
 static int32_t create(toile_text arguments, const toile_host *host, void **stage) {
     (void)arguments, (void)host;
 #if defined(CASE_EXITS_IN_CREATE)
@@ -74,6 +78,8 @@ __attribute__((unused)) static int32_t run(const void *stage, const toile_host *
     host->parallel_for(host->ctx, 8, NULL, ends);
 #elif defined(CASE_SPINS)
     spin();
+#elif defined(CASE_LACKS_FUNCTION) || defined(CASE_LACKS_LIBRARY)
+    if (toile_helper()) return TOILE_FAILED;
 #endif
     return host->give(host->ctx, 0, whole, photo);
 }

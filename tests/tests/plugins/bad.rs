@@ -1,6 +1,7 @@
 //! Libraries that are no plugins, or broken ones: each is refused or reported by name.
 
 use crate::plugins::kit::{bad, make, photo, run};
+use std::path::Path;
 use std::sync::Arc;
 use toile_pipeline::plugin::load_plugin;
 
@@ -52,8 +53,11 @@ fn what_is_no_library_is_never_loaded() {
         std::fs::write(&path, content).unwrap();
         load_plugin(&mut registry, &path, None).unwrap_err().reason
     };
-    assert_eq!(refused("empty.so", b""), "it declares no plugin");
-    assert_eq!(refused("words.so", b"a garment"), "it declares no plugin");
+    assert_eq!(refused("empty.so", b""), "it is empty");
+    assert_eq!(
+        refused("words.so", b"a garment"),
+        "it is a text, not a library: it begins with `a garment`"
+    );
     let half = refused("half.so", b"\x7fELF...toile_plugin\0");
     assert!(half == "it declares no plugin" || half.starts_with("the system cannot load it: "), "{half}");
     let torn = refused("torn.so", b"\x7fELF\0toile_plugin\0 and no more");
@@ -68,6 +72,56 @@ fn what_is_no_library_is_never_loaded() {
     let gone = load_plugin(&mut registry, &dir.path().join("gone.so"), None).unwrap_err();
     assert_eq!(gone.reason, "there is no such file");
     assert_eq!(registry.refused().len(), 7, "a refused plugin stays listed");
+}
+
+/// It would end the program where it is called first.
+#[test]
+fn a_function_that_is_not_there_is_told_when_the_plugin_is_loaded() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = bad("LACKS_FUNCTION", dir.path()).map(|_| ()).unwrap_err();
+    assert_eq!(refused.reason, "the system cannot load it: undefined symbol: toile_helper");
+    assert_eq!(
+        refused.hint.as_deref(),
+        Some(
+            "it calls `toile_helper`, which none of the libraries has that it is linked to: link that one as well \
+             (`cc ... -lNAME`), and build it again"
+        )
+    );
+}
+
+#[test]
+fn a_library_that_a_plugin_needs_and_the_system_does_not_find_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let at = |name: &str| dir.path().join(name).display().to_string();
+    let cc = |arguments: &[&str]| {
+        let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".into());
+        let made = std::process::Command::new(compiler).args(["-shared", "-fPIC"]).args(arguments).output();
+        let made = made.unwrap();
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    };
+    std::fs::write(at("helper.c"), "int toile_helper(void) { return 0; }").unwrap();
+    cc(&["-o", &at("libtoile_helper.so"), &at("helper.c")]);
+    let include = toile_tests::root().join("core/include").display().to_string();
+    let source = toile_tests::root().join("tests/faulty/bad.c").display().to_string();
+    let (flags, folder) = (["-DCASE_LACKS_LIBRARY", "-I", &include, &source], at(""));
+    let linked = ["-L", &folder, "-ltoile_helper", "-o"];
+    cc(&[&flags[..], &linked, &[&at("libneeds.so")]].concat());
+    let refused = || {
+        load_plugin(&mut toile::registry(), Path::new(&at("libneeds.so")), None).map(|_| ()).unwrap_err()
+    };
+    let words = "the system cannot load it: libtoile_helper.so: cannot open shared object file: No such file or directory";
+    let beside = refused();
+    assert_eq!(beside.reason, words);
+    let hint = format!(
+        "libtoile_helper.so lies beside it, where the system does not look: start with LD_LIBRARY_PATH={}",
+        dir.path().canonicalize().unwrap().display()
+    );
+    assert_eq!(beside.hint, Some(hint));
+    std::fs::remove_file(at("libtoile_helper.so")).unwrap();
+    let gone = refused();
+    assert_eq!(gone.reason, words);
+    let hint = "it needs libtoile_helper.so: install that, or tell the system its folder, LD_LIBRARY_PATH=FOLDER";
+    assert_eq!(gone.hint.as_deref(), Some(hint));
 }
 
 /// An interrupted link or copy leaves a part of a library, which the system would map as if it were whole.

@@ -1,8 +1,10 @@
 //! Loading a plugin: the file, the handshake, the stage tables.
 
 use super::card::{Strides, read};
+use super::first_bytes;
 use super::foreign::ForeignType;
 use super::loaded::Loaded;
+use super::refused_by_system::worded;
 use super::whole::check_whole;
 use libloading::Library;
 use std::collections::BTreeMap;
@@ -39,6 +41,16 @@ pub fn plugin_files(path: &Path) -> [PathBuf; 2] {
     [path.to_owned(), path.with_file_name(format!("{prefix}{stem}{suffix}"))]
 }
 
+/// The library of a crate that is named after its stage, as `toile new-stage` names it: `libmy_otsu.so` of `MyOtsu`.
+pub fn library_of(stage: &str) -> String {
+    let mut name = String::new();
+    for (i, c) in stage.char_indices() {
+        name.push_str(if i > 0 && c.is_ascii_uppercase() { "_" } else { "" });
+        name.push(c.to_ascii_lowercase());
+    }
+    format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX)
+}
+
 /// The first of those that is there; the name itself where none is.
 fn found(path: &Path) -> PathBuf {
     let files = plugin_files(path);
@@ -51,7 +63,7 @@ fn found(path: &Path) -> PathBuf {
 ///
 /// With `apart` a copy is loaded, so that the file may be replaced or written over while this program goes on.
 ///
-/// Errors: why it is refused. A file that is no whole library, or not the pinned one, is never loaded.
+/// Errors: why it is refused. A file that is no whole library for this machine, or not the pinned one, is never loaded.
 pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Refused> {
     let file = found(path);
     let refused =
@@ -59,6 +71,9 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     let bytes = bytes(&file).map_err(refused)?;
     let digest = Digest::of(&bytes);
     check_pin(&digest, pinned).map_err(refused)?;
+    if let Some((reason, hint)) = first_bytes::foreign(&bytes) {
+        return Err(refused((reason, Some(hint))));
+    }
     check_whole(&bytes).map_err(|why| {
         let hint = "an interrupted build or copy leaves such a file: build it again".to_owned();
         refused((format!("the system cannot load it: {why}"), Some(hint)))
@@ -74,7 +89,7 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     drop(bytes);
     let _inside = long(intern(&format!("the plugin \"{}\"", path.display())), "while it is loaded");
     let from = copy.as_ref().map_or(full.as_path(), |copy| copy.path());
-    let mut plugin = unsafe { open(from, &symbols, digest) }.map_err(refused)?;
+    let mut plugin = unsafe { open((from, &full), &symbols, digest) }.map_err(refused)?;
     plugin.file = full;
     Ok(plugin)
 }
@@ -163,13 +178,31 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     }
 }
 
+/// Opens a library with all functions that it calls: one that is not there would end the program where it is called first.
+///
 /// # Safety
 /// The library is trusted to obey the rules of the border.
-unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
-    let library = unsafe { Library::new(file) }.map_err(|e| {
-        let reason = format!("the system cannot load it: {}", without_path(&e.to_string()));
-        (reason, Some("is it a library for this machine?".to_owned()))
-    })?;
+#[cfg(unix)]
+unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
+    use libloading::os::unix::{Library as Opened, RTLD_LOCAL, RTLD_NOW};
+    unsafe { Opened::open(Some(file), RTLD_NOW | RTLD_LOCAL) }.map(Library::from)
+}
+
+/// Opens a library; this system looks for all functions at once.
+///
+/// # Safety
+/// The library is trusted to obey the rules of the border.
+#[cfg(not(unix))]
+unsafe fn opened(file: &Path) -> Result<Library, libloading::Error> {
+    unsafe { Library::new(file) }
+}
+
+/// Loads `file`, or its copy where it is loaded `from` one.
+///
+/// # Safety
+/// The library is trusted to obey the rules of the border.
+unsafe fn open((from, file): (&Path, &Path), symbols: &[Vec<u8>], digest: Digest) -> Result<Plugin, Why> {
+    let library = unsafe { opened(from) }.map_err(|e| worded(&e, from, file))?;
     let declared = symbols
         .iter()
         .find_map(|s| unsafe { library.get::<*const abi::Declaration>(s.as_slice()) }.ok().map(|d| *d));
@@ -190,11 +223,6 @@ unsafe fn open(file: &Path, symbols: &[Vec<u8>], digest: Digest) -> Result<Plugi
     let loaded = Arc::new(Loaded::new(id, words, library));
     let (cards, makers) = unsafe { stages(&declaration, &loaded)? };
     Ok(Plugin { id, file: file.to_owned(), abi: (declaration.major, declaration.minor), cards, makers })
-}
-
-/// The system's message, without the path that it begins with.
-fn without_path(message: &str) -> &str {
-    message.split_once(": ").map_or(message, |(_, rest)| rest)
 }
 
 /// Checks a declaration before anything in it is called.
