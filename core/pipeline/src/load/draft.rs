@@ -63,9 +63,35 @@ impl Draft {
     }
 }
 
-/// The nodes of the stages that could be made and are fed by such, near and far, and of each whether all its values are its own.
-pub(super) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> (Vec<Node>, Vec<bool>) {
-    let (mut nodes, mut own): (Vec<Node>, Vec<bool>) = Default::default();
+/// The stages that could be made.
+#[derive(Debug, Default)]
+pub(super) struct Finished {
+    /// Those that are fed by such, near and far.
+    pub(super) nodes: Vec<Node>,
+    /// Of each of these, whether all its values are its own.
+    pub(super) own: Vec<bool>,
+    /// The others whose values are their own, fed by nothing.
+    pub(super) alone: Vec<Node>,
+}
+
+impl Finished {
+    /// Takes all stages out of the graph, where it is not that of the file.
+    pub(super) fn apart(self) -> Self {
+        let Finished { nodes, own, mut alone } = self;
+        let of_file = nodes.into_iter().zip(own).filter(|(_, own)| *own).map(|(node, _)| node);
+        alone.extend(of_file.map(|node| Node { inputs: nothing(&node.card), ..node }));
+        Finished { alone, ..Finished::default() }
+    }
+}
+
+/// Inputs that nothing feeds.
+fn nothing(card: &Card) -> Vec<Feed> {
+    card.inputs.iter().map(|_| Feed::Nothing).collect()
+}
+
+/// The stages that could be made, of these drafts with these feeds.
+pub(super) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> Finished {
+    let mut all = Finished::default();
     // Where each draft stands among the nodes.
     let mut places: Vec<Option<usize>> = Vec::new();
     for (draft, inputs) in drafts.into_iter().zip(feeds) {
@@ -77,12 +103,19 @@ pub(super) fn finished(drafts: Vec<Draft>, feeds: Vec<Vec<Feed>>) -> (Vec<Node>,
         };
         let inputs: Option<Vec<Feed>> = inputs.into_iter().map(moved).collect();
         let is_own = draft.wrong.is_empty();
-        let node = inputs.and_then(|inputs| draft.finish(inputs));
-        places.push(node.as_ref().map(|_| nodes.len()));
-        own.extend(node.as_ref().map(|_| is_own));
-        nodes.extend(node);
+        let node = match inputs {
+            Some(inputs) => draft.finish(inputs),
+            None => {
+                let unfed = draft.card.as_ref().filter(|_| is_own).map(nothing);
+                all.alone.extend(unfed.and_then(|inputs| draft.finish(inputs)));
+                None
+            }
+        };
+        places.push(node.as_ref().map(|_| all.nodes.len()));
+        all.own.extend(node.as_ref().map(|_| is_own));
+        all.nodes.extend(node);
     }
-    (nodes, own)
+    all
 }
 
 /// Gives every stage its id: the one it asks for, else its name with a number where that is taken.

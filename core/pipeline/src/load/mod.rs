@@ -18,7 +18,9 @@
 //! Architecture invariant: nothing here knows a stage by name. Which top-level fields there are
 //! is said by the registry's sections.
 
+mod differing;
 mod draft;
+mod escapes;
 mod fault;
 mod graph;
 mod json;
@@ -43,6 +45,7 @@ mod words;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use differing::{Differing, differing};
 pub use fault::{Fault, FaultRecord, Faults, Label};
 pub use json::to_json;
 pub use migrate::{Migrated, migrate};
@@ -79,8 +82,8 @@ pub struct Changes<'a> {
     /// True of the text of a [`Pipeline`] that was loaded before: settings of qualities were checked then, against the file
     /// as it was.
     pub again: bool,
-    /// True where what stages find wrong comes out with values that are wrong: what [`crate::faults`] finds where a file has
-    /// no fault. Files are then looked at.
+    /// True where what stages find wrong comes out with the faults of the file: what [`crate::faults`] finds where it has none. Files
+    /// are then looked at.
     pub asks: bool,
 }
 
@@ -124,22 +127,25 @@ pub fn load_with(
     let told = |faults: Vec<Fault>, origin: &origin::Origin| -> Vec<Fault> {
         faults.into_iter().map(|fault| origin.told(fault)).chain(known.clone()).collect()
     };
-    let Some((read, drafts, feeds)) = check(&applied.text, &registry, &mut faults) else {
+    let lacks_plugin = faults.iter().any(|f| f.code == plugins::REFUSED);
+    let Some((read, drafts, feeds)) = check(&applied.text, (&registry, lacks_plugin), &mut faults) else {
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     };
     let is_clean = faults.is_empty() && known.is_empty();
-    let of_values = changes.asks && faults.iter().all(|f| f.code == "bad_value");
-    if !is_clean && !of_values {
+    let of_values = faults.iter().all(|f| f.code == "bad_value");
+    if !is_clean && !changes.asks {
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     }
     let mut found = told(faults, &applied.origin);
     let stem = || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
     let (qualities, quality) = (read.qualities, changes.words());
-    let (nodes, own) = draft::finished(drafts, feeds);
+    let made = draft::finished(drafts, feeds);
+    // What feeds a stage is not known of a file with other faults than values.
+    let draft::Finished { nodes, own, alone } = if of_values { made } else { made.apart() };
     let written = (text.to_owned(), applied.origin);
     let (base, file_name) = (base.to_owned(), file.to_owned());
-    let pipeline = Pipeline {
+    let mut pipeline = Pipeline {
         name,
         file: file_name,
         text: applied.text,
@@ -155,6 +161,10 @@ pub fn load_with(
     }
     let more = crate::faults(&pipeline, |i| own.get(i) == Some(&true), None);
     found.extend(more.err().into_iter().flat_map(|f| f.faults));
+    for node in alone {
+        pipeline.nodes = vec![node];
+        found.extend(crate::faults(&pipeline, |_| true, None).err().into_iter().flat_map(|f| f.faults));
+    }
     Err(Faults::new(file, text, found))
 }
 
@@ -178,17 +188,18 @@ fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> (overrides
     (overrides::apply(text, registry, &given), faults)
 }
 
-/// Reads and connects the stages; none where the text cannot be understood.
+/// Reads and connects the stages; none where the text cannot be understood. The registry may lack a plugin that is refused.
 fn check(
     text: &str,
-    registry: &Registry,
+    (registry, lacks_plugin): (&Registry, bool),
     faults: &mut Vec<Fault>,
 ) -> Option<(read::Read, Vec<draft::Draft>, Vec<Vec<Feed>>)> {
     let (tree, mut of_syntax) = repair::read(text);
     faults.append(&mut of_syntax);
-    let tree = tree?;
+    let mut tree = tree?;
+    escapes::controls(text, &mut tree, faults);
     read::doubled_keys(text, &tree, faults);
-    let mut read = read::file(text, &tree, registry, faults);
+    let mut read = read::file(text, &tree, (registry, lacks_plugin), faults);
     let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
     let feeds = graph::connect(&drafts, registry, faults);
     // What `ron` alone finds is rare (an unknown extension), and weaker than our own words.

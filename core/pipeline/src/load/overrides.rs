@@ -132,7 +132,7 @@ impl Edit {
 fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Result<(Edit, usize), Fault> {
     let o = given.o;
     let value = parse(&o.value).map_err(|e| bad_value(given, &e))?;
-    let read = read::file(text, tree, registry, &mut Vec::new());
+    let read = read::file(text, tree, (registry, false), &mut Vec::new());
     let segments: Vec<&str> = o.path.split('.').collect();
     let value_at = value.span.start;
     let walk = Walk { text, registry, given, value: &o.value[value.span], segments: &segments };

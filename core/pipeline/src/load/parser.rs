@@ -10,6 +10,7 @@ mod repairs;
 
 pub(super) use repairs::{Meant, Repairs, SyntaxFault};
 
+use super::escapes;
 use super::tree::{Bracket, Entry, Shape, Tree};
 use repairs::Repair;
 use std::ops::Range;
@@ -229,7 +230,10 @@ impl<'a> Parser<'a> {
         while let Some(c) = self.peek() {
             self.at += c.len_utf8();
             match c {
-                '\\' => self.at = self.here().end,
+                '\\' => match escapes::escape(&self.text[self.at - 1..]) {
+                    Some((length, _)) => self.at += length - 1,
+                    None => return Err(self.no_escape(from, from + open, close)),
+                },
                 c if c == close => {
                     self.last_text = Some(from..self.at);
                     if self.text[from..self.at].contains('\n') {
@@ -245,6 +249,7 @@ impl<'a> Parser<'a> {
         let words = "this text is never closed".to_owned();
         let hint = Some(format!("write `{close}` at its end"));
         let fault = fault(words.clone(), from..from + open);
+        let fault = self.quoted_end(from..end).into_iter().fold(fault, SyntaxFault::or);
         Err(fault.meant(Repair::Value(from..end), Some((words, hint, from..from + open))))
     }
 

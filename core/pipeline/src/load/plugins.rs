@@ -19,6 +19,9 @@ pub struct PluginUse {
     pub span: Range<usize>,
 }
 
+/// The code of a plugin that is refused.
+pub(super) const REFUSED: &str = "plugin_refused";
+
 /// Hexadecimal digits of a digest.
 const DIGITS: usize = 64;
 
@@ -26,10 +29,13 @@ const DIGITS: usize = 64;
 pub(super) fn read(text: &str, value: &Tree, faults: &mut Vec<Fault>) -> Vec<PluginUse> {
     let bad = |message: &str, span: &Range<usize>| Fault::new("bad_value", message).at(span, "");
     let Shape::Group { name: None, bracket: Bracket::Square, entries, .. } = &value.shape else {
-        faults.push(bad("`plugins` wants a list of texts", &value.span));
+        if !value.is_broken {
+            faults.push(bad("`plugins` wants a list of texts", &value.span));
+        }
         return Vec::new();
     };
-    let read = entries.iter().map(|e| one(text, &e.value).map_err(|(what, span)| bad(&what, &span)));
+    let whole = entries.iter().filter(|e| !e.value.is_broken);
+    let read = whole.map(|e| one(text, &e.value).map_err(|(what, span)| bad(&what, &span)));
     read.filter_map(|r| r.map_err(|f| faults.push(f)).ok()).collect()
 }
 
@@ -69,9 +75,9 @@ fn digest(text: String, at: &Tree) -> Result<String, Wrong> {
     }
 }
 
-/// The plugins that a pipeline's text asks for; nothing where it cannot be read, which the load itself reports.
+/// The plugins that a pipeline's text asks for, as far as it can be understood; its faults are reported by the load itself.
 pub fn asked(text: &str) -> Vec<PluginUse> {
-    let Ok(tree) = super::parse(text) else { return Vec::new() };
+    let Some(tree) = super::repair::read(text).0 else { return Vec::new() };
     let named =
         tree.entries().iter().find(|e| e.key.as_ref().and_then(|k| text.get(k.clone())) == Some("plugins"));
     named.map(|e| read(text, &e.value, &mut Vec::new())).unwrap_or_default()
@@ -83,7 +89,7 @@ pub(super) fn load(text: &str, base: &Path, registry: &mut Registry) -> Vec<Faul
     let loads = asked.into_iter().filter_map(|p| {
         let refused = load_plugin(registry, &base.join(&p.file), p.blake3.as_deref()).err()?;
         let message = format!("the plugin \"{}\" is refused: {}", p.file, refused.reason);
-        Some(Fault::new("plugin_refused", message).at(&p.span, "").hint(refused.hint))
+        Some(Fault::new(REFUSED, message).at(&p.span, "").hint(refused.hint))
     });
     loads.collect()
 }

@@ -9,13 +9,16 @@ use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, old_name, plugins, quali
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::param::ron_options;
-use toile_core::{Card, ParamDoc, Registry, Role, Section, SectionValue};
+use toile_core::{Card, ParamDoc, ParamFault, Registry, Role, Section, SectionValue};
 
 /// Fields that every stage may carry beside its own.
 pub(super) const GENERIC: [&str; 2] = ["id", "from"];
 
 /// Top-level fields that are no sections.
 pub(super) const PLAIN: [&str; 4] = ["name", "stages", "plugins", "qualities"];
+
+/// The most elements of one list or map whose faults are told.
+const MAX_ELEMENTS: usize = 20;
 
 /// The longest id: it becomes a folder's name.
 const MAX_ID: usize = 64;
@@ -32,9 +35,14 @@ pub(super) struct Read {
     pub(super) stages: Vec<Draft>,
 }
 
-/// Reads a whole file.
-pub(super) fn file(text: &str, tree: &Tree, registry: &Registry, faults: &mut Vec<Fault>) -> Read {
-    let mut r = Reader { text, registry, faults, before: Vec::new() };
+/// Reads a whole file; the registry may lack a plugin that is refused.
+pub(super) fn file(
+    text: &str,
+    tree: &Tree,
+    (registry, lacks_plugin): (&Registry, bool),
+    faults: &mut Vec<Fault>,
+) -> Read {
+    let mut r = Reader { text, registry, lacks_plugin, faults, before: Vec::new() };
     let Shape::Group { name: None, bracket: Bracket::Round, entries, .. } = &tree.shape else {
         r.fault("not_a_pipeline", "a pipeline file is written `(name: ..., stages: [...])`", &tree.head());
         return Read { stages: vec![Draft::unknown(&tree.span)], ..Read::default() };
@@ -70,6 +78,8 @@ type Fields<'t> = BTreeMap<String, (Range<usize>, &'t Tree)>;
 struct Reader<'a> {
     text: &'a str,
     registry: &'a Registry,
+    /// True where stages may be missing since their plugin is refused.
+    lacks_plugin: bool,
     faults: &'a mut Vec<Fault>,
     /// The stages read so far, by which those of one name are told apart.
     before: Vec<Before>,
@@ -252,9 +262,11 @@ impl Reader<'_> {
             }
             (None, _) => {
                 let listing = if section.is_some() { "there is" } else { "" };
-                let hint = toile_core::hint(name, listing, &names)
-                    .unwrap_or_else(|| "`toile stages` lists those that there are".into());
                 let near = toile_core::nearest(name, names.iter().copied());
+                let hint = match self.lacks_plugin {
+                    true => "it may be of the plugin that is refused".to_owned(),
+                    false => unknown(name, near, toile_core::hint(name, listing, &names)),
+                };
                 let meant = near.or(section.and(names.first().copied()));
                 (Fault::new("unknown_stage", format!("unknown stage `{name}`")).hint(hint), meant)
             }
@@ -337,19 +349,48 @@ impl Reader<'_> {
         self.push(Fault::new("unknown_param", message).at(key, "").hint(hint));
     }
 
-    /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it.
+    /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it. Of a list or a map, an element with a
+    /// fault is left out and the others are checked as well.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
         if value.is_broken {
             return false;
         }
-        let Err(e) = doc.check.run(self.at(&value.span), doc) else { return true };
+        let mut text = self.at(&value.span).to_owned();
+        for found in 0..MAX_ELEMENTS {
+            let Err(e) = doc.check.run(&text, doc) else { return found == 0 };
+            let element = e.offset.and_then(|o| self.element(value, value.span.start + o));
+            if found > 0 && element.is_none() {
+                return false;
+            }
+            self.wrong(doc, value, e);
+            let Some(element) = element else { return false };
+            let blank = element.start - value.span.start..element.end - value.span.start;
+            text.replace_range(blank.clone(), &" ".repeat(blank.len()));
+        }
+        false
+    }
+
+    /// The element of a list or map that has something at a byte, with the comma behind it.
+    fn element(&self, value: &Tree, at: usize) -> Option<Range<usize>> {
+        let Shape::Group { name: None, bracket: Bracket::Square | Bracket::Curly, entries, .. } = &value.shape
+        else {
+            return None;
+        };
+        let from = |e: &Entry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
+        let entry = entries.iter().find(|e| (from(e)..e.value.span.end).contains(&at))?;
+        let rest = self.text.get(entry.value.span.end..)?;
+        let comma = rest.find(|c: char| !c.is_whitespace()).filter(|i| rest[*i..].starts_with(','));
+        Some(from(entry)..entry.value.span.end + comma.map_or(0, |i| i + 1))
+    }
+
+    /// The fault of a value.
+    fn wrong(&mut self, doc: &ParamDoc, value: &Tree, e: ParamFault) {
         let (span, key) = e.offset.map_or((value.span.clone(), None), |o| value.locate(value.span.start + o));
         let message = match key {
             Some(key) => format!("`{}` in `{}`: {}", self.at(&key).trim_matches('"'), doc.name, e.reason),
             None => e.message,
         };
         self.push(Fault::new("bad_value", message).at(&span, "").hint(e.hint));
-        false
     }
 
     fn id(&mut self, value: &Tree) -> Option<(String, Range<usize>)> {
@@ -411,6 +452,20 @@ pub(super) fn doubled_keys(text: &str, tree: &Tree, faults: &mut Vec<Fault>) {
         }
     }
     tree.entries().iter().for_each(|e| doubled_keys(text, &e.value, faults));
+}
+
+/// What may be done about a stage that there is not. A name that is no misspelling, or that has a known one in it as `MyOtsu` has
+/// `Otsu`, may be of a plugin that the file does not name.
+fn unknown(name: &str, near: Option<&str>, known: Option<String>) -> String {
+    let known = known.unwrap_or_else(|| "`toile stages` lists those that there are".into());
+    match near {
+        Some(near) if !name.to_lowercase().contains(&near.to_lowercase()) => known,
+        _ => {
+            let library = crate::plugin::library_of(name);
+            let so = if known.ends_with('?') { "" } else { ";" };
+            format!("{known}{so} a stage of a plugin needs its library in the file, `plugins: [\"{library}\"]`")
+        }
+    }
 }
 
 /// A stage of that role in words: `mesher`, `body stage`.

@@ -39,7 +39,7 @@ pub struct Migrated {
 /// Errors: the text is no RON, or gives a parameter under its old name and its new one.
 pub fn migrate(text: &str, file: &str, registry: &Registry) -> Result<Migrated, Faults> {
     let tree = parse(text).map_err(|fault| Faults::new(file, text, vec![fault]))?;
-    let drafts = read::file(text, &tree, registry, &mut Vec::new());
+    let drafts = read::file(text, &tree, (registry, false), &mut Vec::new());
     let mut m = Migrator { text, registry, edits: Vec::new(), faults: Vec::new() };
     for draft in drafts.sections.iter().chain(&drafts.stages).filter(|d| !d.is_table) {
         if let Some(stage) = find(&tree, &draft.span) {

@@ -1,7 +1,8 @@
 //! What may have been meant where the parser cannot go on.
 
-use super::repairs::{Repair, SyntaxFault};
+use super::repairs::{Meant, Repair, SyntaxFault};
 use super::{Parser, fault, is_name};
+use crate::load::escapes;
 use crate::load::tree::{Bracket, Entry, Shape, Tree};
 use std::ops::Range;
 
@@ -39,6 +40,7 @@ impl Parser<'_> {
         }
         let mut fault = plain;
         if let Some(text) = self.text_before(value) {
+            fault = self.quoted_end(text.clone()).into_iter().fold(fault, SyntaxFault::or);
             let to = self.text_end(text.start + 1);
             let hint = Some("write `\"` at its end".to_owned());
             let words = ("this text is never closed".to_owned(), hint, text.start..text.start + 1);
@@ -147,6 +149,38 @@ impl Parser<'_> {
                 SyntaxFault { also, ..fault(message, self.here()) }
             }
         }
+    }
+
+    /// A backslash before the parser begins no escape, in a text that begins at `from` with its content at `inside`: the text ends at its closing
+    /// quote, or at the first quote at all, as a folder's path of Windows does.
+    pub(super) fn no_escape(&self, from: usize, inside: usize, close: char) -> SyntaxFault {
+        let at = self.at - 1;
+        let content = self.text.get(inside..).unwrap_or("");
+        let line = content.split('\n').next().unwrap_or("");
+        let to_end = |length: Option<usize>| {
+            length.map_or_else(|| self.text_end(inside), |length| inside + length + close.len_utf8())
+        };
+        let literal = line.find(close);
+        let mut escaped = false;
+        let closes = |c: char| {
+            let is_end = c == close && !escaped;
+            escaped = c == '\\' && !escaped;
+            is_end
+        };
+        let (whole, first) = (to_end(line.find(closes)), to_end(literal));
+        let (message, hint) = escapes::no_escape(&self.text[at..], &line[..literal.unwrap_or(line.len())]);
+        let span = at..self.here().end;
+        let fault = SyntaxFault { hint: Some(hint), ..fault(message, span) };
+        fault.meant(Repair::Value(from..whole), None).meant(Repair::Value(from..first), None)
+    }
+
+    /// What may have been meant by a text with a quote after a backslash: that it ends there.
+    pub(super) fn quoted_end(&self, text: Range<usize>) -> Option<Meant> {
+        let content = self.text.get(text.clone())?.strip_prefix('"')?;
+        let length = content.find("\\\"").filter(|length| !content[..*length].contains('\n'))?;
+        let at = text.start + 1 + length;
+        let (message, hint) = escapes::quoted_end(&content[..=length]);
+        Some(Meant { repair: Repair::Value(text.start..at + 2), words: Some((message, Some(hint), at..at + 2)) })
     }
 
     /// A text that ended just before: it may have run on beyond its end.

@@ -115,12 +115,13 @@ impl SyntaxFault {
     }
 
     /// Adds what may have been meant, with the words for it.
-    pub(super) fn meant(
-        mut self,
-        repair: Repair,
-        words: Option<(String, Option<String>, Range<usize>)>,
-    ) -> Self {
-        self.meant.push(Meant { repair, words });
+    pub(super) fn meant(self, repair: Repair, words: Option<(String, Option<String>, Range<usize>)>) -> Self {
+        self.or(Meant { repair, words })
+    }
+
+    /// Adds what may have been meant.
+    pub(super) fn or(mut self, meant: Meant) -> Self {
+        self.meant.push(meant);
         self
     }
 }

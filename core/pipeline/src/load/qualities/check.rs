@@ -18,7 +18,7 @@ pub(in crate::load) fn settings(text: &str, registry: &Registry) -> Vec<Fault> {
         return Vec::new();
     }
     let mut own = Vec::new();
-    check(text, registry, &mut own);
+    check(text, (registry, false), &mut own);
     let mut faults: Vec<Fault> =
         qualities.iter().flat_map(|q| one(text, registry, q, own.is_empty())).collect();
     faults.truncate(MAX_FAULTS);
@@ -33,7 +33,7 @@ fn one(text: &str, registry: &Registry, quality: &Quality, file_is_clean: bool) 
     let given: Vec<Given<'_>> = Given::of_quality(quality).collect();
     let applied = overrides::apply(text, registry, &given);
     let mut found = Vec::new();
-    check(&applied.text, registry, &mut found);
+    check(&applied.text, (registry, false), &mut found);
     let refused = applied.refused.iter().map(|(i, f)| (Some(*i), f.clone())).filter(|_| file_is_clean);
     let brought = found.into_iter().map(|f| (applied.origin.number(&f), f));
     let brought = brought.filter(|(i, _)| file_is_clean || i.is_some());

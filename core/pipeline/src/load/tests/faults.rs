@@ -33,8 +33,79 @@ fn a_stage_unlike_any_other_hides_what_it_may_have_made() {
     check(
         "Otsu()",
         "Frobnicate()",
-        &["vest.ron:13:9: unknown stage `Frobnicate`; `toile stages` lists those that there are"],
+        &[
+            "vest.ron:13:9: unknown stage `Frobnicate`; `toile stages` lists those that there are; \
+             a stage of a plugin needs its library in the file, `plugins: [\"libfrobnicate.so\"]`",
+        ],
     );
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_stage_named_after_another_may_be_of_a_plugin_that_is_not_named() {
+    let needs = |name: &str| {
+        format!("a stage of a plugin needs its library in the file, `plugins: [\"lib{name}.so\"]`")
+    };
+    let mine = format!("vest.ron:13:9: unknown stage `MyOtsu`; did you mean `Otsu`? {}", needs("my_otsu"));
+    check("Otsu()", "MyOtsu()", &[&mine]);
+    let second = format!("vest.ron:13:9: unknown stage `Otsu2`; did you mean `Otsu`? {}", needs("otsu2"));
+    check("Otsu()", "Otsu2()", &[&second]);
+    let refused = "vest.ron:3:11: the plugin \"none.so\" is refused: there is no such file; \
+                   build it first, and name the library, like target/release/libtoile_sdf.so";
+    let its = "vest.ron:13:9: unknown stage `MyOtsu`; it may be of the plugin that is refused";
+    let text = kit::VEST.replace("name: \"vest\"", "plugins: [\"none.so\"]").replace("Otsu()", "MyOtsu()");
+    let refused = refused.replace("3:11", "3:15");
+    assert_eq!(faults(&text).lines().collect::<Vec<_>>(), [refused.as_str(), its]);
+}
+
+#[test]
+fn every_element_of_a_list_or_map_is_checked() {
+    let text = kit::VEST.replace("width: \"52 cm\"", "width: 52").replace(
+        "[ Match(\"front.side_left\", \"back.side_right\") ]",
+        "[ Macth(\"a.b\", \"c.d\"), Match(\"a.b\", \"c.d\"), Match(\"a\", \"c.d\") ]",
+    );
+    let expected = [
+        "vest.ron:5:45: `width` in `photos`: the length 52 has no unit; write \"52 mm\" or \"52 cm\"",
+        "vest.ron:6:45: `width` in `photos`: the length 52 has no unit; write \"52 mm\" or \"52 cm\"",
+        "vest.ron:20:14: `seams` wants a list of Match(...): there is no choice `Macth`; did you mean `Match`?",
+        "vest.ron:20:62: `seams`: \"a\" is not an edge; write \"panel.edge\", like \"front.hem\"",
+    ];
+    assert_eq!(faults(&text).lines().collect::<Vec<_>>(), expected);
+}
+
+/// The faults of a text with what stages find wrong.
+fn with_stages(text: &str) -> Vec<String> {
+    let changes = crate::load::Changes { asks: true, ..Default::default() };
+    let registry = kit::registry();
+    let found = crate::load::load_with(text, "vest.ron", Path::new("pipelines"), &registry, &changes);
+    found.expect_err("the text has a fault").to_string().lines().map(str::to_owned).collect()
+}
+
+#[test]
+fn what_stages_find_wrong_comes_out_beside_faults_of_every_kind() {
+    let above = "Canny: `low` is above `high`";
+    let low = kit::VEST.replace("low: 20", "low: 90");
+    // A value of another stage, a stage that there is not, a field, a comma, a port, an id.
+    for (from, to, fault) in [
+        ("width: \"52 cm\"", "width: 52", "vest.ron:5:45: `width` in `photos`: the length 52 has no unit; write"),
+        ("Otsu()", "Otzu()", "vest.ron:13:9: unknown stage `Otzu`;"),
+        ("radius", "raduis", "vest.ron:12:27: unknown parameter `raduis`;"),
+        ("Otsu(),", "Otsu()", "vest.ron:13:15: a comma is missing after `Otsu()`"),
+        ("Otsu(),", "", "vest.ron:14:9: `Canny` takes a mask, but nothing before it makes one;"),
+        ("Taubin()", "Taubin(from: \"x\")", "vest.ron:16:22: no stage has the id `x`"),
+        ("name:", "colour: 3, name:", "vest.ron:3:5: unknown field `colour`;"),
+    ] {
+        assert!(low.contains(from), "{from}");
+        let found = with_stages(&low.replacen(from, to, 1));
+        assert!(found.iter().any(|line| line.starts_with(fault)), "{fault}: {found:#?}");
+        let told = found.iter().filter(|line| line.ends_with(above)).count();
+        assert_eq!(told, 1, "{to}: {found:#?}");
+        assert_eq!(found.len(), 2, "{to}: {found:#?}");
+    }
+    // A stage that has a fault of its own is not asked: the value that it was to have is not known.
+    let found = with_stages(&low.replace("high: 60", "hihg: 100"));
+    let alone = "vest.ron:14:29: unknown parameter `hihg`; did you mean `high`? `Canny` has `low`, `high`";
+    assert_eq!(found, [alone]);
 }
 
 #[test]

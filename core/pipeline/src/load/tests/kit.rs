@@ -183,7 +183,6 @@ idle! {
     Mean: (_photo: &Photo) -> Photo;
     Otsu: (_photo: &Photo) -> Mask;
     Local: (_photo: &Photo) -> Mask;
-    Canny: (_photo: &Photo, _mask: &Mask) -> Outline;
     Vest: (_outlines: Set<Outline>) -> (Set<Outline>, SewingPlan);
     Seams: (_outlines: Set<Outline>, _plan: &SewingPlan) -> (Set<Outline>, SewingPlan);
     GridMesher: (_outline: &Outline) -> Panel;
@@ -196,6 +195,18 @@ idle! {
     Painter: (_panels: Set<Panel>, #[original] _photos: Set<Photo>, _body: Option<&Body>, _fabric: Option<&Fabric>) -> Model;
     Glb: (_model: &Model) -> OutputFiles;
     Report: (_log: &RunLog) -> OutputFiles;
+}
+
+#[stage]
+impl Canny {
+    fn run(&self, _photo: &Photo, _mask: &Mask, _cx: &Context) -> Result<Outline, StageError> {
+        Err(StageError::internal("a test stage does nothing"))
+    }
+
+    fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
+        let wrong = self.low > self.high;
+        wrong.then(|| StageError::invalid("`low` is above `high`").at("low")).into_iter().collect()
+    }
 }
 
 /// All of them, and the sections of a garment.

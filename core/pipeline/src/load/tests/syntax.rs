@@ -57,10 +57,6 @@ fn what_only_ron_refuses_is_a_fault_too() {
     let shown = faults(&text);
     assert!(shown.starts_with("vest.ron:2:") && shown.contains("magic"), "{shown}");
     assert!(read(&kit::VEST.replacen("(\n", "#![enable(implicit_some)]\n(\n", 1)).is_ok());
-    assert_eq!(
-        faults(&kit::VEST.replace("\"vest\"", "\"\\q\"")),
-        "vest.ron:3:11: `name` wants text in quotes"
-    );
 }
 
 #[test]
@@ -207,6 +203,54 @@ fn a_text_without_one_of_its_quotes_is_named() {
         "\"vest\"",
         "my vest",
         "vest.ron:3:11: `my vest` is a text and stands in quotes; write `\"my vest\"`",
+    );
+}
+
+#[test]
+fn a_path_of_windows_is_told_to_begin_escapes() {
+    let none = |place: &str, escape: &str, path: &str| {
+        format!(
+            "vest.ron:{place}: a backslash begins an escape in a text, and `{escape}` is none; write / or two backslashes: \"{path}\""
+        )
+    };
+    let is = |place: &str, escape: &str, what: &str, path: &str| {
+        format!(
+            "vest.ron:{place}: a backslash begins an escape in a text, and `{escape}` is {what}; write / or two backslashes: \"{path}\""
+        )
+    };
+    let file = |path: &str, expected: &str| slip("\"front.jpg\"", &format!("\"{path}\""), expected);
+    file(r"C:\Users\me\tee.jpg", &none("5:28", r"\U", "C:/Users/me/tee.jpg"));
+    file(r"D:\users\tee.jpg", &none("5:28", r"\u", "D:/users/tee.jpg"));
+    file(r"D:\xmas\tee.jpg", &none("5:28", r"\x", "D:/xmas/tee.jpg"));
+    file(r"\\server\Photos\tee.jpg", &none("5:34", r"\P", "/server/Photos/tee.jpg"));
+    file(r"D:\tee.jpg", &is("5:28", r"\t", "a tab", "D:/tee.jpg"));
+    file(r"photos\new.jpg", &is("5:32", r"\n", "a line's end", "photos/new.jpg"));
+    file(r"photos\raw.jpg", &is("5:32", r"\r", "a carriage return", "photos/raw.jpg"));
+    file(r"photos\0001.jpg", &is("5:32", r"\0", "a zero byte", "photos/0001.jpg"));
+    file(r"D:\Tees\", &none("5:28", r"\T", "D:/Tees/"));
+    file(r"tees\", &is("5:30", r#"\""#, "a quote inside of it", "tees/"));
+    slip("\"vest\"", r#""a \q""#, &none("3:14", r"\q", "a /q"));
+    let escaped = r#"D:\\Users\\t\u{fc}\xC3\xBC\"\\.jpg"#;
+    assert!(read(&kit::VEST.replace("front.jpg", escaped)).is_ok());
+}
+
+#[test]
+fn all_paths_of_windows_are_told_at_once_and_once() {
+    let text = kit::VEST
+        .replace("front.jpg", r"C:\Users\front.jpg")
+        .replace("back.jpg", r"C:\Users\back.jpg")
+        .replace("name:", "plugins: [\"C:\\me\\x.dll\"], name:")
+        .replace("cotton poplin", "cotton\\tpoplin");
+    let places: Vec<String> = faults(&text).lines().map(|l| l.split(": ").next().unwrap().to_owned()).collect();
+    assert_eq!(places, ["vest.ron:3:18", "vest.ron:5:28", "vest.ron:6:28", "vest.ron:10:27"]);
+}
+
+#[test]
+fn a_path_of_windows_in_an_option_is_shown_there() {
+    let found = set(kit::VEST, &[r#"photos.front.file="C:\Users\tee.jpg""#]).unwrap_err();
+    assert_eq!(
+        found.to_string(),
+        r#"--set photos.front.file="C:\Users\tee.jpg": a backslash begins an escape in a text, and `\U` is none; write / or two backslashes: "C:/Users/tee.jpg""#
     );
 }
 
