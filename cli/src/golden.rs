@@ -6,7 +6,7 @@
 use crate::args::{AcceptArgs, CheckArgs, Overrides};
 use crate::failing::fail_run;
 use crate::run::run_quietly;
-use crate::validate::checked;
+use crate::validate::{checked, open};
 use crate::{Streams, exit, interrupt, stdin};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
@@ -60,10 +60,24 @@ pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams
                 return Ok(exit::INVALID);
             }
         };
+        let golden = known(golden, path, &args.overrides, registry);
         let log = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-        let found = compare(&golden, &Sheet::against(&golden, &log, &arithmetic()));
+        let now = Sheet::against(&golden, &log, &arithmetic()).made_by(pipeline);
+        let found = compare(&golden, &now);
         Ok(report(path, &found, &log, &places, &args.out, streams))
     })
+}
+
+/// The golden with what it was made by: where it does not say, by the file as it stands, without what the command line changes.
+fn known(golden: Sheet, path: &Path, overrides: &Overrides, registry: &Registry) -> Sheet {
+    let is_changed = !overrides.set.is_empty() || overrides.quality.is_some();
+    if !golden.stages.is_empty() || !is_changed {
+        return golden;
+    }
+    match open(path, &Overrides::default(), registry) {
+        Ok(as_it_stands) => golden.made_by(&as_it_stands),
+        Err(_) => golden,
+    }
 }
 
 /// The golden in a file; none where there is no such file.
@@ -119,7 +133,8 @@ fn twice(
     let arithmetic = arithmetic();
     let first = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
     let second = run_quietly(pipeline, &interrupt::on_ctrl_c(), streams)?.log;
-    let (sheet, again) = (Sheet::of(&first, &arithmetic), Sheet::of(&second, &arithmetic));
+    let sheet = |log: &RunLog| Sheet::of(log, &arithmetic).made_by(pipeline);
+    let (sheet, again) = (sheet(&first), sheet(&second));
     if sheet != again {
         let stage = compare(&sheet, &again);
         let name = stage.first_stage().or(stage.moved.first().map(String::as_str)).unwrap_or("?");
@@ -163,17 +178,20 @@ fn each(
     worst
 }
 
-/// What may have moved bits.
-fn cause(arithmetic: Arithmetic) -> &'static str {
-    match arithmetic {
+/// What may have moved bits, a line each.
+fn cause(found: &Comparison) -> Vec<String> {
+    let by_machine = match found.arithmetic {
+        Arithmetic::Same if !found.changes.is_empty() => None,
         Arithmetic::Same => {
-            "by other code, or other input: the golden was recorded with this machine's arithmetic"
+            Some("by other code, or other input: the golden was recorded with this machine's arithmetic")
         }
-        Arithmetic::Other => {
-            "the golden was recorded with other arithmetic: another processor or C library, or other code"
-        }
-        Arithmetic::Unknown => "the golden does not say with which arithmetic it was recorded",
-    }
+        Arithmetic::Other => Some(
+            "the golden was recorded with other arithmetic: another processor or C library, or other code",
+        ),
+        Arithmetic::Unknown => Some("the golden does not say with which arithmetic it was recorded"),
+    };
+    let by_user = found.changes.iter().map(|change| format!("otherwise than when it was recorded: {change}"));
+    by_user.chain(by_machine.map(str::to_owned)).collect()
 }
 
 fn report(
@@ -189,7 +207,7 @@ fn report(
     }
     let Some(first) = found.first_stage() else {
         if !found.moved.is_empty() {
-            streams.say(format!("{}: {}", path.display(), cause(found.arithmetic)));
+            cause(found).iter().for_each(|line| streams.say(format!("{}: {line}", path.display())));
         }
         streams.say(format!("{}: agrees with its golden", path.display()));
         return exit::DONE;
@@ -201,7 +219,7 @@ fn report(
     if let (Arithmetic::Same, Some(from)) = (found.arithmetic, &found.moves_from) {
         streams.tell(format!("  bits move from {from} on"));
     }
-    streams.tell(format!("  {}", cause(found.arithmetic)));
+    cause(found).iter().for_each(|line| streams.tell(format!("  {line}")));
     let files = both_pictures(found, log, places);
     match write_files(out, &files) {
         Ok(_) => streams.tell(format!("  pictures of both in {}", out.join(&places.stem).display())),

@@ -71,6 +71,8 @@ fn the_vests_golden_sees_a_smoother_that_smooths_less() {
     assert!(answer.err.contains(": first stage that differs: StaticEquilibrium\n"), "{}", answer.err);
     assert!(answer.err.contains("\n  StaticEquilibrium garment: its surface moved by "), "{}", answer.err);
     assert!(answer.err.contains("\n  bits move from PlaneSmoother on\n"), "{}", answer.err);
+    let field = "\n  otherwise than when it was recorded: PlaneSmoother: lambda 0.5 -> 0.4\n";
+    assert!(answer.err.contains(field) && !answer.err.contains("by other code"), "{}", answer.err);
 }
 
 #[test]
@@ -181,4 +183,6 @@ fn a_surface_that_moved_is_told_with_its_stage_figure_and_place() {
         line.contains(" mm at 95 % (tolerance 0.2) and by ") && line.contains("panel \"napkin\" at ("),
         "{line}"
     );
+    let field = "\n  otherwise than when it was recorded: Scene: file \"napkin.json\" -> \"moved.json\"\n";
+    assert!(answer.err.contains(field) && !answer.err.contains("by other code"), "{}", answer.err);
 }

@@ -1,6 +1,6 @@
 //! Where two sheets differ, first stage first.
 
-use super::{Section, Sheet, SheetMeasure};
+use super::{Section, Sheet, SheetMeasure, made_by};
 
 /// One measure, or one whole artifact, that is not as it was.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Comparison {
     pub moved: Vec<String>,
     /// The stage from which on bits moved, within tolerance or not: where the cause lies, if the arithmetic is the same.
     pub moves_from: Option<String>,
+    /// Parameters and versions of stages that are not those of the golden, a line each: `GridMesher: edge "16 mm" -> "12 mm"`.
+    pub changes: Vec<String>,
 }
 
 impl Comparison {
@@ -47,7 +49,8 @@ impl Comparison {
 
 /// Compares a run with its golden.
 pub fn compare(golden: &Sheet, now: &Sheet) -> Comparison {
-    let mut found = Comparison { arithmetic: arithmetic(golden, now), ..Comparison::default() };
+    let (arithmetic, changes) = (arithmetic(golden, now), made_by::changes(golden, now));
+    let mut found = Comparison { arithmetic, changes, ..Comparison::default() };
     for new in &now.sections {
         match golden.sections.iter().find(|old| old.title() == new.title()) {
             Some(old) => compare_sections(old, new, &mut found),
@@ -173,6 +176,15 @@ mod tests {
         assert_eq!(on(&here, &here), Arithmetic::Same);
         assert_eq!(on(&here, &here.replace("aa11", "bb22")), Arithmetic::Other);
         assert_eq!(on(GOLDEN, &here), Arithmetic::Unknown);
+    }
+
+    #[test]
+    fn what_was_made_by_other_parameters_is_told() {
+        let with = |edge: &str| format!("stage Mesh = GridMesher 2 (edge:\"{edge}\")\n{GOLDEN}");
+        let on = |golden: &str, now: &str| compare(&parse(golden).unwrap(), &parse(now).unwrap()).changes;
+        assert_eq!(on(&with("16 mm"), &with("12 mm")), ["Mesh: edge \"16 mm\" -> \"12 mm\""]);
+        assert_eq!(on(&with("16 mm"), &with("16 mm")), [""; 0]);
+        assert_eq!(on(GOLDEN, &with("16 mm")), [""; 0]);
     }
 
     const DRAPE: &str = "[StaticEquilibrium garment]\nsurface = 2 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\npanel front\n\

@@ -5,6 +5,7 @@
 //!
 //! ```text
 //! arithmetic = 8d77aa01c2f35be4
+//! stage GridMesher = GridMesher 2 (edge:"16 mm")
 //!
 //! [GridMesher panel front]
 //! area = 2412.31 cm2 +- 1
@@ -21,14 +22,16 @@
 //!
 //! A line of a panel is a place of the flat pattern and where it lies in space, mm (see `surface`). The tolerance that counts is
 //! the one that stands in the sheet, so whoever keeps the golden may widen or narrow it there. The digest tells whether
-//! any bit moved: within tolerance that is a remark, not a failure. `arithmetic` stands for the processor and the C
+//! any bit moved: within tolerance that is a remark, not a failure. `stage` says what the artifacts were made by (see `made_by`). `arithmetic` stands for the processor and the C
 //! library that the golden was recorded on, so that bits that moved can be told to be another program's.
 
 mod compare;
+mod made_by;
 mod surface;
 mod text;
 
 pub use compare::{Arithmetic, Comparison, Difference, compare};
+pub use made_by::MadeBy;
 pub use surface::{PanelPlaces, Place, Surface, Tolerance};
 pub use text::{SheetError, parse};
 
@@ -86,6 +89,8 @@ impl From<Measure> for SheetMeasure {
 pub struct Sheet {
     /// What stands for the arithmetic of the machine; empty where nothing is known of it.
     pub arithmetic: String,
+    /// What its artifacts were made by, in the order of the pipeline; empty where nothing is known of it.
+    pub stages: Vec<MadeBy>,
     /// Artifact by artifact, in the order in which they were made.
     pub sections: Vec<Section>,
 }
@@ -109,7 +114,7 @@ impl Sheet {
             let values = r.outputs.iter().filter(|v| v.kind() != OutputFiles::KIND);
             values.flat_map(|v| sections(&r.id, v, places))
         });
-        Sheet { arithmetic: arithmetic.to_owned(), sections: sections.collect() }
+        Sheet { arithmetic: arithmetic.to_owned(), stages: Vec::new(), sections: sections.collect() }
     }
 
     /// The first measure that is no finite number, by the title of its section and its name: no tolerance holds it.

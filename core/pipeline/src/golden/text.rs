@@ -1,7 +1,7 @@
 //! A sheet as text and back.
 
 use super::surface::{PanelPlaces, Place, Surface, Tolerance};
-use super::{Section, Sheet, SheetMeasure};
+use super::{MadeBy, Section, Sheet, SheetMeasure};
 use std::fmt::Write;
 
 /// A line of a sheet that cannot be read.
@@ -21,6 +21,7 @@ const MOST_SURFACE_MM: [f64; 2] = [10.0, 30.0];
 /// The most places of one surface.
 const MOST_PLACES: usize = 10_000;
 
+const STAGE_FORM: &str = "a stage is `stage ID = NAME VERSION (PARAMETERS)`";
 const FORM: &str = "a measure is `NAME = VALUE UNIT +- TOLERANCE`";
 const SURFACE_FORM: &str = "a surface is `surface = COUNT places +- TOLERANCE; elsewhere TOLERANCE`, a tolerance `0.2 mm at 95 %, 1 mm at most`";
 const PLACE_FORM: &str = "a place is five numbers: two in the pattern, three in space, mm";
@@ -28,7 +29,13 @@ const PLACE_FORM: &str = "a place is five numbers: two in the pattern, three in 
 impl std::fmt::Display for Sheet {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if !self.arithmetic.is_empty() {
-            writeln!(f, "arithmetic = {}\n", self.arithmetic)?;
+            writeln!(f, "arithmetic = {}", self.arithmetic)?;
+        }
+        for stage in &self.stages {
+            writeln!(f, "stage {} = {}", stage.id, stage.value())?;
+        }
+        if !self.arithmetic.is_empty() || !self.stages.is_empty() {
+            writeln!(f)?;
         }
         for section in &self.sections {
             writeln!(f, "[{}]", section.title())?;
@@ -127,11 +134,21 @@ impl Reader {
                 Ok(())
             }
             ("arithmetic", true) => Err("`arithmetic` is given twice".into()),
+            (name, true) if name.starts_with("stage ") => self.made_by(&name["stage ".len()..], value),
             (_, true) => Err("a measure stands before the first heading".into()),
             ("digest", _) => self.digest(value),
             ("surface", _) => self.surface(value),
             _ => self.measure(name, value),
         }
+    }
+
+    fn made_by(&mut self, id: &str, value: &str) -> Result<(), String> {
+        let stage = MadeBy::parsed(id, value).ok_or(STAGE_FORM)?;
+        if self.sheet.stages.iter().any(|s| s.id == id) {
+            return Err(format!("the stage `{id}` is given twice"));
+        }
+        self.sheet.stages.push(stage);
+        Ok(())
     }
 
     fn heading(&mut self, title: &str) -> Result<(), String> {
@@ -271,7 +288,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const EXAMPLE: &str = "arithmetic = 8d77\n\n[GridMesher panel front]\narea = 2412.31 cm2 +- 1\nboundary_loops = 1 +- 0\ndigest = 5f2a\n\n\
+    const EXAMPLE: &str = "arithmetic = 8d77\nstage GridMesher = GridMesher 2 (edge:\"16 mm\", k:1)\n\n[GridMesher panel front]\narea = 2412.31 cm2 +- 1\nboundary_loops = 1 +- 0\ndigest = 5f2a\n\n\
                            [Place garment]\nvertices = 2 +- 0.02\nsurface = 3 places +- 0.2 mm at 95 %, 1 mm at most; elsewhere 3 mm at 95 %, 20 mm at most\n\
                            panel front\n-12.3 45.6 -20.11 1204.5 133.87\n1 2 3 4 5\npanel a = b\n0 0 0 0 0\ndigest = 00ff\n\n";
 
@@ -288,6 +305,8 @@ mod tests {
     fn a_fault_names_its_line() {
         assert_eq!(refused("[A panel]\narea 12"), "line 2: a measure is `NAME = VALUE UNIT +- TOLERANCE`");
         assert_eq!(refused("area = 1 +- 0"), "line 1: a measure stands before the first heading");
+        let stage = "line 1: a stage is `stage ID = NAME VERSION (PARAMETERS)`";
+        assert_eq!(refused("stage A = A one ()"), stage);
     }
 
     #[test]
@@ -316,12 +335,12 @@ mod tests {
         );
         let surface = |t: &str| refused(&EXAMPLE.replace("+- 0.2 mm", &format!("+- {t} mm")));
         assert!(
-            surface("11").starts_with("line 10: `surface`: the tolerance 11 is so wide "),
+            surface("11").starts_with("line 11: `surface`: the tolerance 11 is so wide "),
             "{}",
             surface("11")
         );
-        assert!(surface("-0.1").starts_with("line 10: `surface`: the tolerance -0.1 is negative"));
-        assert!(surface("nan").starts_with("line 10: `surface`: the tolerance nan is no number"));
+        assert!(surface("-0.1").starts_with("line 11: `surface`: the tolerance -0.1 is negative"));
+        assert!(surface("nan").starts_with("line 11: `surface`: the tolerance nan is no number"));
     }
 
     #[test]
@@ -342,18 +361,19 @@ mod tests {
         assert_eq!(refused("[A panel]\na = 1 +- 0\na = 1 +- 0"), "line 3: `a` is given twice");
         assert_eq!(refused("[A panel]\ndigest = a\ndigest = b"), "line 3: `digest` is given twice");
         assert_eq!(refused("arithmetic = a\narithmetic = b"), "line 2: `arithmetic` is given twice");
+        assert_eq!(refused("stage A = A 1 ()\nstage A = B 1 ()"), "line 2: the stage `A` is given twice");
     }
 
     #[test]
     fn a_sheet_that_lost_places_is_refused() {
         let lost = EXAMPLE.replace("1 2 3 4 5\n", "");
-        assert_eq!(refused(&lost), "line 15: the surface above announces 3 places and has 2");
+        assert_eq!(refused(&lost), "line 16: the surface above announces 3 places and has 2");
         let cut = EXAMPLE.split_inclusive("133.87\n").next().unwrap();
-        assert_eq!(refused(cut), "line 12: the surface above announces 3 places and has 1");
+        assert_eq!(refused(cut), "line 13: the surface above announces 3 places and has 1");
         let half = EXAMPLE.replace("1 2 3 4 5\n", "1 2 3 4\n");
         assert_eq!(
             refused(&half),
-            "line 13: a place is five numbers: two in the pattern, three in space, mm"
+            "line 14: a place is five numbers: two in the pattern, three in space, mm"
         );
         assert_eq!(refused(&EXAMPLE.replace("1 2 3 4 5\n", "1 2 3 4 inf\n")), refused(&half));
     }
@@ -365,7 +385,7 @@ mod tests {
         }
 
         #[test]
-        fn a_sheet_with_a_changed_line_is_read_or_refused(line in 0usize..17, with in "[\\[\\]a-z0-9 =+\\-.]{0,40}") {
+        fn a_sheet_with_a_changed_line_is_read_or_refused(line in 0usize..18, with in "[\\[\\]a-z0-9 =+\\-.]{0,40}") {
             let text: Vec<&str> = EXAMPLE.lines().enumerate().map(|(i, l)| if i == line { with.as_str() } else { l }).collect();
             if let Ok(sheet) = parse(&text.join("\n")) {
                 prop_assert!(parse(&sheet.to_string()).is_ok());

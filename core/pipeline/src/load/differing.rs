@@ -21,7 +21,9 @@ pub fn differing(was: &str, is: &str) -> Vec<Differing> {
     match (parse(was), parse(is)) {
         (Ok(a), Ok(b)) => walk("", (was, &a), (is, &b), &mut found),
         _ if was == is => {}
-        _ => found.push(Differing { path: String::new(), was: Some(was.to_owned()), is: Some(is.to_owned()) }),
+        _ => {
+            found.push(Differing { path: String::new(), was: Some(was.to_owned()), is: Some(is.to_owned()) })
+        }
     }
     found
 }

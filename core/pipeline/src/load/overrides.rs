@@ -141,6 +141,11 @@ fn edit(text: &str, tree: &Tree, registry: &Registry, given: Given<'_>) -> Resul
 
 fn bad_value(given: Given<'_>, e: &Fault) -> Fault {
     let o = given.o;
+    let in_quotes = o.value.len() > 1 && o.value.starts_with('"') && o.value.ends_with('"');
+    if let (Some(place), true) = (e.labels.first().map(|l| l.span.clone()), in_quotes) {
+        let from = o.path.len() + 1;
+        return given.fault(&e.message, from + place.start..from + place.end).hint(e.hint.clone());
+    }
     let message = format!("`{}` is no RON value: {}", o.value, e.message);
     let quoted = format!("\"{}\"", o.value.trim_matches(['"', '\'']));
     let hint = format!("text stands in quotes: `{}`", given.written(&o.path, &quoted));

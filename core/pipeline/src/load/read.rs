@@ -372,7 +372,8 @@ impl Reader<'_> {
 
     /// The element of a list or map that has something at a byte, with the comma behind it.
     fn element(&self, value: &Tree, at: usize) -> Option<Range<usize>> {
-        let Shape::Group { name: None, bracket: Bracket::Square | Bracket::Curly, entries, .. } = &value.shape
+        let Shape::Group { name: None, bracket: Bracket::Square | Bracket::Curly, entries, .. } =
+            &value.shape
         else {
             return None;
         };
@@ -463,7 +464,9 @@ fn unknown(name: &str, near: Option<&str>, known: Option<String>) -> String {
         _ => {
             let library = crate::plugin::library_of(name);
             let so = if known.ends_with('?') { "" } else { ";" };
-            format!("{known}{so} a stage of a plugin needs its library in the file, `plugins: [\"{library}\"]`")
+            format!(
+                "{known}{so} a stage of a plugin needs its library in the file, `plugins: [\"{library}\"]`"
+            )
         }
     }
 }

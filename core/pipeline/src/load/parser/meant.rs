@@ -180,7 +180,10 @@ impl Parser<'_> {
         let length = content.find("\\\"").filter(|length| !content[..*length].contains('\n'))?;
         let at = text.start + 1 + length;
         let (message, hint) = escapes::quoted_end(&content[..=length]);
-        Some(Meant { repair: Repair::Value(text.start..at + 2), words: Some((message, Some(hint), at..at + 2)) })
+        Some(Meant {
+            repair: Repair::Value(text.start..at + 2),
+            words: Some((message, Some(hint), at..at + 2)),
+        })
     }
 
     /// A text that ended just before: it may have run on beyond its end.

@@ -33,10 +33,8 @@ fn a_stage_unlike_any_other_hides_what_it_may_have_made() {
     check(
         "Otsu()",
         "Frobnicate()",
-        &[
-            "vest.ron:13:9: unknown stage `Frobnicate`; `toile stages` lists those that there are; \
-             a stage of a plugin needs its library in the file, `plugins: [\"libfrobnicate.so\"]`",
-        ],
+        &["vest.ron:13:9: unknown stage `Frobnicate`; `toile stages` lists those that there are; \
+             a stage of a plugin needs its library in the file, `plugins: [\"libfrobnicate.so\"]`"],
     );
 }
 
@@ -87,7 +85,11 @@ fn what_stages_find_wrong_comes_out_beside_faults_of_every_kind() {
     let low = kit::VEST.replace("low: 20", "low: 90");
     // A value of another stage, a stage that there is not, a field, a comma, a port, an id.
     for (from, to, fault) in [
-        ("width: \"52 cm\"", "width: 52", "vest.ron:5:45: `width` in `photos`: the length 52 has no unit; write"),
+        (
+            "width: \"52 cm\"",
+            "width: 52",
+            "vest.ron:5:45: `width` in `photos`: the length 52 has no unit; write",
+        ),
         ("Otsu()", "Otzu()", "vest.ron:13:9: unknown stage `Otzu`;"),
         ("radius", "raduis", "vest.ron:12:27: unknown parameter `raduis`;"),
         ("Otsu(),", "Otsu()", "vest.ron:13:15: a comma is missing after `Otsu()`"),
@@ -104,7 +106,7 @@ fn what_stages_find_wrong_comes_out_beside_faults_of_every_kind() {
     }
     // A stage that has a fault of its own is not asked: the value that it was to have is not known.
     let found = with_stages(&low.replace("high: 60", "hihg: 100"));
-    let alone = "vest.ron:14:29: unknown parameter `hihg`; did you mean `high`? `Canny` has `low`, `high`";
+    let alone = "vest.ron:14:24: unknown parameter `hihg`; did you mean `high`? `Canny` has `low`, `high`";
     assert_eq!(found, [alone]);
 }
 

@@ -241,7 +241,8 @@ fn all_paths_of_windows_are_told_at_once_and_once() {
         .replace("back.jpg", r"C:\Users\back.jpg")
         .replace("name:", "plugins: [\"C:\\me\\x.dll\"], name:")
         .replace("cotton poplin", "cotton\\tpoplin");
-    let places: Vec<String> = faults(&text).lines().map(|l| l.split(": ").next().unwrap().to_owned()).collect();
+    let places: Vec<String> =
+        faults(&text).lines().map(|l| l.split(": ").next().unwrap().to_owned()).collect();
     assert_eq!(places, ["vest.ron:3:18", "vest.ron:5:28", "vest.ron:6:28", "vest.ron:10:27"]);
 }
 
