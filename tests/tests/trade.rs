@@ -89,6 +89,26 @@ fn refused(dir: &Path) {
 }
 
 #[test]
+fn a_budget_that_can_say_nothing_is_refused_with_the_least_that_can() {
+    let dir = tempfile::tempdir().unwrap();
+    let dir = dir.path();
+    napkin::write(dir).unwrap();
+    let refused = |more: &[&str]| {
+        let answer = trade(dir, more);
+        assert_eq!(answer.code, 5, "{}{}", answer.out, answer.err);
+        assert!(!dir.join("out/trade.json").exists());
+        answer.err
+    };
+    let whole = refused(&["--budget", "0.1ms"]);
+    let words = "error: a run of the pipeline as it is takes longer than the whole budget of ";
+    assert!(whole.contains(words) && whole.contains("\n  help: give `--budget 1s` or more\n"), "{whole}");
+    let limit = refused(&["--budget", "2m", "--limit", "0.1ms"]);
+    let words = "error: a run may take 0.10 ms, and the pipeline as it is takes ";
+    let every = ": every setting would be stopped\n  help: give `--limit 1s` or more\n";
+    assert!(limit.contains(words) && limit.contains(every), "{limit}");
+}
+
+#[test]
 fn faults_of_knobs_end_before_anything_runs() {
     let dir = tempfile::tempdir().unwrap();
     let dir = dir.path();

@@ -22,6 +22,7 @@ use crate::record::{Level, Order, Reference};
 use crate::richardson::{Step, convergence};
 use crate::slot::{Board, Setting, setting_words};
 use crate::source::Source;
+use crate::study::Allowed;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
@@ -40,7 +41,7 @@ const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 /// Said where a finer level there is not.
 const NO_FINER: &str = "no knob can be refined further";
 /// Time of a level in times of the level before it, where only one is known.
-const GROWTH: f64 = 3.0;
+pub(crate) const GROWTH: f64 = 3.0;
 
 /// How the reference is looked for.
 pub struct Search<'a> {
@@ -52,6 +53,8 @@ pub struct Search<'a> {
     pub bench: &'a Bench,
     /// Keeps the levels for later sessions.
     pub cache: Arc<Cache>,
+    /// What the user allows for everything and for a run of a setting.
+    pub(crate) allowed: Allowed,
     /// Time for the levels.
     pub budget: Duration,
     /// Time for the moved starts and the neighbours.
@@ -73,7 +76,7 @@ pub struct Found {
 impl Search<'_> {
     /// Refines until the garment stops moving or the budget is used.
     ///
-    /// Errors: the pipeline's own setting fails; stopped by the user.
+    /// Errors: the pipeline's own setting fails; the budget is too short to say anything; stopped by the user.
     pub fn run(&self, tell: &mut dyn FnMut(String)) -> Result<Found, StageError> {
         let started = Instant::now();
         let (mut levels, mut last, mut before) = (Vec::<Level>::new(), None::<Ran>, None::<Ran>);
@@ -83,12 +86,18 @@ impl Search<'_> {
                 break why;
             }
             let Some(setting) = self.setting(k) else { break NO_FINER.into() };
-            // The pipeline's own setting is run to its end whatever the budget: without it there is nothing to say.
-            let left = (k > 0).then(|| self.budget.saturating_sub(started.elapsed()));
-            let ran = match self.level(&setting, left) {
-                Ok(ran) => ran,
-                Err(missed) => break self.after_miss(missed, k)?,
+            // Without the pipeline's own setting there is nothing to say: it may take the whole budget.
+            let left = match k {
+                0 => self.allowed.budget,
+                _ => self.budget.saturating_sub(started.elapsed()),
             };
+            let ran = match self.level(&setting, Some(left)) {
+                Ok(ran) => ran,
+                Err(missed) => break self.after_miss(missed, &levels)?,
+            };
+            if k == 0 {
+                self.allowed.holds(ran.wall_s)?;
+            }
             let mut level = level(self.board, setting, &ran, last.as_ref())?;
             level.finer = levels.last().map(|before| self.board.ratio(&level.setting, &before.setting));
             tell(words(k, &level));
@@ -189,13 +198,15 @@ impl Search<'_> {
         })
     }
 
-    fn after_miss(&self, missed: Missed, level: usize) -> Result<String, StageError> {
-        match missed {
-            Missed::OverLimit(s) if level > 0 => {
-                Ok(format!("level {level} was not done after {s:.0} s, its share of the budget"))
+    fn after_miss(&self, missed: Missed, levels: &[Level]) -> Result<String, StageError> {
+        match (missed, levels) {
+            (Missed::OverLimit(_), []) => Err(self.allowed.ended_first()),
+            (Missed::OverLimit(_), [own]) => Err(self.allowed.unrefined(own.wall_s)),
+            (Missed::OverLimit(s), _) => {
+                Ok(format!("level {} was not done after {s:.0} s, its share of the budget", levels.len()))
             }
-            Missed::Failed(e) if level > 0 => Ok(format!("level {level} fails: {}", e.message)),
-            missed => Err(missed.into()),
+            (Missed::Failed(e), [_, ..]) => Ok(format!("level {} fails: {}", levels.len(), e.message)),
+            (missed, _) => Err(missed.into()),
         }
     }
 }

@@ -4,19 +4,21 @@
 //! front. A setting that takes longer than the limit is stopped, which is a result as well. A choice of stage whose first
 //! two settings gave nothing is not tried further, nor is a setting whose nearest neighbour took longer than what is left.
 //!
-//! - `next`: which setting is measured next; `setting`: its runs and figures; `store`: what is kept.
+//! - `budget`: whether the budget is long enough; `next`: which setting is measured next; `setting`: its runs and figures; `store`: what is kept.
 
+mod budget;
 mod next;
 mod setting;
 mod store;
 
+pub(crate) use budget::Allowed;
 pub(crate) use setting::measured;
 
 use crate::digest::digest;
 use crate::knob::KnobSpec;
 use crate::ladder::{Found, RATIO, Search};
 use crate::measure::Bench;
-use crate::record::{Clock, KnobRecord, Machine, Point, SCHEME, Trade, front_of, today};
+use crate::record::{Clock, KnobRecord, Machine, Outcome, Point, SCHEME, Trade, front_of, today};
 use crate::slot::{Board, Knob, ReferenceValue, setting_words};
 use crate::source::Source;
 use std::path::PathBuf;
@@ -61,7 +63,11 @@ pub struct Options {
 impl Options {
     /// Longest run of a setting.
     fn limit(&self) -> Duration {
-        self.limit.unwrap_or_else(|| self.budget.mul_f64(LIMIT_SHARE))
+        self.allowed().limit()
+    }
+
+    fn allowed(&self) -> Allowed {
+        Allowed { budget: self.budget, limit: self.limit }
     }
 }
 
@@ -77,8 +83,8 @@ struct Study<'a> {
 
 /// Measures, or goes on with what was measured.
 ///
-/// Errors: a knob that does not fit, the pipeline's own setting fails, the folder cannot be written, stopped by the user
-/// (what was measured is kept).
+/// Errors: a knob that does not fit, the pipeline's own setting fails, the budget is too short to say anything, the folder cannot be
+/// written, stopped by the user (what was measured is kept).
 pub fn study(
     source: &Source<'_>,
     pipeline: &Pipeline,
@@ -122,10 +128,14 @@ impl<'a> Study<'a> {
         while self.store.lines.len() < most && !self.left().is_zero() {
             let Some(setting) = self.next() else { break };
             let Some(point) = self.measure(setting)? else { continue };
+            if self.store.lines.is_empty() && matches!(point.outcome, Outcome::OverLimit { .. }) {
+                break;
+            }
             tell(self.words(&point));
             self.store.add(point)?;
         }
-        Ok(())
+        let nothing = self.store.lines.is_empty() && most > 0;
+        if nothing { Err(self.options.allowed().nothing_measured()) } else { Ok(()) }
     }
 
     /// The record of all.
@@ -163,6 +173,7 @@ fn search<'a>(source: &'a Source<'a>, board: &'a Board, options: &'a Options) ->
         source,
         board,
         bench: &options.bench,
+        allowed: options.allowed(),
         cache: Arc::new(Cache::new(&options.out.join("reference"))),
         budget: share(REFERENCE_SHARE[0]),
         starts_budget: share(REFERENCE_SHARE[1]),
@@ -186,6 +197,10 @@ fn found(
             store.lines.len(),
             options.out.display()
         ));
+        let levels = &store.head.on.reference.levels;
+        if let (Some(own), true) = (levels.first(), store.lines.iter().all(|p| p.measured().is_none())) {
+            options.allowed().holds(own.wall_s)?;
+        }
         return Ok((search.again(store.head.on.reference.clone())?, store));
     }
     let found = search.run(tell)?;
