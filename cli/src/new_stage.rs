@@ -4,10 +4,10 @@
 //! The crate depends on toile-core by its folder: that of `--core`, or the source tree that this program was built from.
 
 use crate::{Streams, exit};
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::OutputFile;
-use toile_core::{Registry, Role};
+use toile_core::{Registry, Role, Section, SectionValue};
+use toile_pipeline::plugin::library_of;
 use toile_pipeline::write_files;
 
 /// The library and its tests, and what they need beside toile-core.
@@ -57,17 +57,41 @@ pub(crate) struct Asked<'a> {
 pub(crate) fn new_stage(asked: &Asked<'_>, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     match written(asked, registry) {
         Ok(Written { folder, name, role }) => {
-            let (show, library) = (folder.display(), snake(&name));
+            let show = folder.display();
+            let library = Path::new("target/release").join(library_of(&name));
             streams.say(format!("wrote {show}, the {} {name}", role.as_str()));
             streams.say(format!("  cd {show} && cargo test && cargo build --release"));
-            let library = format!("{DLL_PREFIX}{library}{DLL_SUFFIX}");
-            streams.say(format!("  toile stage {name} --plugin {show}/target/release/{library}"));
+            streams.say(format!("  toile stage {name} --plugin {}", folder.join(&library).display()));
+            streams.say("in a pipeline:");
+            streams.say(format!("    plugins: [{}],", text(&full(&folder).join(&library))));
+            streams.say(format!("    {}", placed(&name, role, registry)));
             exit::DONE
         }
         Err((code, message)) => {
             streams.tell(format!("error: {message}"));
             code
         }
+    }
+}
+
+/// The path from the root, so that it holds for a pipeline anywhere.
+fn full(folder: &Path) -> PathBuf {
+    let full = std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned());
+    full.components().collect()
+}
+
+/// A path as text of a pipeline.
+fn text(path: &Path) -> String {
+    format!("{:?}", path.display().to_string())
+}
+
+/// Where the stage stands in a pipeline: in the field of its role where there is one, else among the stages.
+fn placed(name: &str, role: Role, registry: &Registry) -> String {
+    let of_role = |s: &&Section| matches!(s.holds, SectionValue::Stage(held) if held == role);
+    let fields: Vec<&Section> = registry.sections().iter().filter(of_role).collect();
+    match fields[..] {
+        [section] => format!("{}: {name}(),", section.field),
+        _ => format!("stages: [..., {name}(), ...],"),
     }
 }
 

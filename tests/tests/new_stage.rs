@@ -143,6 +143,66 @@ fn the_role_is_what_the_name_ends_with_else_a_binariser() {
 }
 
 #[test]
+fn what_a_pipeline_needs_is_printed_ready_to_be_pasted() {
+    let dir = tempfile::tempdir().unwrap();
+    let printed = |name: &str, role: &str| {
+        let answer = new_stage(&[name, "--role", role], dir.path());
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        let lines = answer.out.lines().skip(3).map(|l| l.replace(&dir.path().display().to_string(), "DIR"));
+        lines.collect::<Vec<_>>()
+    };
+    let library = |folder: &str, name: &str| {
+        format!("    plugins: [\"DIR/{folder}/target/release/{DLL_PREFIX}{name}{DLL_SUFFIX}\"],")
+    };
+    let binariser = [
+        "in a pipeline:".to_owned(),
+        library("my-otsu", "my_otsu"),
+        "    stages: [..., MyOtsu(), ...],".into(),
+    ];
+    assert_eq!(printed("my_otsu", "binariser"), binariser);
+    let body = ["in a pipeline:".to_owned(), library("my-body", "my_body"), "    body: MyBody(),".into()];
+    assert_eq!(printed("MyBody", "body"), body);
+}
+
+/// The mask of a sample beside its truth: the shared part of both.
+fn agreement(mask: &Path, truth: &Path) -> f64 {
+    let [found, truth] = [mask, truth].map(|path| image::open(path).unwrap().to_luma8());
+    assert_eq!(found.dimensions(), truth.dimensions());
+    let pairs = || found.iter().zip(truth.iter()).map(|(a, b)| (*a > 127, *b > 127));
+    let (both, either) =
+        (pairs().filter(|(a, b)| *a && *b).count(), pairs().filter(|(a, b)| *a || *b).count());
+    both as f64 / either as f64
+}
+
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn the_binariser_that_is_written_marks_the_garments_of_the_samples() {
+    let dir = tempfile::tempdir().unwrap();
+    let folder = written(&["sample_binariser"], dir.path());
+    cargo(&dir.path().join(&folder), &["build", "--lib"]);
+    let library =
+        std::env::current_exe().unwrap().with_file_name(format!("{DLL_PREFIX}sample_binariser{DLL_SUFFIX}"));
+    for garment in ["vest", "tshirt"] {
+        let samples = root().join("pipelines/samples").join(garment);
+        let text = format!(
+            "(plugins: [{library:?}], photos: {{\"front\": (file: {:?}, width: \"50 cm\"), \"back\": (file: {:?}, width: \"50 cm\")}}, stages: [SampleBinariser(), Canny()])",
+            samples.join("front.jpg"),
+            samples.join("back.jpg")
+        );
+        let file = dir.path().join(format!("{garment}.ron"));
+        std::fs::write(&file, text).unwrap();
+        let out = dir.path().join(garment);
+        let answer = toile(&["run", file.to_str().unwrap(), "--keep", "--out", out.to_str().unwrap()]);
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        for side in ["front", "back"] {
+            let mask = out.join("stages/SampleBinariser").join(format!("{side}.png"));
+            let shared = agreement(&mask, &samples.join(format!("{side}.mask.png")));
+            assert!(shared > 0.98, "{garment} {side}: {shared}");
+        }
+    }
+}
+
+#[test]
 fn the_header_of_plugins_is_printed() {
     let answer = toile(&["plugin-header"]);
     assert_eq!((answer.code, answer.err.as_str()), (0, ""));
