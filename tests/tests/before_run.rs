@@ -82,6 +82,68 @@ fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_el
 }
 
 #[test]
+fn photos_that_the_style_does_not_take_are_told_by_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let said = |changes: &[(&str, &str)]| {
+        let answer = toile(&["validate", &vest(dir.path(), changes)]);
+        (answer.code, words(&answer))
+    };
+    let (code, text) = said(&[("\"front\":", "\"fornt\":")]);
+    assert_eq!(code, 3, "{text}");
+    assert!(text.contains("Photos: `Vest` takes no photo named \"fornt\""), "{text}");
+    assert!(text.contains("help: did you mean \"front\"?"), "{text}");
+    let (code, text) = said(&[("\"back\":", "\"lining\":")]);
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("Photos: `Vest` makes nothing of the photo \"lining\""), "{text}");
+    assert!(text.contains("the photo \"front\" has no other side, and its piece stays unsewn"), "{text}");
+    assert!(text.contains("or write `\"back\": MirrorOf(\"front\")`"), "{text}");
+    let (code, text) = said(&[]);
+    assert!(code == 0 && !text.contains("Photos"), "{text}");
+
+    // A block is cut from the front.
+    let block = fs::read_to_string(pipeline("photo.ron")).unwrap();
+    let block = block.replace("samples/", &format!("{}samples/", pipeline("")));
+    let file = dir.path().join("block.ron");
+    let said = |front: &str| {
+        let text = block.replacen("\"front\":", &format!("{front:?}:"), 1);
+        fs::write(&file, text.replace("MirrorOf(\"front\")", &format!("MirrorOf({front:?})"))).unwrap();
+        let answer = toile(&["validate", file.to_str().unwrap()]);
+        assert_eq!(answer.code, 3, "{}", answer.err);
+        words(&answer)
+    };
+    assert!(said("Front").contains("`Block` takes no photo named \"Front\" "), "{}", said("Front"));
+    let none = "`Block` cuts the garment from \"front\", and no photo is named so";
+    assert!(said("vorne").contains(none), "{}", said("vorne"));
+}
+
+/// Each of these once came out only after the others were mended.
+#[test]
+fn faults_of_the_file_do_not_hide_what_its_stages_find() {
+    let dir = tempfile::tempdir().unwrap();
+    let changes = [
+        ("vest/front.jpg", "vest/none.jpg"),
+        ("cotton poplin", "coton poplin"),
+        ("low: 20", "low: 90"),
+        ("Otsu()", "Otzu()"),
+        ("radius: 1", "raduis: 1"),
+        ("GridMesher(edge: \"16 mm\"),", "GridMesher(edge: 16)"),
+    ];
+    let answer = toile(&["validate", &vest(dir.path(), &changes)]);
+    assert_eq!(answer.code, 3);
+    for text in [
+        "none.jpg\": no such file",
+        "there is no fabric preset \"coton poplin\"",
+        "`low` is 90, above `high`, which is 60",
+        "unknown stage `Otzu`",
+        "unknown parameter `raduis`",
+        "the length 16 has no unit",
+        "a comma is missing after `GridMesher(...)`",
+    ] {
+        assert!(words(&answer).contains(text), "{text}: {}", answer.err);
+    }
+}
+
+#[test]
 fn a_run_until_a_stage_asks_only_the_stages_that_it_runs() {
     let dir = tempfile::tempdir().unwrap();
     let file = vest(dir.path(), &[("cotton poplin", "coton poplin")]);

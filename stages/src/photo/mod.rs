@@ -8,6 +8,7 @@
 //! | `expected` | how much the photos are, for what a run will take |
 //! | `scale` | the scale and the plane of the ground from an object of known size |
 //! | `form`, `tiff` | what kind of picture a file is |
+//! | `side_names` | whether the style takes photos of these names |
 //! | `header` | size and completeness of a picture before anything is decoded |
 
 mod decode;
@@ -19,6 +20,7 @@ mod header;
 mod photos;
 mod resolve;
 mod scale;
+mod side_names;
 #[cfg(test)]
 mod tests;
 mod tiff;

@@ -4,6 +4,7 @@ use super::decode::check;
 use super::expected;
 use super::resolve::resolve;
 use super::scale::{self, ScaleObject};
+use super::side_names;
 use super::{Decoded, PhotoEntry, PhotoFile, decode};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -55,7 +56,12 @@ impl Photos {
                 (Ok((file, _)), PhotoEntry::File(_)) => look(name, &file.file, placed.cx).err(),
                 (Ok(_), PhotoEntry::MirrorOf(_)) => None,
             });
-        of_name.chain(of_side).collect()
+        of_name.chain(of_side).chain(side_names::misnamed(&self.names(), placed)).collect()
+    }
+
+    /// Photos that the style makes nothing of.
+    fn warnings(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        side_names::unused(&self.names(), placed)
     }
 
     /// How much it will read: from the files' headers.
@@ -68,6 +74,10 @@ impl Photos {
     /// The stage for these photos.
     pub fn new(photos: BTreeMap<String, PhotoEntry>) -> Self {
         Photos { photos }
+    }
+
+    fn names(&self) -> Vec<&str> {
+        self.photos.keys().map(String::as_str).collect()
     }
 
     pub(super) fn entries(&self) -> &BTreeMap<String, PhotoEntry> {

@@ -35,6 +35,24 @@ fn edges_of(style: &str) -> Option<Vec<String>> {
     }
 }
 
+/// The photos that a style needs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Needs {
+    /// The front; what there is no photo of is made by it.
+    Front,
+    /// Front and back, which it sews to each other.
+    Both,
+}
+
+/// What a style of that name needs; none of a stage that is no built-in style of photos.
+pub(crate) fn needs(stage: &str) -> Option<Needs> {
+    match stage {
+        Block::NAME | Fitting::NAME => Some(Needs::Front),
+        Vest::NAME | TShirt::NAME => Some(Needs::Both),
+        _ => None,
+    }
+}
+
 /// Adds this folder's stages.
 pub fn register(registry: &mut Registry) {
     registry.add::<Vest>();
