@@ -51,7 +51,7 @@ fn next_text(value: &str) -> Option<(&str, &str, &str)> {
 }
 
 fn with_file(o: &Override) -> Override {
-    let is_text = o.value.starts_with('"') || o.value.starts_with('r');
+    let is_text = ["\"", "r\"", "r#"].iter().any(|open| o.value.starts_with(open));
     let bare = o.value.strip_prefix('"').and_then(|v| v.strip_suffix('"')).unwrap_or(&o.value);
     match std::path::absolute(bare) {
         Ok(full) if Path::new(bare).is_file() => {
@@ -83,6 +83,8 @@ mod tests {
     fn a_file_that_is_not_there_stays_relative_to_the_pipeline() {
         assert_eq!(value("photos.front.file=\"front.jpg\""), "\"front.jpg\"");
         assert_eq!(value("scene.file=samples/skirt.json"), "\"samples/skirt.json\"");
+        assert_eq!(value("photos.front.file=red.jpg"), "\"red.jpg\"");
+        assert_eq!(value("photos.front.file=r\"red.jpg\""), "r\"red.jpg\"");
     }
 
     #[test]

@@ -7,6 +7,10 @@ use std::path::PathBuf;
 use toile_core::{Arity, Card, Contract, Finer, InPort, ParamDoc, Registry, Role};
 use toile_pipeline::plugin::{Plugin, Refused};
 
+/// What becomes of a run in which a stage that only improves fails.
+const IMPROVES: &str = "Only improves on what it is given: where it fails, or takes more work than that took, the run warns and goes on with\n\
+                        what it was given.";
+
 /// Lists all stages, role by role.
 pub(crate) fn list(json: bool, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if json {
@@ -127,6 +131,9 @@ fn card_text(card: &Card, contracts: &Contracts) -> String {
     if card.contracts.iter().any(|c| contracts.word(card, *c) == "declared") {
         s += &format!("  (declared: nobody ran it here; `toile doctor {} --contracts` does)\n", card.name);
     }
+    if card.contracts.contains(&Contract::Improves) {
+        s += &format!("\n{IMPROVES}\n");
+    }
     if let Some(p) = card.plugin {
         s += &format!("\nFrom: plugin \"{}\" {}\n", p.name, p.version);
     }
@@ -185,5 +192,5 @@ fn card_json(card: &Card, known: &Contracts) -> Value {
     let (contracts, checked) = (names(&card.contracts), names(&checked));
     json!({ "name": card.name, "role": card.role.as_str(), "doc": card.doc, "source": card.source,
         "version": card.version, "example": card.example, "contracts": contracts, "checked": checked, "params": params,
-        "inputs": inputs, "outputs": outputs })
+        "inputs": inputs, "outputs": outputs, "improves": card.contracts.contains(&Contract::Improves) })
 }

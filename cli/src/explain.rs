@@ -91,6 +91,7 @@ fn lines(explained: &Explained<'_>) -> Vec<String> {
     let expected = forecast_lines(&runs, source);
     std::iter::once(title(pipeline, qualities))
         .chain(stages)
+        .chain(improving(pipeline, plan))
         .chain(expected)
         .chain(decided::lines(told))
         .collect()
@@ -102,6 +103,20 @@ fn title(pipeline: &Pipeline, qualities: &[Stood]) -> String {
     let words = quality_words(qualities);
     let known = if words.is_empty() { words } else { format!("; qualities: {words}") };
     format!("{}: {} stages{chosen}{known}", pipeline.name, pipeline.nodes.len())
+}
+
+/// `PoseGarment and Settle only improve on the garment before them: where one fails, that goes on`.
+fn improving(pipeline: &Pipeline, plan: &[Option<String>]) -> Option<String> {
+    let runs = pipeline.nodes.iter().zip(plan).filter(|(_, skipped)| skipped.is_none());
+    let ids: Vec<&str> = runs.filter(|(n, _)| n.stage.improves()).map(|(n, _)| n.id.as_str()).collect();
+    let (last, rest) = ids.split_last()?;
+    let (names, verb, them) = match rest {
+        [] => ((*last).to_owned(), "improves", "it"),
+        rest => (format!("{} and {last}", rest.join(", ")), "improve", "them"),
+    };
+    Some(format!(
+        "{names} only {verb} on what was made before {them}: where one fails, the run goes on without"
+    ))
 }
 
 fn line(pipeline: &Pipeline, node: &Node, skipped: Option<&str>) -> String {

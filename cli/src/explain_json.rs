@@ -43,6 +43,7 @@ fn stage(pipeline: &Pipeline, node: &Node, skipped: Option<&str>, forecast: &For
         "role": node.card.role.as_str(),
         "runs": skipped.is_none(),
         "skipped": skipped,
+        "improves": node.stage.improves(),
         "takes": takes.collect::<Vec<_>>(),
         "predicted": skipped.is_none().then_some(&forecast.predicted),
         "predicted_by_own_record": forecast.known,

@@ -54,10 +54,7 @@ fn what_is_no_library_is_never_loaded() {
         load_plugin(&mut registry, &path, None).unwrap_err().reason
     };
     assert_eq!(refused("empty.so", b""), "it is empty");
-    assert_eq!(
-        refused("words.so", b"a garment"),
-        "it is a text, not a library: it begins with `a garment`"
-    );
+    assert_eq!(refused("words.so", b"a garment"), "it is a text, not a library: it begins with `a garment`");
     let half = refused("half.so", b"\x7fELF...toile_plugin\0");
     assert!(half == "it declares no plugin" || half.starts_with("the system cannot load it: "), "{half}");
     let torn = refused("torn.so", b"\x7fELF\0toile_plugin\0 and no more");
@@ -106,9 +103,8 @@ fn a_library_that_a_plugin_needs_and_the_system_does_not_find_is_named() {
     let (flags, folder) = (["-DCASE_LACKS_LIBRARY", "-I", &include, &source], at(""));
     let linked = ["-L", &folder, "-ltoile_helper", "-o"];
     cc(&[&flags[..], &linked, &[&at("libneeds.so")]].concat());
-    let refused = || {
-        load_plugin(&mut toile::registry(), Path::new(&at("libneeds.so")), None).map(|_| ()).unwrap_err()
-    };
+    let refused =
+        || load_plugin(&mut toile::registry(), Path::new(&at("libneeds.so")), None).map(|_| ()).unwrap_err();
     let words = "the system cannot load it: libtoile_helper.so: cannot open shared object file: No such file or directory";
     let beside = refused();
     assert_eq!(beside.reason, words);
@@ -120,7 +116,8 @@ fn a_library_that_a_plugin_needs_and_the_system_does_not_find_is_named() {
     std::fs::remove_file(at("libtoile_helper.so")).unwrap();
     let gone = refused();
     assert_eq!(gone.reason, words);
-    let hint = "it needs libtoile_helper.so: install that, or tell the system its folder, LD_LIBRARY_PATH=FOLDER";
+    let hint =
+        "it needs libtoile_helper.so: install that, or tell the system its folder, LD_LIBRARY_PATH=FOLDER";
     assert_eq!(gone.hint.as_deref(), Some(hint));
 }
 

@@ -15,7 +15,10 @@ const MOST_SHOWN: usize = 40;
 /// Looks at a file; none where it may be a library for this machine.
 pub(super) fn foreign(bytes: &[u8]) -> Option<Why> {
     match bytes {
-        [] => Some(("it is empty".into(), "an interrupted build or copy leaves such a file: build it again".into())),
+        [] => Some((
+            "it is empty".into(),
+            "an interrupted build or copy leaves such a file: build it again".into(),
+        )),
         [0x7F, b'E', b'L', b'F', ..] => found(elf(bytes)?, System::Linux),
         [b'M', b'Z', ..] => found(pe(bytes)?, System::Windows),
         [0xCF | 0xCE, 0xFA, 0xED, 0xFE, ..] => found(mach(bytes)?, System::MacOs),
@@ -81,7 +84,10 @@ fn found(code: Code, system: System) -> Option<Why> {
             system.name(),
             here.name()
         );
-        return Some((reason, format!("take its build for {} on {ARCH}, or build it on this machine", here.name())));
+        return Some((
+            reason,
+            format!("take its build for {} on {ARCH}, or build it on this machine", here.name()),
+        ));
     }
     if !code.processors.iter().any(|p| p == ARCH) {
         let reason = format!("it is {what} for {processors}, and this program runs on {ARCH}");
@@ -109,7 +115,8 @@ fn number<const N: usize>(bytes: &[u8], at: usize) -> Option<u64> {
 
 fn elf(bytes: &[u8]) -> Option<Code> {
     let (wide, big) = (*bytes.get(4)? == 2, *bytes.get(5)? == 2);
-    let half = |at: usize| number::<2>(bytes, at).map(|n| if big { u64::from((n as u16).swap_bytes()) } else { n });
+    let half =
+        |at: usize| number::<2>(bytes, at).map(|n| if big { u64::from((n as u16).swap_bytes()) } else { n });
     let form = match half(16)? {
         1 => Form::Object,
         2 => Form::Program,
@@ -194,7 +201,9 @@ fn other(bytes: &[u8]) -> Why {
         [b'B', b'Z', b'h', ..] => archive("bzip2"),
         [0x28, 0xB5, 0x2F, 0xFD, ..] => archive("zstd"),
         [b'7', b'z', 0xBC, 0xAF, ..] => archive("7z"),
-        [0, b'a', b's', b'm', ..] => ("it is WebAssembly, which this program does not run".into(), as_library()),
+        [0, b'a', b's', b'm', ..] => {
+            ("it is WebAssembly, which this program does not run".into(), as_library())
+        }
         [b'B', b'C', 0xC0, 0xDE, ..] => ("it is code of LLVM before linking".into(), as_library()),
         _ if bytes.get(257..262) == Some(b"ustar") => archive("tar"),
         _ => text(bytes).unwrap_or_else(|| {
@@ -264,12 +273,18 @@ mod tests {
     fn libraries_of_other_systems_and_processors_are_named() {
         assert_eq!(foreign(&linux(3, 62)), None);
         assert_eq!(reason(&linux(3, 183)), "it is a library for aarch64, and this program runs on x86_64");
-        assert_eq!(reason(&linux(3, 77)), "it is a library for processor 77, and this program runs on x86_64");
+        assert_eq!(
+            reason(&linux(3, 77)),
+            "it is a library for processor 77, and this program runs on x86_64"
+        );
         let on = "and this program runs on Linux on x86_64";
         let (reason_of, hint) = foreign(&windows([0x64, 0x86], true)).unwrap();
         assert_eq!(reason_of, format!("it is a library for Windows on x86_64, {on}"));
         assert_eq!(hint, "take its build for Linux on x86_64, or build it on this machine");
-        assert_eq!(reason(&windows([0x64, 0xAA], false)), format!("it is a program for Windows on aarch64, {on}"));
+        assert_eq!(
+            reason(&windows([0x64, 0xAA], false)),
+            format!("it is a program for Windows on aarch64, {on}")
+        );
         let mut mac = vec![0; 32];
         mac[..4].copy_from_slice(&[0xCF, 0xFA, 0xED, 0xFE]);
         (mac[4], mac[7], mac[12]) = (12, 1, 6);
@@ -319,7 +334,9 @@ mod tests {
 
     #[test]
     fn no_bytes_panic() {
-        for head in [linux(3, 62), windows([0x64, 0x86], true), vec![0xCF, 0xFA, 0xED, 0xFE], b"!<arch>\n".to_vec()] {
+        for head in
+            [linux(3, 62), windows([0x64, 0x86], true), vec![0xCF, 0xFA, 0xED, 0xFE], b"!<arch>\n".to_vec()]
+        {
             for length in 0..head.len() {
                 let _ = foreign(&head[..length]);
             }

@@ -125,7 +125,8 @@ mod tests {
     #[cfg(target_os = "linux")]
     fn a_missing_library_is_named() {
         let words = "libhelper.so: cannot open shared object file: No such file or directory";
-        let hint = "it needs libhelper.so: install that, or tell the system its folder, LD_LIBRARY_PATH=FOLDER";
+        let hint =
+            "it needs libhelper.so: install that, or tell the system its folder, LD_LIBRARY_PATH=FOLDER";
         assert_eq!(told(words), (words.to_owned(), hint.to_owned()));
         let musl = "Error loading shared library libhelper.so: No such file or directory (needed by /tmp/toile-plugin-1.so)";
         assert_eq!(told(musl).1, hint);
@@ -141,7 +142,9 @@ mod tests {
         let folder = dir.path().display();
         assert_eq!(
             hint,
-            format!("libhelper.so lies beside it, where the system does not look: start with LD_LIBRARY_PATH={folder}")
+            format!(
+                "libhelper.so lies beside it, where the system does not look: start with LD_LIBRARY_PATH={folder}"
+            )
         );
         Ok(())
     }
