@@ -126,7 +126,23 @@ fn two_garments() {
     let dir = tempfile::tempdir().unwrap();
     let two = |x: u32, y: u32| (200..600).contains(&y) && ((60..300).contains(&x) || (400..640).contains(&x));
     let path = picture(dir.path(), "two.png", two);
-    assert_says(&refused(&with_front(&path)), "Otsu (front): two garments found in");
+    // One of them is taken, which is told, and is no vest.
+    let answer = refused(&with_front(&path));
+    assert_says(&answer, "a second thing lies in");
+    assert_says(&answer, "does not look like a vest");
+}
+
+#[test]
+fn a_style_that_does_not_fit_its_pipeline_is_told_with_one_that_does() {
+    for (file, style) in [("photo_skirt.ron", "Vest"), ("photo.ron", "Vest"), ("photo.ron", "TShirt")] {
+        let set = format!("style={style}()");
+        let answer = toile(&["validate", &pipeline(file), "--set", &set]);
+        assert_eq!(answer.code, 3, "{file} {style}");
+        assert_says(&answer, &format!("--set 'style=Block(style: {style})'"));
+        // What is proposed is valid.
+        let set = format!("style=Block(style: {style})");
+        assert_eq!(toile(&["validate", &pipeline(file), "--set", &set]).code, 0, "{file} {style}");
+    }
 }
 
 #[test]

@@ -15,6 +15,7 @@ mod costs;
 mod decisions;
 mod docs;
 mod doctor;
+mod drawn_as_sewn;
 mod error_codes;
 mod every_parameter;
 mod falls;

@@ -80,7 +80,7 @@ pub(super) const SHADOW: f64 = 0.4;
 pub(super) const LEAST_MODE: f64 = 0.02;
 
 /// Radius of the opening and closing at the reduced size, pixels for each 400 of its longer side.
-const CLEAN: f64 = 3.0;
+pub(super) const CLEAN: f64 = 3.0;
 
 /// The garment in a small picture; `None` where all of it has the rim's colours. `rim` as a share of
 /// the shorter side, `shadow` as the share of the ground's lightness that a shadow may take.

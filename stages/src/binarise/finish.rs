@@ -1,9 +1,10 @@
 //! What every binariser does at its end: clean the mask, keep one garment, and say so when there is
-//! none, more than one, or half of one.
+//! none, more than one, one in parts, or half of one.
 
+use super::auto::tell_beside;
 use super::cut_out::{CutOut, cut_out};
 use super::marked::marked;
-use super::morphology::{close, open};
+use super::morphology::{MAX_RADIUS, close, open};
 use super::regions::{Piece, Regions};
 use super::tone::OPAQUE;
 use image::GrayImage;
@@ -28,8 +29,12 @@ pub struct Finish {
 
 /// The least share of the photo that a garment covers: anything smaller is a speck.
 const LEAST_AREA: f64 = 0.005;
-/// From this share of the largest piece on, a second piece is a second garment and not a stain.
-const SECOND_GARMENT: f64 = 0.5;
+/// From this share of the largest piece on, a second piece is no stain: another part of the garment, or another garment.
+const SECOND: f64 = 0.5;
+/// Parts of a garment lie no farther apart than this share of its size (the root of its area): a stripe in the ground's tone.
+const GAP: f64 = 0.08;
+/// What is smaller than this share of the largest piece is no part.
+const PART: f64 = 0.02;
 
 /// The mask of a photo: its opacity where that is a mask already, else what `method` finds, finished.
 ///
@@ -42,8 +47,12 @@ pub fn mask_of(
     method: impl FnOnce() -> Result<GrayImage, StageError>,
 ) -> Result<Mask, StageError> {
     has_pixels(photo)?;
-    let Some(CutOut { mask, sure }) = cut_out(photo) else { return finish(method()?, photo, settings, cx) };
-    if !sure {
+    let Some(CutOut { mask, sure }) = cut_out(photo) else {
+        let (mask, second) = finished(method()?, photo, settings, cx)?;
+        tell_beside(photo, &mask, second.as_ref(), cx);
+        return Ok(mask);
+    };
+    if !sure && !photo.mirrored {
         cx.warn(format!(
             "what is opaque in \"{}\" is taken for the garment, and the rest for its ground",
             photo.file
@@ -54,24 +63,47 @@ pub fn mask_of(
 
 /// Cleans a raw mask and checks that it shows one whole garment.
 ///
-/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes.
+/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes. Where a second piece is nearly as large, pieces that lie near each
+/// other are joined, which is told.
 ///
 /// # Errors
-/// [`ErrorCode::InvalidInput`] for no garment, two garments of similar size, and a garment cut by the
-/// frame.
+/// [`ErrorCode::InvalidInput`] for no garment, and a garment cut by the frame.
 pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) -> Result<Mask, StageError> {
+    let (mask, second) = finished(mask, photo, settings, cx)?;
+    if second.is_some() {
+        tell_beside(photo, &mask, second.as_ref(), cx);
+    }
+    Ok(mask)
+}
+
+/// The finished mask, and the second piece where that is nearly as large as the garment.
+fn finished(
+    mask: GrayImage,
+    photo: &Photo,
+    settings: Finish,
+    cx: &Context,
+) -> Result<(Mask, Option<GrayImage>), StageError> {
     cx.check()?;
     let mask = without_transparent(mask, photo);
     let mask = close(&open(&mask, settings.open), settings.close);
     cx.check()?;
-    let pieces = Regions::of(&mask);
+    let mut pieces = Regions::of(&mask);
+    if is_in_parts(&pieces) {
+        let whole = joined(&mask, &pieces);
+        if whole != mask {
+            pieces = Regions::of(&whole);
+            tell_joined(photo, settings.next, cx);
+        }
+    }
     let kept =
         one_garment(&pieces, photo, settings, cx.stage()).inspect_err(|_| cx.so_far(marked(photo, &mask)))?;
     cx.check()?;
+    let second = pieces.by_size().get(1).copied().filter(|_| is_in_parts(&pieces));
+    let second = second.map(|second| pieces.paint(|i, _| i == second));
     let mask = fill_holes(pieces.paint(|i, _| i == kept), settings.holes);
     let mask = Mask { pixels: mask.into() };
     cx.figure("garment", 100.0 * mask.area_px() as f64 / frame_area(photo), "% of the photo");
-    Ok(mask)
+    Ok((mask, second))
 }
 
 fn frame_area(photo: &Photo) -> f64 {
@@ -111,15 +143,69 @@ fn one_garment(regions: &Regions, photo: &Photo, settings: Finish, stage: &str) 
     if touch > settings.touch {
         return Err(cut_by_frame(photo, garment.frame as f64, stage, settings.next));
     }
-    let second = order.get(1).map_or(0, |&i| regions.pieces[i].area);
-    if second as f64 >= SECOND_GARMENT * garment.area as f64 {
-        return Err(StageError::invalid(format!(
-            "two garments found in \"{}\": {} and {} pixels",
-            photo.file, garment.area, second
-        ))
-        .hint(format!("photograph one garment at a time; where there is only one, try {}", settings.next)));
-    }
     Ok(largest)
+}
+
+/// Whether a second piece is nearly as large as the first.
+fn is_in_parts(regions: &Regions) -> bool {
+    match regions.by_size()[..] {
+        [first, second, ..] => {
+            regions.pieces[second].area as f64 >= SECOND * regions.pieces[first].area as f64
+        }
+        _ => false,
+    }
+}
+
+/// The mask with bridges between pieces that lie near each other.
+fn joined(mask: &GrayImage, pieces: &Regions) -> GrayImage {
+    let largest = pieces.pieces.iter().filter(|p| p.on).map(|p| p.area).max().unwrap_or(0) as f64;
+    let radius = ((0.5 * GAP * largest.sqrt()).ceil() as u32).min(MAX_RADIUS);
+    let closed = close(mask, radius);
+    let mut between = closed.clone();
+    between.iter_mut().zip(mask.iter()).filter(|(_, on)| **on != 0).for_each(|(v, _)| *v = 0);
+    let between = Regions::of(&between);
+    let is_part: Vec<bool> = pieces.pieces.iter().map(|p| p.on && p.area as f64 >= PART * largest).collect();
+    // Which parts each stretch between them touches.
+    let (own, gap) = (pieces.labels(), between.labels());
+    let mut touched = vec![[None; 2]; between.pieces.len()];
+    let width = mask.width() as usize;
+    let mut meet = |i: usize, j: usize| {
+        let (stretch, part) = (gap[i] as usize, own[j] as usize);
+        if between.pieces[stretch].on && is_part[part] {
+            let both = &mut touched[stretch];
+            match both {
+                [None, _] => both[0] = Some(part),
+                [Some(first), None] if *first != part => both[1] = Some(part),
+                _ => {}
+            }
+        }
+    };
+    for i in 0..own.len() {
+        let (right, below) = (i + 1, i + width);
+        if right % width != 0 {
+            meet(i, right);
+            meet(right, i);
+        }
+        if below < own.len() {
+            meet(i, below);
+            meet(below, i);
+        }
+    }
+    let bridges = between.paint(|k, p| p.on && touched[k][1].is_some());
+    let mut whole = mask.clone();
+    whole.iter_mut().zip(bridges.iter()).filter(|(_, on)| **on != 0).for_each(|(v, _)| *v = 255);
+    whole
+}
+
+fn tell_joined(photo: &Photo, next: &str, cx: &Context) {
+    if !photo.mirrored {
+        cx.warn(format!(
+            "the garment in \"{}\" was found in several parts, which are joined: look at the outline; if it is not right, take --set 'stages.{}={}'",
+            photo.file,
+            cx.stage(),
+            next.trim_matches('`')
+        ));
+    }
 }
 
 /// The error for a garment that touches the frame over so many pixels, with the binariser to try.

@@ -75,6 +75,16 @@ impl Regions {
         mask
     }
 
+    /// The number of each pixel's piece, row by row.
+    pub fn labels(&self) -> Vec<u32> {
+        let mut labels = vec![0; self.size.0 as usize * self.size.1 as usize];
+        for run in &self.runs {
+            let row = run.y as usize * self.size.0 as usize;
+            labels[row + run.start as usize..row + run.end as usize].fill(run.piece);
+        }
+        labels
+    }
+
     /// The garment's pieces from the largest to the smallest, by their index.
     pub fn by_size(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.pieces.len()).filter(|&i| self.pieces[i].on).collect();

@@ -6,7 +6,7 @@
 use super::fit::fit;
 use super::form::{CHILD, Form, MAN, WOMAN};
 use super::shape::{Size, chin, level};
-use super::sizes::{Table, known, measures};
+use super::sizes::{Table, known, measures, of_child};
 use super::wearer::Wearer;
 use toile_core::prelude::*;
 
@@ -16,7 +16,8 @@ const GROWING: [f64; 2] = [1.35, 1.55];
 /// Shares of the height up to the chin that make the arm's length where none is given: child and grown up.
 const ARM: [f64; 2] = [0.366, 0.384];
 
-/// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
+/// Height, bust, waist and hip of women, men and children where nothing is given, centimetres. Girths of a child follow from its height where that is
+/// given; those of the grown do not depend on it.
 const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
 
 /// A mannequin made to measure: closed and smooth, arms spread in A-pose, legs a little apart.
@@ -27,7 +28,7 @@ const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0
 /// Sizes are those of EN 13402-3. Children from 80 cm on have larger heads and shorter limbs.
 #[stage(
     role = Body,
-    version = 4,
+    version = 5,
     source = "measures: ISO 8559-1, 2017; sizes: EN 13402-3; proportions: Gordon and others, 1989; surface nets: Gibson, 1998",
     example = "Mannequin(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")",
     contracts(Deterministic, ThreadInvariant)
@@ -36,13 +37,13 @@ pub struct Mannequin {
     /// Crown to sole; where neither it nor a size is given, 172 cm for a woman, 180 cm for a man, 110 cm for a child.
     #[param(default = None, min = 0.8, max = 2.1)]
     height: Option<Length>,
-    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise.
+    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise, of a child of a given height that which is usual.
     #[param(default = None, min = 0.4, max = 1.7)]
     bust: Option<Length>,
-    /// Girth at the waist; 70, 86 or 54 cm likewise.
+    /// Girth at the waist; 70, 86 or 54 cm, of a child likewise.
     #[param(default = None, min = 0.35, max = 1.7)]
     waist: Option<Length>,
-    /// Girth at the fullest part of the seat; 96, 100 or 60 cm likewise.
+    /// Girth at the fullest part of the seat; 96, 100 or 60 cm, of a child likewise.
     #[param(default = None, min = 0.4, max = 1.7)]
     hip: Option<Length>,
     /// Whose proportions; a woman's where it is not given, a child's below 135 cm, between the two up to 155 cm.
@@ -124,17 +125,35 @@ impl Mannequin {
     /// Whose figure it is, where that is known, and the measures of the size or those that are usual.
     fn usual(&self) -> Result<(Option<Wearer>, Table), StageError> {
         let Some(size) = &self.size else {
-            return Ok((self.figure, USUAL[self.figure.map_or(0, |w| w as usize)]));
+            let usual = USUAL[self.figure.map_or(0, |w| w as usize)];
+            let table = self.height.map_or(usual, |h| at_height(self.figure, h.metres(), usual));
+            return Ok((self.figure, table));
         };
         let found = measures(size, self.figure).ok_or_else(|| no_size(size, self.figure))?;
         Ok((Some(found.0), found.1))
     }
 }
 
+/// How far a figure that is not stated is grown up at a height, metres: 0 for a child, 1 for a grown person.
+fn grown(height: f64) -> f64 {
+    let [child, grown] = GROWING;
+    ((height - child) / (grown - child)).clamp(0.0, 1.0)
+}
+
+/// What is usual at a height, metres: a child's girths follow from it.
+fn at_height(wearer: Option<Wearer>, height: f64, usual: Table) -> Table {
+    let child = of_child(height * 100.0);
+    let share = match wearer {
+        Some(Wearer::Woman | Wearer::Man) => 1.0,
+        Some(Wearer::Child) => 0.0,
+        None => grown(height),
+    };
+    std::array::from_fn(|k| child[k] + share * (usual[k] - child[k]))
+}
+
 /// The proportions, and the share in which they are a grown person's.
 fn form(wearer: Option<Wearer>, height: f64) -> (Form, f64) {
-    let [child, grown] = GROWING;
-    let share = ((height - child) / (grown - child)).clamp(0.0, 1.0);
+    let share = grown(height);
     match wearer {
         Some(Wearer::Woman) => (WOMAN, 1.0),
         Some(Wearer::Man) => (MAN, 1.0),

@@ -88,6 +88,16 @@ pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, Ta
     }
 }
 
+/// Height, bust, waist and hip of a child of that height, centimetres; beyond the table its ends go on as they run.
+pub(crate) fn of_child(height: f64) -> Table {
+    let last = CHILDREN.len() - 2;
+    let k = CHILDREN.iter().filter(|row| f64::from(row.0) <= height).count().saturating_sub(1).min(last);
+    let ((low, from), (high, to)) = (CHILDREN[k], CHILDREN[k + 1]);
+    let share = (height - f64::from(low)) / f64::from(high - low);
+    let [bust, waist, hip] = [0, 1, 2].map(|i: usize| from[i] + share * (to[i] - from[i]));
+    [height, bust, waist, hip]
+}
+
 /// The sizes that there are, in words.
 pub(crate) fn known(wearer: Option<Wearer>) -> &'static str {
     match wearer {
@@ -102,6 +112,15 @@ pub(crate) fn known(wearer: Option<Wearer>) -> &'static str {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_childs_girths_follow_its_height() {
+        assert_eq!(of_child(134.0), [134.0, 67.0, 60.0, 72.0]);
+        assert_eq!(of_child(107.0), [107.0, 56.5, 52.5, 59.0]);
+        // As from 86 to 92 cm, and from 146 to 152.
+        assert_eq!(of_child(80.0), [80.0, 49.0, 48.0, 50.0]);
+        assert_eq!(of_child(158.0), [158.0, 79.0, 68.0, 86.0]);
+    }
 
     #[test]
     fn letters_and_numbers_are_found_for_each_figure() {

@@ -180,6 +180,11 @@ fn measures_follow_the_size_where_they_are_not_given() {
     assert_eq!(of("(size: \"L\", figure: Man, waist: \"99 cm\")"), [178.0, 108.0, 99.0, 111.0]);
     assert_eq!(of("(size: \"EU 110\", height: \"112 cm\")"), [112.0, 57.0, 53.0, 60.0]);
     assert_eq!(of("(figure: Man)"), [180.0, 100.0, 86.0, 100.0]);
+    // A child's girths follow from its height; those of the grown do not.
+    assert_eq!(of("(figure: Child, height: \"134 cm\")"), [134.0, 67.0, 60.0, 72.0]);
+    assert_eq!(of("(height: \"134 cm\")"), [134.0, 67.0, 60.0, 72.0]);
+    assert_eq!(of("(figure: Child, height: \"134 cm\", bust: \"70 cm\")"), [134.0, 70.0, 60.0, 72.0]);
+    assert_eq!(of("(figure: Woman, height: \"158 cm\")"), [158.0, 88.0, 70.0, 96.0]);
 }
 
 #[test]

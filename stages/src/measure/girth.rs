@@ -26,6 +26,9 @@ pub(crate) fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFi
         let (front, back) = (mark("front")?, mark("back")?);
         let middle = Point2::new((front.x + back.x) / 2.0, (front.z + back.z) / 2.0);
         let body_m = *body.measurements.get(level)?;
+        // What begins near the waist has no bust, however short the body is.
+        let waist = body.landmarks.get("waist_front").filter(|_| level == "bust");
+        let least = waist.map_or(f64::NEG_INFINITY, |waist| f64::midpoint(front.y, waist.y));
         let at = |y: f64| around(garment, y, middle, &arms(body, y));
         let below = |k: u32| at(front.y - f64::from(k) * LOWER.1);
         let narrowest = || {
@@ -34,7 +37,7 @@ pub(crate) fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFi
         };
         let cloth_m = match level {
             "waist" => narrowest(),
-            _ => (0..LOWER.0).filter_map(below).next(),
+            _ => (0..LOWER.0).filter(|k| front.y - f64::from(*k) * LOWER.1 > least).filter_map(below).next(),
         }?;
         Some((level.to_owned(), GirthFigures { cloth_m, body_m }))
     };

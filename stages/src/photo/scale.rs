@@ -100,7 +100,7 @@ pub(super) fn from_above(
 fn tell(found: &Found, file: &str, cx: &Context) {
     let [x, y] = [0, 1].map(|k| found.corners.iter().map(|c| c[k]).sum::<f64>() / 4.0);
     let tilt = found.tilt.map_or_else(String::new, |t| format!(", seen {t:.0} degrees from straight above"));
-    cx.warn(format!(
+    cx.note(format!(
         "the scale of \"{file}\" is that of what lies at ({x:.0}, {y:.0}) px: {:.2} px a millimetre{tilt}",
         found.px_per_metre / 1e3
     ));

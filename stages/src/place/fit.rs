@@ -28,7 +28,10 @@ pub(crate) fn check_girths(panels: &[Cut], body: &Body, fabric: &Fabric) -> Resu
     for level in ["bust", "waist", "hip"] {
         let Some(mark) = body.landmarks.get(&format!("{level}_front")) else { continue };
         let Some(&around) = body.measurements.get(level) else { continue };
-        let lower = (0..LOWER.0).map(|k| mark.y - f64::from(k) * LOWER.1);
+        // What begins near the waist has no bust, however short the body is.
+        let waist = body.landmarks.get("waist_front").filter(|_| level == "bust");
+        let least = waist.map_or(f64::NEG_INFINITY, |waist| f64::midpoint(mark.y, waist.y));
+        let lower = (0..LOWER.0).map(|k| mark.y - f64::from(k) * LOWER.1).filter(|y| *y > least);
         let Some(girth) = lower.filter_map(|y| garment_girth(panels, y)).next() else { continue };
         if girth * (1.0 + stretch(fabric)) < around {
             return Err(too_small(level, girth, around));

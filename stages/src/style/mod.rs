@@ -6,6 +6,7 @@
 
 mod block;
 mod closed_front;
+mod drawn;
 mod naming;
 mod neck;
 mod neckline;

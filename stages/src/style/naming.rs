@@ -4,8 +4,9 @@ use super::neck::neck_points;
 use super::shape::{Bend, MAX_TILT, Path, Shape};
 use toile_core::prelude::*;
 
-/// Tilt above which the user is told, degrees: the grain is then off by as much.
-const TILT_WARNING: f64 = 4.0;
+/// Tilts above which the user is told, and warned, degrees: the grain is then off by as much.
+const TILT_TOLD: f64 = 4.0;
+const TILT_WARNING: f64 = 8.0;
 /// Greatest mean distance between the outline and its mirror image, as a share of its size.
 const MAX_ASYMMETRY: f64 = 0.06;
 /// Narrowest neck opening, and greatest, as a share of the garment's width.
@@ -37,11 +38,12 @@ pub(super) fn name_edges(
     };
     let shape = Shape::new(outline).ok_or_else(|| refuse("it has no area".into()))?;
     let corners = landmarks(&shape, find).map_err(refuse)?;
-    if shape.tilt.abs() > TILT_WARNING {
-        cx.warn(format!(
+    if shape.tilt.abs() > TILT_TOLD {
+        let text = format!(
             "\"{panel}\" lies {:.0} degrees askew in its photo; it is sewn as it lies, so its grain is off by as much",
             shape.tilt.abs()
-        ));
+        );
+        if shape.tilt.abs() > TILT_WARNING { cx.warn(text) } else { cx.note(text) }
     }
     let (plus, minus) = if is_back(panel) { ("right", "left") } else { ("left", "right") };
     let mut named = outline.clone();

@@ -10,11 +10,14 @@
 //! the middle of the neck points; a garment photographed closed and without any seam at its neck gets the
 //! usual depth, with a warning.
 
+use super::BlockStyle;
 use super::closed_front::ClosedFront;
+use super::drawn::{of_outlines, redrawn};
 use super::naming::is_back;
 use super::replaced::replaced;
 use rayon::prelude::*;
 use toile_core::prelude::*;
+use toile_core::{Feed, Node};
 
 /// Depths that are tried, as shares of the neck's width: first, last, step.
 const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
@@ -42,6 +45,12 @@ const TIGHTEST: f64 = 0.95;
 /// The least power of a neckline that is cut for the body, and the halvings that find its depth.
 const ROUND: f64 = 2.0;
 const HALVINGS: usize = 40;
+/// A neckline that is cut deeper than its photo shows it by more than this is to be looked at, metres.
+const MUCH: f64 = 0.04;
+/// What is proposed beyond a depth, metres.
+const MORE: f64 = 0.02;
+/// A neckline reaches down no further than this share of its piece.
+const DEEPEST: f64 = 0.7;
 /// Least change of colour across the curve, in levels of 0 to 255.
 const LEAST_CHANGE: f64 = 3.0;
 /// Depths that are tried to either side of the curve that was found, and how far they reach, in half
@@ -55,10 +64,11 @@ const SPACING: f64 = 1e-3;
 ///
 /// Use it where the photo of the front shows the inside of the back above the neckline, as with most shirts laid flat.
 /// The back keeps its outline. A front whose outline dips at the neck already is left as it is. Where front and back together would not reach around
-/// the body's neck, the front is cut deeper than its photo shows it, with a warning.
+/// the body's neck, the front is cut deeper than its photo shows it, with a warning. The pattern is cut with the outlines, so that what is written is
+/// what is sewn; of outlines without a pattern it is drawn.
 #[stage(
     role = Style,
-    version = 3,
+    version = 4,
     source = "deformable templates: Yuille, Hallinan, Cohen, 1992",
     example = "Neckline(depth: \"8 cm\")",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty)
@@ -77,7 +87,49 @@ impl Neckline {
     pub(crate) fn run(
         &self,
         outlines: Set<Outline>,
+        pattern: Option<&Pattern>,
+        plan: Option<&SewingPlan>,
         photos: Set<Photo>,
+        body: Option<&Body>,
+        cx: &Context,
+    ) -> Result<(Set<Outline>, Pattern), StageError> {
+        let cut = self.cut_all(&outlines, &photos, body, cx)?;
+        let pattern = match pattern {
+            Some(pattern) => redrawn(pattern, &outlines, &cut)?,
+            None => of_outlines(&cut, plan),
+        };
+        Ok((cut, pattern))
+    }
+
+    /// A pattern that is drawn from outlines says nothing of the body, and is not arranged around it.
+    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let Some(style) = placed.maker("plan").filter(|_| placed.maker("pattern").is_none()) else {
+            return Vec::new();
+        };
+        let is_fed = |n: &&Node| {
+            let from_here = |f: &Feed| matches!(f, Feed::Node { node, .. } if *node == placed.index);
+            n.card.inputs.iter().zip(&n.inputs).any(|(port, f)| port.kind == Pattern::KIND && from_here(f))
+        };
+        let places = |n: &&Node| n.card.role == Role::Placement;
+        let Some(placement) = placed.nodes.iter().filter(places).find(is_fed) else { return Vec::new() };
+        let name = style.card.name;
+        let inner = if BlockStyle::knows(name) { format!("style: {name}") } else { String::new() };
+        vec![
+            StageError::invalid(format!(
+                "`{}` takes the pieces of a sewing pattern, and `style: {name}()` cuts along the outline",
+                placement.id
+            ))
+            .hint(format!("--set 'style=Block({inner})' makes a pattern; `{name}()` goes with `Place()`")),
+        ]
+    }
+}
+
+impl Neckline {
+    /// The outlines with the necks of the fronts cut.
+    fn cut_all(
+        &self,
+        outlines: &Set<Outline>,
+        photos: &Set<Photo>,
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Set<Outline>, StageError> {
@@ -87,11 +139,15 @@ impl Neckline {
         if let Some((name, _)) = photos.iter().find(|(_, p)| p.pixels.as_raw().is_empty()) {
             return Err(StageError::invalid(format!("the photo of \"{name}\" has no pixels")));
         }
+        for (name, outline) in outlines.iter().filter(|(name, _)| !is_back(name)) {
+            let chord = outline.edge("neck").and_then(|neck| Chord::of(outline, neck));
+            self.depth.zip(chord).map_or(Ok(()), |(depth, chord)| chord.holds(depth, name, outline))?;
+        }
         let neck_of = |o: &Outline| Some(polyline_length(&o.edge_points(o.edge("neck")?)));
         let behind = outlines.iter().filter(|(name, _)| is_back(name)).find_map(|(_, o)| neck_of(o));
         let least =
             body.and_then(throat).zip(behind).map_or(0.0, |(throat, behind)| TIGHTEST * throat - behind);
-        let closed = ClosedFront::among(&outlines);
+        let closed = ClosedFront::among(outlines);
         let both = closed.as_ref().and_then(|front| {
             front.halved(&self.cut("front", &front.whole, photos.get("front"), least, cx)?)
         });
@@ -103,9 +159,7 @@ impl Neckline {
         });
         others.chain(both.clone().into_iter().flatten().map(Ok)).collect()
     }
-}
 
-impl Neckline {
     /// The outline with its neck cut, no shorter than `least`, or nothing where it stays as it is.
     fn cut(
         &self,
@@ -120,7 +174,13 @@ impl Neckline {
         let collar = chord.profile(&outline.edge_points(neck));
         let lowest = collar.iter().copied().fold(0.0, f64::max);
         let dips = lowest > DIPS * chord.width;
+        let set = |depth: f64| format!("--set 'stages.{}.depth=\"{:.0} mm\"'", cx.stage(), depth * 1e3);
         if self.depth.is_none() && dips && polyline_length(&outline.edge_points(neck)) >= least {
+            cx.note(format!(
+                "the neck of \"{name}\" dips by {:.0} mm as it lies, and stays so ({} cuts it anew)",
+                lowest * 1e3,
+                set(lowest + MORE)
+            ));
             return None;
         }
         let most = if self.depth.is_some() { f64::INFINITY } else { chord.deepest(outline) };
@@ -134,18 +194,23 @@ impl Neckline {
         };
         let curve = found.unwrap_or_else(|| {
             cx.warn(format!(
-                "the photo of \"{name}\" shows no neckline; it is cut {:.0} mm deep (`Neckline(depth: ...)` sets it)",
-                usual * 1e3
+                "the photo of \"{name}\" shows no neckline; it is cut {:.0} mm deep ({} cuts it deeper)",
+                usual * 1e3,
+                set(usual + MORE)
             ));
             Curve { depth: usual, power: 2.0 }
         });
         let mut curve = Curve { depth: curve.depth.min(most), ..curve };
         if self.depth.is_none() && chord.length(&curve) < least {
+            let shown = curve.depth;
             curve = chord.long_enough(curve, least, most.min(DEPTHS.1 * chord.width));
-            cx.warn(format!(
-                "the neck of \"{name}\" would be too tight for the body: its front is cut {:.0} mm deep (`Neckline(depth: ...)` sets it)",
-                curve.depth * 1e3
-            ));
+            let text = format!(
+                "the neck of \"{name}\" would be too tight for the body: its front is cut {:.0} mm deep, and not {:.0} ({} keeps that)",
+                curve.depth * 1e3,
+                shown * 1e3,
+                set(shown)
+            );
+            if curve.depth - shown > MUCH { cx.warn(text) } else { cx.note(text) }
         }
         cx.figure("depth", curve.depth, "m");
         Some(replaced(outline, neck, &chord.points(&curve)))
@@ -258,6 +323,19 @@ impl Chord {
         let depth = |i: usize| (points[i] - self.middle).dot(&self.down);
         let armpits = holes.map(|e| depth(e.start).max(depth(e.end)));
         ABOVE_ARMPITS * armpits.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Refuses a depth that would reach through the piece.
+    fn holds(&self, depth: Length, name: &str, outline: &Outline) -> Result<(), StageError> {
+        let down = |p: &Point2| (p - self.middle).dot(&self.down);
+        let most = DEEPEST * outline.outer.points.iter().map(down).fold(0.0, f64::max);
+        if depth.metres() <= most {
+            return Ok(());
+        }
+        let most = Length::cm((most * 1e2 + 1e-6).floor());
+        Err(StageError::invalid(format!("a neck {depth} deep leaves nothing of \"{name}\""))
+            .hint(format!("{most} is the most"))
+            .at("depth"))
     }
 
     /// The curve of the most even change of colour below the present edge, and no deeper than `most`.
@@ -419,7 +497,7 @@ mod tests {
     }
 
     fn run(stage: &Neckline, depth: f64) -> Set<Outline> {
-        stage.run(both(&shirt()), both(&photo(depth)), None, &Context::quiet()).unwrap()
+        stage.cut_all(&both(&shirt()), &both(&photo(depth)), None, &Context::quiet()).unwrap()
     }
 
     fn lowest(o: &Outline) -> f64 {
@@ -455,8 +533,9 @@ mod tests {
     #[test]
     fn a_front_in_halves_gets_one_neckline() {
         let stage = Neckline { depth: Some(Length::m(0.1)), usual: 0.45 };
-        let cut =
-            stage.run(halves(), Set(std::collections::BTreeMap::new()), None, &Context::quiet()).unwrap();
+        let cut = stage
+            .cut_all(&halves(), &Set(std::collections::BTreeMap::new()), None, &Context::quiet())
+            .unwrap();
         let ends = |panel: &str, edge: &str| {
             let o = cut.get(panel).unwrap();
             let points = o.edge_points(o.edge(edge).unwrap());
@@ -500,6 +579,51 @@ mod tests {
         assert_eq!(front.outer.corners.len(), 6);
     }
 
+    /// The edges of the pattern's pieces are those of the outlines, and it lowers to them.
+    fn assert_drawn(pattern: &Pattern, outlines: &Set<Outline>) {
+        for piece in &pattern.pieces {
+            let outline = outlines.get(&piece.name).unwrap();
+            for e in &outline.edges {
+                let length = polyline_length(&outline.edge_points(e));
+                let drawn = piece.path(&e.name).unwrap().length();
+                assert!((length - drawn).abs() < 1e-9, "{}.{}: {length} {drawn}", piece.name, e.name);
+            }
+        }
+        let lowered = pattern.lower().unwrap().outlines;
+        for (name, o) in outlines.iter() {
+            assert!((polygon_area(&lowered[name].outer.points) - polygon_area(&o.outer.points)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_is_drawn_is_what_is_cut() {
+        let deep = Neckline { depth: Some(Length::m(0.1)), ..Neckline::default() };
+        for outlines in [both(&shirt()), halves()] {
+            let photos = || both(&photo(0.05));
+            let (uncut, own) = (of_outlines(&outlines, None), Context::quiet());
+            let (cut, pattern) =
+                deep.run(outlines.clone(), Some(&uncut), None, photos(), None, &own).unwrap();
+            assert_ne!(pattern, uncut);
+            assert_drawn(&pattern, &cut);
+            let (cut, pattern) = deep.run(outlines, None, None, photos(), None, &own).unwrap();
+            assert_drawn(&pattern, &cut);
+        }
+    }
+
+    #[test]
+    fn a_pattern_of_other_pieces_is_refused() {
+        let deep = Neckline { depth: Some(Length::m(0.1)), ..Neckline::default() };
+        let other = of_outlines(&halves(), None);
+        let e = deep
+            .run(both(&shirt()), Some(&other), None, both(&photo(0.05)), None, &Context::quiet())
+            .unwrap_err();
+        assert_eq!(e.to_string(), "the outline \"front\" was cut anew, and the pattern has no such piece");
+        assert_eq!(
+            e.hint.as_deref(),
+            Some("put the stage that makes the pattern right before the one that cuts its necks")
+        );
+    }
+
     #[test]
     fn a_given_depth_is_taken() {
         let stage = Neckline { depth: Some(Length::cm(12.0)), ..Neckline::default() };
@@ -507,10 +631,17 @@ mod tests {
     }
 
     #[test]
+    fn a_depth_that_leaves_nothing_of_the_front_is_refused() {
+        let stage = Neckline { depth: Some(Length::cm(45.0)), ..Neckline::default() };
+        let e = stage.cut_all(&both(&shirt()), &both(&photo(0.05)), None, &Context::quiet()).unwrap_err();
+        assert_eq!(e.to_string(), "a neck 45 cm deep leaves nothing of \"front\"");
+        assert_eq!(e.hint.as_deref(), Some("35 cm is the most"));
+    }
+
+    #[test]
     fn a_neck_that_dips_already_stays() {
         let once = run(&Neckline::default(), 0.08);
-        let again =
-            Neckline::default().run(once.clone(), both(&photo(0.08)), None, &Context::quiet()).unwrap();
+        let again = Neckline::default().cut_all(&once, &both(&photo(0.08)), None, &Context::quiet()).unwrap();
         assert_eq!(once.get("front").unwrap().outer, again.get("front").unwrap().outer);
     }
 
@@ -523,8 +654,9 @@ mod tests {
         // An armhole from 20 cm below the neck points: half of the side.
         armholed.outer.points[0].y = 0.3;
         armholed.outer.points[5].y = 0.3;
-        let cut =
-            Neckline::default().run(both(&armholed), both(&photo(0.18)), None, &Context::quiet()).unwrap();
+        let cut = Neckline::default()
+            .cut_all(&both(&armholed), &both(&photo(0.18)), None, &Context::quiet())
+            .unwrap();
         assert!(lowest(cut.get("front").unwrap()) < 0.16 + 1e-9);
         assert!((lowest(run(&Neckline::default(), 0.18).get("front").unwrap()) - 0.18).abs() < 0.004);
     }
@@ -550,17 +682,25 @@ mod tests {
         let cx = Context::quiet();
         // A circle of 12 cm: 377 mm around, of which the back spans 160.
         let body = necked(0.12, 0.12);
-        let cut = Neckline::default().run(both(&shirt()), both(&photo(0.05)), Some(&body), &cx).unwrap();
+        let cut =
+            Neckline::default().cut_all(&both(&shirt()), &both(&photo(0.05)), Some(&body), &cx).unwrap();
         let front = cut.get("front").unwrap();
         let around = polyline_length(&front.edge_points(front.edge("neck").unwrap())) + 0.16;
         assert!((around - 0.95 * 0.377).abs() < 2e-3, "{around}");
         let depth = 1e3 * lowest(front);
-        let told = format!(
-            "the neck of \"front\" would be too tight for the body: its front is cut {depth:.0} mm deep (`Neckline(depth: ...)` sets it)"
+        let told = cx.take_remarks();
+        let start = format!(
+            "the neck of \"front\" would be too tight for the body: its front is cut {depth:.0} mm deep, and not 5"
         );
-        assert_eq!(cx.take_remarks().warnings, [told]);
+        assert!(told.warnings[0].starts_with(&start) && told.notes.is_empty(), "{told:?}");
+        let set = format!("--set 'stages.{}.depth=\"5", cx.stage());
+        assert!(
+            told.warnings[0].contains(&set) && told.warnings[0].ends_with("mm\"' keeps that)"),
+            "{told:?}"
+        );
         let wide = necked(0.08, 0.08);
-        let kept = Neckline::default().run(both(&shirt()), both(&photo(0.05)), Some(&wide), &cx).unwrap();
+        let kept =
+            Neckline::default().cut_all(&both(&shirt()), &both(&photo(0.05)), Some(&wide), &cx).unwrap();
         assert!((lowest(kept.get("front").unwrap()) - 0.05).abs() < 0.004);
     }
 

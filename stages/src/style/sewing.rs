@@ -182,7 +182,7 @@ fn check_lengths(outlines: &BTreeMap<String, Outline>, seam: &Seam, cx: &Context
         ))),
         SeamKind::Matched => {
             if difference > EASE_WARNING {
-                cx.warn(format!("{words}; the longer one is eased in by {:.1} %", 100.0 * difference));
+                cx.note(format!("{words}; the longer one is eased in by {:.1} %", 100.0 * difference));
             }
             Ok(())
         }

@@ -319,7 +319,7 @@ fn small_differences_are_eased_with_a_word() {
     back.outer.points.iter_mut().for_each(|p| *p *= 1.02);
     Vest {}.run(outlines.into_iter().collect(), &cx).unwrap();
     assert_eq!(
-        cx.take_remarks().warnings[0],
+        cx.take_remarks().notes[0],
         "front.shoulder_left is 100.0 mm long, back.shoulder_left 102.0 mm; the longer one is eased in by 2.0 %"
     );
 }

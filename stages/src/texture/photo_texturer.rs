@@ -59,7 +59,8 @@ impl BodyShown {
 pub enum Unseen {
     /// That mirror image.
     Mirrored,
-    /// The cloth alone: without print and label. A pattern all over the garment stays.
+    /// The cloth alone, in its light and weave: without print, label, fly, zip, pocket or seam. Where a pattern is all over the garment, the mirror
+    /// image stays, which is told.
     Plain,
 }
 
@@ -101,7 +102,7 @@ pub enum WrongSide {
 /// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
 #[stage(
     role = Texturer,
-    version = 7,
+    version = 8,
     source = "garment modelling thesis, 2012: replace and modulate; Land, McCann 1971 and Grosse and others 2009: light apart from colour; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -248,15 +249,23 @@ impl PhotoTexturer {
                 let beside: Vec<&GarmentPanel> =
                     shown.iter().filter(|(_, p)| std::ptr::eq(*p, photo)).map(|(panel, _)| *panel).collect();
                 let light = lights.iter().find(|(p, _)| std::ptr::eq(*p, photo)).map(|(_, light)| light);
-                let texture = self.texture(garment, panel, &beside, (photo, mask, plain, light), area)?;
+                let (texture, is_plain) =
+                    self.texture(garment, panel, &beside, (photo, mask, plain, light), area)?;
                 let scale = f64::from(texture.pixels.width()) / f64::from(area.width);
                 let relief = self.relief(&texture, px_per_metre(garment, panel) * scale, cx)?;
-                Ok((texture, relief))
+                Ok(((texture, relief), plain && !is_plain))
             };
-        let textures: Vec<Result<(Texture, Option<Texture>), StageError>> =
+        let textures: Vec<Result<((Texture, Option<Texture>), bool), StageError>> =
             pictures.par_iter().copied().map(texture).collect();
-        let (colours, reliefs): (Vec<_>, Vec<_>) =
+        let (textures, patterned): (Vec<_>, Vec<bool>) =
             textures.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let (colours, reliefs): (Vec<_>, Vec<_>) = textures.into_iter().unzip();
+        if let Some((panel, ..)) = pictures.iter().zip(&patterned).find(|(_, is)| **is).map(|(p, _)| p) {
+            cx.note(format!(
+                "no photo shows \"{}\", and a pattern is all over its cloth: it is the front's mirror image, with all that the front shows",
+                panel.name
+            ));
+        }
         if self.wrong_side == WrongSide::Plain {
             let backs = wrong_sides(&colours, &pictures);
             for material in &mut model.materials {
@@ -333,7 +342,7 @@ impl PhotoTexturer {
         Ok(lights)
     }
 
-    /// A panel's texture. `beside` are all panels that the photo shows, this one as well: where two of them meet is no rim of the garment.
+    /// A panel's texture, and whether it was made plain. `beside` are all panels that the photo shows, this one as well: where two of them meet is no rim of the garment.
     fn texture(
         &self,
         garment: &Garment,
@@ -341,7 +350,7 @@ impl PhotoTexturer {
         beside: &[&GarmentPanel],
         (photo, mask, plain, light): (&Photo, Option<&Mask>, bool, Option<&Shading>),
         area: PixelBox,
-    ) -> Result<Texture, StageError> {
+    ) -> Result<(Texture, bool), StageError> {
         let inside = shown_in(garment, beside, photo, mask, area);
         let size = crop::scaled_size(area, self.size);
         let mut crop = crop::crop(&photo.pixels, area, &inside, size);
@@ -353,15 +362,14 @@ impl PhotoTexturer {
         let scale = f64::from(size[0]) / f64::from(area.width);
         let depth = self.inset.metres() * px_per_metre(garment, panel) * scale;
         let sure = bleed::eroded(&crop.inside, depth);
-        if plain {
-            plain::plain(&mut crop.pixels, &sure);
-        }
+        let is_plain = plain && plain::plain(&mut crop.pixels, &sure);
         // A panel thinner than twice the inset has no inner part: then its whole inside must do.
         let rim = RIM * px_per_metre(garment, panel) * scale;
         if !bleed::bleed(&mut crop.pixels, &sure, rim) && !bleed::bleed(&mut crop.pixels, &crop.inside, rim) {
             return Err(off_photo(panel, photo));
         }
-        Ok(Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels), repeats: false })
+        let texture = Texture { name: panel.name.clone(), pixels: Shared::new(crop.pixels), repeats: false };
+        Ok((texture, is_plain))
     }
 }
 

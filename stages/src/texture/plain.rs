@@ -1,12 +1,11 @@
-//! A side that no photo shows: the other side's picture without print and label.
+//! A side that no photo shows: the other side's cloth, without print, label, fly, zip, pocket or seam.
 //!
 //! The cloth's colour is the commonest one along the outline, where prints are rare. What differs from it in hue, or in lightness
-//! from the cloth around it, is print. Its place takes the cloth's light and colour from around (a pyramid of averages: Gortler,
-//! Grzeszczuk, Szeliski and Cohen, The lumigraph, 1996), and the weave of the largest square of plain cloth. A pattern all over the
-//! garment is the cloth's own and stays.
+//! from the cloth around it, is print. Without it the cloth's light and colour are averaged over wide squares (a pyramid of averages: Gortler,
+//! Grzeszczuk, Szeliski and Cohen, The lumigraph, 1996), and take the weave of the evenest square of plain cloth. A pattern all over the
+//! garment is the cloth's own: then the picture stays as it is, with all that it shows.
 //!
-//! Cost: a few looks at every pixel. Limits: a print in shades of the cloth's colour stays; a garment of two colours keeps both only where each has much
-//! of the outline.
+//! Cost: a few looks at every pixel. Limits: a garment of two colours keeps both only where each has much of the outline.
 
 use super::bleed::eroded;
 use crate::binarise::{Regions, close, dilate, lab};
@@ -30,23 +29,35 @@ const PATTERN: [f64; 2] = [0.2, 0.6];
 /// Squares along the longer side in which marks are looked for, and the share of them with marks from which these are a pattern.
 const SQUARES: usize = 12;
 const MOST_SPREAD: f64 = 0.9;
-/// Below this share nothing is print.
-const LEAST: f64 = 0.002;
 /// Pieces of fewer small pixels are no print.
 const SPECK: u64 = 5;
 /// How far print reaches beyond what is surely print, small pixels.
 const AROUND: u32 = 3;
-/// The longest side of the square of weave, px.
-const SQUARE: usize = 256;
+/// Light is averaged over squares of this share of the picture's shorter side: wider than a fly or a zip.
+const WIDE: f64 = 0.12;
+/// Side of the square of weave: its share of the picture's shorter side, and its least and greatest, px.
+const SQUARE: f64 = 0.12;
+const SIDES: (usize, usize) = (8, 128);
 
-/// Takes print and label off a picture of cloth; false where there are none, or where a pattern covers all of it. `sure` marks the cloth.
+/// What a picture of cloth shows.
+enum Shown {
+    /// A pattern all over, or no cloth.
+    Pattern,
+    /// Cloth, but where this is marked.
+    Cloth(GrayImage),
+}
+
+/// Makes a picture of cloth plain; false where a pattern covers all of it, or where there is no cloth: then it stays. `sure` marks the cloth.
 pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
-    let Some(print) = print(pixels, sure) else { return false };
+    let Shown::Cloth(print) = shown(pixels, sure) else { return false };
     let keep = |x: u32, y: u32| sure.get_pixel(x, y).0[0] != 0 && print.get_pixel(x, y).0[0] == 0;
     let kept = GrayImage::from_fn(pixels.width(), pixels.height(), |x, y| Luma([u8::from(keep(x, y)) * 255]));
-    let Some(light) = Light::of(pixels, &kept) else { return false };
+    let wide = f64::from(pixels.width().min(pixels.height())) * WIDE;
+    let Some(light) = Light::from_level(pixels, &kept, wide.max(1.0).log2().round() as usize) else {
+        return false;
+    };
     let weave = Weave::of(pixels, &kept);
-    for (x, y, p) in pixels.enumerate_pixels_mut().filter(|(x, y, _)| print.get_pixel(*x, *y).0[0] != 0) {
+    for (x, y, p) in pixels.enumerate_pixels_mut() {
         let colour = light.at(x, y);
         let thread = weave.as_ref().map_or([0.0; 3], |w| w.at(x as usize, y as usize));
         p.0 = [0, 1, 2].map(|c| (colour[c] + thread[c]).round().clamp(0.0, 255.0) as u8);
@@ -77,8 +88,8 @@ fn small_size(pixels: &RgbImage) -> (u32, u32) {
     (size(w), size(h))
 }
 
-/// Where the picture shows print, at its own size.
-fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
+/// What the picture shows, at its own size.
+fn shown(pixels: &RgbImage, sure: &GrayImage) -> Shown {
     let (w, h) = pixels.dimensions();
     let (small_w, small_h) = small_size(pixels);
     let small = resize(pixels, small_w, small_h, FilterType::Triangle);
@@ -86,12 +97,13 @@ fn print(pixels: &RgbImage, sure: &GrayImage) -> Option<GrayImage> {
     let inside = GrayImage::from_fn(small_w, small_h, |x, y| {
         Luma([u8::from(inside.get_pixel(x, y).0[0] == 255) * 255])
     });
-    let found = print_of(&small, &inside)?;
+    let Some(Shown::Cloth(found)) = shown_in(&small, &inside) else { return Shown::Pattern };
     let large = resize(&found, w, h, FilterType::Triangle);
-    Some(GrayImage::from_fn(w, h, |x, y| Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])))
+    Shown::Cloth(GrayImage::from_fn(w, h, |x, y| Luma([u8::from(large.get_pixel(x, y).0[0] > 127) * 255])))
 }
 
-fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
+/// `None` where there is no cloth.
+fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<Shown> {
     let on: Vec<bool> = inside.as_raw().iter().map(|v| *v != 0).collect();
     let area = on.iter().filter(|on| **on).count() as f64;
     let core = eroded(inside, BAND * area.sqrt());
@@ -115,9 +127,12 @@ fn print_of(small: &RgbImage, inside: &GrayImage) -> Option<GrayImage> {
     let marked =
         |of: &[bool]| found.as_raw().iter().zip(of).filter(|(v, of)| **v != 0 && **of).count() as f64;
     let share = |of: &[bool]| marked(of) / of.iter().filter(|on| **on).count().max(1) as f64;
-    let is_print = share(&on) >= LEAST && share(&on) <= PATTERN[1] && share(&band) <= PATTERN[0];
-    let is_print = is_print && spread(&found, &on) <= MOST_SPREAD;
-    is_print.then(|| dilate(&close(&found, AROUND), AROUND))
+    let is_pattern =
+        share(&on) > PATTERN[1] || share(&band) > PATTERN[0] || spread(&found, &on) > MOST_SPREAD;
+    Some(match is_pattern {
+        true => Shown::Pattern,
+        false => Shown::Cloth(dilate(&close(&found, AROUND), AROUND)),
+    })
 }
 
 /// In which share of the squares that cloth fills there is something marked: a print stands somewhere, a pattern everywhere.
@@ -166,16 +181,12 @@ struct Light {
 type Level = (usize, usize, Vec<([f64; 3], f64)>);
 
 impl Light {
-    /// `None` where no pixel is known.
-    fn of(pixels: &RgbImage, known: &GrayImage) -> Option<Light> {
-        Self::from_level(pixels, known, 0)
-    }
-
     /// The colours of the known, as averages of squares of 16 pixels.
     fn blurred(pixels: &RgbImage, known: &GrayImage) -> Option<Light> {
         Self::from_level(pixels, known, 4)
     }
 
+    /// The same, as averages of squares of 2 to the power of `finest`; `None` where no pixel is known.
     fn from_level(pixels: &RgbImage, known: &GrayImage, finest: usize) -> Option<Light> {
         let (w, h) = (pixels.width() as usize, pixels.height() as usize);
         let first = pixels.pixels().zip(known.as_raw()).map(|(p, on)| match on {
@@ -255,16 +266,44 @@ struct Weave {
 impl Weave {
     /// `None` where no square of plain cloth is large enough to show a weave.
     fn of(pixels: &RgbImage, kept: &GrayImage) -> Option<Weave> {
-        let (left, top, side) = largest_square(kept)?;
+        let (w, h) = (pixels.width() as usize, pixels.height() as usize);
+        let side = ((w.min(h) as f64 * SQUARE) as usize).clamp(SIDES.0, SIDES.1);
+        let step = (side / 2).max(w.min(h) / 12).max(1);
+        let starts = |n: usize| (0..=n.saturating_sub(side)).step_by(step);
+        let corners = starts(h).flat_map(|top| starts(w).map(move |left| [left, top]));
+        let is_kept = |[left, top]: &[usize; 2]| {
+            top + side <= h
+                && left + side <= w
+                && (*top..top + side)
+                    .all(|y| kept.as_raw()[y * w + left..y * w + left + side].iter().all(|v| *v != 0))
+        };
+        // The evenest: a seam or a crease would be laid out all over.
+        let found = corners.filter(is_kept).filter_map(|at| Weave::at_place(pixels, at, side));
+        found.min_by(|a, b| a.unevenness().total_cmp(&b.unevenness()))
+    }
+
+    fn at_place(pixels: &RgbImage, [left, top]: [usize; 2], side: usize) -> Option<Weave> {
         let cut =
             image::imageops::crop_imm(pixels, left as u32, top as u32, side as u32, side as u32).to_image();
         let all = GrayImage::from_pixel(side as u32, side as u32, Luma([255]));
-        let light = Light::blurred(&cut, &all)?;
+        let light = Light::from_level(&cut, &all, 3)?;
         let thread = |(x, y, p): (u32, u32, &image::Rgb<u8>)| {
             let light = light.at(x, y);
             [0, 1, 2].map(|c| f64::from(p.0[c]) - light[c])
         };
         Some(Weave { side, threads: cut.enumerate_pixels().map(thread).collect() })
+    }
+
+    /// The mean square of what its threads differ by from their light, the highest of its quarters.
+    fn unevenness(&self) -> f64 {
+        let half = self.side.div_ceil(2);
+        let mut sums = [(0.0, 0.0); 4];
+        for (i, t) in self.threads.iter().enumerate() {
+            let quarter = &mut sums[(i / self.side / half) * 2 + i % self.side / half];
+            quarter.0 += t.iter().map(|v| v * v).sum::<f64>();
+            quarter.1 += 1.0;
+        }
+        sums.iter().map(|(sum, n)| sum / f64::max(*n, 1.0)).fold(0.0, f64::max)
     }
 
     /// Threads at any place: the square is laid out again and again, each time seen in a mirror, so that its borders meet.
@@ -275,26 +314,6 @@ impl Weave {
         };
         self.threads[fold(y) * self.side + fold(x)]
     }
-}
-
-/// The largest square of marked pixels, at most [`SQUARE`] wide: left, top, side; the first of equals.
-fn largest_square(kept: &GrayImage) -> Option<(usize, usize, usize)> {
-    let w = kept.width() as usize;
-    let mut above = vec![0_usize; w + 1];
-    let mut best = (0, 0, 0);
-    for (y, row) in kept.as_raw().chunks(w.max(1)).enumerate() {
-        let mut corner = 0;
-        for (x, on) in row.iter().enumerate() {
-            let next = above[x + 1];
-            above[x + 1] = if *on == 0 { 0 } else { 1 + corner.min(next).min(above[x]) };
-            corner = next;
-            let side = above[x + 1].min(SQUARE);
-            if side > best.2 {
-                best = (x + 1 - side, y + 1 - side, side);
-            }
-        }
-    }
-    (best.2 >= 8).then_some(best)
 }
 
 #[cfg(test)]
@@ -348,10 +367,25 @@ mod tests {
     }
 
     #[test]
-    fn plain_cloth_and_no_cloth_stay_as_they_are() {
-        let (mut pixels, sure) = picture(cloth);
-        assert!(!plain(&mut pixels, &sure));
+    fn a_fly_and_a_seam_in_a_shade_of_the_cloth_become_cloth() {
+        let darker = |x: u32, y: u32| cloth(x, y).map(|v| v - 12);
+        let (mut pixels, sure) = picture(|x, y| match (98..102).contains(&x) && y < 120 || y == 60 {
+            true => darker(x, y),
+            false => cloth(x, y),
+        });
+        assert!(plain(&mut pixels, &sure));
+        for (x, y, p) in pixels.enumerate_pixels() {
+            let off = [0, 1, 2].map(|c| p.0[c].abs_diff(cloth(x, y)[c]));
+            assert!(off.iter().all(|d| *d <= 6), "{x} {y}: {:?} for {:?}", p.0, cloth(x, y));
+        }
+    }
+
+    #[test]
+    fn without_cloth_there_is_nothing_to_make_plain() {
+        let (mut pixels, _) = picture(cloth);
+        let before = pixels.clone();
         assert!(!plain(&mut pixels, &GrayImage::new(200, 240)));
+        assert_eq!(pixels, before);
     }
 
     proptest! {

@@ -29,12 +29,14 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 mod thin;
+mod things;
 mod walker;
 mod wedge;
 
 use super::finish::{Finish, cut_by_frame, fill_holes, mask_of, no_garment};
 use super::graph_cut::GraphCut;
 use super::marked::marked;
+use super::marks::{self, Place, of_photo};
 use super::refine::refine;
 use super::regions::Regions;
 use super::small::Small;
@@ -43,7 +45,11 @@ use contour::bare_along_frame;
 use doubt::{doubtful, refuse};
 use grid::{bits, picture};
 use image::GrayImage;
+use image::imageops::{crop_imm, replace};
 use methods::methods;
+use std::collections::BTreeMap;
+pub(super) use things::tell_beside;
+use things::things;
 use toile_core::prelude::*;
 use wedge::{follow, with_inlets, with_wedges};
 
@@ -54,10 +60,10 @@ const NEXT: &str = "`GraphCut()`";
 ///
 /// The default for photos of any ground. Tells its confidence in the mask, 0 to 1; a photo that is refused is shown
 /// with what the methods disagree about, and one thing to try. The frame's rim must show ground, its middle the garment.
-/// Transparent pixels are ground.
+/// Transparent pixels are ground. Where several things lie apart from each other, the largest is taken, or the one that is marked.
 #[stage(
     role = Binariser,
-    version = 2,
+    version = 3,
     source = "Boykov and Jolly, 2001; Grady, 2006; Otsu, 1979",
     example = "Auto(confidence: 0.3)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -75,14 +81,97 @@ pub struct Auto {
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
     pub touch: f64,
+    /// Places on the garment, by photo, as shares of width and height from the left upper corner: which of several things is meant.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub garment: BTreeMap<String, Vec<Place>>,
+    /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
+    #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
+    pub rect: BTreeMap<String, (Place, Place)>,
 }
+
+/// What is left around a rectangle that a user draws, as a share of its sides.
+const AROUND: f64 = 0.04;
 
 #[stage]
 impl Auto {
     pub(crate) fn run(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<Mask, StageError> {
         // How far it may touch the frame is told here, with what goes on past it.
         let settings = Finish { open: 0, close: 0, holes: self.holes, touch: f64::INFINITY, next: NEXT };
-        mask_of(photo, settings, cx, || self.mask(photo, given, cx))
+        let mask = mask_of(photo, settings, cx, || self.one_of_all(photo, given, cx))?;
+        self.holds_the_places(photo, &mask, cx).map(|()| mask)
+    }
+
+    /// The mask at the photo's size, before it is finished, of the thing that is meant.
+    fn one_of_all(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<GrayImage, StageError> {
+        let Some([[left, top], [right, bottom]]) = self.part(photo, cx) else {
+            return self.mask(photo, given, cx);
+        };
+        let (w, h) = photo.pixels.dimensions();
+        let at = |share: f64, n: u32| ((share * f64::from(n)).round() as u32).min(n);
+        let (x, y) = (at(left, w).min(w - 1), at(top, h).min(h - 1));
+        let (width, height) = (at(right, w).saturating_sub(x).max(1), at(bottom, h).saturating_sub(y).max(1));
+        let part = Photo {
+            pixels: Shared::new(crop_imm(photo.pixels.as_ref(), x, y, width, height).to_image()),
+            alpha: photo
+                .alpha
+                .as_ref()
+                .map(|a| Shared::new(crop_imm(a.as_ref(), x, y, width, height).to_image())),
+            ..photo.clone()
+        };
+        let given = given.filter(|mask| mask.pixels.dimensions() == (w, h)).map(|mask| Mask {
+            pixels: crop_imm(mask.pixels.as_ref(), x, y, width, height).to_image().into(),
+        });
+        let found = self.mask(&part, given.as_ref(), cx)?;
+        let mut mask = GrayImage::new(w, h);
+        replace(&mut mask, &found, x.into(), y.into());
+        Ok(mask)
+    }
+
+    /// The part of the photo that shows the thing that is meant, with ground around; none where that is the whole photo.
+    fn part(&self, photo: &Photo, cx: &Context) -> Option<[[f64; 2]; 2]> {
+        if let Some(((a, b), (c, d))) = of_photo(&self.rect, photo, cx).copied() {
+            let ([left, right], [top, bottom]) = ([a.min(c), a.max(c)], [b.min(d), b.max(d)]);
+            let (x, y) = (AROUND * (right - left), AROUND * (bottom - top));
+            return Some([
+                [(left - x).max(0.0), (top - y).max(0.0)],
+                [(right + x).min(1.0), (bottom + y).min(1.0)],
+            ]);
+        }
+        let mut all = things(photo);
+        let places = of_photo(&self.garment, photo, cx).map_or(&[][..], |places| places);
+        let is_meant = |t: &things::Thing| places.iter().all(|place| t.holds(*place));
+        let meant = all.iter().position(is_meant).filter(|_| all.len() > 1)?;
+        let meant = all.remove(meant);
+        let (w, h) = photo.pixels.dimensions();
+        Some(meant.alone(&all, f64::from(w) / f64::from(h.max(1))))
+    }
+
+    /// Refuses a mask beside the places that are marked.
+    fn holds_the_places(&self, photo: &Photo, mask: &Mask, cx: &Context) -> Result<(), StageError> {
+        let (w, h) = mask.pixels.dimensions();
+        let at = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n.saturating_sub(1));
+        let places = of_photo(&self.garment, photo, cx).map_or(&[][..], |places| places);
+        let beside = |(x, y): &&Place| mask.pixels.get_pixel(at(*x, w), at(*y, h)).0[0] == 0;
+        let Some((x, y)) = places.iter().find(beside) else { return Ok(()) };
+        Err(StageError::invalid(format!(
+            "what was found in \"{}\" does not hold the place ({x}, {y}) that is marked",
+            photo.file
+        ))
+        .hint(format!(
+            "places are shares of the photo's width and height from its left upper corner; or draw a rectangle around the garment: --set 'stages.{}.rect={{\"{}\":              ((0.1, 0.1), (0.5, 0.9))}}'",
+            cx.stage(),
+            cx.entry()
+        ))
+        .at("garment"))
+    }
+
+    /// Marks for photos that are not there.
+    fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let photos = crate::photo::sides(&placed.sources());
+        let photos = photos.as_deref();
+        let mut all = marks::check("garment", self.garment.keys(), photos);
+        all.extend(marks::check("rect", self.rect.keys(), photos));
+        all
     }
 
     /// The mask at the photo's size, before it is finished.

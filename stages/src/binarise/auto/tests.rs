@@ -279,3 +279,66 @@ proptest! {
         }
     }
 }
+
+/// A tee at the left and a smaller thing of another colour at the right.
+fn beside(x: f64, y: f64) -> bool {
+    (0.66..0.94).contains(&x) && (0.3..0.7).contains(&y)
+}
+
+fn left(x: f64, y: f64) -> bool {
+    tee(x / 0.6, y)
+}
+
+fn two_things() -> Photo {
+    photo(|x, y| match (left(x, y), beside(x, y)) {
+        (true, _) => [40, 60, 160],
+        (_, true) => [170, 40, 40],
+        _ => [225; 3],
+    })
+}
+
+fn at<T>(value: T) -> BTreeMap<String, T> {
+    [(Context::quiet().entry().to_owned(), value)].into()
+}
+
+#[test]
+fn of_two_things_the_larger_is_taken_and_the_other_is_told() {
+    let cx = Context::quiet();
+    let mask = Auto::default().run(&two_things(), None, &cx).unwrap();
+    assert!(score(&mask, left) > 0.97, "{}", score(&mask, left));
+    let told = cx.take_remarks().warnings;
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert!(
+        told[0].starts_with("a second thing lies in \"front.jpg\" to the right of the garment, "),
+        "{told:?}"
+    );
+    let marks = format!("(garment: {{\"{}\": [(0.80, 0.50)]}})'", cx.entry());
+    assert!(told[0].ends_with(&marks), "{told:?}");
+    // Of a mirror image it was told of its photo.
+    let mirrored = Photo { mirrored: true, ..two_things() };
+    Auto::default().run(&mirrored, None, &cx).unwrap();
+    assert!(cx.take_remarks().warnings.is_empty());
+}
+
+#[test]
+fn the_thing_that_is_marked_is_taken() {
+    let place = Auto { garment: at(vec![(0.8, 0.5)]), ..Auto::default() };
+    let rect = Auto { rect: at(((0.97, 0.75), (0.62, 0.25))), ..Auto::default() };
+    for stage in [place, rect] {
+        let mask = stage.run(&two_things(), None, &Context::quiet()).unwrap();
+        assert!(score(&mask, beside) > 0.97, "{}", score(&mask, beside));
+    }
+}
+
+#[test]
+fn a_mark_on_the_ground_is_refused() {
+    let stage = Auto { garment: at(vec![(0.58, 0.9)]), ..Auto::default() };
+    let cx = Context::quiet();
+    let e = stage.run(&two_things(), None, &cx).unwrap_err();
+    assert_eq!(
+        e.to_string(),
+        "what was found in \"front.jpg\" does not hold the place (0.58, 0.9) that is marked"
+    );
+    let set = format!("--set 'stages.{}.rect={{\"{}\": ((0.1, 0.1), (0.5, 0.9))}}'", cx.stage(), cx.entry());
+    assert!(e.hint.unwrap().ends_with(&set));
+}

@@ -19,6 +19,16 @@ pub enum Complete {
     Mirror,
 }
 
+impl Complete {
+    /// As it is written.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Complete::Nothing => "Nothing",
+            Complete::Mirror => "Mirror",
+        }
+    }
+}
+
 /// Points nearer to the frame than this share of the photo's shorter side lie on it: the outline is smoothed there.
 const ON_FRAME: f64 = 0.008;
 /// And at least so many pixels.

@@ -1,6 +1,6 @@
 //! `Fitting`: a mannequin that the photographed garment fits.
 //!
-//! Method: a block is fitted to the outline ([`super::fit`]) and measured as a tailor measures a garment that lies flat. Of the sizes of a
+//! Method: the block that is cut is fitted to the outline ([`super::fit`]) and measured as a tailor measures a garment that lies flat. Of the sizes of a
 //! table, from a child of 80 cm to an adult, the one is taken whose girths, with the usual ease, and whose height, with the usual length of such a garment,
 //! lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
 //! shorts and vests tell little, so that a short garment with few girths may fit several sizes; the body is a woman's or a child's.
@@ -10,7 +10,9 @@ use super::fit::Fit;
 use super::form::Form;
 use super::{Block, BlockStyle, Fitted, Front, Sides, Waist, refusal};
 use crate::body::Mannequin;
+use toile_core::param::ron_options;
 use toile_core::prelude::*;
+use toile_core::{Node, StageMeta};
 
 /// Height, bust, waist and hip, cm: children by EN 13402-3, adults in its steps of 4 to 6 cm of bust.
 pub(super) const SIZES: [[f64; 4]; 26] = [
@@ -78,7 +80,7 @@ const SPREAD: f64 = 4.0;
 /// know the wearer.
 #[stage(
     role = Body,
-    version = 6,
+    version = 7,
     source = "sizes: EN 13402-3:2017; ease and lengths: Aldrich 2008",
     example = "Fitting()",
     contracts(Deterministic, ThreadInvariant)
@@ -87,6 +89,9 @@ pub struct Fitting {
     /// What the garment is.
     #[param(default = BlockStyle::Auto)]
     pub(super) style: BlockStyle,
+    /// Whether the half that the frame cuts is measured by the other one, as `Block` cuts it.
+    #[param(default = Complete::Nothing)]
+    pub(super) complete: Complete,
     /// Length of the mesh's edges; small bodies get shorter ones.
     #[param(default = Length::mm(16.0), min = 0.006, max = 0.022, trades, finer = "less")]
     pub(super) edge: Length,
@@ -102,11 +107,10 @@ impl Fitting {
     ) -> Result<Body, StageError> {
         let front = outlines.get("front").ok_or_else(refusal::no_front)?;
         let photo = photos.as_ref().and_then(|all| all.get("front"));
-        let fitted = |complete| {
-            // Whether the garment is what it is taken for is the style's affair.
+        let fitted = |stray, complete| {
             let block = Block {
                 style: self.style,
-                stray: f64::INFINITY,
+                stray,
                 complete,
                 sides: Sides::Alike,
                 waist: Waist::Plain,
@@ -114,11 +118,17 @@ impl Fitting {
             };
             block.fitted("front", front, photo, self.style.forms(), &cx.for_entry("front"))
         };
-        // What the frame cuts off is measured by the other half, where that is whole.
-        let (_, form, Fitted { fit, .. }) =
-            fitted(Complete::Mirror)
-                .or_else(|_| fitted(Complete::Nothing))
-                .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
+        let other = match self.complete {
+            Complete::Nothing => Complete::Mirror,
+            Complete::Mirror => Complete::Nothing,
+        };
+        // What is measured is what is cut. Whether the garment is what it is taken for is the style's affair: what it would refuse is measured all the same.
+        let as_cut = Block::default().stray;
+        let (_, form, Fitted { fit, .. }) = fitted(as_cut, self.complete)
+            .or_else(|_| fitted(as_cut, other))
+            .or_else(|_| fitted(f64::INFINITY, Complete::Mirror))
+            .or_else(|_| fitted(f64::INFINITY, Complete::Nothing))
+            .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
         let tape = Tape::of(form, &fit);
         tape.tell(cx);
         let cost = |s: &[f64; 4]| tape.cost(s);
@@ -126,18 +136,52 @@ impl Fitting {
         let [height, bust, waist, usual] = *best;
         let cut_for = tape.girths[HIP].filter(|_| form.has_legs()).map(|g| g * 100.0 / (1.0 + EASE[HIP][0]));
         let hip = cut_for.map_or(usual, |h| h.clamp(usual, (1.0 + HIPS) * usual));
-        cx.warn(format!(
+        cx.note(format!(
             "worn by a mannequin of {height:.0} cm, bust {bust:.0}, waist {waist:.0}, hip {hip:.0} cm: {} fits it",
             tape.words()
         ));
         if cost(best) > ODD {
-            cx.warn("no size wears it as such a garment is worn: look at the photo's `width`, which gives the scale");
+            cx.warn(
+                "no size wears it as such a garment is worn: is the stated width right? It gives the scale",
+            );
         }
         let girths = [bust, waist, hip].map(|g| g / 100.0);
         let arms = arms(form, &fit).clamp(REACH.0, REACH.1);
-        mannequin(height / 100.0, girths, arms, self.edge.metres(), cx)
+        let mut body = mannequin(height / 100.0, girths, arms, self.edge.metres(), cx)?;
+        body.measurements.extend(tape.kept());
+        Ok(body)
+    }
+
+    /// A style that is cut as another kind than is measured.
+    fn warnings(&self, placed: &Placed<'_>) -> Vec<StageError> {
+        let block = |n: &Node| {
+            let params = (n.card.name == Block::NAME).then(|| n.stage.params())?;
+            ron_options().from_str::<Block>(&params).ok()
+        };
+        let Some(block) = placed.nodes.iter().find_map(block) else { return Vec::new() };
+        let set = |what: String, param: &'static str, value: &str| {
+            StageError::invalid(what).hint(format!("say it to both: --set 'body.{param}={value}'")).at(param)
+        };
+        let mut all = Vec::new();
+        if block.style != BlockStyle::Auto && block.style != self.style {
+            let measured = match self.style {
+                BlockStyle::Auto => "what it finds itself".to_owned(),
+                named => format!("`{}`", named.name()),
+            };
+            let cut = block.style.name();
+            all.push(set(format!("`style` cuts `{cut}`, and `body` measures {measured}"), "style", cut));
+        }
+        if block.complete != self.complete {
+            let [cut, measured] = [block.complete, self.complete].map(Complete::name);
+            let what = format!("`style` completes `{cut}`, and `body` measures with `complete: {measured}`");
+            all.push(set(what, "complete", cut));
+        }
+        all
     }
 }
+
+/// Under these names a body that was chosen for a garment keeps what that measures.
+pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
 
 /// A mannequin of that height and girths, metres. Arms that hang near a wide trunk touch it: then they are spread further than `arms`, degrees.
 pub(super) fn mannequin(
@@ -160,7 +204,7 @@ pub(super) fn mannequin(
 /// The refusal, with how to say what the garment is.
 fn say(e: StageError) -> StageError {
     let lay = e.hint.clone().unwrap_or_default();
-    e.hint(format!("{lay}; or say what it is: `style: Block(style: Vest)` and `body: Fitting(style: Vest)`"))
+    e.hint(format!("{lay}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'"))
 }
 
 /// A garment's measures, metres.
@@ -225,6 +269,11 @@ impl Tape {
         for (name, metres) in girths.chain(lengths).filter_map(|(name, m)| Some((name, m?))) {
             cx.figure(name, metres * 100.0, "cm");
         }
+    }
+
+    /// The girths under their names in a body.
+    fn kept(&self) -> impl Iterator<Item = (String, f64)> + '_ {
+        KEPT.iter().zip(self.girths).filter_map(|(name, girth)| Some(((*name).to_owned(), girth?)))
     }
 
     /// What was measured.

@@ -171,6 +171,7 @@ pub(super) const SKIRT: Form = Form {
         Mark::Corner(3, 40.0, "it has no waist"),
         Mark::Narrower(3, 0, 0.95, "its waist is as wide as its hem"),
         Mark::Level(0, 0.15, "its hem is not even"),
+        Mark::Level(3, 0.2, "its waist is not even"),
     ],
     edges: &[
         edge("hem", [5.0, 12.0], [0.0, 0.1], [0.2, 1.5]),

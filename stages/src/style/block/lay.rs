@@ -67,7 +67,7 @@ pub(super) fn pattern(
     let pattern =
         Pattern { name: "block".into(), pieces, seams: seams::seams(&flats, form, making.waist.fold()) };
     let lowered = pattern.lower().map_err(|e| StageError::invalid(e.to_string()).hint(e.remedy()))?;
-    lowered.notes.into_iter().for_each(|what| cx.warn(what));
+    lowered.notes.into_iter().for_each(|what| cx.note(what));
     let framed = |(name, o): (String, Outline)| {
         let photo = photos.get(&name).and_then(Option::as_ref);
         let lies = photo.map_or_else(Vec::new, |lying| lying.lies(&o));

@@ -14,6 +14,7 @@ mod form;
 mod front;
 mod halves;
 mod lay;
+mod leftover;
 mod marks;
 mod pieces;
 mod pleat;
@@ -37,6 +38,7 @@ use form::Form;
 use front::Front;
 use halves::Upright;
 use lay::{Fitted, mirrored, pattern};
+use leftover::Leftover;
 use marks::missing;
 use pieces::Making;
 use rayon::prelude::*;
@@ -96,6 +98,16 @@ impl BlockStyle {
         (BlockStyle::SleevelessOnepiece, "SleevelessOnepiece", &form::ROMPER),
     ];
 
+    /// Whether a kind of garment has this name.
+    pub(super) fn knows(name: &str) -> bool {
+        Self::NAMED.iter().any(|(_, known, _)| *known == name)
+    }
+
+    /// As it is written.
+    fn name(self) -> &'static str {
+        Self::NAMED.iter().find(|(style, ..)| *style == self).map_or("Auto", |(_, name, _)| name)
+    }
+
     /// The forms that come into question, with their names.
     fn forms(self) -> Vec<(&'static str, &'static Form)> {
         let asked = |s: &BlockStyle| self == BlockStyle::Auto || *s == self;
@@ -111,7 +123,7 @@ impl BlockStyle {
 /// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
-    version = 7,
+    version = 8,
     source = "fitting: Chen and Medioni 1992, Geman and McClure 1985; blocks: Aldrich 2008",
     example = "Block(style: TShirt)",
     contracts(Deterministic, ThreadInvariant)
@@ -152,14 +164,25 @@ impl Block {
             cx.warn(format!("a block is cut from \"front\" and \"back\"; the photo \"{name}\" is not used"));
         }
         let photo = |name: &str| photos.as_ref().and_then(|all| all.get(name).or_else(|| all.get("front")));
-        let (name, form, before) = self.fitted("front", front, photo("front"), self.style.forms(), cx)?;
+        let found = self.fitted("front", front, photo("front"), self.style.forms(), cx)?;
+        self.tell("front", front, &found, cx);
+        self.explains("front", &found, cx)?;
+        let (name, form, before) = found;
         if self.style == BlockStyle::Auto {
-            cx.warn(format!("\"front\" is taken for {}; `Block(style: {name})` settles it", form.word));
+            cx.note(format!(
+                "\"front\" is taken for {}; to say what it is: --set 'style.style={name}'",
+                form.word
+            ));
         }
-        wearable::check(form, &before.fit, body)?;
+        wearable::check(name, form, &before.fit, body, photo("front"))?;
         let mirrored = mirrored(front);
         let back = outlines.get("back").unwrap_or(&mirrored);
-        let (.., behind) = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
+        let found = self.fitted("back", back, photo("back"), vec![(name, form)], cx)?;
+        self.tell("back", back, &found, cx);
+        if outlines.get("back").is_some_and(|o| !o.frame.is_some_and(|f| f.mirrored)) {
+            self.explains("back", &found, cx)?;
+        }
+        let (.., behind) = found;
         cx.check()?;
         let layers = [(Layer::Front, before), (Layer::Back, behind)];
         pattern(form, &layers, Making { waist: self.waist, front: self.front }, body, cx)
@@ -182,12 +205,10 @@ impl Block {
             true => complete::widened(fit, upright, outline),
             false => 1.0,
         };
-        let found = match times == 1.0 {
-            true => found,
-            false => self.best(panel, &complete::scaled(outline, times), photo, vec![(*name, *form)], cx)?,
-        };
-        self.tell(panel, outline, &found, cx);
-        Ok(found)
+        match times == 1.0 {
+            true => Ok(found),
+            false => self.best(panel, &complete::scaled(outline, times), photo, vec![(*name, *form)], cx),
+        }
     }
 
     /// The best of the forms, fitted.
@@ -239,6 +260,22 @@ impl Block {
         Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame }))
     }
 
+    /// Refuses or tells what the template does not explain.
+    fn explains(
+        &self,
+        panel: &str,
+        (_, form, fitted): &(&str, &Form, Fitted),
+        cx: &Context,
+    ) -> Result<(), StageError> {
+        let Fitted { upright, lying, .. } = fitted;
+        if upright.unseen.contains(&true) {
+            return Ok(());
+        }
+        let left = Leftover::of(upright, form, lying);
+        left.figures(panel, cx);
+        left.judge(panel, form, upright.size, self.style == BlockStyle::Auto, cx)
+    }
+
     /// Tells how the fit lies.
     fn tell(&self, panel: &str, outline: &Outline, (_, form, fitted): &(&str, &Form, Fitted), cx: &Context) {
         let Fitted { upright, lying: fit, .. } = fitted;
@@ -251,7 +288,7 @@ impl Block {
                 None => tell::uneven(panel, form, fit, upright.size, self.sides, cx),
             }
             if upright.unseen.contains(&true) {
-                cx.warn(format!("what the frame cuts off \"{panel}\" is the mirror image of its other half"));
+                cx.note(format!("what the frame cuts off \"{panel}\" is the mirror image of its other half"));
             }
         }
     }

@@ -6,7 +6,7 @@ use super::tell::at_95;
 use toile_core::prelude::*;
 
 /// What a photographer can do.
-const LAY: &str = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
+pub(super) const LAY: &str = "lay the garment flat and smooth, neck or waist up, sleeves and legs away from the body, all of it in the picture";
 
 pub(super) fn no_front() -> StageError {
     StageError::invalid("there is no photo \"front\" to cut the garment from")
@@ -44,7 +44,7 @@ pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool
         most * 1e3
     ))
     .hint(if auto {
-        format!("{LAY}; or say what it is: `style: Block(style: Vest)`")
+        format!("{LAY}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'")
     } else {
         LAY.to_owned()
     })

@@ -7,6 +7,10 @@ use toile_core::prelude::*;
 
 /// What is more than this share of the garment's size is told.
 const TOLD: f64 = 0.025;
+/// From this share on a stray edge is to be looked at.
+const FAR: f64 = 0.05;
+/// And a difference of both sides.
+const APART: f64 = 0.15;
 
 /// The value that 19 of 20 do not exceed.
 pub(super) fn at_95(misses: &[f64]) -> f64 {
@@ -22,18 +26,26 @@ pub(super) fn figures(panel: &str, form: &Form, fit: &Fit, cx: &Context) {
     }
 }
 
-/// Tells edges from which the outline strays far.
+/// Tells edges from which the outline strays far, all in one sentence.
 pub(super) fn astray(panel: &str, form: &Form, fit: &Fit, size: f64, cx: &Context) {
-    for (e, misses) in form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty()) {
-        let stray = at_95(misses);
-        if stray > TOLD * size {
-            cx.warn(format!(
-                "the {} of \"{panel}\" strays by {:.0} mm from that of {}; it is cut as the block has it",
-                e.name,
-                stray * 1e3,
-                form.word
-            ));
-        }
+    let strays = form.edges.iter().zip(&fit.misses).filter(|(_, m)| !m.is_empty());
+    let far: Vec<(&str, f64)> =
+        strays.map(|(e, m)| (e.name, at_95(m))).filter(|(_, stray)| *stray > TOLD * size).collect();
+    let list: Vec<String> =
+        far.iter().map(|(name, stray)| format!("its {name} by {:.0} mm", stray * 1e3)).collect();
+    let text = format!("\"{panel}\" strays from {}, and is cut as one: {}", form.word, and(&list));
+    match far.iter().map(|(_, stray)| *stray).fold(0.0, f64::max) {
+        most if most > FAR * size => cx.warn(text),
+        most if most > 0.0 => cx.note(text),
+        _ => {}
+    }
+}
+
+/// Words as a list: `a, b and c`.
+fn and(words: &[String]) -> String {
+    match words {
+        [rest @ .., last] if !rest.is_empty() => format!("{} and {last}", rest.join(", ")),
+        _ => words.concat(),
     }
 }
 
@@ -46,21 +58,31 @@ pub(super) fn one_half(panel: &str, form: &Form, side: usize, cx: &Context) {
     ));
 }
 
-/// Tells edges that are longer on one side: the garment lies uneven.
+/// Tells edges that are longer on one side, all in one sentence: the garment lies uneven.
 pub(super) fn uneven(panel: &str, form: &Form, fit: &Fit, size: f64, sides: Sides, cx: &Context) {
     let cut = match sides {
-        Sides::Alike => "both sides are cut alike (`Block(sides: AsTheyLie)` keeps them apart)",
+        Sides::Alike => "both sides are cut alike (--set 'style.sides=AsTheyLie' keeps them apart)",
         Sides::AsTheyLie => "it is cut as it lies",
     };
-    for (k, e) in form.edges.iter().enumerate() {
-        let [a, b] = [0, 1].map(|s: usize| fit.sides[s][k].length());
-        if (a - b).abs() > TOLD * size {
-            cx.warn(format!(
-                "\"{panel}\" lies uneven: its {} measures {:.0} mm on one side and {:.0} mm on the other; {cut}",
-                e.name,
-                a * 1e3,
-                b * 1e3
-            ));
+    let mut uneven: Vec<(String, f64)> = Vec::new();
+    let mut k = 0;
+    while k < form.edges.len() {
+        let name = form.edges[k].name;
+        // Where the one ends and the other begins a flat garment does not show.
+        let goes_on = |next: &str| matches!((name, next), ("top", "shoulder") | ("side" | "outseam", "hip"));
+        let both = form.edges.get(k + 1).is_some_and(|next| goes_on(next.name));
+        let length = |s: usize| (k..=k + usize::from(both)).map(|i| fit.sides[s][i].length()).sum::<f64>();
+        let differ = (length(0) - length(1)).abs();
+        if differ > TOLD * size {
+            uneven.push((format!("its {name} by {:.0} mm", differ * 1e3), differ));
         }
+        k += 1 + usize::from(both);
+    }
+    let list: Vec<String> = uneven.iter().map(|(text, _)| text.clone()).collect();
+    let text = format!("\"{panel}\" lies uneven, {}; {cut}", and(&list));
+    match uneven.iter().map(|(_, differ)| *differ).fold(0.0, f64::max) {
+        most if most > APART * size => cx.warn(text),
+        most if most > 0.0 => cx.note(text),
+        _ => {}
     }
 }

@@ -216,9 +216,41 @@ fn auto_names_what_it_sees() {
         let cx = Context::quiet();
         let front = [("front".to_owned(), outline(garment(half)))].into_iter().collect();
         Block::default().run(front, &body(), None, &cx).unwrap();
-        let told = cx.take_remarks().warnings.remove(0);
-        assert!(told.ends_with(&format!("`Block(style: {word})` settles it")), "{told}");
+        let told = cx.take_remarks();
+        assert!(
+            told.notes[0].ends_with(&format!("to say what it is: --set 'style.style={word}'")),
+            "{told:?}"
+        );
+        assert!(told.warnings.is_empty(), "{told:?}");
     }
+}
+
+/// A T-shirt with a hood behind its neck, so many millimetres high.
+fn hooded(height: f64) -> Vec<Point2> {
+    let top = garment(TEE).iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
+    let raised = |p: Point2| {
+        let inside = (1.0 - (p.x / 0.075).powi(2)).max(0.0).sqrt();
+        Point2::new(p.x, if p.y > top - 0.06 { p.y + 1e-3 * height * inside } else { p.y })
+    };
+    garment(TEE).into_iter().map(raised).collect()
+}
+
+#[test]
+fn a_hood_is_refused_and_a_collar_that_stands_is_told() {
+    let run = |height: f64| {
+        let cx = Context::quiet();
+        let front = [("front".to_owned(), outline(hooded(height)))].into_iter().collect();
+        let done = of(BlockStyle::TShirt).run(front, &body(), None, &cx).map(|_| ());
+        (done, cx.take_remarks().warnings)
+    };
+    let (done, told) = run(0.0);
+    assert!(done.is_ok() && told.is_empty(), "{told:?}");
+    let e = run(220.0).0.unwrap_err();
+    assert!(
+        e.message.contains("above the shoulders of \"front\" is no neckline of a T-shirt: a hood"),
+        "{e}"
+    );
+    assert_eq!(e.hint.as_deref(), Some("fold it back behind the garment, and take the photo again"));
 }
 
 #[test]
@@ -274,7 +306,10 @@ fn a_garment_that_the_body_cannot_wear_is_refused_before_it_is_sewn() {
     assert!(stage.run(front.clone(), &wearer(1.1), None, &Context::quiet()).is_ok());
     let e = stage.run(front, &wearer(1.4), None, &Context::quiet()).unwrap_err();
     assert_eq!(e.message, "the garment is too small: its chest measures 100 cm around, the body's 140 cm");
-    assert_eq!(e.hint.unwrap(), "check the photo's `width`, which gives the scale; else take a smaller body");
+    assert_eq!(
+        e.hint.unwrap(),
+        "is the scale right? The garment is measured by it. If it is, take a mannequin that it fits: --set 'body=Fitting(style: TShirt)'"
+    );
 }
 
 fn bow() -> impl Strategy<Value = Bow> {
@@ -343,13 +378,14 @@ proptest! {
     }
 }
 
-/// The mannequin that a garment is fitted to: its height and bust in cm, and what is told.
+/// The mannequin that a garment is fitted to: its height and bust in cm, and what is told, notes first.
 fn fitted_to(points: Vec<Point2>, style: BlockStyle) -> ([f64; 2], Vec<String>) {
     let cx = Context::quiet();
     let front = [("front".to_owned(), outline(points))].into_iter().collect();
     let body = Fitting { style, ..Fitting::default() }.run(front, None, &cx).unwrap();
     let of = |name: &str| (body.measurements[name] * 100.0).round();
-    ([of("height"), of("bust")], cx.take_remarks().warnings)
+    let told = cx.take_remarks();
+    ([of("height"), of("bust")], [told.notes, told.warnings].concat())
 }
 
 fn scaled(points: Vec<Point2>, by: f64) -> Vec<Point2> {
@@ -376,7 +412,7 @@ fn a_garment_is_worn_by_whom_it_fits() {
     let (_, told) = fitted_to(scaled(garment(TEE), 2.5), BlockStyle::TShirt);
     assert_eq!(
         told[1],
-        "no size wears it as such a garment is worn: look at the photo's `width`, which gives the scale"
+        "no size wears it as such a garment is worn: is the stated width right? It gives the scale"
     );
 }
 

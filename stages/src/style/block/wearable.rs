@@ -4,6 +4,7 @@
 //! cuffs; what a closure would open is not known.
 
 use super::fit::Fit;
+use super::fitting::KEPT;
 use super::form::Form;
 use crate::body::convex_hull;
 use toile_core::prelude::*;
@@ -24,14 +25,43 @@ struct Girth {
     body: f64,
 }
 
-/// Refuses a garment that is much too narrow for the body.
-pub(super) fn check(form: &Form, fit: &Fit, body: &Body) -> Result<(), StageError> {
+/// Girths of one garment that differ by more than this share were not measured alike.
+const ALIKE: f64 = 0.03;
+
+/// Refuses a garment that is much too narrow for the body. `name` is its style's.
+pub(super) fn check(
+    name: &str,
+    form: &Form,
+    fit: &Fit,
+    body: &Body,
+    photo: Option<&Photo>,
+) -> Result<(), StageError> {
     let small = girths(form, fit, body).into_iter().find(|g| g.garment < NARROWEST * g.body);
-    small.map_or(Ok(()), |g| Err(too_small(&g)))
+    small.map_or(Ok(()), |g| Err(too_small(&g, name, body, photo)))
 }
 
-fn too_small(g: &Girth) -> StageError {
+fn too_small(g: &Girth, name: &str, body: &Body, photo: Option<&Photo>) -> StageError {
     let cm = |m: f64| (m * 100.0).round();
+    // What the body was chosen for, where it was chosen for this garment.
+    let chosen_for = body.measurements.get(&format!("garment_{}", g.what)).copied();
+    let was_chosen = KEPT.iter().any(|kept| body.measurements.contains_key(*kept));
+    let width = photo.and_then(|p| p.garment_width).map(|w| cm(w * g.body / g.garment));
+    let scale = match width {
+        Some(width) => {
+            format!("is the stated width right? It gives the scale; from {width} cm on it would fit")
+        }
+        None => "is the scale right? The garment is measured by it".to_owned(),
+    };
+    let hint = match chosen_for {
+        Some(other) if (other - g.garment).abs() > ALIKE * g.garment => format!(
+            "the mannequin was chosen for {} cm there, as of another garment: --set 'body.style={name}'",
+            cm(other)
+        ),
+        _ if was_chosen => {
+            format!("{scale}. If it is, lay waistband and cuffs stretched out, without folds")
+        }
+        _ => format!("{scale}. If it is, take a mannequin that it fits: --set 'body=Fitting(style: {name})'"),
+    };
     StageError::invalid(format!(
         "the garment is too small: its {} measures {} cm around, {} {} cm",
         g.what,
@@ -39,7 +69,7 @@ fn too_small(g: &Girth) -> StageError {
         g.of_body,
         cm(g.body)
     ))
-    .hint("check the photo's `width`, which gives the scale; else take a smaller body")
+    .hint(hint)
 }
 
 /// What can be compared.
