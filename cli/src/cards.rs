@@ -148,7 +148,8 @@ fn port_words(port: &InPort) -> String {
     };
     let optional = if port.optional { ", may be missing" } else { "" };
     let original = if port.original { ", as first made" } else { "" };
-    format!("{}{arity}{original}{optional}", port.kind)
+    let sewn = if port.sewn { ", as it was sewn" } else { "" };
+    format!("{}{arity}{original}{sewn}{optional}", port.kind)
 }
 
 fn param_text(p: &ParamDoc) -> String {

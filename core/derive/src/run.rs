@@ -9,6 +9,7 @@ struct Port {
     name: String,
     ty: Type,
     original: bool,
+    sewn: bool,
 }
 
 pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
@@ -29,10 +30,10 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
     let out = output(run)?;
     let (sizes, decisions, faults) = (sizes(&item), decisions(&item), faults(&item));
     let (warnings, improves) = (warnings(&item), improves(&item));
-    let in_ports = ports.iter().map(|Port { name, ty, original }| {
+    let in_ports = ports.iter().map(|Port { name, ty, original, sewn }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
-            ::toile_core::InPort { name: #name, kind, arity, optional, original: #original }
+            ::toile_core::InPort { name: #name, kind, arity, optional, original: #original, sewn: #sewn }
         }}
     });
     let takes = ports.iter().enumerate().map(|(i, Port { name, ty, .. })| {
@@ -158,7 +159,7 @@ fn has(item: &ItemImpl, name: &str) -> bool {
     item.items.iter().any(|i| matches!(i, ImplItem::Fn(f) if f.sig.ident == name))
 }
 
-/// The arguments between `&self` and the context; `#[original]` is read and taken off.
+/// The arguments between `&self` and the context; `#[original]` and `#[sewn]` are read and taken off.
 fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
     let count = run.sig.inputs.len();
     let mut ports = Vec::new();
@@ -167,15 +168,20 @@ fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
         if i + 1 == count {
             continue;
         }
-        let before = arg.attrs.len();
-        arg.attrs.retain(|a| !a.path().is_ident("original"));
+        let mut take = |name: &str| {
+            let before = arg.attrs.len();
+            arg.attrs.retain(|a| !a.path().is_ident(name));
+            arg.attrs.len() != before
+        };
+        let (original, sewn) = (take("original"), take("sewn"));
         let Pat::Ident(name) = arg.pat.as_ref() else {
             return Err(syn::Error::new_spanned(&arg.pat, "a port needs a name"));
         };
         ports.push(Port {
             name: name.ident.to_string().trim_start_matches('_').to_owned(),
             ty: (*arg.ty).clone(),
-            original: arg.attrs.len() != before,
+            original,
+            sewn,
         });
     }
     Ok(ports)

@@ -66,6 +66,9 @@ pub struct Metrics {
     pub stages: Vec<StageMetrics>,
     /// By panel.
     pub panels: BTreeMap<String, PanelFigures>,
+    /// By piece that was laid flat: how far the flat piece is from the garment. `panels` and `garment` are those of the pattern that it was sewn from.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub flat: BTreeMap<String, PanelFigures>,
     /// The garment; `None` where the run made none.
     pub garment: Option<GarmentMetrics>,
     /// The result's shortfalls against its quality limits: code and sentence.
@@ -76,6 +79,7 @@ impl Metrics {
     /// Puts the judgement of the garment in.
     pub(crate) fn judge(&mut self, figures: &Figures) {
         self.panels = figures.panels.clone();
+        self.flat = figures.flat.clone();
         self.garment = Some(GarmentMetrics {
             figures: figures.garment.clone(),
             threads: rayon::current_num_threads(),

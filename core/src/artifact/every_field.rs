@@ -386,11 +386,18 @@ fn of_figures() {
     let base = figures();
     let mut others = changed!(
         base.clone(),
-        Figures { panels: BTreeMap::new(), garment: GarmentFigures::default(), shortfalls: vec![] }
+        Figures {
+            panels: BTreeMap::new(),
+            garment: GarmentFigures::default(),
+            flat: BTreeMap::new(),
+            shortfalls: vec![],
+        }
     );
     let named = |f| BTreeMap::from([("front".to_owned(), f)]);
     let panels = changed!(base.panels["front"], PanelFigures { area_error: 0.5, outline_error: 0.5 });
     others.extend(panels.into_iter().map(|f| Figures { panels: named(f), ..figures() }));
+    let flat = changed!(base.flat["front"], PanelFigures { area_error: 0.5, outline_error: 0.5 });
+    others.extend(flat.into_iter().map(|f| Figures { flat: named(f), ..figures() }));
     let mut garments = changed!(
         base.garment.clone(),
         GarmentFigures {

@@ -93,6 +93,8 @@ pub struct Figures {
     pub panels: BTreeMap<String, PanelFigures>,
     /// The whole garment.
     pub garment: GarmentFigures,
+    /// By name of a piece that was laid flat: how far the flat piece is from the garment; empty where nothing was laid flat.
+    pub flat: BTreeMap<String, PanelFigures>,
     /// The limits that are missed; empty for a good result.
     pub shortfalls: Vec<Shortfall>,
 }
@@ -133,7 +135,8 @@ impl Artifact for Figures {
     }
 
     fn check(&self) -> Result<(), String> {
-        let panels = self.panels.values().flat_map(|p| [p.area_error, p.outline_error]);
+        let panels =
+            self.panels.values().chain(self.flat.values()).flat_map(|p| [p.area_error, p.outline_error]);
         panels.into_iter().try_for_each(|e| finite_figure("error of a panel", e))?;
         finite_figure("seam gap", self.garment.seam_gap_max_m)
     }

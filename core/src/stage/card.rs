@@ -69,6 +69,8 @@ pub struct InPort {
     pub optional: bool,
     /// True where it wants the first made of its kind (the photo as read), not the latest.
     pub original: bool,
+    /// True where it wants what was sewn: of a garment that flatteners have laid flat, the one that they were given.
+    pub sewn: bool,
 }
 
 /// An output port.

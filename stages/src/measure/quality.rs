@@ -4,9 +4,10 @@
 //! strain is that of the mesh edges. What the body stretches is judged by itself (see `tight`). Vertices in the body and self-contact are asked of the pipeline's
 //! collider, what crosses the body between its vertices is found on the body's own triangles; without
 //! collider or body they are not measured, and `metrics.json` says so with a null.
+//! A garment that a flattener stands behind is judged by the pattern that it was sewn from; the flat pieces have figures of their own.
 
 use super::tight::Tight;
-use super::{girth, looks, on_body};
+use super::{girth, looks, on_body, parts, shortfalls, with_pattern};
 use crate::collide::body_crossings;
 use crate::engine::check_garment;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,11 +22,12 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// Measures the garment and holds it against its quality limits.
 ///
 /// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
-/// misses a limit is written all the same, with exit code 4. What looks odd on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
+/// misses a limit is written all the same, with exit code 4: so does a garment that has slid off the body or has come apart. Where a flattener
+/// stands behind, the garment is judged by the pattern that it was sewn from; the flat pieces have figures of their own, `flat`. What looks odd on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
 /// stand off, an uneven hem, a photo that is drawn out.
 #[stage(
     role = Writer,
-    version = 7,
+    version = 8,
     source = "Fan, Zhou, Wang, Yuen 1999",
     contracts(Deterministic, ThreadInvariant),
     example = "Measure(max_strain: 0.08)"
@@ -49,8 +51,8 @@ pub struct Measure {
     /// tears at some 25 %); from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
-    /// Least share of every panel that must still be in its place on the body: 1 less the way that the upper edge of its piece has
-    /// sunk, from where it started or from the top of the body under it, as a share of the root of the piece's area.
+    /// Least share of every panel that must still be in its place on the body: 1 less the way that the upper edge of all that it is sewn to has
+    /// sunk, from where it started or from the top of the body under it, as a share of the height of its tallest piece.
     #[param(default = 0.5, min = 0.0, max = 1.0)]
     least_on_body: f64,
     /// Most pairs of a triangle of the garment and one of the body that cross.
@@ -62,117 +64,43 @@ pub struct Measure {
 impl Measure {
     fn run(
         &self,
-        garment: &Garment,
+        #[sewn] garment: &Garment,
         collider: Option<&Collider>,
         body: Option<&Body>,
+        flat: Option<&Garment>,
+        #[original] start: Option<&Garment>,
         cx: &Context,
     ) -> Result<Figures, StageError> {
+        let laid = flat.filter(|flat| flat.rest != garment.rest);
+        let garment = with_pattern(garment, laid);
         check_garment(garment)?;
         let tight = Tight::of(garment, collider);
         let mut figures = Figures {
             panels: panel_figures(garment, None)?,
             garment: garment_figures(garment, collider, body),
+            flat: laid.map_or_else(|| Ok(BTreeMap::new()), |flat| panel_figures(flat, None))?,
             shortfalls: Vec::new(),
         };
         figures.garment.tight_p99 = collider.map(|_| tight.taut());
         let loose = panel_figures(garment, Some(&tight))?;
-        figures.shortfalls = self.shortfalls(&figures.garment, &loose, tight.rest());
+        figures.shortfalls = self.limits().missed(garment, &figures.garment, &loose, tight.rest());
         figures.shortfalls.extend(tight.judge(garment, self.max_strain, self.max_tight, cx));
         girth::tell(&figures.garment.girths, cx);
         looks::tell(garment, collider, cx);
-        figures.shortfalls.extend(on_body::shortfall(garment, self.least_on_body));
+        figures.shortfalls.extend(on_body::shortfalls(garment, self.least_on_body));
+        figures.shortfalls.extend(start.and_then(|start| parts::come_apart(start, garment)));
         Ok(figures)
     }
 
-    /// Limits that a garment misses, with the errors of its panels and its strain (99th percentile) but for what the body stretches.
-    fn shortfalls(
-        &self,
-        g: &GarmentFigures,
-        panels: &BTreeMap<String, PanelFigures>,
-        strain: f64,
-    ) -> Vec<Shortfall> {
-        let mut list = Vec::new();
-        let mut miss = |is_missed: bool, code, message: String| {
-            if is_missed {
-                list.push(Shortfall { code, message });
-            }
-        };
-        let gap = Length::m(g.seam_gap_max_m);
-        miss(
-            g.seam_gap_max_m > self.max_gap.metres(),
-            ErrorCode::StitchingError,
-            format!("a seam gapes by {gap}, the limit is {}", self.max_gap),
-        );
-        for (name, panel) in panels {
-            let area = percent(panel.area_error);
-            miss(
-                panel.area_error.abs() > self.max_area_error,
-                ErrorCode::StaticEquilibrium,
-                format!(
-                    "panel \"{name}\" changed its area by {area}, the limit is {}",
-                    percent(self.max_area_error)
-                ),
-            );
-            let outline = percent(panel.outline_error);
-            miss(
-                panel.outline_error.abs() > self.max_outline_error,
-                ErrorCode::StaticEquilibrium,
-                format!(
-                    "panel \"{name}\" changed its outline by {outline}, the limit is {}",
-                    percent(self.max_outline_error)
-                ),
-            );
+    fn limits(&self) -> shortfalls::Limits {
+        shortfalls::Limits {
+            gap: self.max_gap,
+            area_error: self.max_area_error,
+            outline_error: self.max_outline_error,
+            strain: self.max_strain,
+            body_crossings: self.max_body_crossings,
         }
-        miss(
-            strain > self.max_strain,
-            ErrorCode::StaticEquilibrium,
-            format!(
-                "1 % of the edges strain more than {}, the limit is {}",
-                percent(strain),
-                percent(self.max_strain)
-            ),
-        );
-        let inside = g.body_penetration.unwrap_or_default();
-        miss(
-            inside.vertices > 0,
-            ErrorCode::BodyIntersection,
-            format!(
-                "{} vertices lie in the body, the deepest by {}",
-                inside.vertices,
-                Length::m(inside.max_m)
-            ),
-        );
-        let crossings = g.body_crossings.unwrap_or(0);
-        miss(
-            crossings > self.max_body_crossings,
-            ErrorCode::BodyIntersection,
-            format!(
-                "{crossings} pairs of a triangle of the garment and one of the body cross, the limit is {}",
-                self.max_body_crossings
-            ),
-        );
-        let crossings = g.self_crossings.unwrap_or(0);
-        miss(
-            crossings > 0,
-            ErrorCode::SelfIntersection,
-            format!("{crossings} pairs of triangles cross each other"),
-        );
-        miss(
-            g.steps > 0 && !g.converged,
-            ErrorCode::StaticEquilibrium,
-            "the cloth had not come to rest when the solver stopped".into(),
-        );
-        miss(
-            g.steps == 0 && g.converged,
-            ErrorCode::FastFinish,
-            "the solver called the cloth at rest before its first step".into(),
-        );
-        list
     }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.2} %", share * 1e2)
 }
 
 /// The vertices along elastic bands, which are there to draw cloth in.
@@ -222,7 +150,7 @@ fn garment_figures(garment: &Garment, collider: Option<&Collider>, body: Option<
         body_penetration: collider.map(|c| penetration(garment, c)),
         body_crossings: body.map(|b| body_crossings(&garment.positions, &garment.triangles, b)),
         self_crossings: collider.map(|c| crossings(garment, c)),
-        on_body: on_body::least(garment).map(|(_, share)| share),
+        on_body: on_body::least(garment),
         girths: body.map(|b| girth::girths(garment, b)).unwrap_or_default(),
         energy_j: garment.status.energy,
         max_speed_m_s: garment.status.max_speed,

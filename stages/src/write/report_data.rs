@@ -13,9 +13,10 @@ use image::RgbImage;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::any::Any;
+use std::collections::BTreeMap;
 use toile_core::artifact::{
-    Artifact, Body, Digester, Figures, Garment, Measure, Model, Outline, OutputFiles, Photo, RunLog,
-    SeamState, SewingPlan, StageRecord, quantile, stored,
+    Artifact, Body, Digester, Figures, Garment, GarmentPanel, Measure, Model, Outline, OutputFiles,
+    PanelFigures, Photo, RunLog, SeamState, SewingPlan, StageRecord, StrainFigures, quantile, stored,
 };
 use toile_core::cost::Estimate;
 use toile_core::{Context, StageError, StageMeta};
@@ -366,8 +367,9 @@ fn output(name: &str, artifact: &dyn Artifact) -> Output {
 /// What a tailor asks of the result first: cloth, seams, strain, rest.
 fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
     let Some(garment) = last::<Garment>(run, run.stages.len()) else { return Vec::new() };
-    let strains = garment.edge_strains();
-    let at = |q: f64| quantile(&strains, q) * 100.0;
+    // What was judged is the garment by the pattern that it was sewn from, whatever flattener stands behind.
+    let figures = last::<Figures>(run, run.stages.len());
+    let strain = figures.map_or_else(|| strain(garment), |f| f.garment.edge_strain);
     let open = garment.seams.iter().filter(|s| s.state == SeamState::Open).count();
     let row =
         |name: &str, value: f64, unit: &str| Figure { name: name.to_owned(), value: number(value, unit) };
@@ -384,18 +386,20 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         row("seams", garment.seams.len() as f64, ""),
         row("seams still open", open as f64, ""),
         row("widest seam gap", garment.seam_gap_max() * 1e3, "mm"),
-        row("edge strain, median", at(0.5), "%"),
-        row("edge strain, 99 of 100", at(0.99), "%"),
-        row("edge strain, greatest", at(1.0), "%"),
+        row("edge strain, median", strain.p50 * 1e2, "%"),
+        row("edge strain, 99 of 100", strain.p99 * 1e2, "%"),
+        row("edge strain, greatest", strain.max * 1e2, "%"),
     ];
-    for panel in &garment.panels {
-        let ((flat, now), (flat_length, length)) =
-            (garment.panel_areas(panel), garment.panel_boundaries(panel));
-        let change = |flat: f64, now: f64| if flat > 0.0 { (now - flat) / flat * 100.0 } else { 0.0 };
-        cloth.push(row(&format!("{}, change of area", panel.name), change(flat, now), "%"));
-        fit.push(row(&format!("{}, change of outline", panel.name), change(flat_length, length), "%"));
+    let panels = figures.map_or_else(|| changes(garment), |f| f.panels.clone());
+    for (name, p) in &panels {
+        cloth.push(row(&format!("{name}, change of area"), -p.area_error * 1e2, "%"));
+        fit.push(row(&format!("{name}, change of outline"), -p.outline_error * 1e2, "%"));
     }
-    let judged = last::<Figures>(run, run.stages.len()).map(|f| &f.garment);
+    for (name, p) in figures.iter().flat_map(|f| &f.flat) {
+        cloth.push(row(&format!("{name} laid flat, change of area"), p.area_error * 1e2, "%"));
+        fit.push(row(&format!("{name} laid flat, change of outline"), p.outline_error * 1e2, "%"));
+    }
+    let judged = figures.map(|f| &f.garment);
     if let Some(inside) = judged.and_then(|g| g.body_penetration) {
         cloth.push(row("vertices inside the body", inside.vertices as f64, ""));
         fit.push(row("deepest in the body", inside.max_m * 1e3, "mm"));
@@ -414,6 +418,22 @@ fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
         fit.push(row("still in its place on the body", share * 1e2, "%"));
     }
     vec![cloth, fit]
+}
+
+fn strain(garment: &Garment) -> StrainFigures {
+    let strains = garment.edge_strains();
+    let at = |q: f64| quantile(&strains, q);
+    StrainFigures { p50: at(0.5), p99: at(0.99), max: at(1.0) }
+}
+
+/// How far each panel is from its pattern.
+fn changes(garment: &Garment) -> BTreeMap<String, PanelFigures> {
+    let error = |(flat, now): (f64, f64)| if flat > 0.0 { (flat - now) / flat } else { 0.0 };
+    let of = |p: &GarmentPanel| {
+        let (area, outline) = (garment.panel_areas(p), garment.panel_boundaries(p));
+        (p.name.clone(), PanelFigures { area_error: error(area), outline_error: error(outline) })
+    };
+    garment.panels.iter().map(of).collect()
 }
 
 /// The quality limits that the result misses.

@@ -2,7 +2,7 @@
 //!
 //! A port is fed by the one *live* maker of its kind. A stage that takes a kind and gives the same
 //! kind supersedes what it took; a stage that makes a kind of something remade supersedes what was made of its
-//! former state; a port that wants the original goes back to the first maker. Where
+//! former state; a port that wants the original goes back to the first maker, one that wants what was sewn goes back before the flatteners. Where
 //! two makers are live the file must say `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends underlined.
 //!
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
@@ -14,7 +14,7 @@ use super::words::{a, all_of, bridge, list, required};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, RunLog};
-use toile_core::{Arity, Card, Feed, InPort, Kind, Registry, Section, SectionValue};
+use toile_core::{Arity, Card, Feed, InPort, Kind, Registry, Role, Section, SectionValue};
 
 /// The most places that one fault underlines.
 const MAX_PLACES: usize = 4;
@@ -148,21 +148,30 @@ impl<'a> Graph<'a> {
         let makers = if port.original { &self.roots } else { &self.live };
         let typed = makers.get(&port.kind).map_or(&[][..], Vec::as_slice);
         let candidates = if named.is_empty() { typed } else { &named };
+        let fed = |source: &Source| {
+            let (node, port) = if port.sewn { self.sewn(*source, port.kind) } else { *source };
+            Feed::Node { node, port }
+        };
         match candidates {
-            [(node, output)] => Feed::Node { node: *node, port: *output },
+            [source] => fed(source),
             [] if port.optional || self.blind => Feed::Nothing,
             [] => {
                 let fault = self.missing(i, port.kind);
                 self.faults.push(fault);
                 Feed::Nothing
             }
-            [.., (node, output)] if self.drafts[i].is_table => Feed::Node { node: *node, port: *output },
+            [.., source] if self.drafts[i].is_table => fed(source),
             several => {
                 let fault = self.ambiguous(i, port.kind, several);
                 self.faults.push(fault);
                 Feed::Nothing
             }
         }
+    }
+
+    /// What flatteners were given, where a source is one of theirs.
+    fn sewn(&self, source: Source, kind: Kind) -> Source {
+        before_flatteners(source, kind, |node| Some((self.drafts[node].card.as_ref()?, self.fed.get(node)?)))
     }
 
     fn output(&self, maker: usize, kind: Kind) -> Option<usize> {
@@ -279,6 +288,23 @@ impl<'a> Graph<'a> {
             }
         }
     }
+}
+
+/// The source of a kind before all flatteners that passed it on; `node` gives a stage's card and feeds.
+pub(crate) fn before_flatteners<'a>(
+    source: (usize, usize),
+    kind: Kind,
+    node: impl Fn(usize) -> Option<(&'a Card, &'a Vec<Feed>)>,
+) -> (usize, usize) {
+    let mut at = source;
+    while let Some((card, feeds)) = node(at.0).filter(|(card, _)| card.role == Role::Flattener) {
+        let before = sources(card, feeds).find(|(k, _)| *k == kind);
+        match before {
+            Some((_, source)) => at = source,
+            None => break,
+        }
+    }
+    at
 }
 
 /// What `feeds` bring to a card's ports, by kind; originals are left out.

@@ -47,6 +47,7 @@ pub(crate) mod tests;
 
 pub use differing::{Differing, differing};
 pub use fault::{Fault, FaultRecord, Faults, Label};
+pub(crate) use graph::before_flatteners;
 pub use json::to_json;
 pub use migrate::{Migrated, migrate};
 use overrides::Given;

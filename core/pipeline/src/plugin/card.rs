@@ -152,6 +152,7 @@ unsafe fn read_in(p: &abi::Port) -> Result<InPort, String> {
         arity: arity(p.arity)?,
         optional: p.flags & abi::PORT_OPTIONAL != 0,
         original: p.flags & abi::PORT_ORIGINAL != 0,
+        sewn: false,
     })
 }
 

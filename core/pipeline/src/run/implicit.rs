@@ -1,7 +1,7 @@
 //! Stages that every pipeline gets where it holds what they need, such as the judgement of the
 //! garment behind `metrics.json`.
 
-use crate::load::Pipeline;
+use crate::load::{Pipeline, before_flatteners};
 use std::collections::BTreeMap;
 use toile_core::artifact::{ArtifactType, OutputFiles};
 use toile_core::{Arity, Card, Feed, InPort, Node, Registry, Stage};
@@ -45,7 +45,7 @@ fn written(pipeline: &Pipeline) -> Vec<bool> {
     pipeline.needed_for(&writers)
 }
 
-/// The last port that makes a kind; the first where the original is wanted.
+/// The last port that makes a kind; the first where the original is wanted, and what flatteners were given where what was sewn is.
 fn maker(pipeline: &Pipeline, wanted: &InPort, written: &[bool]) -> Option<Feed> {
     let makes = |(node, n): (usize, &Node)| {
         let port = n.card.outputs.iter().position(|o| o.kind == wanted.kind)?;
@@ -54,9 +54,17 @@ fn maker(pipeline: &Pipeline, wanted: &InPort, written: &[bool]) -> Option<Feed>
     };
     let all = || pipeline.nodes.iter().enumerate();
     let used = || all().filter(|(i, _)| written[*i]);
-    match wanted.original {
+    let found = match wanted.original {
         true => used().find_map(makes).or_else(|| all().find_map(makes)),
         false => used().rev().find_map(makes).or_else(|| all().rev().find_map(makes)),
+    };
+    match found {
+        Some(Feed::Node { node, port }) if wanted.sewn => {
+            let given = |n: usize| pipeline.nodes.get(n).map(|n| (&n.card, &n.inputs));
+            let (node, port) = before_flatteners((node, port), wanted.kind, given);
+            Some(Feed::Node { node, port })
+        }
+        found => found,
     }
 }
 
@@ -94,7 +102,23 @@ mod tests {
 
     #[stage]
     impl Judge {
-        fn run(&self, _model: &Model, _cx: &Context) -> Result<Figures, StageError> {
+        fn run(
+            &self,
+            #[sewn] _model: &Model,
+            _flat: Option<&Model>,
+            _cx: &Context,
+        ) -> Result<Figures, StageError> {
+            Err(StageError::internal("a test stage does nothing"))
+        }
+    }
+
+    /// Lays flat.
+    #[stage(role = Flattener)]
+    struct Flat {}
+
+    #[stage]
+    impl Flat {
+        fn run(&self, _model: &Model, _cx: &Context) -> Result<Model, StageError> {
             Err(StageError::internal("a test stage does nothing"))
         }
     }
@@ -102,6 +126,7 @@ mod tests {
     /// The vest with these stages at its end: what feeds the judgement, and what stands around it.
     fn judged(end: &str) -> (String, Vec<String>) {
         let mut registry = kit::registry();
+        registry.add::<Flat>();
         registry.add_implicit::<Judge>();
         let text = kit::VEST.replace("Glb(), Report(),", end);
         let mut pipeline = load(&text, "vest.ron", Path::new("."), &registry, &[]).unwrap();
@@ -114,6 +139,26 @@ mod tests {
         let Feed::Node { node, .. } = judge.inputs[0] else { return (String::new(), Vec::new()) };
         let ids = pipeline.nodes.iter().map(|n| n.id.clone());
         (pipeline.nodes[node].id.clone(), ids.skip(10).collect())
+    }
+
+    #[test]
+    fn what_was_sewn_is_judged_whatever_flatteners_stand_behind() {
+        for end in [
+            "Flat(), Flat(id: \"again\"), Glb(), Report(),",
+            "Flat(), Flat(id: \"again\"), Judge(), Glb(), Report(),",
+        ] {
+            let (fed, _) = judged(end);
+            assert_eq!(fed, "Painter", "{end}");
+        }
+        let mut registry = kit::registry();
+        registry.add::<Flat>();
+        registry.add_implicit::<Judge>();
+        let text = kit::VEST.replace("Glb(), Report(),", "Flat(), Glb(), Report(),");
+        let mut pipeline = load(&text, "vest.ron", Path::new("."), &registry, &[]).unwrap();
+        add_implicit(&mut pipeline, &registry);
+        let judge = &pipeline.nodes[pipeline.find("Judge").unwrap()];
+        let Feed::Node { node, .. } = judge.inputs[1] else { panic!("{:?}", judge.inputs) };
+        assert_eq!(pipeline.nodes[node].id, "Flat");
     }
 
     #[test]

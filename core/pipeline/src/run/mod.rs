@@ -345,6 +345,7 @@ fn metrics(run: &Run<'_>, judged: &[Figures], wall_s: f64) -> Metrics {
         wall_s,
         stages: ran.chain(skipped).collect(),
         panels: Default::default(),
+        flat: Default::default(),
         garment: None,
         shortfalls: Vec::new(),
     };

@@ -167,6 +167,7 @@ impl Figures {
         Record::new()
             .records("panels", self.panels.iter().map(|(name, p)| panel_fields(name, p)))
             .records("garment", [garment_fields(&self.garment)])
+            .records("flat", self.flat.iter().map(|(name, p)| panel_fields(name, p)))
             .records("shortfalls", self.shortfalls.iter().map(shortfall_fields))
     }
 }
@@ -174,9 +175,13 @@ impl Figures {
 impl Stored for Figures {
     fn from_record(r: &Reader<'_>) -> Result<Self, String> {
         let garment = r.maybe("garment")?.ok_or("the field `garment` is missing")?;
+        let panels =
+            |name| r.records(name)?.map(|p| panel_of(&p)).collect::<Result<BTreeMap<_, _>, String>>();
         Ok(Figures {
-            panels: r.records("panels")?.map(|p| panel_of(&p)).collect::<Result<BTreeMap<_, _>, _>>()?,
+            panels: panels("panels")?,
             garment: garment_of(&garment)?,
+            // Not there in what was kept before there was one.
+            flat: r.find("flat").map(|_| panels("flat")).transpose()?.unwrap_or_default(),
             shortfalls: r.records("shortfalls")?.map(|s| shortfall_of(&s)).collect::<Result<_, _>>()?,
         })
     }

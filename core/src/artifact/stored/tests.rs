@@ -181,6 +181,7 @@ pub(in crate::artifact) fn figures() -> Figures {
             girths: BTreeMap::from([("bust".to_owned(), GirthFigures { cloth_m: 0.95, body_m: 0.88 })]),
             ..GarmentFigures::default()
         },
+        flat: BTreeMap::from([("front".to_owned(), PanelFigures { area_error: 0.03, outline_error: 0.04 })]),
         shortfalls: vec![Shortfall { code: ErrorCode::BodyIntersection, message: "inside".into() }],
     }
 }

@@ -11,6 +11,7 @@ mod words;
 use self::load::Load;
 use self::map::Map;
 use self::openings::{finished, openings};
+use super::with_pattern;
 use crate::engine::check_garment;
 use crate::write::check_name;
 use rayon::prelude::*;
@@ -48,12 +49,14 @@ pub struct Fit {
 impl Fit {
     fn run(
         &self,
-        garment: &Garment,
+        #[sewn] garment: &Garment,
         collider: Option<&Collider>,
         body: Option<&Body>,
+        flat: Option<&Garment>,
         cx: &Context,
     ) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
+        let garment = with_pattern(garment, flat);
         check_garment(garment)?;
         let load = Load::of(garment, collider, cx)?;
         let open = openings(garment);

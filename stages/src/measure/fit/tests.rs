@@ -76,7 +76,7 @@ fn a_tight_garment_is_told_and_written_with_its_maps() {
     let tube = tube(0.15, 0.05);
     let cx = Context::quiet();
     let fit = Fit { comfort: 0.1, pictures: 64, ..Fit::default() };
-    let files = fit.run(&tube, Some(&cylinder(0.15)), None, &cx).unwrap();
+    let files = fit.run(&tube, Some(&cylinder(0.15)), None, None, &cx).unwrap();
     let names: Vec<&str> = files.0.iter().map(|f| f.path.as_str()).collect();
     let wanted = [
         "fit.json",
@@ -97,7 +97,7 @@ fn a_tight_garment_is_told_and_written_with_its_maps() {
 fn every_sentence_of_a_loose_garment_is_left_out() {
     let cx = Context::quiet();
     let files = Fit { pictures: 0, ..Fit::default() }
-        .run(&tube(0.15, 0.05), Some(&cylinder(0.15)), None, &cx)
+        .run(&tube(0.15, 0.05), Some(&cylinder(0.15)), None, None, &cx)
         .unwrap();
     assert_eq!((files.0.len(), cx.take_remarks().warnings.len()), (1, 0));
 }
