@@ -60,6 +60,77 @@ fn run_with(name: &str, stages: &str, dir: &Path) {
     assert!([0, 4].contains(&answer.code), "{name}: {}{}", answer.out, answer.err);
 }
 
+/// `metrics.json` of a run into this folder.
+fn metrics(out: &Path) -> Value {
+    serde_json::from_slice(&fs::read(out.join("metrics.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn a_flattener_changes_no_figure_of_the_worn_garment() {
+    let dir = tempfile::tempdir().unwrap();
+    let run = |stages: &str| {
+        run_with("scene.ron", stages, dir.path());
+        let fit: Value = serde_json::from_slice(&fs::read(dir.path().join("fit.json")).unwrap()).unwrap();
+        (metrics(dir.path()), fit)
+    };
+    let figures = |m: &Value| {
+        let mut garment = m["garment"].clone();
+        let own = garment.as_object_mut().unwrap();
+        own.remove("peak_memory_bytes");
+        (m["panels"].clone(), garment, m["shortfalls"].clone())
+    };
+    let (plain, fit) = run("Fit(pictures: 0)");
+    assert!(plain["flat"].is_null());
+    for behind in [
+        "Arap(), Fit(pictures: 0)",
+        "Measure(), Arap(), Fit(pictures: 0)",
+        "Arap(), Woven(), Fit(pictures: 0), Measure()",
+    ] {
+        let (flat, fit_behind) = run(behind);
+        assert_eq!(figures(&flat), figures(&plain), "{behind}");
+        assert_eq!(fit_behind, fit, "{behind}");
+        if !behind.starts_with("Measure") {
+            let names = |v: &Value| v.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+            assert_eq!(names(&flat["flat"]), names(&plain["panels"]), "{behind}");
+            assert_ne!(flat["flat"], plain["panels"], "{behind}");
+        }
+    }
+}
+
+/// The shipped vest, worn, from the files that this program wrote of it.
+#[test]
+#[ignore = "slow: .ci/wide"]
+fn the_programs_own_garment_comes_back_as_the_pattern_that_it_was_sewn_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = |name: &str| dir.path().join(name).display().to_string();
+    let run = |arguments: &[&str]| {
+        let answer = toile(arguments);
+        assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+        answer
+    };
+    run(&["run", &pipeline("vest.ron"), "--quality", "Draft", "--out", &path("vest")]);
+    let panels = metrics(&dir.path().join("vest"))["panels"].clone();
+    let flatten = pipeline("flatten.ron");
+    run(&["run", &flatten, "--until", "FlatTable", "--out", &path("sample")]);
+    let areas = |out: &str| {
+        let pieces = table(&dir.path().join(out))["pieces"].as_array().unwrap().clone();
+        let area = |p: Value| (p["name"].as_str().unwrap().to_owned(), number(&p["area_2d_m2"]));
+        pieces.into_iter().map(area).collect::<std::collections::BTreeMap<_, _>>()
+    };
+    let sample = areas("sample");
+    for file in ["garment.glb", "garment.obj"] {
+        let file = format!("garment.file={:?}", path(&format!("vest/{file}")));
+        let answer = run(&["run", &flatten, "--set", &file, "--out", &path("back")]);
+        assert!(!answer.err.contains("warning"), "{}", answer.err);
+        let back = areas("back");
+        assert_eq!(back.keys().collect::<Vec<_>>(), panels.as_object().unwrap().keys().collect::<Vec<_>>());
+        for (name, area) in &back {
+            assert!((area / sample[name] - 1.0).abs() < 0.01, "{file}: {name} {area} {}", sample[name]);
+        }
+        assert_eq!(table(&dir.path().join("back"))["seams"].as_array().unwrap().len(), 4, "{file}");
+    }
+}
+
 /// The greatest distance of an outline from where it was cut, mm, after a shipped pipeline and a flattener.
 fn round_trip(name: &str, flattener: &str) -> f64 {
     let dir = tempfile::tempdir().unwrap();

@@ -108,10 +108,18 @@ impl BodyObj {
     fn read(&self, cx: &Context) -> Result<obj::Mesh, StageError> {
         self.named()?;
         let bytes = cx.read(&self.file)?;
-        obj::parse(&bytes).map_err(|e| {
-            StageError::new(ErrorCode::PatternLoading, format!("\"{}\": {e}", self.file))
-                .hint(OBJ_HINT)
-                .at("file")
+        let bad = |what: String| {
+            StageError::new(ErrorCode::PatternLoading, format!("\"{}\": {what}", self.file)).at("file")
+        };
+        if let Some(format) = obj::other_format(&bytes) {
+            let hint = "export the body as OBJ from the program that made it, and name that file";
+            return Err(bad(format!("it is {format}, which is not read as a body")).hint(hint));
+        }
+        obj::parse(&bytes).map_err(|e| match (&e, obj::without_faces(&bytes)) {
+            (obj::ObjError::NoFaces, Some(holds)) => {
+                bad(format!("the OBJ holds {holds}")).hint("export the body as a mesh with faces")
+            }
+            _ => bad(e.to_string()).hint(OBJ_HINT),
         })
     }
 

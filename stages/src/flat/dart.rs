@@ -1,6 +1,7 @@
 //! Darts of flat pieces: none, proposed, or made.
 
 use super::fault::flatten_fault;
+use super::file::list;
 use super::sheet::Sheet;
 use toile_core::prelude::*;
 use toile_flatten::care::{Dart, DartOptions, Objective, propose_darts};
@@ -61,18 +62,51 @@ pub(super) fn dart_paths(
             .map_err(|e| flatten_fault(&e, &sheet.names[i]))
     };
     let found = cx.parallel_map(placements.len(), one).into_iter().collect::<Result<Vec<_>, _>>()?;
-    for (name, darts) in sheet.names.iter().zip(&found) {
-        darts.iter().enumerate().for_each(|(k, dart)| cx.warn(words(name, k + 1, dart)));
+    if let Some(what) = told(&sheet.names, &found) {
+        // Darts that are only proposed are the user's to judge.
+        match darts {
+            Darts::Propose => cx.warn(format!("darts would help, and none is cut: {what}")),
+            Darts::None | Darts::Auto { .. } => cx.note(format!("darts are cut: {what}")),
+        }
     }
     cx.figure("darts", found.iter().map(Vec::len).sum::<usize>() as f64, "");
     Ok(found.into_iter().map(|darts| darts.into_iter().map(|d| d.path).collect()).collect())
 }
 
-fn words(piece: &str, number: usize, dart: &Dart) -> String {
+/// All darts in one sentence, pieces with the same ones together: `dart 1 of "left" and "right" takes the strain from 2.1 % to 0.4 %`.
+fn told(names: &[String], found: &[Vec<Dart>]) -> Option<String> {
+    let mut by_words: Vec<(String, Vec<&str>)> = Vec::new();
+    for (name, darts) in names.iter().zip(found).filter(|(_, darts)| !darts.is_empty()) {
+        let words =
+            darts.iter().enumerate().map(|(k, dart)| words(k + 1, dart)).collect::<Vec<_>>().join(", ");
+        match by_words.iter_mut().find(|(w, _)| *w == words) {
+            Some((_, pieces)) => pieces.push(name),
+            None => by_words.push((words, vec![name])),
+        }
+    }
+    let one = |(words, pieces): &(String, Vec<&str>)| format!("on {} {words}", list(pieces.iter().copied()));
+    (!by_words.is_empty()).then(|| by_words.iter().map(one).collect::<Vec<_>>().join("; "))
+}
+
+fn words(number: usize, dart: &Dart) -> String {
     let [before, after] = dart.strain.map(|s| s * 1e2);
     let with = dart.mirror.map_or_else(String::new, |m| format!(" with its mirror image, dart {}", m + 1));
-    let saves = dart.saves * 1e2;
-    format!(
-        "dart {number} of \"{piece}\"{with} saves {saves:.0} % of the energy, strain {before:.2} % to {after:.2} %"
-    )
+    format!("dart {number}{with} takes the strain from {before:.1} % to {after:.1} %")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn left_and_right_pieces_are_told_once() {
+        let dart = |before: f64| Dart { path: vec![0, 1], strain: [before, 0.004], saves: 0.5, mirror: None };
+        let names = ["left", "back", "right"].map(str::to_owned);
+        let found = [vec![dart(0.021)], vec![], vec![dart(0.021)]];
+        assert_eq!(
+            told(&names, &found).unwrap_or_default(),
+            "on \"left\" and \"right\" dart 1 takes the strain from 2.1 % to 0.4 %"
+        );
+        assert_eq!(told(&names, &[vec![], vec![], vec![]]), None);
+    }
 }

@@ -3,6 +3,7 @@
 use super::dart::{Darts, dart_paths};
 use super::drawn::{CORNER, Drawing};
 use super::fault::flatten_fault;
+use super::file::list;
 use super::sheet::{Labelled, Sheet};
 use nalgebra::{Matrix2, Matrix3x2};
 use toile_core::prelude::*;
@@ -176,25 +177,33 @@ fn tell(report: &CareReport, flats: &[Flattening], cx: &Context) {
     cx.figure("mirror_images", (report.mirrors.len() + report.outlines.len()) as f64, "");
 }
 
-/// Pieces whose energy had not settled.
+/// Pieces that still changed when the steps ran out.
 fn unsettled(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
-    for (name, flat) in sheet.names.iter().zip(flats).filter(|(_, f)| !f.report.converged) {
-        let n = flat.report.iterations;
-        cx.warn(format!("piece \"{name}\" had not settled after {n} steps; raise `iterations`"));
+    let of: Vec<(&str, usize)> = sheet
+        .names
+        .iter()
+        .zip(flats)
+        .filter(|(_, f)| !f.report.converged)
+        .map(|(n, f)| (n.as_str(), f.report.iterations))
+        .collect();
+    if let Some(n) = of.iter().map(|p| p.1).max() {
+        let names = list(of.iter().map(|p| p.0));
+        cx.warn(format!("the flat shape of {names} had not settled after {n} steps: give more `iterations`"));
     }
 }
 
 /// Pieces whose outline crosses itself in the plane.
 fn crossed(sheet: &Sheet, flats: &[Flattening], cx: &Context) {
-    for (i, flat) in flats.iter().enumerate() {
-        let table = distortion(&sheet.pieces.pieces[i].surface, &flat.points);
-        let n = table.map_or(0, |t| t.crossings);
-        if n > 0 {
-            let name = &sheet.names[i];
-            cx.warn(format!(
-                "the outline of piece \"{name}\" crosses itself at {n} places: it cannot be cut as one piece"
-            ));
-        }
+    let crosses = |(i, flat): &(usize, &Flattening)| {
+        distortion(&sheet.pieces.pieces[*i].surface, &flat.points).is_ok_and(|t| t.crossings > 0)
+    };
+    let of: Vec<&str> =
+        flats.iter().enumerate().filter(crosses).map(|(i, _)| sheet.names[i].as_str()).collect();
+    if !of.is_empty() {
+        cx.warn(format!(
+            "the flat outline of {} crosses itself, so that it cannot be cut as one piece: mark a seam or a dart there",
+            list(of.into_iter())
+        ));
     }
 }
 

@@ -1,15 +1,16 @@
 //! `Garment3d`: a garment from a 3D file.
 
 use super::fault::surface_fault;
-use super::labels::{PiecesBy, labels};
-use super::raw::{Mended, NO_POINT, RawMesh};
-use super::read_glb::read_glb;
-use super::read_obj::read_obj;
+use super::file::{
+    Mended, NO_POINT, PiecesBy, RawMesh, cloth_of_ours, labels, leave_out, lies, list, open_cloth, read_glb,
+    read_obj, wholes,
+};
 use super::sheet::{Part, assembled, unlike};
 use crate::body::Up;
 use crate::fabric::Preset;
 use std::sync::Arc;
 use toile_core::prelude::*;
+use toile_flatten::SurfaceError;
 use toile_flatten::islands::{Piece as SurfacePiece, Pieces, islands_by_labels};
 
 /// The unit of a garment's file.
@@ -63,9 +64,11 @@ const SIZES: (f64, f64) = (0.05, 6.0);
 
 /// Reads a garment from a Wavefront OBJ file or a binary glTF file (GLB), to be flattened.
 ///
+/// Of a file of this program the cloth is taken; of other files what is closed all around (a body, buttons) is left out beside open cloth, and told.
 /// The mesh is cut into pieces by its texture islands, groups, materials, marked edges or parts. Seams are where pieces meet. What is damaged is
 /// mended and counted: vertices at one place are joined, triangles without area or listed twice are removed, edges of three triangles are
-/// cut, triangles that face against their neighbours are turned. A piece without a boundary, or with tunnels, cannot be laid flat and is refused.
+/// cut, triangles that face against their neighbours are turned. A piece without a boundary, or with tunnels, cannot be laid flat and is refused, as
+/// is cloth that was exported with its thickness.
 ///
 /// Its flat shape is not known, unless `flat` says that the texture is the pattern: to simulate it, flatten it first.
 #[stage(
@@ -78,6 +81,9 @@ pub struct Garment3d {
     /// The file, relative to the pipeline; `.glb` is read as glTF, all else as OBJ.
     #[param(default = String::new())]
     pub file: String,
+    /// Objects, groups and materials of the file that are not of the garment: `["Body", "Shoes"]`.
+    #[param(default = Vec::new())]
+    pub leave_out: Vec<String>,
     /// The unit of its numbers.
     #[param(default = FileUnit::Metres)]
     pub unit: FileUnit,
@@ -99,8 +105,10 @@ pub struct Garment3d {
 impl Garment3d {
     /// Runs the stage.
     pub fn run(&self, fabric: Option<&Fabric>, cx: &Context) -> Result<Garment, StageError> {
-        let raw = self.raw(cx)?;
+        let mut raw = self.raw(cx)?;
         cx.check()?;
+        cloth_of_ours(&mut raw, &self.file, cx);
+        leave_out(&mut raw, &self.leave_out, &self.file)?;
         self.check_size(&raw)?;
         let mut mended = raw.mended(self.weld.metres());
         if mended.mesh.triangles.is_empty() {
@@ -111,10 +119,21 @@ impl Garment3d {
             .hint("check `unit` and `weld`, and the file")
             .at("weld"));
         }
+        open_cloth(&mut mended, &self.file, cx)?;
+        self.check_upright(&mended, cx);
         let by = self.pieces.resolved(&mended)?;
         let (labels, cut) = labels(&mended, by);
         let pieces = islands_by_labels(&mended.mesh.positions, &mended.mesh.triangles, &labels)
-            .map_err(|e| surface_fault(e, &mended.numbers).at("pieces"))?;
+            .map_err(|e| unlaid(e, &mended).at("pieces"))?;
+        cx.note(format!("the pieces are told by {}", by.words()));
+        let closed = wholes(&mended.mesh);
+        if closed.iter().all(|w| w.is_closed()) {
+            let names = list(closed.iter().map(|w| w.name.as_str()));
+            cx.warn(format!(
+                "\"{}\": {names} has no opening, as a body or a cushion has none: is it the garment, and not the body?",
+                self.file
+            ));
+        }
         mended.repairs.cut = cut;
         mended.repairs.turned = pieces.pieces.iter().map(|p| p.surface.repairs().turned).sum();
         mended.repairs.count(cx);
@@ -167,11 +186,32 @@ impl Garment3d {
         }
         let fits = |u: &FileUnit| (SIZES.0..=SIZES.1).contains(&(size / self.unit.metres() * u.metres()));
         let hint = match FileUnit::ALL.iter().find(|u| fits(u)) {
-            Some(unit) => format!("state the unit of the file's numbers, such as `unit: {unit:?}`"),
-            None => "a garment is 5 cm to 6 m from corner to corner; see what the file holds".to_owned(),
+            Some(unit) => {
+                format!(
+                    "state the unit of the file's numbers, such as `unit: {unit:?}` (`--set garment.unit={unit:?}`)"
+                )
+            }
+            None => format!(
+                "garments are 5 cm to 6 m from corner to corner, and no unit makes this one so; make it {} in the program that made it",
+                times(size / self.unit.metres())
+            ),
         };
         let what = format!("the garment would measure {size:.4} m from corner to corner");
         Err(StageError::invalid(what).hint(hint).at("unit"))
+    }
+
+    /// Asks about a garment that lies down.
+    fn check_upright(&self, mended: &Mended, cx: &Context) {
+        if lies(&mended.mesh) {
+            let other = match self.up {
+                Up::Y => "Z",
+                Up::Z => "Y",
+            };
+            cx.warn(format!(
+                "the garment lies on its back or front: if its file has {other} up, add `--set garment.up={other}`, or the grain of the pieces \
+                 runs across"
+            ));
+        }
     }
 
     fn garment(
@@ -221,6 +261,48 @@ impl Garment3d {
         }
         Ok(rest)
     }
+}
+
+/// How much larger or smaller something of this size must be to be about as large as a garment: `1000 times larger`.
+fn times(size: f64) -> String {
+    // Garments are about a metre; a mesh is off by a unit, which is a power of ten.
+    let power = if size > 0.0 { (-size.log10()).round() as i32 } else { 0 };
+    match power {
+        1.. => format!("{} times larger", 10_f64.powi(power)),
+        ..0 => format!("{} times smaller", 10_f64.powi(-power)),
+        0 => "larger".to_owned(),
+    }
+}
+
+/// Why a piece cannot be laid flat, by the name of the object that it is of.
+fn unlaid(e: SurfaceError, mended: &Mended) -> StageError {
+    let of = |triangle: usize| match mended.mesh.called(triangle) {
+        "" => "the mesh".to_owned(),
+        name => format!("\"{name}\""),
+    };
+    let (what, hint) = match e {
+        SurfaceError::Closed { triangle } => (
+            format!(
+                "{} is closed all around, as a body is: it has no edge from which it could be laid flat",
+                of(triangle)
+            ),
+            "export the garment without the body; what is closed and is to be cut, such as a cushion, needs seams: mark them as edges (lines), or \
+             unwrap it along them",
+        ),
+        SurfaceError::Handles { count } => (
+            format!(
+                "a piece closes on itself at {count} places, as with straps or belt loops, and cannot lie flat as one piece"
+            ),
+            "mark the seams of the garment as edges (lines), or unwrap it along them, and tell the pieces by those: `--set garment.pieces=Seams` \
+             (or `Uv`)",
+        ),
+        SurfaceError::NotOrientable { triangle } => (
+            format!("{} has one side only, as a band that was closed with a twist has", of(triangle)),
+            "look for a twisted strap or waistband in the program that made it, and mend it there",
+        ),
+        other => return surface_fault(other, &mended.numbers),
+    };
+    StageError::invalid(what).hint(hint)
 }
 
 fn area([a, b, c]: [Point2; 3]) -> f64 {

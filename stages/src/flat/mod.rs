@@ -1,7 +1,7 @@
 //! Back to the flat pattern: garments from 3D files, and flatteners, which make a sewing pattern of a garment.
 //!
 //! ```text
-//! Garment3d --> garment --sheet--> pieces --flattener--> flat pieces --care--> pattern, and the garment with its flat places
+//! Garment3d (file) --> garment --sheet--> pieces --flattener--> flat pieces --care--> pattern, and the garment with its flat places
 //! ```
 //!
 //! The work is that of `toile-flatten`; here stand what goes between garments and pieces (`sheet`), what makes a pattern of flat pieces
@@ -11,15 +11,11 @@ mod arap;
 mod dart;
 mod drawn;
 mod fault;
+mod file;
 mod flattened;
 mod garment3d;
-mod labels;
 mod lscm;
 mod overlay;
-mod raw;
-mod raw_words;
-mod read_glb;
-mod read_obj;
 mod sheet;
 mod spring_flatten;
 mod strain_svg;
@@ -31,9 +27,9 @@ mod woven;
 
 pub use arap::Arap;
 pub use dart::Darts;
+pub use file::PiecesBy;
 pub use flattened::Care;
 pub use garment3d::{FileUnit, FlatShape, Garment3d};
-pub use labels::PiecesBy;
 pub use lscm::Lscm;
 pub use spring_flatten::SpringFlatten;
 pub use symmetric_dirichlet::SymmetricDirichlet;

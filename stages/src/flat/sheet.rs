@@ -4,7 +4,7 @@
 //! its own sides are sewn to each other. The way back makes a garment of such pieces, each with its flat shape. Cost: two sorts of the edges.
 
 use super::fault::surface_fault;
-use super::labels::of_corners;
+use super::file::of_corners;
 use nalgebra::Matrix2;
 use std::collections::BTreeMap;
 use std::sync::Arc;

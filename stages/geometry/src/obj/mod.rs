@@ -5,6 +5,7 @@
 //! faces into triangles, [`repair`] mends what exporters leave behind, [`outer_surface`] drops what no cloth can touch. What cannot be
 //! mended (holes, edges of three triangles) is left for the check of the body. Cost: linear in the text, and a sort of the edges.
 
+mod foreign;
 mod marked;
 mod parse;
 mod pieces;
@@ -17,6 +18,7 @@ mod write;
 #[cfg(test)]
 mod tests;
 
+pub use foreign::{other_format, without_faces};
 pub use marked::{Marks, parse_marked};
 pub use parse::{MAX_COORDINATE, MAX_TRIANGLES, MAX_VERTICES, count_triangles, parse};
 pub use pieces::is_flat;

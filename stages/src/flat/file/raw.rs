@@ -11,61 +11,65 @@ use toile_flatten::surface::LEAST_QUALITY;
 
 /// What a file holds.
 #[derive(Debug, Clone, Default)]
-pub(super) struct RawMesh {
+pub(in crate::flat) struct RawMesh {
     /// Places, metres, y up.
-    pub(super) positions: Vec<Point3>,
+    pub(in crate::flat) positions: Vec<Point3>,
     /// Triangles.
-    pub(super) triangles: Vec<[u32; 3]>,
+    pub(in crate::flat) triangles: Vec<[u32; 3]>,
     /// Texture points, in the file's unit.
-    pub(super) uv: Vec<Point2>,
+    pub(in crate::flat) uv: Vec<Point2>,
     /// For each corner of each triangle its texture point; [`NO_POINT`] where it has none.
-    pub(super) corners: Vec<[u32; 3]>,
+    pub(in crate::flat) corners: Vec<[u32; 3]>,
     /// For each triangle its group.
-    pub(super) groups: Vec<u32>,
+    pub(in crate::flat) groups: Vec<u32>,
     /// For each triangle its material.
-    pub(super) materials: Vec<u32>,
+    pub(in crate::flat) materials: Vec<u32>,
     /// Names of groups; may be empty texts.
-    pub(super) group_names: Vec<String>,
+    pub(in crate::flat) group_names: Vec<String>,
     /// Names of materials; may be empty texts.
-    pub(super) material_names: Vec<String>,
+    pub(in crate::flat) material_names: Vec<String>,
     /// Marked edges, by vertices.
-    pub(super) lines: Vec<[u32; 2]>,
+    pub(in crate::flat) lines: Vec<[u32; 2]>,
+    /// Whether this program wrote the file.
+    pub(in crate::flat) is_ours: bool,
+    /// Whether panels of a file of ours share no vertices, so that what shares some is one piece.
+    pub(in crate::flat) has_own_vertices: bool,
 }
 
 /// A corner without a texture point.
-pub(super) const NO_POINT: u32 = u32::MAX;
+pub(in crate::flat) const NO_POINT: u32 = u32::MAX;
 
 /// A mesh whose vertices are joined and whose triangles have area.
 #[derive(Debug, Clone)]
-pub(super) struct Mended {
+pub(in crate::flat) struct Mended {
     /// The mesh; its corners name joined vertices.
-    pub(super) mesh: RawMesh,
+    pub(in crate::flat) mesh: RawMesh,
     /// The triangles by the file's own vertices.
-    pub(super) own: Vec<[u32; 3]>,
+    pub(in crate::flat) own: Vec<[u32; 3]>,
     /// For each triangle its number in the file.
-    pub(super) numbers: Vec<u32>,
+    pub(in crate::flat) numbers: Vec<u32>,
     /// What was done.
-    pub(super) repairs: Repairs,
+    pub(in crate::flat) repairs: Repairs,
 }
 
 /// What was mended, in numbers.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Repairs {
+pub(in crate::flat) struct Repairs {
     /// Vertices that were joined to others at their places.
-    pub(super) joined: usize,
+    pub(in crate::flat) joined: usize,
     /// Triangles without area.
-    pub(super) without_area: usize,
+    pub(in crate::flat) without_area: usize,
     /// Triangles that repeat others.
-    pub(super) twice: usize,
+    pub(in crate::flat) twice: usize,
     /// Edges of three triangles or more of one piece, where it was cut.
-    pub(super) cut: usize,
+    pub(in crate::flat) cut: usize,
     /// Triangles turned to agree with their neighbours.
-    pub(super) turned: usize,
+    pub(in crate::flat) turned: usize,
 }
 
 impl Repairs {
     /// Damage in words, none where there was none; joined vertices are no damage, since most programs split them along seams.
-    pub(super) fn words(&self) -> Option<String> {
+    pub(in crate::flat) fn words(&self) -> Option<String> {
         let all = [
             tell(self.without_area, "triangle without area is removed", "triangles without area are removed"),
             tell(
@@ -89,7 +93,7 @@ impl Repairs {
     }
 
     /// Hands the counts to the run's record.
-    pub(super) fn count(&self, cx: &Context) {
+    pub(in crate::flat) fn count(&self, cx: &Context) {
         let counts = [
             ("joined_vertices", self.joined),
             ("triangles_without_area", self.without_area),
@@ -102,8 +106,26 @@ impl Repairs {
 }
 
 impl RawMesh {
+    /// Drops the triangles that are not kept.
+    pub(in crate::flat) fn keep(&mut self, is_kept: &[bool]) {
+        retain(&mut self.triangles, is_kept);
+        retain(&mut self.corners, is_kept);
+        retain(&mut self.groups, is_kept);
+        retain(&mut self.materials, is_kept);
+    }
+
+    /// What the group of a triangle is called, else its material; may be empty.
+    pub(in crate::flat) fn called(&self, triangle: usize) -> &str {
+        let of = |list: &[u32]| list.get(triangle).map_or(usize::MAX, |k| *k as usize);
+        let group = self.group_names.get(of(&self.groups)).map_or("", |n| n.trim());
+        match group {
+            "" => self.material_names.get(of(&self.materials)).map_or("", |n| n.trim()),
+            group => group,
+        }
+    }
+
     /// Joins vertices within `reach` metres and drops triangles that are none.
-    pub(super) fn mended(mut self, reach: f64) -> Mended {
+    pub(in crate::flat) fn mended(mut self, reach: f64) -> Mended {
         let first = weld_places(&self.positions, reach);
         let mut used = vec![false; first.len()];
         self.triangles.iter().flatten().for_each(|&v| used[v as usize] = true);
@@ -141,6 +163,20 @@ impl RawMesh {
         }
         kept
     }
+}
+
+impl Mended {
+    /// Drops the triangles that are not kept.
+    pub(in crate::flat) fn keep(&mut self, is_kept: &[bool]) {
+        self.mesh.keep(is_kept);
+        retain(&mut self.own, is_kept);
+        retain(&mut self.numbers, is_kept);
+    }
+}
+
+fn retain<T>(list: &mut Vec<T>, is_kept: &[bool]) {
+    let mut kept = is_kept.iter();
+    list.retain(|_| kept.next().copied().unwrap_or(true));
 }
 
 /// Height over the longest edge; 0 for a triangle without edges.

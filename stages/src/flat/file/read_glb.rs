@@ -1,47 +1,80 @@
 //! A garment from a binary glTF file (GLB).
 //!
 //! Every triangle primitive of every node of the scene is read where the node puts it; a node's mesh is a group, line primitives mark seams.
-//! Limits: everything must stand in the one file, without sparse accessors; of animated or skinned meshes the shape at rest is read.
+//! Limits: everything must stand in the one file, without compression and sparse accessors; of animated or skinned meshes the shape at rest is read.
 
+use super::accessor::{CORNERS, MOST, PLACES, TEXTURE, is_sound, numbers};
+use super::extensions::{geometry_only, unread};
 use super::raw::{NO_POINT, RawMesh};
-use gltf::accessor::{DataType, Dimensions};
 use gltf::mesh::{Mode, Primitive, Semantic};
 use nalgebra::Matrix4;
+use serde_json::Value;
 use toile_core::prelude::*;
 
 /// Nodes may be nested so deep.
 const DEEPEST: usize = 64;
-/// Most vertices, all meshes together.
-const MOST: usize = 4_000_000;
-/// Most items of one list: the corners of twice as many triangles.
-const MOST_ITEMS: usize = 6 * MOST;
-/// Most bytes from one item to the next: more than the format allows.
-const MOST_STRIDE: usize = 1 << 12;
 /// Coordinates reach this far, in the file's unit.
 const FARTHEST: f64 = 1e7;
+/// What this program's own files say that they were made by.
+const OURS: &str = "toile ";
+
+/// What is wrong with a file, and what to do about it.
+struct Fault {
+    what: String,
+    remedy: &'static str,
+}
+
+impl From<String> for Fault {
+    fn from(what: String) -> Self {
+        Self { what, remedy: "write it again as one .glb file with its buffers in it, or as OBJ" }
+    }
+}
+
+impl From<gltf::Error> for Fault {
+    fn from(e: gltf::Error) -> Self {
+        format!("it is no sound GLB ({e})").into()
+    }
+}
 
 /// The mesh of a file's bytes, in its own unit and axes.
-pub(super) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> {
-    let damaged = |what: String| {
-        StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}"))
-            .hint("write it again as one .glb file with its buffers in it, or as OBJ")
-            .at("file")
-    };
-    let unsound = |e: gltf::Error| damaged(format!("it is no sound GLB ({e})"));
-    let unchecked = gltf::Gltf::from_slice_without_validation(bytes).map_err(unsound)?;
-    names_what_it_holds(unchecked.as_json()).map_err(damaged)?;
-    let gltf = gltf::Gltf::from_slice(bytes).map_err(unsound)?;
-    let blob = gltf.blob.as_deref();
-    let mut reader = Reader { blob, raw: RawMesh::default() };
-    reader.raw.material_names =
-        gltf.materials().map(|m| m.name().unwrap_or_default().to_owned()).chain([String::new()]).collect();
-    let scene = gltf.default_scene().or_else(|| gltf.scenes().next());
-    let nodes = scene.ok_or_else(|| damaged("it holds no scene".to_owned()))?;
+pub(in crate::flat) fn read_glb(bytes: &[u8], file: &str) -> Result<RawMesh, StageError> {
+    read(bytes).map_err(|Fault { what, remedy }| {
+        StageError::new(ErrorCode::PatternLoading, format!("\"{file}\": {what}")).hint(remedy).at("file")
+    })
+}
+
+fn read(bytes: &[u8]) -> Result<RawMesh, Fault> {
+    let glb = gltf::Glb::from_slice(bytes)?;
+    let no_json = |e: serde_json::Error| Fault::from(format!("it is no sound GLB (its JSON: {e})"));
+    let mut root: Value = serde_json::from_slice(&glb.json).map_err(no_json)?;
+    if let Some((what, remedy)) = unread(&root) {
+        return Err(Fault { what, remedy });
+    }
+    let generator = root.pointer("/asset/generator").and_then(Value::as_str).unwrap_or_default();
+    let is_ours = generator.starts_with(OURS);
+    geometry_only(&mut root);
+    let root: gltf::json::Root = serde_json::from_value(root).map_err(no_json)?;
+    names_what_it_holds(&root)?;
+    let document = gltf::Document::from_json(root)?;
+    let raw = RawMesh { is_ours, has_own_vertices: true, ..RawMesh::default() };
+    let mut reader = Reader { blob: glb.bin.as_deref(), raw, bare: 0 };
+    reader.raw.material_names = document
+        .materials()
+        .map(|m| m.name().unwrap_or_default().to_owned())
+        .chain([String::new()])
+        .collect();
+    let scene = document.default_scene().or_else(|| document.scenes().next());
+    let nodes = scene.ok_or_else(|| "it holds no scene".to_owned())?;
     for node in nodes.nodes() {
-        reader.node(&node, &Matrix4::identity(), 0).map_err(damaged)?;
+        reader.node(&node, &Matrix4::identity(), 0)?;
     }
     if reader.raw.triangles.is_empty() {
-        return Err(damaged("it holds no triangles".to_owned()));
+        let what = match (reader.bare, reader.raw.lines.len()) {
+            (0, 0) => "it holds no triangles".to_owned(),
+            (points, 0) => format!("it holds {points} points and no triangles"),
+            (_, lines) => format!("it holds {lines} lines and no triangles"),
+        };
+        return Err(Fault { what, remedy: "export the garment as a mesh with faces" });
     }
     Ok(reader.raw)
 }
@@ -59,6 +92,8 @@ fn names_what_it_holds(root: &gltf::json::Root) -> Result<(), String> {
 struct Reader<'a> {
     blob: Option<&'a [u8]>,
     raw: RawMesh,
+    /// Vertices of primitives that are points.
+    bare: usize,
 }
 
 impl Reader<'_> {
@@ -84,27 +119,13 @@ impl Reader<'_> {
         here: &Matrix4<f64>,
         group: u32,
     ) -> Result<(), String> {
-        let blob = self.blob;
-        let wanted = [
-            (primitive.get(&Semantic::Positions), &[DataType::F32][..], Dimensions::Vec3),
-            (primitive.indices(), &[DataType::U8, DataType::U16, DataType::U32][..], Dimensions::Scalar),
-            (
-                primitive.get(&Semantic::TexCoords(0)),
-                &[DataType::U8, DataType::U16, DataType::F32][..],
-                Dimensions::Vec2,
-            ),
-        ];
-        for (accessor, types, dimensions) in wanted {
-            accessor.map_or(Ok(()), |a| is_sound(&a, types, dimensions))?;
-        }
-        let reader = primitive.reader(|buffer| match buffer.source() {
-            gltf::buffer::Source::Bin => blob,
-            gltf::buffer::Source::Uri(_) => None,
-        });
-        let places = reader.read_positions().ok_or("a mesh has no positions in the file")?;
+        let (corners, texture) = (primitive.indices(), primitive.get(&Semantic::TexCoords(0)));
+        let places = primitive.get(&Semantic::Positions).ok_or("a mesh has no positions in the file")?;
+        let wanted = [(Some(&places), PLACES), (corners.as_ref(), CORNERS), (texture.as_ref(), TEXTURE)];
+        wanted.iter().try_for_each(|(list, wanted)| list.map_or(Ok(()), |a| is_sound(a, wanted)))?;
         let first = self.raw.positions.len();
-        for p in places {
-            let p = here.transform_point(&Point3::from(p.map(f64::from)));
+        for p in numbers::<3>(&places, self.blob)? {
+            let p = here.transform_point(&Point3::from(p));
             if !p.iter().all(|x| x.abs() <= FARTHEST) {
                 return Err(format!(
                     "vertex {} is not between -1e7 and 1e7",
@@ -117,15 +138,20 @@ impl Reader<'_> {
         if self.raw.positions.len() > MOST {
             return Err(format!("it has more than {MOST} vertices; make the mesh coarser"));
         }
-        let indices: Vec<u32> =
-            reader.read_indices().map_or_else(|| (0..count as u32).collect(), |i| i.into_u32().collect());
+        let indices: Vec<u32> = match &corners {
+            Some(corners) => numbers::<1>(corners, self.blob)?.into_iter().map(|[i]| i as u32).collect(),
+            None => (0..count as u32).collect(),
+        };
         if let Some(i) = indices.iter().find(|i| **i as usize >= count) {
             return Err(format!("a triangle names vertex {i}, the mesh has {count}"));
         }
         let first_uv = self.raw.uv.len() as u32;
-        let uv: Vec<Point2> = reader.read_tex_coords(0).map_or_else(Vec::new, |t| {
-            t.into_f32().map(|[u, v]| Point2::new(f64::from(u), -f64::from(v))).collect()
-        });
+        let uv: Vec<Point2> = match &texture {
+            Some(texture) => {
+                numbers::<2>(texture, self.blob)?.into_iter().map(|[u, v]| Point2::new(u, -v)).collect()
+            }
+            None => Vec::new(),
+        };
         let has_uv = uv.len() == count && uv.iter().all(|p| p.x.is_finite() && p.y.is_finite());
         if has_uv {
             self.raw.uv.extend(uv);
@@ -138,30 +164,10 @@ impl Reader<'_> {
             self.raw.groups.push(group);
             self.raw.materials.push(material as u32);
         }
+        self.bare += if primitive.mode() == Mode::Points { count } else { 0 };
         self.raw.lines.extend(lines(primitive.mode(), &indices).into_iter().map(|l| l.map(global)));
         Ok(())
     }
-}
-
-/// Refuses a list of numbers on which the library would panic: it takes types, counts and strides for what they should be.
-fn is_sound(accessor: &gltf::Accessor<'_>, types: &[DataType], dimensions: Dimensions) -> Result<(), String> {
-    let bad = |what: &str| Err(format!("accessor {} {what}", accessor.index()));
-    if !types.contains(&accessor.data_type()) || accessor.dimensions() != dimensions {
-        return bad("holds numbers of another kind than its mesh needs");
-    }
-    if accessor.sparse().is_some() {
-        return bad("is sparse, which is not read");
-    }
-    let Some(view) = accessor.view() else { return bad("names no part of the file") };
-    if !(1..=MOST_ITEMS).contains(&accessor.count()) {
-        return bad(&format!("holds {} items, not 1 to {MOST_ITEMS}", accessor.count()));
-    }
-    let reaches = |offset: usize| offset <= view.buffer().length();
-    let is_stride = |s: usize| (accessor.size()..=MOST_STRIDE).contains(&s);
-    if !view.stride().is_none_or(is_stride) || !reaches(accessor.offset()) || !reaches(view.offset()) {
-        return bad("lies outside its part of the file");
-    }
-    Ok(())
 }
 
 /// The triangles of a primitive's indices.

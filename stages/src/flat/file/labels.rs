@@ -1,6 +1,7 @@
 //! Where a mesh from a file is cut into pieces: one label for each side of each edge; sides of equal labels stay together.
 
 use super::raw::{Mended, NO_POINT};
+use std::collections::BTreeMap;
 use toile_core::prelude::*;
 use toile_flatten::islands::weld_uv;
 
@@ -24,10 +25,23 @@ pub enum PiecesBy {
 }
 
 impl PiecesBy {
+    /// What tells the pieces, in words.
+    pub(in crate::flat) fn words(self) -> &'static str {
+        match self {
+            PiecesBy::Auto | PiecesBy::Parts => "the parts of the mesh",
+            PiecesBy::Uv => "the islands of the texture",
+            PiecesBy::Groups => "the groups and objects",
+            PiecesBy::Materials => "the materials",
+            PiecesBy::Seams => "the marked lines",
+        }
+    }
+}
+
+impl PiecesBy {
     /// What is meant for this mesh.
     ///
     /// Errors: what is asked for does not stand in the file.
-    pub(super) fn resolved(self, mended: &Mended) -> Result<Self, StageError> {
+    pub(in crate::flat) fn resolved(self, mended: &Mended) -> Result<Self, StageError> {
         let mesh = &mended.mesh;
         let missing = |what: &str, instead: &str| {
             let e = StageError::invalid(format!("the file has no {what} to tell the pieces by"));
@@ -36,6 +50,8 @@ impl PiecesBy {
         let has_uv = mesh.corners.iter().flatten().all(|c| *c != NO_POINT);
         let several = |of: &[u32]| of.windows(2).any(|w| w[0] != w[1]);
         match self {
+            // Its own files have a mesh a panel; their texture may be a cloth that runs on over a seam or a dart.
+            PiecesBy::Auto if mesh.is_ours && mesh.has_own_vertices => Ok(PiecesBy::Parts),
             PiecesBy::Auto if has_uv => Ok(PiecesBy::Uv),
             PiecesBy::Auto if several(&mesh.groups) => Ok(PiecesBy::Groups),
             PiecesBy::Auto if several(&mesh.materials) => Ok(PiecesBy::Materials),
@@ -56,7 +72,7 @@ impl PiecesBy {
 const ALONE: u32 = u32::MAX;
 
 /// The labels of all half-edges, and at how many edges of three triangles or more a piece had to be cut.
-pub(super) fn labels(mended: &Mended, by: PiecesBy) -> (Vec<[u32; 2]>, usize) {
+pub(in crate::flat) fn labels(mended: &Mended, by: PiecesBy) -> (Vec<[u32; 2]>, usize) {
     let mesh = &mended.mesh;
     let by_corners = |corners: &[[u32; 3]]| of_corners(&mesh.triangles, corners);
     let by_triangles = |of: &[u32]| of.iter().flat_map(|g| [[*g, 0]; 3]).collect::<Vec<_>>();
@@ -74,15 +90,21 @@ pub(super) fn labels(mended: &Mended, by: PiecesBy) -> (Vec<[u32; 2]>, usize) {
     (labels, cut)
 }
 
-/// Texture points by the first at their place: most programs repeat them at every corner.
+/// Texture points by the first at their place: most programs repeat them at every corner. In a file of this program panels share none.
 fn joined_points(mended: &Mended) -> Vec<[u32; 3]> {
-    let first = weld_uv(&mended.mesh.uv, 0.0);
-    let of = |c: u32| first.get(c as usize).copied().unwrap_or(c);
-    mended.mesh.corners.iter().map(|t| t.map(of)).collect()
+    let mesh = &mended.mesh;
+    let first = weld_uv(&mesh.uv, 0.0);
+    let mut of_panel: BTreeMap<(u32, u32), u32> = BTreeMap::new();
+    let mut of = |c: u32, group: u32| {
+        let point = first.get(c as usize).copied().unwrap_or(c);
+        let next = of_panel.len() as u32;
+        if mesh.is_ours { *of_panel.entry((point, group)).or_insert(next) } else { point }
+    };
+    mesh.corners.iter().zip(&mesh.groups).map(|(t, group)| t.map(|c| of(c, *group))).collect()
 }
 
 /// The labels of half-edges by what stands at their ends, in the order of the vertices, so that both sides compare alike.
-pub(super) fn of_corners(triangles: &[[u32; 3]], corners: &[[u32; 3]]) -> Vec<[u32; 2]> {
+pub(in crate::flat) fn of_corners(triangles: &[[u32; 3]], corners: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let label = |(t, c): (&[u32; 3], &[u32; 3])| {
         [0, 1, 2].map(|k| {
             let next = (k + 1) % 3;
@@ -98,7 +120,7 @@ fn key(t: &[u32; 3], k: usize) -> [u32; 2] {
 }
 
 /// Gives each side of these edges a label of its own; returns nothing for edges that there are none of.
-pub(super) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], labels: &mut [[u32; 2]]) {
+pub(in crate::flat) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], labels: &mut [[u32; 2]]) {
     let mut marked: Vec<[u32; 2]> = edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     marked.sort_unstable();
     for (h, label) in labels.iter_mut().enumerate() {

@@ -1,7 +1,7 @@
 //! Counts in words.
 
 /// `3 edges are cut`; none for nothing.
-pub(super) fn tell(n: usize, one: &str, many: &str) -> Option<String> {
+pub(in crate::flat) fn tell(n: usize, one: &str, many: &str) -> Option<String> {
     match n {
         0 => None,
         1 => Some(format!("1 {one}")),
