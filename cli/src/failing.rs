@@ -19,7 +19,7 @@ pub(crate) fn fail_run(pipeline: &Pipeline, e: &RunError, json: bool, streams: &
     let faults = as_faults(pipeline, e);
     match json {
         true => streams.say(json!({ "error": e.error.code.as_str(), "stage": e.stage, "panel": e.entry,
-            "message": e.error.message, "hint": e.error.hint, "faults": faults.records() })),
+            "message": e.error.message, "hint": e.error.hint, "detail": e.error.detail, "faults": faults.records() })),
         false => streams.fault(&faults),
     }
     e.error.code.exit_code()

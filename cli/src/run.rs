@@ -72,6 +72,9 @@ pub(crate) fn once(
     match outcome {
         Err(e) => {
             let code = fail_run(&pipeline, &e, args.json, streams);
+            if let (true, false, Some(detail)) = (args.verbose, args.json, &e.error.detail) {
+                streams.notice(format!("detail: {detail}"));
+            }
             leave(&folder(args), &so_far, args.json, streams);
             code
         }

@@ -105,6 +105,8 @@ pub struct StageError {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
+    /// What lies behind it, for who asks: forces, counts, places in metres. Told with `--verbose`, in `reason.txt` and in the report.
+    pub detail: Option<String>,
     /// The parameter at fault, so that the runner can point at it.
     pub param: Option<&'static str>,
     /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside in.
@@ -122,7 +124,7 @@ impl std::error::Error for StageError {}
 impl StageError {
     /// An error with a code and a sentence.
     pub fn new(code: ErrorCode, message: impl Into<String>) -> Self {
-        StageError { code, message: message.into(), hint: None, param: None, path: Vec::new() }
+        StageError { code, message: message.into(), hint: None, detail: None, param: None, path: Vec::new() }
     }
 
     /// Invalid input (exit code 3).
@@ -138,6 +140,12 @@ impl StageError {
     /// Adds a hint.
     pub fn hint(mut self, hint: impl Into<String>) -> Self {
         self.hint = Some(hint.into());
+        self
+    }
+
+    /// Adds what lies behind it, for who asks.
+    pub fn detail(mut self, detail: impl Into<String>) -> Self {
+        self.detail = Some(detail.into());
         self
     }
 

@@ -175,7 +175,7 @@ fn timeout() {
     // The seconds are those of the machine.
     let message = said["message"].as_str().unwrap();
     assert!(
-        message.starts_with("out of time after 0.") && message.ends_with(" s on level 1 of 3"),
+        message.starts_with("out of time after 0.") && message.ends_with(" s, on mesh 1 of 3"),
         "{message}"
     );
 }

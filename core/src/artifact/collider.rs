@@ -2,6 +2,7 @@
 
 use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// A vertex near or inside the body.
@@ -110,6 +111,11 @@ pub trait Collide: Send + Sync + std::fmt::Debug {
     /// vertices. `None` where there is no body or the scheme keeps no mesh: cloth may then cross sharp edges of the body
     /// between its vertices. The C interface has no place for it: a scheme of a plugin answers `None`.
     fn surface(&self) -> Option<Surface<'_>> {
+        None
+    }
+
+    /// Named places on the body, by which people are told where something is. `None` where the scheme knows none, as that of a plugin.
+    fn landmarks(&self) -> Option<&BTreeMap<String, Point3>> {
         None
     }
 }

@@ -208,9 +208,28 @@ fn of_garments() {
     others.extend(seams.map(|seam| Garment { seams: vec![seam], ..garment() }));
     let states = changed!(
         base.status.clone(),
-        SolveStatus { steps: 6, converged: false, energy: 0.5, max_speed: 1.0, on_body: vec![] }
+        SolveStatus {
+            steps: 6,
+            converged: false,
+            energy: 0.5,
+            max_speed: 1.0,
+            on_body: vec![],
+            held: Held::default(),
+        }
     );
     others.extend(states.into_iter().map(|status| Garment { status, ..garment() }));
+    let helds = changed!(
+        base.status.held.clone(),
+        Held {
+            slides: vec![Vector3::zeros(); 3],
+            offsets: vec![2e-3; 3],
+            folds: vec![],
+            contacts: vec![[0, 2, 1, 0]],
+            figures: vec![0.5; 15],
+        }
+    );
+    let of_held = |held| Garment { status: SolveStatus { held, ..garment().status }, ..garment() };
+    others.extend(helds.into_iter().map(of_held));
     all_differ(&base, others);
 }
 
@@ -460,7 +479,8 @@ fn of_run_logs() {
         used: None,
         predicted: None,
     };
-    let failure = Failure { stage: "StaticEquilibrium".into(), message: "it hangs".into(), hint: None };
+    let failure =
+        Failure { stage: "StaticEquilibrium".into(), message: "it hangs".into(), hint: None, detail: None };
     let base = RunLog { stages: vec![stage.clone()], failure: Some(failure.clone()), ..RunLog::default() };
     let mut others = changed!(
         base.clone(),
@@ -474,7 +494,12 @@ fn of_run_logs() {
     );
     let failures = changed!(
         failure,
-        Failure { stage: "Place".into(), message: "it falls".into(), hint: Some("pin it".into()) }
+        Failure {
+            stage: "Place".into(),
+            message: "it falls".into(),
+            hint: Some("pin it".into()),
+            detail: Some("by 9.81 m/s2".into()),
+        }
     );
     others.extend(failures.into_iter().map(|f| RunLog { failure: Some(f), ..base.clone() }));
     let measure = Measure { name: "a".into(), value: 1.0, unit: "mm", tolerance: 0.0 };

@@ -45,6 +45,21 @@ pub struct GarmentSeam {
     pub state: SeamState,
 }
 
+/// How friction holds a garment at rest, as the solver left it: another run goes on from it without a slide. Empty where nothing is known.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Held {
+    /// How far friction holds each vertex back on the body, metres.
+    pub slides: Vec<Vector3>,
+    /// Distance at which the body begins to press on each vertex, metres; empty without a body.
+    pub offsets: Vec<f64>,
+    /// Angles at which friction between yarns holds the folds; empty where there is no such friction.
+    pub folds: Vec<f64>,
+    /// The points that meet where cloth lies on cloth.
+    pub contacts: Vec<[u32; 4]>,
+    /// The solver's own numbers of those contacts, as many for each.
+    pub figures: Vec<f64>,
+}
+
 /// What the last solver says of its result.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SolveStatus {
@@ -60,6 +75,8 @@ pub struct SolveStatus {
     /// For each panel the share of it that is still in its place on the body, after all solvers: 1 less the way that its upper edge has
     /// sunk, as a share of its size. Empty where nothing told: no body, no weight.
     pub on_body: Vec<f64>,
+    /// How friction holds it, for a solver that goes on from there.
+    pub held: Held,
 }
 
 /// Panels lifted into space with their seams.
@@ -224,6 +241,14 @@ impl Artifact for Garment {
         indices("a weld", n, self.weld.iter())?;
         indices("a pin", n, self.pinned.iter())?;
         let least = |(i, &w): (usize, &u32)| w as usize <= i && self.weld[w as usize] == w;
+        let Held { slides, offsets, .. } = &self.status.held;
+        if !slides.is_empty() {
+            length("ways slid", slides.len(), n)?;
+            finite("way slid", slides)?;
+        }
+        if !offsets.is_empty() {
+            length("distances from the body", offsets.len(), n)?;
+        }
         let joined = self.weld.iter().enumerate().all(least);
         ensure(joined, || "a weld is not the least vertex that it is joined to".to_owned())?;
         self.check_panels()

@@ -54,6 +54,8 @@ pub struct Failure {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
+    /// What lies behind it, for who asks.
+    pub detail: Option<String>,
 }
 
 impl StageRecord {
@@ -114,8 +116,9 @@ impl Artifact for RunLog {
             d.text(stage).text(reason);
         });
         d.count(usize::from(failure.is_some()));
-        if let Some(Failure { stage, message, hint }) = failure {
+        if let Some(Failure { stage, message, hint, detail }) = failure {
             maybe(d.text(stage).text(message), hint.as_deref());
+            maybe(d, detail.as_deref());
         }
     }
 

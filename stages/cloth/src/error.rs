@@ -126,6 +126,9 @@ pub enum ClothError {
         /// What the factorization said.
         why: String,
     },
+    /// The caller asked to stop.
+    #[error("stopped")]
+    Stopped,
     /// A value that became NaN or infinite while solving.
     #[error("{what} became non-finite in step {step}")]
     Diverged {

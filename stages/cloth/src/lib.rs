@@ -14,3 +14,4 @@ pub mod motion;
 pub mod scene;
 pub mod solver;
 pub mod statics;
+pub mod stopper;

@@ -115,7 +115,7 @@ impl BvhCollider {
         }
         let found = body.map(|b| bridged(b, width, cx)).transpose()?.flatten();
         if found.is_none() {
-            cx.warn("`bridge` has nothing to bridge: there is no body with landmarks of its armpits");
+            cx.note("`bridge` has nothing to bridge: there is no body with landmarks of its armpits");
         }
         Ok(found)
     }

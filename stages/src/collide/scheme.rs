@@ -4,6 +4,7 @@ use super::asked_distances::Distances;
 use super::body_index::BodyIndex;
 use super::points::coords;
 use super::self_collision::{Cloth, tree, usable};
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use toile_core::artifact::{Body, BodyContact, Collide, ColliderCard, Point3, SelfContact, Surface};
 use toile_core::{Context, StageError};
@@ -18,6 +19,7 @@ const POOL: usize = 4;
 pub struct BvhScheme<V> {
     card: ColliderCard,
     body: Option<BodyIndex<V>>,
+    landmarks: BTreeMap<String, Point3>,
     // A query takes a tree out and puts it back, and works on it outside the lock.
     pool: Mutex<Vec<Kept<V>>>,
 }
@@ -39,8 +41,9 @@ impl<V: BoundingVolume> BvhScheme<V> {
         distances: Distances,
         cx: &Context,
     ) -> Result<Self, StageError> {
+        let landmarks = body.map(|b| b.landmarks.clone()).unwrap_or_default();
         let body = body.map(|b| BodyIndex::new(b, distances, cx)).transpose()?;
-        Ok(BvhScheme { card, body, pool: Mutex::default() })
+        Ok(BvhScheme { card, body, landmarks, pool: Mutex::default() })
     }
 
     /// What `f` makes of the cloth, with a tree that was kept for the same triangles or is made for it.
@@ -106,6 +109,10 @@ impl<V: BoundingVolume> Collide for BvhScheme<V> {
 
     fn surface(&self) -> Option<Surface<'_>> {
         self.body.as_ref().map(BodyIndex::surface)
+    }
+
+    fn landmarks(&self) -> Option<&BTreeMap<String, Point3>> {
+        Some(&self.landmarks)
     }
 }
 

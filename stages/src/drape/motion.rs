@@ -1,16 +1,16 @@
 //! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
 
 use crate::engine::{
-    self, SchemeSurface, Setting, check_garment, cloth_error, only_joins, scene_error, scene_of, split,
-    weld_seams,
+    self, Motions, SchemeSurface, Setting, Words, check_garment, only_joins, scene_of, weld_seams,
 };
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::Duration;
 use toile_cloth::energy::{Air as EngineAir, Models};
-use toile_cloth::motion::{Method, Motion, MotionError, Moved, Progress, Response, Until};
+use toile_cloth::motion::{Method, Motion, Moved, Progress, Response, Until};
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
 use toile_cloth::statics::solve::Collider as EngineCollider;
+use toile_cloth::stopper::Stopper;
 use toile_core::prelude::*;
 
 /// What all of them share.
@@ -61,6 +61,8 @@ const SETTLED: f64 = 1e-3;
 pub(crate) struct Course<'a> {
     pub(crate) time: &'a InTime,
     pub(crate) motion: Motion,
+    /// What its user can change.
+    pub(crate) can: Motions,
 }
 
 /// Sews the garment and lets it come to rest, or follows the phases of a scene; `soft` is the garment as the solver takes it.
@@ -116,9 +118,12 @@ pub(crate) fn moved(
     let response =
         card.map_or(Response::default(), |c| Response { restitution: c.restitution, penalty: c.penalty });
     let motion = Motion { until, response, ..course.motion };
-    let moved = motion.run(&scene, wearer, &mut |p| tell(p, time.longest, cx));
+    let cancel = cx.cancel().clone();
+    let stopper = Stopper::when(move || cancel.is_cancelled());
+    let moved = motion.run_until_stopped(&scene, wearer, &stopper, &mut |p| tell(p, time, cx));
     cx.check()?;
-    let moved = moved.map_err(|e| motion_error(&e))?;
+    let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
+    let moved = moved.map_err(|e| words.motion(&e, &course.can))?;
     if !moved.converged {
         cx.warn(unrest(&moved, time.speed));
     }
@@ -149,7 +154,14 @@ fn unrest(moved: &Moved, wanted: f64) -> String {
 impl InTime {
     /// What a stage with these parameters does by a method with these models.
     pub(super) fn course(&self, method: Method, models: Models) -> Course<'_> {
-        Course { time: self, motion: self.motion(method, models) }
+        let motion = self.motion(method, models);
+        let can = Motions {
+            longest: ("longest", self.longest),
+            closing: motion.closing,
+            time_limit: Some(self.time_limit),
+            stiffest: None,
+        };
+        Course { time: self, motion, can }
     }
 
     /// The motion until rest, by a method with these models.
@@ -198,12 +210,16 @@ fn with_phases(scene: Scene, phases: Option<&Phases>) -> Scene {
     Scene { phases: phases.0.iter().map(phase).collect(), ..scene }
 }
 
-fn tell(p: &Progress, longest: f64, cx: &Context) -> ControlFlow<()> {
+fn tell(p: &Progress, time: &InTime, cx: &Context) -> ControlFlow<()> {
     if cx.check().is_err() {
         return ControlFlow::Break(());
     }
-    let gap = if p.gap > 0.0 { format!(", seam gap {:.1} mm", p.gap * 1e3) } else { String::new() };
-    cx.progress(p.time / longest, format!("{:.2} s, fastest {:.0} mm/s{gap}", p.time, p.speed * 1e3));
+    let (speed, rest) = (p.speed * 1e3, time.speed * 1e3);
+    let doing = match p.gap > 0.0 {
+        true => format!("sewing: widest seam {:.1} mm", p.gap * 1e3),
+        false => format!("draping: moves {speed:.0} mm/s, at rest below {rest:.0} mm/s"),
+    };
+    cx.progress(p.time / time.longest, format!("{doing}; {:.2} s of at most {} s", p.time, time.longest));
     ControlFlow::Continue(())
 }
 
@@ -218,19 +234,7 @@ fn finish(garment: &Garment, moved: &Moved) -> Garment {
         energy: moved.energy,
         max_speed: moved.progress.speed,
         on_body: garment.status.on_body.clone(),
+        held: Held::default(),
     };
     garment
-}
-
-pub(super) fn motion_error(error: &MotionError) -> StageError {
-    let code = match error {
-        MotionError::Cloth(e) => return cloth_error(e),
-        MotionError::Scene(e) => return scene_error(e),
-        MotionError::FallsPast(_) => ErrorCode::StaticEquilibrium,
-        MotionError::SeamNotClosed { .. } => ErrorCode::StitchingError,
-        MotionError::Timeout { .. } => ErrorCode::Timeout,
-        MotionError::Stopped => ErrorCode::Cancelled,
-        MotionError::Start(_) | MotionError::Fabrics { .. } => ErrorCode::InvalidInput,
-    };
-    split(code, &error.to_string())
 }

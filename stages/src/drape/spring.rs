@@ -7,7 +7,7 @@
 
 use super::motion::{Course, InTime, drape};
 use super::soften::{damping, easy_strain, softened, springs};
-use crate::engine::check_garment;
+use crate::engine::{Motions, check_garment};
 use toile_cloth::motion::{Calming, Method, Motion};
 use toile_core::prelude::*;
 
@@ -81,7 +81,13 @@ impl SpringDraper {
             strain_limit: Some(self.max_strain.max(easy_strain(garment))),
             ..time.motion(Method::CentralDifferences, springs())
         };
-        let course = Course { time: &time, motion };
+        let can = Motions {
+            longest: ("time_limit", self.time_limit),
+            closing: motion.closing,
+            time_limit: None,
+            stiffest: Some(self.stiffest),
+        };
+        let course = Course { time: &time, motion, can };
         drape(&course, &softened(garment, self.stiffest), garment, collider, None, cx)
     }
 }

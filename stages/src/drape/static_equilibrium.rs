@@ -12,15 +12,16 @@ use super::models::{Bending, Membrane, models};
 use super::motion::engine_air;
 use super::{ImplicitEuler, InTime};
 use crate::engine::check_garment;
-use crate::engine::{self, SchemeSurface, Setting, cloth_error, scene_error, scene_of, split, weld_seams};
+use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_of, weld_seams};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use toile_cloth::contact::skin::CollisionSurface;
-use toile_cloth::statics::not_at_rest::unrest;
 use toile_cloth::statics::solve::{
     Collider as EngineCollider, Equilibrium, LevelReport, StaticEquilibrium as Solver, StaticsError,
 };
+use toile_cloth::statics::start::surely_reversed;
+use toile_cloth::stopper::Stopper;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
@@ -144,23 +145,35 @@ impl StaticEquilibrium {
         let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
         let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
         let clock = Instant::now();
-        let mut result = self.solver().solve_on(&scene, wearer, &mut |level| progress.tell(level));
+        let reversed = surely_reversed(&scene, &scene.positions);
+        for name in reversed.iter().filter(|_| self.sew_through) {
+            cx.warn(format!(
+                "{} seems to run the wrong way: {}",
+                engine::seam(name),
+                engine::turn_round(name)
+            ));
+        }
+        let cancel = cx.cancel().clone();
+        let stopper = Stopper::when(move || cancel.is_cancelled());
+        let mut result =
+            self.solver().solve_around(&scene, wearer, &[], &stopper, &mut |level| progress.tell(level));
         if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
             let thin = thin_of(collider);
             let around: Vec<&dyn CollisionSurface> =
                 thin.iter().map(|f| f as &dyn CollisionSurface).collect();
             if !around.is_empty() {
-                cx.warn(format!(
+                cx.note(format!(
                     "{why}: the garment is sewn again around a thin figure, which grows to the body"
                 ));
                 // Both ways share the time that the user gives.
                 let solver =
                     Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
-                let second = solver.solve_around(&scene, wearer, &around, &mut |level| progress.tell(level));
+                let second =
+                    solver.solve_around(&scene, wearer, &around, &stopper, &mut |level| progress.tell(level));
                 if is_better(&second, &result) {
                     result = second;
                 } else {
-                    cx.warn("that came out no better: the first result is kept");
+                    cx.note("that came out no better: the first result is kept");
                 }
             }
         }
@@ -177,14 +190,15 @@ impl StaticEquilibrium {
         if let Some(positions) = result.as_ref().err().and_then(StaticsError::so_far) {
             cx.so_far(self.at(garment, positions));
         }
-        let (state, converged) = self.judge(result, cx)?;
+        let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
+        let (state, converged) = self.judge(result, &words, &reversed, cx)?;
         cx.figure("residual", state.residual, "N");
         cx.figure("non_static", state.outcome.non_static, "");
         cx.figure("restarts", state.restarts as f64, "");
         if state.dip > MOST_DIP {
             let mm = state.dip * 1e3;
             cx.warn(format!(
-                "between its vertices the cloth dips up to {mm:.1} mm into the body: try a finer mesh"
+                "between its points the cloth dips up to {mm:.1} mm into the body: a smaller edge length of the mesh follows it closer"
             ));
         }
         let mut rested = self.finish(garment, &state, steps, converged);
@@ -231,19 +245,30 @@ impl StaticEquilibrium {
     fn judge(
         &self,
         result: Result<Equilibrium, StaticsError>,
+        words: &Words<'_>,
+        reversed: &[String],
         cx: &Context,
     ) -> Result<(Equilibrium, bool), StageError> {
+        let can = Rests {
+            reversed,
+            sew_through: self.sew_through,
+            coarsest: self.coarsest,
+            steps: self.steps,
+            time_limit: self.time_limit,
+        };
         match result {
             Ok(state) => Ok((state, true)),
             Err(StaticsError::NotAtRest { wanted, panel, state }) => {
-                cx.warn(unrest(&state, &panel, wanted));
+                let [warning, detail] = words.still_moving(&state, &panel, wanted, &can);
+                cx.warn(warning);
+                cx.note(detail);
                 Ok((*state, false))
             }
             Err(StaticsError::Crossing { pairs, state }) => {
-                cx.warn(format!("cloth passes through cloth in {pairs} places"));
+                cx.warn(crossing(pairs));
                 Ok((*state, false))
             }
-            Err(error) => Err(rest_error(&error)),
+            Err(error) => Err(words.rest(&error, &can)),
         }
     }
 
@@ -264,6 +289,7 @@ impl StaticEquilibrium {
             energy: state.energy,
             max_speed: state.outcome.fastest,
             on_body: garment.status.on_body.clone(),
+            held: engine::held_of(&state.held()),
         };
         garment
     }
@@ -285,26 +311,18 @@ impl Progress<'_> {
         if self.cx.check().is_err() {
             return ControlFlow::Break(());
         }
-        let (speed, doing) = (level.outcome.speed, if level.sewing { "sewing" } else { "draping" });
-        let text = format!("{doing} {} vertices, fastest {:.1} mm/s", level.nodes, speed * 1e3);
+        let (speed, [pass, passes]) = (level.outcome.speed, level.pass);
+        let text = match level.sewing {
+            true => format!("sewing: widest seam {:.1} mm", level.gap * 1e3),
+            false => format!(
+                "draping, mesh {pass} of {passes}: moves {:.1} mm/s, at rest below {:.1} mm/s",
+                speed * 1e3,
+                self.wanted * 1e3
+            ),
+        };
         // From 1 m/s down to rest, by the logarithm.
         let share = if speed > 0.0 { speed.ln() / self.wanted.ln() } else { 1.0 };
         self.cx.progress(if level.sewing { 0.0 } else { share }, text);
         ControlFlow::Continue(())
     }
-}
-
-fn rest_error(error: &StaticsError) -> StageError {
-    let code = match error {
-        StaticsError::Cloth(e) => return cloth_error(e),
-        StaticsError::Scene(e) => return scene_error(e),
-        StaticsError::SeamNotClosed { .. } => ErrorCode::StitchingError,
-        StaticsError::Start(_) => ErrorCode::InvalidInput,
-        StaticsError::Tangled { .. } | StaticsError::Crossing { .. } => ErrorCode::SelfIntersection,
-        StaticsError::FallsPast(_) => ErrorCode::StaticEquilibrium,
-        StaticsError::Timeout { .. } => ErrorCode::Timeout,
-        StaticsError::Stopped => ErrorCode::Cancelled,
-        _ => ErrorCode::StaticEquilibrium,
-    };
-    split(code, &error.to_string())
 }

@@ -5,6 +5,15 @@ use toile_core::prelude::*;
 /// Triangles thinner than this share of their longest edge squared count as of no area.
 const LEAST_SHAPE: f64 = 1e-9;
 
+/// What may help where the mesh has a fault.
+const AGAIN: &str =
+    "mesh the panel again with another edge length, or merge points that lie on each other in the file";
+
+/// The panel of a vertex.
+fn of(garment: &Garment, vertex: usize) -> String {
+    garment.panel_of(vertex).map_or_else(|| "the cloth".into(), |p| format!("panel \"{}\"", p.name))
+}
+
 /// Refuses a garment that no solver can work on: empty, with numbers that are not finite, with
 /// triangles or edges of no size, with cloth that weighs nothing.
 pub fn check_garment(garment: &Garment) -> Result<(), StageError> {
@@ -18,7 +27,9 @@ pub fn check_garment(garment: &Garment) -> Result<(), StageError> {
     }
     let seams = garment.seams.iter().flat_map(|s| s.pairs.iter().flatten());
     if garment.triangles.iter().flatten().chain(seams).chain(&garment.weld).any(|&i| i as usize >= n) {
-        return Err(StageError::invalid(format!("the garment names a vertex beyond its {n} vertices")));
+        let text = "the garment's triangles or seams name points that it does not have";
+        return Err(StageError::invalid(text)
+            .hint("the file is damaged: write it again from the program that made it"));
     }
     check_finite(garment)?;
     check_fabrics(garment)?;
@@ -32,7 +43,9 @@ fn check_finite(garment: &Garment) -> Result<(), StageError> {
     };
     match (0..garment.positions.len()).find(|&i| !finite(i)) {
         Some(i) => {
-            Err(StageError::invalid(format!("vertex {i} has a coordinate that is not a finite number")))
+            let text = format!("a point of {} has a coordinate that is not a finite number", of(garment, i));
+            Err(StageError::invalid(text)
+                .hint("the file is damaged: write it again from the program that made it"))
         }
         None => Ok(()),
     }
@@ -47,7 +60,9 @@ fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
         let (density, name) = (panel.fabric.area_density, &panel.name);
         if !(density.is_finite() && density > 0.0) {
             let text = format!("panel \"{name}\" has a mass of {density} kg/m2, it must be above 0");
-            return Err(StageError::invalid(text).hint("see the fabric's area density"));
+            return Err(
+                StageError::invalid(text).hint("give the fabric its weight: `area_density`, in kg/m2")
+            );
         }
         for (curve, word) in
             [(&panel.fabric.warp, "warp"), (&panel.fabric.weft, "weft"), (&panel.fabric.shear, "shear")]
@@ -55,7 +70,9 @@ fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
             if !curve.rises() {
                 let text =
                     format!("the {word} curve of \"{}\" does not rise from the origin", panel.fabric.name);
-                return Err(StageError::invalid(text).hint("give points (strain, N/m) that rise in both"));
+                return Err(
+                    StageError::invalid(text).hint("give points of strain and force that rise in both")
+                );
             }
         }
     }
@@ -63,17 +80,17 @@ fn check_fabrics(garment: &Garment) -> Result<(), StageError> {
 }
 
 fn check_triangles(garment: &Garment) -> Result<(), StageError> {
-    for (i, t) in garment.triangles.iter().enumerate() {
+    for t in &garment.triangles {
         let [a, b, c] = t.map(|k| garment.rest[k as usize]);
         let sides = [(b - a).norm(), (c - b).norm(), (a - c).norm()];
         if let Some(k) = sides.iter().position(|&s| s <= 0.0) {
-            let text = format!("the edge between vertices {} and {} has no length", t[k], t[(k + 1) % 3]);
-            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
+            let text = format!("{} has two points at one place", of(garment, t[k] as usize));
+            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint(AGAIN));
         }
         let longest = sides.iter().fold(0.0, |m: f64, s| m.max(*s));
         if (b - a).perp(&(c - a)).abs() <= LEAST_SHAPE * longest * longest {
-            let text = format!("triangle {i} has no area");
-            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint("mesh the panel again"));
+            let text = format!("{} has a triangle without area", of(garment, t[0] as usize));
+            return Err(StageError::new(ErrorCode::DegenerateTriangles, text).hint(AGAIN));
         }
     }
     Ok(())

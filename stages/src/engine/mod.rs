@@ -12,6 +12,7 @@ mod pieces;
 mod response;
 mod scene;
 mod skin;
+mod words;
 
 pub use arithmetic::arithmetic;
 pub use check::check_garment;
@@ -20,5 +21,6 @@ pub(crate) use kinds::only_joins;
 pub use lost::lost;
 pub use on_body::{both, on_body};
 pub use response::check_response;
-pub use scene::{Setting, engine_fabric, garment_of, join_pairs, scene_of, weld_seams};
+pub use scene::{Setting, engine_fabric, garment_of, held_of, join_pairs, scene_of, weld_seams};
 pub use skin::SchemeSurface;
+pub(crate) use words::{Motions, Rests, Words, crossing, seam, turn_round};

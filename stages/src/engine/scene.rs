@@ -7,10 +7,11 @@ use std::sync::Arc;
 use toile_cloth::energy::Air;
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric as engine;
-use toile_cloth::scene::{Band, Panel, Phase, Scene, Seam};
+use toile_cloth::scene::held::{FIGURES, contact, figures};
+use toile_cloth::scene::{Band, Held as EngineHeld, Panel, Phase, Scene, Seam};
 use toile_core::StageError;
 use toile_core::artifact::{
-    Curve, Fabric, Garment, GarmentPanel, GarmentSeam, Point2, Point3, SeamKind, SeamState, SolveStatus,
+    Curve, Fabric, Garment, GarmentPanel, GarmentSeam, Held, Point2, Point3, SeamKind, SeamState, SolveStatus,
 };
 
 /// What a garment's scene takes from elsewhere than the garment.
@@ -57,7 +58,30 @@ pub fn scene_of(garment: &Garment, setting: &Setting) -> Result<Scene, StageErro
             air: setting.air,
         }],
         self_collision: setting.self_collision,
+        held: engine_held(&garment.status.held),
     })
+}
+
+/// How friction holds a garment, for the engine.
+fn engine_held(held: &Held) -> EngineHeld {
+    let figures = held.figures.chunks_exact(FIGURES).filter_map(|f| f.try_into().ok());
+    EngineHeld {
+        slides: held.slides.clone(),
+        offsets: held.offsets.clone(),
+        folds: held.folds.clone(),
+        contacts: held.contacts.iter().zip(figures).map(|(nodes, f)| contact(*nodes, f)).collect(),
+    }
+}
+
+/// The same of the engine's.
+pub fn held_of(held: &EngineHeld) -> Held {
+    Held {
+        slides: held.slides.clone(),
+        offsets: held.offsets.clone(),
+        folds: held.folds.clone(),
+        contacts: held.contacts.iter().map(|c| c.nodes).collect(),
+        figures: held.contacts.iter().flat_map(figures).collect(),
+    }
 }
 
 /// The engine's fabric, held off the body by `thickness`, m.
@@ -142,7 +166,7 @@ pub fn garment_of(scene: &Scene) -> Garment {
         seams: scene.seams.iter().map(garment_seam).chain(scene.bands.iter().map(elastic)).collect(),
         weld: (0..n as u32).collect(),
         pinned: scene.pinned.clone(),
-        status: SolveStatus::default(),
+        status: SolveStatus { held: held_of(&scene.held), ..SolveStatus::default() },
     }
 }
 

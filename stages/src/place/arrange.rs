@@ -79,7 +79,7 @@ impl Arrange {
         let folded = pleats::fold(pattern, &offsets)?;
         let mut flat = offsets.clone();
         for (name, of) in &folded {
-            cx.warn(format!("\"{name}\" is {}", of.told));
+            cx.note(format!("\"{name}\" is {}", of.told));
             if let Some((_, panel)) = flat.get_mut(name.as_str()) {
                 *panel = &of.panel;
             }
@@ -97,7 +97,7 @@ impl Arrange {
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
         if self.bend {
-            legs::swing(&worn, body, &mut places).into_iter().for_each(|what| cx.warn(what));
+            legs::swing(&worn, body, &mut places).into_iter().for_each(|what| cx.note(what));
             for limb in Limb::arms(body) {
                 let mine = match &sleeves {
                     Some(all) => {
@@ -106,7 +106,7 @@ impl Arrange {
                     None => tubes::around(&limb, &worn, &places),
                 };
                 let bent = tubes::bend(&limb, &mine, &mut places, &seams, &offsets, self.clearance.metres());
-                bent.into_iter().for_each(|what| cx.warn(what));
+                bent.into_iter().for_each(|what| cx.note(what));
             }
         }
         for (name, of) in &folded {
@@ -114,7 +114,7 @@ impl Arrange {
                 of.deepen(places);
             }
         }
-        patches::lay(&patches, &mut places, &seams, &flat)?.into_iter().for_each(|what| cx.warn(what));
+        patches::lay(&patches, &mut places, &seams, &flat)?.into_iter().for_each(|what| cx.note(what));
         cx.check()?;
         let points: Vec<Point3> = places.into_values().flatten().collect();
         Ok(whole(&offsets, seams, fabric, points))
@@ -133,7 +133,7 @@ impl Arrange {
         }
         let decided = region::decide(pattern)?;
         let (places, told) = stand::stand(pattern, &decided, offsets, body, self.clearance.metres())?;
-        told.into_iter().for_each(|what| cx.warn(what));
+        told.into_iter().for_each(|what| cx.note(what));
         let arm = |(p, d): (&Piece, &Decided)| (d.region == Region::Arm).then(|| (p.name.clone(), d.hand));
         Ok((places, Some(pattern.pieces.iter().zip(&decided).filter_map(arm).collect())))
     }
@@ -149,7 +149,7 @@ impl Arrange {
         }
         let by = MIDDLE * top;
         places.values_mut().flatten().for_each(|p| p.y += by);
-        cx.warn(format!(
+        cx.note(format!(
             "the pattern reaches {:.0} cm below the floor: its places are taken for those around a body's middle and raised by {:.0} cm",
             -lowest * 1e2,
             by * 1e2

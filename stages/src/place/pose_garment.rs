@@ -33,7 +33,7 @@ impl PoseGarment {
         Ok(Garment {
             positions,
             velocities: vec![Vector3::zeros(); garment.velocities.len()],
-            status: SolveStatus { converged: false, ..garment.status.clone() },
+            status: SolveStatus { converged: false, held: Held::default(), ..garment.status.clone() },
             ..garment.clone()
         })
     }

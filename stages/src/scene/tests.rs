@@ -456,12 +456,16 @@ fn what_is_wrong_with_the_start_is_invalid_input() {
         .iter_mut()
         .for_each(|p| *p = nalgebra::Vector3::new(p.x, p.y + 0.007, 0.2 + 0.3 * p.x));
     for (scene, words, hint) in [
-        (sunk, "vertices start inside the body", "place the panels outside it"),
-        (reversed, "run against each other", "list the second vertices of the pairs in reverse order"),
+        (sunk, " starts inside the body, by ", "place it outside the body"),
+        (
+            reversed,
+            "runs the wrong way: its sides start ",
+            "turn one of its sides round: in a file of seams ",
+        ),
         (
             crossing,
-            "panels 'front' and 'back' pass through each other at the start",
-            "lay them out so that none do",
+            "'front' and 'back' pass through each other where they start, ",
+            "place them so that none does, or let the solver move it apart: `--set ",
         ),
     ] {
         let e = refused(&scene);
@@ -478,9 +482,17 @@ fn a_seam_that_solving_does_not_close_is_a_result() {
     narrow.positions.iter_mut().for_each(|p| p.x *= 0.3);
     let e = refused(&narrow);
     assert_eq!((e.code, e.code.exit_code()), (ErrorCode::StitchingError, 4), "{}", e.message);
-    assert!(e.message.starts_with("seam 'side_") && e.message.contains(" mm at "), "{}", e.message);
+    assert!(
+        e.message.starts_with("the seam 'side_") && e.message.contains(" stays open by "),
+        "{}",
+        e.message
+    );
+    assert!(e.detail.as_ref().is_some_and(|d| d.contains(" mm at ") && d.ends_with(" N a metre")), "{e:?}");
     assert_eq!(
         e.hint.as_deref(),
-        Some("place its panels nearer, with nothing between its sides, or cut them wider")
+        Some(
+            "let cloth pass through what lies in its way while it is sewn: `--set 'stages.test.sew_through=true'`; where the body is \
+             in the way, cut the pieces wider or take a smaller body"
+        )
     );
 }

@@ -6,7 +6,7 @@
 //! reported; nothing is torn or pulled through the body.
 
 use crate::drape::{Course, InTime, damping, moved, softened, springs};
-use crate::engine::check_garment;
+use crate::engine::{Motions, check_garment};
 use toile_cloth::motion::{Method, Motion, Until};
 use toile_core::prelude::*;
 
@@ -72,7 +72,13 @@ impl SpringStitcher {
             until: Until::Sewn { longest: self.time_limit },
             ..time.motion(Method::CentralDifferences, springs())
         };
-        let course = Course { time: &time, motion };
+        let can = Motions {
+            longest: ("time_limit", self.time_limit),
+            closing: motion.closing,
+            time_limit: None,
+            stiffest: Some(self.stiffest),
+        };
+        let course = Course { time: &time, motion, can };
         moved(&course, &softened(garment, self.stiffest), garment, collider, None, cx)
     }
 }

@@ -68,6 +68,7 @@ pub(crate) fn garment(n: usize) -> Garment {
             energy: 0.4,
             max_speed: 1e-4,
             on_body: Vec::new(),
+            held: Held::default(),
         },
         positions,
     }

@@ -64,6 +64,8 @@ struct Ended {
     message: String,
     /// Empty where nobody knows what may help.
     hint: String,
+    /// What lies behind it, for who asks; empty where there is no more to tell.
+    detail: String,
 }
 
 /// A picture as the page holds it.
@@ -139,6 +141,7 @@ pub(super) fn page(run: &RunLog, height: u32, views: Views, cx: &Context) -> Res
             stage: f.stage.clone(),
             message: f.message.clone(),
             hint: f.hint.clone().unwrap_or_default(),
+            detail: f.detail.clone().unwrap_or_default(),
         }),
         verdict: verdict(run, garment, missed.len()),
         warnings: warnings(run),

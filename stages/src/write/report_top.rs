@@ -79,8 +79,12 @@ mod tests {
 
     #[test]
     fn a_run_that_ended_early_says_where_and_why() {
-        let failure =
-            Failure { stage: "Otsu".into(), message: "the picture is one colour".into(), hint: None };
+        let failure = Failure {
+            stage: "Otsu".into(),
+            message: "the picture is one colour".into(),
+            hint: None,
+            detail: None,
+        };
         let run = RunLog { failure: Some(failure), ..RunLog::default() };
         let found = verdict(&run, None, 0);
         assert_eq!(

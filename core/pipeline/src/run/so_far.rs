@@ -37,8 +37,12 @@ fn files(run: &mut Run<'_>, keep: bool, error: &RunError) -> Vec<OutputFile> {
     if log.stages.iter().all(|s| s.outputs.is_empty()) {
         return Vec::new();
     }
-    let failure =
-        Failure { stage: node.id.clone(), message: error.to_string(), hint: error.error.hint.clone() };
+    let failure = Failure {
+        stage: node.id.clone(),
+        message: error.to_string(),
+        hint: error.error.hint.clone(),
+        detail: error.error.detail.clone(),
+    };
     let mut files = vec![reason(&failure)];
     log.failure = Some(failure);
     files.extend(run.pipeline.nodes[failed..].iter().filter(|n| is_page(n)).flat_map(|n| page(run, n, &log)));
@@ -67,7 +71,8 @@ fn record(node: &Node, so_far: Option<PortValue>) -> StageRecord {
 
 fn reason(failure: &Failure) -> OutputFile {
     let hint = failure.hint.iter().map(|h| format!("help: {h}\n"));
-    let text: String = std::iter::once(format!("{}\n", failure.message)).chain(hint).collect();
+    let detail = failure.detail.iter().map(|d| format!("detail: {d}\n"));
+    let text: String = std::iter::once(format!("{}\n", failure.message)).chain(hint).chain(detail).collect();
     OutputFile { path: "reason.txt".into(), bytes: text.into_bytes() }
 }
 

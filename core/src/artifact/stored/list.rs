@@ -117,7 +117,7 @@ macro_rules! listed {
         }
     )*};
 }
-listed!(u8: 1 of U8, u32: 1 of U32, [u32; 2]: 2 of U32, [u32; 3]: 3 of U32, u64: 1 of U64, [u64; 2]: 2 of U64, f32: 1 of F32,
+listed!(u8: 1 of U8, u32: 1 of U32, [u32; 2]: 2 of U32, [u32; 3]: 3 of U32, [u32; 4]: 4 of U32, u64: 1 of U64, [u64; 2]: 2 of U64, f32: 1 of F32,
     [f32; 2]: 2 of F32, [f32; 3]: 3 of F32, f64: 1 of F64, [f64; 2]: 2 of F64, Point2: 2 of F64, Point3: 3 of F64,
     Vector3: 3 of F64);
 

@@ -1,8 +1,8 @@
 //! Records of what stands in space: bodies, garments, models.
 
 use super::super::{
-    Body, Garment, GarmentPanel, GarmentSeam, Material, Mesh, Model, Point3, SeamState, Sheen, SolveStatus,
-    Texture, Variant,
+    Body, Garment, GarmentPanel, GarmentSeam, Held, Material, Mesh, Model, Point3, SeamState, Sheen,
+    SolveStatus, Texture, Variant,
 };
 use super::flat::{rgb, value, word};
 use super::plan::{kind_fields, kind_of};
@@ -127,6 +127,26 @@ fn status_fields(s: &SolveStatus) -> Record<'_> {
         .number("energy", s.energy)
         .number("max_speed", s.max_speed)
         .list("on_body", &s.on_body)
+        .maybe("held", (!s.held.slides.is_empty()).then(|| held_fields(&s.held)))
+}
+
+fn held_fields(h: &Held) -> Record<'_> {
+    Record::new()
+        .list("slides", &h.slides)
+        .list("offsets", &h.offsets)
+        .list("folds", &h.folds)
+        .list("contacts", &h.contacts)
+        .list("figures", &h.figures)
+}
+
+fn held_of(r: &Reader<'_>) -> Result<Held, String> {
+    Ok(Held {
+        slides: r.list("slides")?,
+        offsets: r.list("offsets")?,
+        folds: r.list("folds")?,
+        contacts: r.list("contacts")?,
+        figures: r.list("figures")?,
+    })
 }
 
 fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
@@ -136,6 +156,7 @@ fn status_of(r: &Reader<'_>) -> Result<SolveStatus, String> {
         energy: r.one("energy")?,
         max_speed: r.one("max_speed")?,
         on_body: r.find("on_body").map(|_| r.list("on_body")).transpose()?.unwrap_or_default(),
+        held: r.maybe("held")?.map(|h| held_of(&h)).transpose()?.unwrap_or_default(),
     })
 }
 

@@ -98,7 +98,25 @@ pub(in crate::artifact) fn garment() -> Garment {
         }],
         weld: vec![0, 0, 2],
         pinned: vec![2],
-        status: SolveStatus { steps: 5, converged: true, energy: 0.25, max_speed: 1e-4, on_body: vec![0.9] },
+        status: SolveStatus {
+            steps: 5,
+            converged: true,
+            energy: 0.25,
+            max_speed: 1e-4,
+            on_body: vec![0.9],
+            held: held(),
+        },
+    }
+}
+
+/// What friction holds of a garment of three vertices.
+pub(in crate::artifact) fn held() -> Held {
+    Held {
+        slides: vec![Vector3::new(1e-4, 0.0, 0.0), Vector3::zeros(), Vector3::zeros()],
+        offsets: vec![1e-3; 3],
+        folds: vec![0.5],
+        contacts: vec![[0, 1, 2, 0]],
+        figures: vec![0.25; 15],
     }
 }
 

@@ -198,7 +198,7 @@ pub fn list(panels: &[(&str, usize, usize)]) -> String {
     const NAMED: usize = 3;
     let name = |&(name, fallen, all): &(&str, usize, usize)| match fallen == all {
         true => format!("'{name}'"),
-        false => format!("'{name}' ({fallen} of its {all} vertices)"),
+        false => format!("'{name}' (a part of it)"),
     };
     let mut names: Vec<String> = panels.iter().take(NAMED).map(name).collect();
     if panels.len() > NAMED {

@@ -5,6 +5,8 @@ use nalgebra::Matrix3;
 
 use super::BlockMatrix;
 use crate::energy::Vec3;
+use crate::error::ClothError;
+use crate::stopper::Stopper;
 
 /// How an iteration ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,13 +20,17 @@ pub struct PcgReport {
 /// Solves `a x = b` to a relative residual, starting from `x`.
 ///
 /// Stops early at a direction of negative curvature with what it has: still a descent direction for an optimiser.
+///
+/// # Errors
+/// [`ClothError::Stopped`].
 pub fn conjugate_gradients(
     a: &BlockMatrix,
     b: &[Vec3],
     x: &mut [Vec3],
     tolerance: f64,
     most_iterations: usize,
-) -> PcgReport {
+    stopper: &Stopper,
+) -> Result<PcgReport, ClothError> {
     let inverse = inverse_diagonal(a);
     let mut y = a.times(x);
     let mut r: Vec<Vec3> = b.iter().zip(&y).map(|(b, y)| b - y).collect();
@@ -33,6 +39,7 @@ pub fn conjugate_gradients(
     let (mut rz, size) = (dot(&r, &z), dot(b, b).sqrt());
     let mut iterations = 0;
     while iterations < most_iterations && dot(&r, &r).sqrt() > tolerance * size {
+        stopper.check()?;
         a.times_into(&p, &mut y);
         let curvature = dot(&p, &y);
         if curvature <= 0.0 {
@@ -53,7 +60,7 @@ pub fn conjugate_gradients(
         iterations += 1;
     }
     let relative_residual = if size > 0.0 { dot(&r, &r).sqrt() / size } else { 0.0 };
-    PcgReport { iterations, relative_residual }
+    Ok(PcgReport { iterations, relative_residual })
 }
 
 fn inverse_diagonal(a: &BlockMatrix) -> Vec<Matrix3<f64>> {

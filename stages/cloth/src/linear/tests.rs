@@ -3,6 +3,7 @@ use nalgebra::Matrix3;
 
 use super::*;
 use crate::energy::Vec3;
+use crate::stopper::Stopper;
 
 #[test]
 fn a_block_counts_on_both_sides_of_the_diagonal() {
@@ -43,7 +44,7 @@ fn factor_and_iteration_solve_the_same_system() {
     cholesky.factor(&a).unwrap();
     let direct = cholesky.solve(&b);
     let mut iterated = vec![Vec3::zeros(); 200];
-    let report = conjugate_gradients(&a, &b, &mut iterated, 1e-12, 1000);
+    let report = conjugate_gradients(&a, &b, &mut iterated, 1e-12, 1000, &Stopper::default()).unwrap();
     assert!(report.relative_residual <= 1e-12);
     for ((d, i), (ad, b)) in direct.iter().zip(&iterated).zip(a.times(&direct).iter().zip(&b)) {
         assert!((d - i).norm() < 1e-9 && (ad - b).norm() < 1e-11);

@@ -3,6 +3,7 @@
 use crate::contact::past::Fallen;
 use crate::error::ClothError;
 use crate::scene::SceneError;
+use crate::statics::error::remedy;
 use crate::statics::start::StartError;
 
 /// Why a motion did not end.
@@ -26,10 +27,7 @@ pub enum MotionError {
     #[error("{0}")]
     FallsPast(Box<Fallen>),
     /// A seam does not close.
-    #[error(
-        "seam '{seam}' stays open by {:.1} mm after {time:.2} s; place its panels nearer, with nothing between its sides, or cut them wider",
-        1e3 * gap
-    )]
+    #[error("seam '{seam}' stays open by {:.1} mm after {time:.2} s; {}", 1e3 * gap, remedy(reversed))]
     SeamNotClosed {
         /// The seam with the widest gap.
         seam: String,
@@ -37,10 +35,27 @@ pub enum MotionError {
         gap: f64,
         /// Simulated time, s.
         time: f64,
+        /// Seams whose pairs seem to run against each other.
+        reversed: Vec<String>,
     },
     /// What is wrong with the start.
     #[error(transparent)]
     Start(#[from] StartError),
+    /// Steps so short that the motion would not end.
+    #[error(
+        "the steps are {step:.1e} s long after {time:.3} s of the motion, shorter than {least:.1e} s; take a softer or heavier cloth, or a \
+         coarser mesh"
+    )]
+    TooStiff {
+        /// The step that the solver may take, s.
+        step: f64,
+        /// The shortest that is taken, s.
+        least: f64,
+        /// Simulated time, s.
+        time: f64,
+        /// The widest seam that is still open, m; 0 where none is.
+        gap: f64,
+    },
     /// The budget of wall time is spent.
     #[error("out of time after {seconds:.1} s, at {time:.3} s of the motion")]
     Timeout {
@@ -48,6 +63,8 @@ pub enum MotionError {
         seconds: f64,
         /// Simulated time, s.
         time: f64,
+        /// The widest seam that is still open, m; 0 where none is.
+        gap: f64,
     },
     /// The caller asked to stop.
     #[error("stopped")]

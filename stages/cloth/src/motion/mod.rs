@@ -22,10 +22,12 @@ pub use error::MotionError;
 pub use method::Method;
 
 use crate::energy::{Air, Models};
+use crate::error::ClothError;
 use crate::scene::Scene;
 use crate::statics::pieces::Pieces;
 use crate::statics::solve::Collider;
-use crate::statics::start::check;
+use crate::statics::start::{check, probably_reversed};
+use crate::stopper::Stopper;
 use fall::Falls;
 use moving::Moving;
 use nalgebra::Vector3;
@@ -197,6 +199,20 @@ impl Motion {
         wearer: Option<Collider<'_>>,
         progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Moved, MotionError> {
+        self.run_until_stopped(scene, wearer, &Stopper::default(), progress)
+    }
+
+    /// The same; `stopper` is asked inside of steps, too, for a step of stiff cloth may take long.
+    ///
+    /// # Errors
+    /// Every [`MotionError`].
+    pub fn run_until_stopped(
+        &self,
+        scene: &Scene,
+        wearer: Option<Collider<'_>>,
+        stopper: &Stopper,
+        progress: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Moved, MotionError> {
         scene.check()?;
         if self.method.takes_one_fabric() {
             one_fabric(scene)?;
@@ -204,7 +220,9 @@ impl Motion {
         let pieces = Pieces::new(scene);
         let start = check::<MotionError>(scene, wearer.map(|w| w.skin), self.join_gap)?;
         let falls = Falls::of(scene, wearer, &pieces);
-        let mut run = Run { settings: self, scene, wearer, pieces, falls, clock: Instant::now(), progress };
+        let (clock, budget, asked) = (Instant::now(), self.budget, stopper.clone());
+        let stopper = Stopper::when(move || asked.is_up() || clock.elapsed() > budget);
+        let mut run = Run { settings: self, scene, wearer, pieces, falls, clock, stopper, progress };
         let open = Moving::open(&run, start)?;
         match self.until {
             Until::Sewn { longest } => {
@@ -234,6 +252,8 @@ struct Run<'a> {
     pieces: Pieces,
     falls: Option<Falls>,
     clock: Instant,
+    /// Says to stop where the caller does, and out of time.
+    stopper: Stopper,
     progress: &'a mut dyn FnMut(&Progress) -> ControlFlow<()>,
 }
 
@@ -308,7 +328,11 @@ impl Run<'_> {
     }
 
     fn step(&mut self, moving: &mut Moving, end: f64) -> Result<(), MotionError> {
-        moving.step(self.settings, self.wearer, end)?;
+        let stepped = moving.step(self.settings, self.wearer, end);
+        if let Err(MotionError::Cloth(ClothError::Stopped)) = stepped {
+            return Err(self.stopped(moving));
+        }
+        stepped?;
         if let Some(fallen) = self.falls.as_ref().and_then(|f| f.look(self.scene, moving)) {
             return Err(MotionError::FallsPast(Box::new(fallen)));
         }
@@ -316,19 +340,26 @@ impl Run<'_> {
             return Err(MotionError::Stopped);
         }
         if self.clock.elapsed() > self.settings.budget {
-            return Err(MotionError::Timeout {
-                seconds: self.clock.elapsed().as_secs_f64(),
-                time: moving.progress.time,
-            });
+            return Err(self.stopped(moving));
         }
         Ok(())
+    }
+
+    /// Why a motion is ended from outside.
+    fn stopped(&self, moving: &Moving) -> MotionError {
+        let (seconds, Progress { time, gap, .. }) = (self.clock.elapsed(), moving.progress);
+        match seconds > self.settings.budget {
+            true => MotionError::Timeout { seconds: seconds.as_secs_f64(), time, gap },
+            false => MotionError::Stopped,
+        }
     }
 
     fn closed(&self, moving: &Moving) -> Result<(), MotionError> {
         match moving.seams.widest(&moving.state.x) {
             Some((pair, gap)) => {
                 let seam = seams::name_of(self.scene, &self.pieces, pair);
-                Err(MotionError::SeamNotClosed { seam, gap, time: moving.progress.time })
+                let reversed = probably_reversed(self.scene, &self.scene.positions);
+                Err(MotionError::SeamNotClosed { seam, gap, time: moving.progress.time, reversed })
             }
             None => Ok(()),
         }

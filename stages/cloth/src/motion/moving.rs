@@ -17,6 +17,9 @@ use crate::statics::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
 
+/// The shortest step of a solver that chooses its own, as a share of the time between two looks at contacts: shorter ones would take for ever.
+const SHORTEST: f64 = 5e-5;
+
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
 const SAME_STEP: f64 = 1e-6;
 
@@ -105,6 +108,7 @@ impl Moving {
             Cloth { fixed, fabrics: &fabrics, fabric: &|t| run.pieces.cloth(t), ..Cloth::of(&sheet, &first) };
         model = model.made_of(settings.models, &cloth)?;
         (model.drag, model.viscosity) = (settings.drag, settings.viscosity);
+        model.stopper = run.stopper.clone();
         let solver = settings.method.solver(&sheet, &model, &state.x, first[0], settings.dt)?;
         let inverse =
             model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
@@ -166,7 +170,7 @@ impl Moving {
         settings: &Motion,
         wearer: Option<Collider<'_>>,
         end: f64,
-    ) -> Result<(), ClothError> {
+    ) -> Result<(), MotionError> {
         let dt = settings.dt.min(end - self.progress.time);
         self.aim(dt)?;
         let start = self.state.x.clone();
@@ -206,19 +210,31 @@ impl Moving {
     }
 
     /// As many of the solver's own steps as fill `dt`, each corrected by what was near at their start; by how much each node moves.
+    ///
+    /// Errors: those of the solver; steps that are too short to fill it.
     fn many_steps(
         &mut self,
         settings: &Motion,
         wearer: Option<Collider<'_>>,
         dt: f64,
-    ) -> Result<(Report, Vec<Vec3>), ClothError> {
+    ) -> Result<(Report, Vec<Vec3>), MotionError> {
         let start = self.state.x.clone();
         let foretold: Vec<Vec3> = self.state.v.iter().map(|v| v * dt).collect();
         let near = Near::of(self.tree.as_ref(), wearer, &start, &foretold, self.offset);
-        let (mut advanced, mut is_free) = (0.0, true);
+        let (mut advanced, mut is_free, least) = (0.0, true, SHORTEST * settings.dt);
         let report = loop {
+            self.model.stopper.check()?;
             let before = self.state.x.clone();
             let report = self.solver.advance(&self.model, &mut self.state)?;
+            if report.advanced < least {
+                let Progress { time, gap, .. } = self.progress;
+                return Err(MotionError::TooStiff {
+                    step: report.advanced,
+                    least,
+                    time: time + advanced,
+                    gap,
+                });
+            }
             let wanted: Vec<Vec3> = self.state.x.iter().zip(&before).map(|(x, s)| x - s).collect();
             let mut moves = wanted.clone();
             let (pushed, free) =

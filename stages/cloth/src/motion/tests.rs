@@ -1,11 +1,14 @@
-#![allow(clippy::unwrap_used, clippy::expect_used)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::{Method, Motion, MotionError, Moved, Response, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
 use crate::scene::{Phase, Scene, generate};
 use crate::statics::solve::{Collider, StaticEquilibrium};
+use crate::stopper::Stopper;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const METHODS: [Method; 4] = [
     Method::CentralDifferences,
@@ -355,4 +358,34 @@ fn a_fall_past_the_body_ends_the_motion_and_one_without_a_body_does_not() {
     }
     let free = run(&Motion::default(), &Scene { body: None, ..scene }).unwrap();
     assert!(free.positions[0].y < -10.0);
+}
+
+/// A step of stiff cloth is many steps of the solver: each asks whether to stop.
+#[test]
+fn a_motion_stops_inside_of_a_step() {
+    let mut scene = falling(6);
+    scene.material = crate::fabric::Fabric::isotropic(0.1, 1e5, 0.0, 1e-5);
+    for method in METHODS {
+        let asked = Arc::new(AtomicUsize::new(0));
+        let count = asked.clone();
+        let stopper = Stopper::when(move || count.fetch_add(1, Ordering::Relaxed) >= 2);
+        let mut steps = 0;
+        let ended =
+            Motion { method, ..Motion::default() }.run_until_stopped(&scene, None, &stopper, &mut |_| {
+                steps += 1;
+                ControlFlow::Continue(())
+            });
+        assert_eq!(ended.unwrap_err(), MotionError::Stopped, "{method:?}");
+        assert!(steps < 3, "{method:?}: it stopped after {steps} steps");
+        assert!(asked.load(Ordering::Relaxed) >= 3, "{method:?}");
+    }
+}
+
+#[test]
+fn cloth_too_stiff_for_steps_that_end_is_told() {
+    let mut scene = falling(6);
+    scene.material = crate::fabric::Fabric::isotropic(1e-6, 1e9, 0.0, 1e-5);
+    let error = run(&Motion { method: Method::CentralDifferences, ..Motion::default() }, &scene).unwrap_err();
+    let MotionError::TooStiff { step, least, time, gap } = error else { panic!("{error}") };
+    assert!(step < least && time < 1e-3 && gap == 0.0, "{step} {least} {time} {gap}");
 }

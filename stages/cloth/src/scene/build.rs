@@ -16,7 +16,7 @@
 //! # Ok::<(), toile_cloth::scene::SceneError>(())
 //! ```
 
-use super::{Panel, Phase, Scene, SceneBody, SceneError, Seam, check};
+use super::{Held, Panel, Phase, Scene, SceneBody, SceneError, Seam, check};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use nalgebra::{Vector2, Vector3};
@@ -49,6 +49,7 @@ impl Scene {
             strain_limit: None,
             phases: vec![phase("sew", 0.0), phase("drape", GRAVITY)],
             self_collision: true,
+            held: Held::default(),
         }
     }
 

@@ -33,6 +33,8 @@ pub(super) fn check_lists(scene: &Scene) -> Result<(), SceneError> {
 pub(super) fn check(scene: &Scene) -> Result<(), SceneError> {
     check_lists(scene)?;
     check_held(scene)?;
+    scene.held.check(scene)?;
+    finite("held.slides", scene.held.slides.iter().map(is_finite))?;
     for phase in &scene.phases {
         finite("gravity", std::iter::once(is_finite(&phase.gravity)))?;
         check_parameter("seconds", phase.seconds, |s| s >= 0.0, "0 s or more")?;

@@ -8,7 +8,7 @@ mod worn;
 pub use sewn::{banded, dart, folded, gathered, pleat, pocket, three_sheets};
 pub use worn::{layered, sleeve};
 
-use super::{Panel, Phase, Scene, SceneBody, Seam};
+use super::{Held, Panel, Phase, Scene, SceneBody, Seam};
 use crate::fabric::{Curve, Fabric};
 use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
@@ -59,6 +59,7 @@ fn square(name: String, cells: u32, y: f64) -> Scene {
         strain_limit: None,
         phases: vec![phase("drape", 2.0, 9.81)],
         self_collision: false,
+        held: Held::default(),
     }
 }
 
@@ -169,6 +170,7 @@ pub fn tube(nx: u32, ny: u32) -> Scene {
         strain_limit: None,
         phases: vec![phase("sew", 0.5, 0.0), phase("drape", 1.5, 9.81)],
         self_collision: true,
+        held: Held::default(),
     }
 }
 

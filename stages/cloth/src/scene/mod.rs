@@ -6,6 +6,7 @@
 mod build;
 mod check;
 pub mod generate;
+pub mod held;
 mod mend;
 mod raw;
 mod read;
@@ -17,6 +18,7 @@ mod write;
 mod tests;
 
 pub use build::GRAVITY;
+pub use held::Held;
 pub use read::{Load, Loaded, Options, check_form, parse, read};
 pub use strict::FieldFault;
 pub use write::{body_to_obj, to_json};
@@ -58,6 +60,8 @@ pub struct Scene {
     pub phases: Vec<Phase>,
     /// Whether a right answer needs cloth to collide with itself.
     pub self_collision: bool,
+    /// How friction holds it where it starts; nothing where it does not come from a state of rest.
+    pub held: Held,
 }
 
 /// A piece of cloth.

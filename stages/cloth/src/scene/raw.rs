@@ -1,5 +1,6 @@
 //! The fields of the JSON form as they stand in the file.
 
+use super::held::FIGURES;
 use crate::energy::Air;
 use serde::{Deserialize, de};
 
@@ -28,6 +29,24 @@ pub(super) struct RawScene {
     pub(super) seconds: Option<f64>,
     #[serde(default)]
     pub(super) self_collision: bool,
+    pub(super) held: Option<RawHeld>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct RawHeld {
+    pub(super) slides: Vec<[f64; 3]>,
+    #[serde(default)]
+    pub(super) offsets: Vec<f64>,
+    #[serde(default)]
+    pub(super) folds: Vec<f64>,
+    #[serde(default)]
+    pub(super) contacts: Vec<RawContact>,
+}
+
+#[derive(Deserialize)]
+pub(super) struct RawContact {
+    pub(super) nodes: [u32; 4],
+    pub(super) figures: [f64; FIGURES],
 }
 
 #[derive(Deserialize)]

@@ -1,7 +1,10 @@
 //! The JSON form `garment-scene-1`.
 
 use super::check::{check, check_lists};
-use super::raw::{RawAir, RawBand, RawBody, RawCurve, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
+use super::held::{Held, contact};
+use super::raw::{
+    RawAir, RawBand, RawBody, RawCurve, RawHeld, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam,
+};
 use super::{Band, Panel, Phase, Scene, SceneBody, SceneError, Seam, StrainLimit, mend, strict, units};
 use crate::energy::Air;
 use crate::error::{ClothError, check_parameter};
@@ -142,7 +145,18 @@ fn build(raw: RawScene, body: Option<SceneBody>) -> Result<Scene, SceneError> {
         strain_limit: raw.strain_limit.map(|l| StrainLimit { warp: l.warp, weft: l.weft }),
         phases: raw.phases.into_iter().map(phase).collect(),
         self_collision: raw.self_collision,
+        held: raw.held.map(held).unwrap_or_default(),
     })
+}
+
+fn held(raw: RawHeld) -> Held {
+    let RawHeld { slides, offsets, folds, contacts } = raw;
+    Held {
+        slides: slides.into_iter().map(Vector3::from).collect(),
+        offsets,
+        folds,
+        contacts: contacts.into_iter().map(|c| contact(c.nodes, &c.figures)).collect(),
+    }
 }
 
 fn air(raw: RawAir) -> Air {

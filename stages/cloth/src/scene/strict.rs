@@ -3,7 +3,10 @@
 //! The reader of the values would pass them over or take the last. Method: one walk over the text, which is known to be JSON; which
 //! fields an object has is asked of the structure that it is read into, so that there is one list. Cost: O(bytes).
 
-use super::raw::{RawAir, RawBand, RawBody, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene, RawSeam};
+use super::raw::{
+    RawAir, RawBand, RawBody, RawContact, RawHeld, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene,
+    RawSeam,
+};
 use serde::de::value::Error;
 use serde::{Deserialize, Deserializer, de, forward_to_deserialize_any};
 use std::collections::BTreeSet;
@@ -125,6 +128,8 @@ pub(super) fn fields(path: &str) -> Option<(&'static str, &'static [&'static str
         "material" | "panels.material" => ("a material", fields_of::<RawMaterial>()),
         "phases" => ("a phase", fields_of::<RawPhase>()),
         "phases.air" => ("the air", fields_of::<RawAir>()),
+        "held" => ("what is held", fields_of::<RawHeld>()),
+        "held.contacts" => ("a contact", fields_of::<RawContact>()),
         _ => return None,
     })
 }

@@ -1,7 +1,9 @@
 //! Writing the JSON form `garment-scene-1`, so that a garment of ours can be given to other programs.
 
-use super::{Panel, Phase, Scene, Seam};
+use super::held::figures;
+use super::{Held, Panel, Phase, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
+use crate::statics::friction_history::FrictionContact;
 use serde_json::{Value, json};
 use toile_geometry::obj;
 
@@ -19,7 +21,7 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
         |b| json!({ "name": b.name, "vertices": b.vertices, "ratio": b.ratio, "stiffness": b.stiffness }),
     );
     let limit = scene.strain_limit.map(|l| json!({ "warp": l.warp, "weft": l.weft }));
-    json!({
+    let mut value = json!({
         "format": "garment-scene-1",
         "name": scene.name,
         "up": "y",
@@ -36,8 +38,21 @@ pub fn to_json(scene: &Scene, body_obj: &str) -> String {
         "phases": phases.collect::<Vec<_>>(),
         "seconds": seconds,
         "self_collision": scene.self_collision,
+    });
+    if !scene.held.is_empty() {
+        value["held"] = held(&scene.held);
+    }
+    value.to_string()
+}
+
+fn held(h: &Held) -> Value {
+    let contact = |c: &FrictionContact| json!({ "nodes": c.nodes, "figures": figures(c) });
+    json!({
+        "slides": h.slides.iter().map(|s| json!([s.x, s.y, s.z])).collect::<Vec<_>>(),
+        "offsets": h.offsets,
+        "folds": h.folds,
+        "contacts": h.contacts.iter().map(contact).collect::<Vec<_>>(),
     })
-    .to_string()
 }
 
 /// The scene's body as OBJ text; empty where it has none.

@@ -146,6 +146,7 @@ impl Solver for ImplicitEuler {
         if total_value(&energies, &inertia.target) < total_value(&energies, &x) {
             x.clone_from(&inertia.target);
         }
+        self.newton.stopper = model.stopper.clone();
         let report = self.newton.minimise(&energies, &model.masses, &model.fixed, &mut x)?;
         state.v = x.iter().zip(&start).map(|(x, s)| (x - s) / dt).collect();
         state.x = x;

@@ -7,6 +7,7 @@ use crate::energy::{
 use crate::error::{ClothError, check_parameter};
 use crate::linear::BlockMatrix;
 use crate::mesh::{Sheet, check_finite};
+use crate::stopper::Stopper;
 
 /// Masses, energies and what holds them.
 pub struct Model {
@@ -26,6 +27,8 @@ pub struct Model {
     pub air: Option<AirDrag>,
     /// Rigid bodies with a closed form, seen by solvers that move vertex by vertex.
     pub obstacles: Vec<Box<dyn Obstacle>>,
+    /// Asked within steps.
+    pub stopper: Stopper,
 }
 
 /// Where the vertices are and how fast they move.
@@ -67,6 +70,7 @@ impl Model {
             viscosity: 0.0,
             air: None,
             obstacles: Vec::new(),
+            stopper: Stopper::default(),
         }
     }
 

@@ -8,6 +8,7 @@
 use crate::energy::{Energy, Projection, Vec3, matrix_of, total_gradient, total_value, write_matrix};
 use crate::error::ClothError;
 use crate::linear::{BlockMatrix, Cholesky, conjugate_gradients};
+use crate::stopper::Stopper;
 
 /// Share of the predicted fall of energy that a step must reach.
 const ARMIJO: f64 = 1e-4;
@@ -49,6 +50,8 @@ pub struct Newton {
     pub pseudo_step: f64,
     /// Whether to begin with the pseudo-time step, or to bring it in only when the line search cuts a step.
     pub cautious: bool,
+    /// Asked in every iteration.
+    pub stopper: Stopper,
     factor: Option<(BlockMatrix, Cholesky)>,
 }
 
@@ -73,6 +76,7 @@ impl Newton {
             linear: LinearMethod::Cholesky,
             pseudo_step: f64::INFINITY,
             cautious: true,
+            stopper: Stopper::default(),
             factor: None,
         }
     }
@@ -80,7 +84,8 @@ impl Newton {
     /// Moves the free vertices of `x` to a minimum of the energies nearby.
     ///
     /// # Errors
-    /// [`ClothError::Factorization`] if no shift makes the matrix positive; [`ClothError::Diverged`] for NaN. `x` is then the best so far.
+    /// [`ClothError::Factorization`] if no shift makes the matrix positive; [`ClothError::Diverged`] for NaN; [`ClothError::Stopped`]. `x` is then
+    /// the best so far.
     pub fn minimise(
         &mut self,
         energies: &[&dyn Energy],
@@ -94,6 +99,7 @@ impl Newton {
         let (mut shift, mut exact) = (if self.cautious { first_shift } else { 0.0 }, false);
         let mut residual = f64::INFINITY;
         for iterations in 0..=self.most_iterations {
+            self.stopper.check()?;
             let gradient = free_gradient(energies, x, fixed);
             residual = largest(&gradient);
             if !residual.is_finite() {
@@ -148,7 +154,7 @@ impl Newton {
         let d = match self.linear {
             LinearMethod::ConjugateGradients { tolerance } => {
                 let mut d = vec![Vec3::zeros(); b.len()];
-                conjugate_gradients(hessian, &b, &mut d, tolerance, 20 * b.len());
+                conjugate_gradients(hessian, &b, &mut d, tolerance, 20 * b.len(), &self.stopper)?;
                 d
             }
             LinearMethod::Cholesky => match self.factored(hessian, exact)? {
@@ -168,6 +174,7 @@ impl Newton {
         let Some((_, factor)) = &mut self.factor else { return Ok(None) };
         let mut bump = 1e-10 * largest_diagonal(hessian);
         for _ in 0..MOST_SHIFTS {
+            self.stopper.check()?;
             match factor.factor(hessian) {
                 Ok(()) => return Ok(Some(factor)),
                 Err(_) if exact => return Ok(None),

@@ -178,6 +178,7 @@ impl Solver for Projective {
         }
         let mut residual = 0.0;
         for _ in 0..self.iterations {
+            model.stopper.check()?;
             let mut load = self.local(&state.x);
             for v in 0..load.len() {
                 load[v] += coast[v] + start[v] * self.inertia[v];

@@ -202,6 +202,7 @@ impl Solver for Xpbd {
         let inverse_mass: Vec<f64> =
             model.masses.iter().zip(&model.fixed).map(|(m, f)| if *f { 0.0 } else { 1.0 / m }).collect();
         for _ in 0..self.substeps {
+            model.stopper.check()?;
             self.substep(model, state, &inverse_mass, self.dt / self.substeps as f64);
         }
         crate::mesh::check_finite("positions", &state.x)

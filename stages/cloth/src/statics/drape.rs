@@ -3,6 +3,7 @@
 use super::bending_continuation::stages;
 use super::equilibrium::Progress;
 use super::error::StaticsError;
+use super::held::hold_as;
 use super::intersecting::entangled;
 use super::levels::{Draped, Solve};
 use super::mesh_level::Level;
@@ -39,6 +40,9 @@ impl<'a> Solve<'a> {
             let mut level = ready?;
             let is_handed = k + 1 < plan.pieces.len() || plan.rest.from_here;
             level.begin(std::mem::take(&mut self.x), slides, is_handed);
+            if plan.rest.from_here && !plan.scene.held.is_empty() {
+                hold_as(&plan.scene.held, &mut level.system, &plan.pieces[k], &level.x);
+            }
             // Another thread makes the next finer level ready meanwhile; below the finest there is none, and nobody asks.
             ready = Err(ClothError::EmptyScene.into());
             let is_free = rayon::in_place_scope(|scope| {

@@ -15,6 +15,10 @@ pub struct LevelReport {
     pub nodes: usize,
     /// Whether seams were open.
     pub sewing: bool,
+    /// The widest seam that is still open, m; 0 where none is.
+    pub gap: f64,
+    /// Which of how many meshes it is, from the first on, counted from 1.
+    pub pass: [usize; 2],
     /// How it ended.
     pub outcome: Outcome,
     /// Wall time, s.

@@ -17,6 +17,27 @@ type Vec3 = Vector3<f64>;
 /// girth by 3.3 edges over n, and what is folded onto itself by its seams by an edge or two.
 pub(super) const MOST_EDGES: f64 = 3.0;
 
+/// What is about a vertex whose step has no solution.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub enum Unsolvable {
+    /// It belongs to no triangle.
+    #[error("it belongs to no triangle; remove it, or give it one")]
+    Loose,
+    /// Its place is no finite number.
+    #[error(
+        "its place is no finite number any more; look for stiffness, density and lengths beyond those of cloth"
+    )]
+    Lost,
+    /// Its triangles have no area where they start.
+    #[error("its triangles have no area where they start; lay the panel out flat")]
+    Flat,
+    /// The forces on it differ too much in size.
+    #[error(
+        "the forces on it are too far apart to be told from each other; look for stiffness, density and lengths beyond those of cloth"
+    )]
+    Apart,
+}
+
 /// Why there is no garment at rest.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StaticsError {
@@ -44,8 +65,8 @@ pub enum StaticsError {
         vertex: usize,
         /// Its panel.
         panel: String,
-        /// Why, and what may help.
-        why: &'static str,
+        /// Why.
+        why: Unsolvable,
     },
     /// Cloth falls past the body.
     #[error("{0}")]
@@ -85,7 +106,7 @@ pub enum StaticsError {
     },
     /// Cloth that passes through cloth at the end.
     #[error(
-        "{pairs} pairs of an edge and a triangle cross at the end; start from a smoother lay or a finer coarse level"
+        "{pairs} pairs of an edge and a triangle cross at the end; place the panels more smoothly, or begin on a finer mesh"
     )]
     Crossing {
         /// How many.
@@ -145,7 +166,7 @@ impl StaticsError {
     }
 }
 
-fn remedy(reversed: &[String]) -> String {
+pub(crate) fn remedy(reversed: &[String]) -> String {
     match reversed {
         [] => "place its panels nearer, with nothing between its sides, or cut them wider".into(),
         names => format!(

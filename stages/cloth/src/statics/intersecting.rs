@@ -1,6 +1,6 @@
 //! What is told of a level that cannot be solved: cloth that came through cloth, or a vertex whose step has no solution.
 
-use super::error::StaticsError;
+use super::error::{StaticsError, Unsolvable};
 use super::load::Load;
 use super::mesh_level::Level;
 use super::pieces::Pieces;
@@ -55,13 +55,13 @@ pub(super) fn unsolvable(scene: &Scene, vertex: usize, at: &Vec3) -> StaticsErro
         (b - a).cross(&(c - a)).norm() > 1e-12 * (b - a).norm() * (c - a).norm()
     };
     let why = if around.peek().is_none() {
-        "it belongs to no triangle; remove it, or give it one"
+        Unsolvable::Loose
     } else if !at.iter().all(|v| v.is_finite()) {
-        "its place is no finite number any more; look for stiffness, density and lengths beyond those of cloth"
+        Unsolvable::Lost
     } else if !around.any(has_area) {
-        "its triangles have no area where they start; lay the panel out flat"
+        Unsolvable::Flat
     } else {
-        "the forces on it are too far apart to be told from each other; look for stiffness, density and lengths beyond those of cloth"
+        Unsolvable::Apart
     };
     StaticsError::Unsolvable { vertex, panel: words::panel(scene, number), why }
 }
@@ -91,7 +91,7 @@ mod tests {
         );
         let light = Load { weight: 0.75, ..load }.to_string();
         assert!(
-            light.ends_with(" by 0 %; start from a smoother lay, or on a finer coarsest mesh"),
+            light.ends_with(" by 0 %; place its panels more smoothly, or begin on a finer mesh"),
             "{light}"
         );
     }

@@ -11,7 +11,7 @@ use super::newton::{NewtonOptions, Outcome, relax};
 use super::penetration::pierced;
 use super::pieces::Pieces;
 use super::plan::Plan;
-use super::seam_force::widest;
+use super::seam_force::{widest, widest_thread};
 use super::system::System;
 use super::unbalanced::unbalanced;
 use crate::error::ClothError;
@@ -196,13 +196,22 @@ impl<'a> Solve<'a> {
         let meets = system.layers.is_some() && !(sewing && self.through);
         let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
-        let mut report = LevelReport { nodes: x.len(), sewing, outcome: Outcome::default(), seconds: 0.0 };
+        let meshes = self.plan.pieces.len();
+        let mut report = LevelReport {
+            nodes: x.len(),
+            sewing,
+            gap: 0.0,
+            pass: [meshes - self.level_of(x), meshes],
+            outcome: Outcome::default(),
+            seconds: 0.0,
+        };
         let (mut stop, mut is_late) = (None, false);
         let piece = if self.plan.body_box.is_some() { pieces_of(system) } else { Vec::new() };
-        let late = || self.clock.elapsed() > self.plan.rest.budget;
+        let late = || self.clock.elapsed() > self.plan.rest.budget || self.plan.stopper.is_up();
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
-            report = LevelReport { nodes: x.len(), outcome: *outcome, seconds, ..report };
+            let gap = if sewing { widest_thread(&system.threads, x) } else { 0.0 };
+            report = LevelReport { gap, outcome: *outcome, seconds, ..report };
             stop = self.fallen(system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
                 stop = Some(StaticsError::Stopped);
@@ -221,6 +230,7 @@ impl<'a> Solve<'a> {
         }
         match stop {
             Some(error) => Err(error),
+            None if self.plan.stopper.is_up() => Err(StaticsError::Stopped),
             None if is_late => Err(self.timeout(x)),
             None => Ok(report),
         }

@@ -36,6 +36,12 @@ impl Load {
         (0..scene.panels.len()).flat_map(of).fold(none, more)
     }
 
+    /// Whether the weight is so great for the stiffness that it is the cause of what goes wrong.
+    #[must_use]
+    pub fn is_heavy(&self) -> bool {
+        self.strain() > HEAVY
+    }
+
     /// Weight over stiffness: the strain at its upper end.
     #[must_use]
     pub fn strain(&self) -> f64 {
@@ -52,9 +58,9 @@ impl fmt::Display for Load {
             "a length of {length:.2} m weighs {weight:.1} N a metre of width, which stretches a stiffness of {stiffness:.1} N/m by \
              {strain:.0} %; "
         )?;
-        match self.strain() > HEAVY {
+        match self.is_heavy() {
             true => f.write_str("look whether the area density is in kg/m^2 and the stiffness in N/m"),
-            false => f.write_str("start from a smoother lay, or on a finer coarsest mesh"),
+            false => f.write_str("place its panels more smoothly, or begin on a finer mesh"),
         }
     }
 }

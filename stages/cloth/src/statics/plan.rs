@@ -14,6 +14,7 @@ use crate::contact::skin::CollisionSurface;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
+use crate::stopper::Stopper;
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
 
@@ -26,6 +27,8 @@ pub(super) struct Plan<'a> {
     pub(super) body: Option<Collider<'a>>,
     /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing else.
     pub(super) around: &'a [&'a dyn CollisionSurface],
+    /// Says whether the caller wants to stop.
+    pub(super) stopper: &'a Stopper,
     /// The box around the body, where there is one and the cloth has weight.
     pub(super) body_box: Option<BodyBox>,
     /// What no panel and what each panel is made of.
@@ -48,6 +51,7 @@ impl<'a> Plan<'a> {
         scene: &'a Scene,
         body: Option<Collider<'a>>,
         around: &'a [&'a dyn CollisionSurface],
+        stopper: &'a Stopper,
         start: &[Vec3],
     ) -> Result<Self, StaticsError> {
         let body_box = body.and_then(|w| BodyBox::of(w.skin, &gravity(scene)));
@@ -75,7 +79,7 @@ impl<'a> Plan<'a> {
             return Err(StaticsError::Falls);
         }
         let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
-        Ok(Self { rest, scene, body, around, body_box, cloths, is_pile, pieces, coarser, starts })
+        Ok(Self { rest, scene, body, around, stopper, body_box, cloths, is_pile, pieces, coarser, starts })
     }
 
     /// What keeps cloth out while its seams close.

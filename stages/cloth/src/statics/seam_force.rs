@@ -50,3 +50,8 @@ impl SeamForce {
 pub(super) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
     pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
 }
+
+/// The widest gap of seams that still pull, m.
+pub(super) fn widest_thread(threads: &[SeamForce], x: &[Vec3]) -> f64 {
+    threads.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
+}

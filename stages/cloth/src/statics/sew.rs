@@ -2,6 +2,7 @@
 
 use super::assemble::{Collider, assemble, gravity, spacing, strongest};
 use super::bending_continuation::stages;
+use super::buckle::out_of_plane;
 use super::contour::uncross;
 use super::equilibrium::Progress;
 use super::error::MOST_EDGES;
@@ -94,7 +95,15 @@ impl Solve<'_> {
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         self.through = self.plan.rest.sew_through;
-        let force = self.draw(sheet, pairs, x, progress)?;
+        let start = x.to_vec();
+        let mut force = self.draw(sheet, pairs, x, progress)?;
+        if widest(x, pairs) > self.most_gap() {
+            let pieces = &self.plan.pieces[self.plan.pieces.len() - 1];
+            if let Some(bent) = out_of_plane(pieces, &start, x, self.plan.edge()) {
+                x.copy_from_slice(&bent);
+                force = self.draw(sheet, pairs, x, progress)?;
+            }
+        }
         let gap = widest(x, pairs);
         self.joined_at = Some(gap);
         if gap > self.most_gap() {

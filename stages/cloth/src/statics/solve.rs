@@ -21,7 +21,7 @@ pub use super::assemble::Collider;
 use super::assemble::gravity;
 use super::bending_continuation::COARSEST;
 pub use super::equilibrium::{Equilibrium, LevelReport, Progress};
-pub use super::error::StaticsError;
+pub use super::error::{StaticsError, Unsolvable};
 use super::intersecting::tangled;
 use super::levels::{Draped, Solve};
 pub use super::load::Load;
@@ -35,6 +35,7 @@ use super::start::{check, check_lying, moved_out};
 use crate::contact::body::Body;
 use crate::contact::skin::CollisionSurface;
 use crate::scene::{Panel, Scene};
+use crate::stopper::Stopper;
 use std::time::Instant;
 
 impl StaticEquilibrium {
@@ -62,12 +63,12 @@ impl StaticEquilibrium {
         wearer: Option<Collider<'_>>,
         progress: &mut Progress<'_>,
     ) -> Result<Equilibrium, StaticsError> {
-        self.solve_around(scene, wearer, &[], progress)
+        self.solve_around(scene, wearer, &[], &Stopper::default(), progress)
     }
 
     /// The same, sewn on other solids before the body comes: seams close on the first of `around`, then each of the others pushes the
     /// sewn cloth out of itself, and the body as the last; on the first and on the body the cloth slides to where it fits. For
-    /// [`StaticEquilibrium::sew_through`], where the body keeps seams open.
+    /// [`StaticEquilibrium::sew_through`], where the body keeps seams open. `stopper` is asked inside of steps, too.
     ///
     /// # Errors
     /// Every [`StaticsError`].
@@ -76,6 +77,7 @@ impl StaticEquilibrium {
         scene: &Scene,
         wearer: Option<Collider<'_>>,
         around: &[&dyn CollisionSurface],
+        stopper: &Stopper,
         progress: &mut Progress<'_>,
     ) -> Result<Equilibrium, StaticsError> {
         let clock = Instant::now();
@@ -99,7 +101,7 @@ impl StaticEquilibrium {
         }
         let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
         loop {
-            let plan = Plan::new(&rest, coarsest, scene, wearer, around, &start)?;
+            let plan = Plan::new(&rest, coarsest, scene, wearer, around, stopper, &start)?;
             let (made, finer) = (Solve::new(&plan, clock).make(progress), plan.second());
             coarsest = match (made, finer) {
                 (Ok(Draped::Equilibrium(state)), _) => {

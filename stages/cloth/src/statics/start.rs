@@ -11,7 +11,8 @@
 mod seams;
 mod touching;
 
-pub(super) use seams::probably_reversed;
+pub(crate) use seams::probably_reversed;
+pub use seams::surely_reversed;
 pub(super) use touching::crossings_at_start;
 pub(crate) use touching::{crossing, crossings};
 

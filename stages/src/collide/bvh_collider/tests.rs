@@ -91,7 +91,7 @@ fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
     let cx = Context::quiet();
     wide.run(Some(&cube(0.5)), &cx).unwrap();
     assert_eq!(
-        cx.take_remarks().warnings,
+        cx.take_remarks().notes,
         ["`bridge` has nothing to bridge: there is no body with landmarks of its armpits"]
     );
     let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";

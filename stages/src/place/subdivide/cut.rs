@@ -74,7 +74,7 @@ impl<'a> Cut<'a> {
             seams: Vec::new(),
             weld,
             pinned: old.pinned.iter().map(kept).collect(),
-            status: SolveStatus { converged: false, ..old.status.clone() },
+            status: SolveStatus { converged: false, held: Held::default(), ..old.status.clone() },
         };
         for k in 0..old.panels.len() {
             cx.check()?;

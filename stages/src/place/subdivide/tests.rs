@@ -134,7 +134,14 @@ fn pieces_are_like_the_triangle_that_they_are_of_and_turned_as_it_is() {
 #[test]
 fn what_moves_goes_on_and_is_no_longer_at_rest() {
     let mut tube = tube();
-    tube.status = SolveStatus { steps: 7, converged: true, energy: 0.5, max_speed: 1e-4, on_body: vec![] };
+    tube.status = SolveStatus {
+        steps: 7,
+        converged: true,
+        energy: 0.5,
+        max_speed: 1e-4,
+        on_body: vec![],
+        held: Held::default(),
+    };
     for (v, p) in tube.velocities.iter_mut().zip(&tube.rest) {
         *v = Vector3::new(p.x, p.y, 1.0);
     }

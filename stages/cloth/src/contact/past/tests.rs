@@ -62,7 +62,7 @@ fn without_body_or_weight_there_is_no_box() {
 #[test]
 fn panels_are_listed_for_people() {
     assert_eq!(list(&[("front", 5, 5)]), "'front'");
-    assert_eq!(list(&[("front", 5, 5), ("back", 3, 5)]), "'front' and 'back' (3 of its 5 vertices)");
+    assert_eq!(list(&[("front", 5, 5), ("back", 3, 5)]), "'front' and 'back' (a part of it)");
     let five: Vec<(&str, usize, usize)> = ["a", "b", "c", "d", "e"].map(|n| (n, 1, 1)).to_vec();
     assert_eq!(list(&five), "'a', 'b', 'c' and 2 more");
     assert_eq!(list(&[]), "no panel");

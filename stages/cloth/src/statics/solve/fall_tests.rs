@@ -98,14 +98,13 @@ fn of_two_garments_the_one_that_falls_is_named() {
 fn a_loose_piece_of_a_panel_that_falls_is_told_by_its_vertices() {
     // A square over the ball, and a small one beside it that no seam holds, in one panel.
     let mut scene = generate::drape(12);
-    let count = scene.rest.len();
     let patch = generate::drape(2);
     let rest: Vec<_> = patch.rest.iter().map(|p| 0.1 * p + nalgebra::Vector2::new(2.0, 0.0)).collect();
     let at: Vec<Vec3> = rest.iter().map(|p| Vec3::new(p.x - 1.0, 0.32, -p.y)).collect();
     scene.add_panel("rest", &rest, &at, &patch.triangles);
     let all = scene.panels.pop().unwrap();
     (scene.panels[0].vertices.end, scene.panels[0].triangles.end) = (all.vertices.end, all.triangles.end);
-    assert_eq!(fall(&scene, false).0.cloth, format!("'square' (9 of its {} vertices)", count + 9));
+    assert_eq!(fall(&scene, false).0.cloth, "'square' (a part of it)");
 }
 
 #[test]

@@ -82,6 +82,30 @@ fn a_followed_strip_keeps_its_folds() {
     assert!(moved < 1e-4, "{moved}");
 }
 
+/// What friction held when a garment came to rest holds it in another run, on a body and against itself.
+#[test]
+fn what_friction_held_holds_again() {
+    let mut scene = crate::scene::generate::tube(34, 12);
+    scene.material.bending_friction_warp = 3e-4;
+    scene.material.bending_friction_weft = 3e-4;
+    let solve = |rest: StaticEquilibrium, scene: &Scene| {
+        rest.solve(scene, &mut |_| ControlFlow::Continue(())).unwrap()
+    };
+    let first = solve(StaticEquilibrium::default(), &scene);
+    scene.positions.clone_from(&first.positions);
+    scene.held = first.held();
+    let written = crate::scene::to_json(&scene, "body.obj");
+    let obj = crate::scene::body_to_obj(&scene);
+    let load = |_: &str| Ok(obj.clone().into_bytes());
+    let read =
+        crate::scene::parse(written.as_bytes(), &load, &crate::scene::Options::default()).unwrap().scene;
+    assert_eq!(read.held, scene.held);
+    let again = solve(StaticEquilibrium { from_here: true, ..StaticEquilibrium::default() }, &read);
+    let apart = first.positions.iter().zip(&again.positions).map(|(a, b)| (a - b).norm());
+    let farthest = apart.fold(0.0, f64::max);
+    assert!(farthest < 5e-4, "{farthest}");
+}
+
 /// A garment that came to rest goes on from there: a skirt's folds are where they were, in a few steps.
 #[test]
 fn from_here_a_garment_at_rest_stays_where_it_is() {

@@ -4,7 +4,7 @@ use super::tests::*;
 use super::*;
 use crate::energy::Vec3;
 use crate::error::ClothError;
-use crate::scene::{SceneError, StrainLimit, generate};
+use crate::scene::{SceneError, Seam, StrainLimit, generate};
 use crate::statics::assemble::cloths;
 use crate::statics::pieces::Pieces;
 use std::ops::ControlFlow;
@@ -17,6 +17,35 @@ fn gap(scene: &Scene, x: &[Vec3]) -> f64 {
 
 fn length(x: &[Vec3], path: &[u32]) -> f64 {
     path.windows(2).map(|w| (x[w[1] as usize] - x[w[0] as usize]).norm()).sum()
+}
+
+/// A strip twice as long as the row of pins that it is sewn to, flat at the start: its slack folds.
+#[test]
+fn a_curtain_gathered_to_pins_folds() {
+    for (cells, step) in [(20, 2), (20, 4)] {
+        let mut scene = generate::hang(cells);
+        scene.self_collision = true;
+        scene.pinned.clear();
+        scene.positions = scene.rest.iter().map(|p| Vec3::new(p.x, p.y, 0.0)).collect();
+        let top: Vec<u32> = (0..=cells).step_by(step).map(|i| cells * (cells + 1) + i).collect();
+        let mut pairs = Vec::new();
+        for &v in &top {
+            let (rest, at) = (scene.rest[v as usize], scene.positions[v as usize]);
+            let pin = scene.rest.len() as u32;
+            scene.rest.push(rest);
+            scene.positions.push(Vec3::new(0.5 * at.x, at.y + 0.05, 0.0));
+            scene.pinned.push(pin);
+            pairs.push([v, pin]);
+        }
+        scene.seams.push(Seam::new("rail", pairs.clone()));
+        scene.panels[0].vertices.end = scene.rest.len();
+        let state = StaticEquilibrium::default().solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+        for [a, b] in pairs {
+            assert_eq!(state.positions[a as usize], state.positions[b as usize]);
+        }
+        let out = state.positions.iter().map(|p| p.z.abs()).fold(0.0, f64::max);
+        assert!(out > 0.01, "it hangs in folds: {out}");
+    }
 }
 
 #[test]
@@ -271,7 +300,9 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
         StaticEquilibrium { bending_continuation: true, sew_through: true, ..StaticEquilibrium::default() };
     let solve = |around: &[&dyn CollisionSurface]| {
         through
-            .solve_around(&scene, Some(wearer), around, &mut |_| ControlFlow::Continue(()))
+            .solve_around(&scene, Some(wearer), around, &Stopper::default(), &mut |_| {
+                ControlFlow::Continue(())
+            })
             .unwrap()
             .positions
     };

@@ -21,6 +21,9 @@ const LONGER: f64 = 1.1;
 /// The same where it does not count how far the sides lie apart: edges at right angles may be sewn either way.
 const TURNED: f64 = 1.25;
 
+/// The same of sides that are alike but for their order.
+const MIRRORED: f64 = 4.0;
+
 /// Most pairs of a seam all round whose orders are compared.
 const MOST_ROUND: usize = 2000;
 
@@ -54,10 +57,22 @@ pub(super) fn check_order(scene: &Scene, start: &[Vec3]) -> Result<(), StartErro
 }
 
 /// Names of the seams whose sides run in opposite directions, which may be meant.
-pub(in crate::statics) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
+pub(crate) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     let outlines = Outlines::of(scene);
     let is_turned =
         |s: &&Seam| Threads::of(&outlines, s, start, true).is_some_and(|t| t.listed > TURNED * t.turned);
+    scene.seams.iter().filter(is_turned).map(|s| s.name.clone()).collect()
+}
+
+/// Names of the seams whose sides lie like mirror images of what they are to be sewn to: as they start, and moved onto each other. One that is
+/// twisted on purpose, or whose sides start turned against each other, is not among them.
+#[must_use]
+pub fn surely_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
+    let outlines = Outlines::of(scene);
+    let is = |s: &Seam, laid: bool, times: f64| {
+        Threads::of(&outlines, s, start, laid).is_some_and(|t| t.listed > times * t.turned)
+    };
+    let is_turned = |s: &&Seam| is(s, false, LONGER) && is(s, true, MIRRORED);
     scene.seams.iter().filter(is_turned).map(|s| s.name.clone()).collect()
 }
 

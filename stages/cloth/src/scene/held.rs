@@ -1,0 +1,77 @@
+//! How friction holds a garment where it starts: what a solver that brought it to rest left, so that another run goes on from it.
+//!
+//! Without it, contacts begin to hold where they are first seen, and cloth that was kept by friction has to slide a little before friction
+//! keeps it again.
+
+use super::{Scene, SceneError};
+use crate::statics::friction_history::FrictionContact;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Numbers of a contact besides its nodes.
+pub const FIGURES: usize = 15;
+
+/// What friction holds.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Held {
+    /// How far friction holds each vertex back on the body, m.
+    pub slides: Vec<Vec3>,
+    /// Distance at which the body begins to press on each vertex, m; none without a body.
+    pub offsets: Vec<f64>,
+    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment; none where there is no such friction.
+    pub folds: Vec<f64>,
+    /// Where cloth lies on cloth, by sewn points.
+    pub contacts: Vec<FrictionContact>,
+}
+
+impl Held {
+    /// Whether nothing is known.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.slides.is_empty()
+    }
+
+    /// Checks its lists against the scene's.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), SceneError> {
+        let wanted = scene.rest.len();
+        let lists = [("held.slides", self.slides.len()), ("held.offsets", self.offsets.len())];
+        match lists.into_iter().find(|(_, found)| ![0, wanted].contains(found)) {
+            Some((name, found)) => Err(SceneError::Length { name, found, wanted }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A contact from its nodes and its other numbers: weights, normal, anchor, way slid, load, coefficient.
+#[must_use]
+pub fn contact(nodes: [u32; 4], f: &[f64; FIGURES]) -> FrictionContact {
+    let vector = |k: usize| Vec3::new(f[k], f[k + 1], f[k + 2]);
+    let weights = [f[0], f[1], f[2], f[3]];
+    let (normal, anchor, slid) = (vector(4), vector(7), vector(10));
+    FrictionContact { nodes, weights, normal, anchor, slid, load: f[13], friction: f[14] }
+}
+
+/// The numbers of a contact besides its nodes.
+#[must_use]
+pub fn figures(c: &FrictionContact) -> [f64; FIGURES] {
+    let mut f = [0.0; FIGURES];
+    f[..4].copy_from_slice(&c.weights);
+    for (k, v) in [(4, c.normal), (7, c.anchor), (10, c.slid)] {
+        f[k..k + 3].copy_from_slice(v.as_slice());
+    }
+    (f[13], f[14]) = (c.load, c.friction);
+    f
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_contact_is_the_same_after_its_numbers() {
+        let f: [f64; FIGURES] = std::array::from_fn(|k| 0.1 * k as f64);
+        assert_eq!(figures(&contact([1, 2, 3, 4], &f)), f);
+        assert_eq!(contact([1, 2, 3, 4], &f).nodes, [1, 2, 3, 4]);
+    }
+}

@@ -1,0 +1,35 @@
+//! Whether to stop, asked inside of steps.
+
+use crate::error::ClothError;
+use std::fmt;
+use std::sync::Arc;
+
+/// Says whether a caller wants a solver to stop. It is asked between the parts of a step, so that a long step ends soon; without a caller's
+/// word it never stops.
+#[derive(Clone, Default)]
+pub struct Stopper(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
+
+impl Stopper {
+    /// Stops where `asks` says so.
+    pub fn when(asks: impl Fn() -> bool + Send + Sync + 'static) -> Self {
+        Self(Some(Arc::new(asks)))
+    }
+
+    /// Whether to stop.
+    #[must_use]
+    pub fn is_up(&self) -> bool {
+        self.0.as_ref().is_some_and(|asks| asks())
+    }
+
+    /// # Errors
+    /// [`ClothError::Stopped`] where it is time to stop.
+    pub fn check(&self) -> Result<(), ClothError> {
+        if self.is_up() { Err(ClothError::Stopped) } else { Ok(()) }
+    }
+}
+
+impl fmt::Debug for Stopper {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Stopper({})", self.is_up())
+    }
+}
