@@ -13,6 +13,7 @@ use toile_core::prelude::*;
 /// is written beside it as OBJ. The form is described in docs/reference/scene.md.
 #[stage(
     role = Writer,
+    version = 2,
     source = "garment-scene-1, docs/reference/scene.md",
     example = "SceneJson(name: \"vest\")",
     contracts(Deterministic, ThreadInvariant)
