@@ -65,5 +65,8 @@ fn styles<'a>(placed: &Placed<'a>) -> Vec<(&'a Node, Needs)> {
     if behind.iter().any(|n| n.card.name == Seams::NAME) {
         return Vec::new();
     }
-    behind.into_iter().filter_map(|n| Some((n, needs(n.card.name)?))).collect()
+    let mut styles: Vec<_> = behind.into_iter().filter_map(|n| Some((n, needs(n.card.name)?))).collect();
+    // A mannequin is fitted for a style, which is named first.
+    styles.sort_by_key(|(n, _)| n.card.role != Role::Style);
+    styles
 }
