@@ -9,7 +9,7 @@ use toile_core::prelude::*;
 use toile_geometry::components::groups;
 
 /// Less tall than this share of its depth: it may lie.
-const FLAT: f64 = 0.7;
+const FLAT: f64 = 0.8;
 /// Openings face forwards where they do so this many times as much as up and down.
 const FORWARDS: f64 = 2.0;
 
@@ -19,7 +19,7 @@ pub(in crate::flat) fn lies(mesh: &RawMesh) -> bool {
     let Some(first) = used().next() else { return false };
     let (lo, hi) = used().fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
     let size = hi - lo;
-    if size.y > FLAT * size.z || size.y > FLAT * size.x {
+    if size.y > FLAT * size.z {
         return false;
     }
     let facing = openings(mesh);
