@@ -74,7 +74,7 @@ pub struct CutLines {
     pub lines: Vec<Option<Vec<Point2>>>,
     /// For each piece the allowance of each of its outer edges, metres.
     pub widths: Vec<Vec<f64>>,
-    /// Where allowances are trimmed, a sentence each.
+    /// Where allowances are trimmed, in one sentence.
     pub notes: Vec<String>,
 }
 
@@ -86,6 +86,7 @@ pub fn cut_lines(pattern: &Pattern, allowances: &Allowances) -> Result<CutLines,
     let sewn: BTreeSet<&EdgeRef> =
         pattern.seams.iter().flat_map(|s| s.sides.iter().flatten()).map(|u| &u.edge).collect();
     let mut out = CutLines { lines: Vec::new(), widths: Vec::new(), notes: Vec::new() };
+    let mut trimmed = Vec::new();
     for p in &pattern.pieces {
         let width = |name: &String| {
             let edge = EdgeRef { panel: p.name.clone(), edge: name.clone() };
@@ -93,10 +94,32 @@ pub fn cut_lines(pattern: &Pattern, allowances: &Allowances) -> Result<CutLines,
             allowances.by_edge.get(&edge).copied().unwrap_or(plain)
         };
         let widths: Vec<f64> = p.outer.edges.iter().map(|e| width(&e.name)).collect();
-        out.lines.push(cut_line(p, &widths, &darts(pattern, p), &mut out.notes));
+        out.lines.push(cut_line(p, &widths, &darts(pattern, p), &mut trimmed));
         out.widths.push(widths);
     }
+    out.notes.extend(told(&trimmed));
     Ok(out)
+}
+
+/// An edge of whose allowance little is left: its name, its piece's, and the share.
+struct Trimmed<'a> {
+    edge: &'a str,
+    piece: &'a str,
+    left: f64,
+}
+
+/// One sentence of all edges whose allowance is trimmed.
+fn told(trimmed: &[Trimmed<'_>]) -> Option<String> {
+    let Trimmed { edge, piece, left } = trimmed.iter().reduce(|a, b| if b.left < a.left { b } else { a })?;
+    let left = left * 100.0;
+    Some(match trimmed.len() {
+        1 => format!(
+            "the allowance of edge \"{edge}\" of piece \"{piece}\" is trimmed where it meets that of others: {left:.0} % of it is left"
+        ),
+        n => format!(
+            "the allowances of {n} edges are trimmed where they meet those of others: {left:.0} % is left of that of edge \"{edge}\" of piece \"{piece}\""
+        ),
+    })
 }
 
 /// The first edge of each dart of a piece: it and the next are sewn to each other, and the piece turns inwards between them.
@@ -139,7 +162,12 @@ impl Segment {
 }
 
 /// The cut line of a piece; none where nothing is added to it.
-fn cut_line(p: &Piece, widths: &[f64], darts: &[usize], told: &mut Vec<String>) -> Option<Vec<Point2>> {
+fn cut_line<'a>(
+    p: &'a Piece,
+    widths: &[f64],
+    darts: &[usize],
+    trimmed: &mut Vec<Trimmed<'a>>,
+) -> Option<Vec<Point2>> {
     if widths.iter().all(|w| *w == 0.0) {
         return None;
     }
@@ -154,7 +182,7 @@ fn cut_line(p: &Piece, widths: &[f64], darts: &[usize], told: &mut Vec<String>) 
         polygons.extend(mitre(&one, &next));
     }
     let line = outer(&polygons).unwrap_or_else(|| outline.iter().map(|s| s.a).collect());
-    tell(p, &base, &line, told);
+    tell(p, &base, &line, trimmed);
     Some(line)
 }
 
@@ -271,7 +299,7 @@ fn outer(polygons: &[Vec<[f64; 2]>]) -> Option<Vec<Point2>> {
 }
 
 /// Tells edges of whose allowance little is left, because that of others is in its way.
-fn tell(p: &Piece, base: &[Segment], line: &[Point2], told: &mut Vec<String>) {
+fn tell<'a>(p: &'a Piece, base: &[Segment], line: &[Point2], trimmed: &mut Vec<Trimmed<'a>>) {
     let mut of_edge: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
     // Of a finely drawn curve every so manyth chord tells enough.
     for s in base.iter().step_by(base.len().div_ceil(LOOKED)).filter(|s| s.width > 0.0) {
@@ -286,12 +314,7 @@ fn tell(p: &Piece, base: &[Segment], line: &[Point2], told: &mut Vec<String>) {
         let share = left / whole;
         // That of a very short edge is always lost at a corner.
         if share < LEFT && whole > width * LEFT {
-            told.push(format!(
-                "the allowance of edge \"{}\" of piece \"{}\" is trimmed where it meets that of others: {:.0} % of it is left",
-                p.outer.edges[edge].name,
-                p.name,
-                share * 100.0
-            ));
+            trimmed.push(Trimmed { edge: &p.outer.edges[edge].name, piece: &p.name, left: share });
         }
     }
 }
@@ -382,9 +405,7 @@ mod tests {
         assert_eq!(
             told,
             [
-                "the allowance of edge \"edge_3\" of piece \"p\" is trimmed where it meets that of others: 0 % of it is left",
-                "the allowance of edge \"edge_4\" of piece \"p\" is trimmed where it meets that of others: 0 % of it is left",
-                "the allowance of edge \"edge_5\" of piece \"p\" is trimmed where it meets that of others: 0 % of it is left",
+                "the allowances of 3 edges are trimmed where they meet those of others: 0 % is left of that of edge \"edge_3\" of piece \"p\""
             ]
         );
     }

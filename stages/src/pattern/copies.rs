@@ -12,7 +12,9 @@ pub(super) fn copies(piece: Piece, drawn: usize, turned: usize, told: &mut Remar
     match (drawn, turned) {
         (0, 0) => told.warnings.push(format!("piece \"{name}\" is cut 0 times: left out")),
         (1, 0) => {}
-        _ => told.notes.push(format!("piece \"{name}\" is cut {drawn} times as drawn and {turned} times mirrored")),
+        _ => told
+            .notes
+            .push(format!("piece \"{name}\" is cut {drawn} times as drawn and {turned} times mirrored")),
     }
     let named = |mut p: Piece, k: usize, word: &str| {
         p.name = if k == 0 { format!("{name}{word}") } else { format!("{name}{word}_{}", k + 1) };

@@ -17,7 +17,9 @@ pub(super) struct Fault {
 
 /// The faults of a file, at least one, as an error: each in a line of its own where there are several.
 pub(super) fn refused(file: &str, faults: Vec<Fault>) -> StageError {
-    let Some(first) = faults.first() else { return StageError::internal("a file without faults was refused") };
+    let Some(first) = faults.first() else {
+        return StageError::internal("a file without faults was refused");
+    };
     let (code, param, n) = (first.code, first.param, faults.len());
     let error = |message: String| StageError::new(code, message).at(param);
     if let [Fault { what, remedy, .. }] = &faults[..] {
@@ -45,7 +47,10 @@ mod tests {
     #[test]
     fn several_faults_stand_in_a_line_each() {
         let one = refused("a.json", vec![fault("it is empty", "give another")]);
-        assert_eq!((one.message.as_str(), one.hint.as_deref()), ("\"a.json\": it is empty", Some("give another")));
+        assert_eq!(
+            (one.message.as_str(), one.hint.as_deref()),
+            ("\"a.json\": it is empty", Some("give another"))
+        );
         let two = refused("a.json", vec![fault("no hem", "draw it"), fault("no waist", "draw that")]);
         assert_eq!(two.message, "\"a.json\" has 2 faults\n1. no hem\n2. no waist");
         assert_eq!(two.hint.as_deref(), Some("1. draw it\n2. draw that"));

@@ -73,7 +73,9 @@ impl<'a> Places<'a> {
 
     /// Joins the ends of two sides, and those of their edges that lie at the same share of them.
     fn sew(&mut self, a: &[EdgeUse], b: &[EdgeUse]) {
-        let (Some(a0), Some(b0), Some(a1), Some(b1)) = (a.first(), b.first(), a.last(), b.last()) else { return };
+        let (Some(a0), Some(b0), Some(a1), Some(b1)) = (a.first(), b.first(), a.last(), b.last()) else {
+            return;
+        };
         self.join(self.place(a0, false), self.place(b0, false));
         self.join(self.place(a1, true), self.place(b1, true));
         let (sa, sb) = (self.shares(a), self.shares(b));
@@ -172,7 +174,8 @@ pub(super) fn broken(pieces: &[Piece], seams: &[PatternSeam]) -> Vec<Fault> {
                     "edges run counter-clockwise around their piece, as the arrows in its picture show: write [{}]",
                     other.iter().map(written).collect::<Vec<_>>().join(", ")
                 ),
-                None => "name the edges between them, too, in the order in which they follow each other".to_owned(),
+                None => "name the edges between them, too, in the order in which they follow each other"
+                    .to_owned(),
             };
             let what = format!(
                 "seam \"{}\": {} does not begin where {} ends",
@@ -216,8 +219,8 @@ mod tests {
     /// Two rectangles; edges 0 below, 1 right, 2 above, 3 left.
     fn pieces() -> Vec<Piece> {
         let corners = [[0.0, 0.0], [0.3, 0.0], [0.3, 0.4], [0.0, 0.4]].map(|[x, y]| Point2::new(x, y));
-        let edges =
-            ["edge_0", "edge_1", "edge_2", "edge_3"].map(|n| PieceEdge { name: n.into(), curve: EdgeCurve::Line });
+        let edges = ["edge_0", "edge_1", "edge_2", "edge_3"]
+            .map(|n| PieceEdge { name: n.into(), curve: EdgeCurve::Line });
         let piece = |name: &str| Piece {
             name: name.into(),
             outer: PatternLoop { corners: corners.into(), edges: edges.clone().into() },
@@ -273,8 +276,10 @@ mod tests {
         assert_eq!(told("front.edge_1", "-back.edge_3"), Vec::<String>::new());
         assert_eq!(
             told("front.edge_1", "back.edge_3"),
-            ["seam \"side\" runs counter-clockwise around both pieces, which sews one of them inside out: turn one side, \
-              \"front.edge_1\" or \"back.edge_3\", unless that is meant"]
+            [
+                "seam \"side\" runs counter-clockwise around both pieces, which sews one of them inside out: turn one side, \
+              \"front.edge_1\" or \"back.edge_3\", unless that is meant"
+            ]
         );
     }
 }

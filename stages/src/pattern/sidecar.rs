@@ -88,8 +88,8 @@ pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, V
     if bytes.len() > MOST_BYTES {
         return Err(vec![fault(format!("it has {} bytes, {MOST_BYTES} are the most", bytes.len()), None)]);
     }
-    let text =
-        std::str::from_utf8(bytes).map_err(|_| vec![fault("it is not UTF-8 text".into(), Some("save it as UTF-8".into()))])?;
+    let text = std::str::from_utf8(bytes)
+        .map_err(|_| vec![fault("it is not UTF-8 text".into(), Some("save it as UTF-8".into()))])?;
     let sidecar: Sidecar = ron::from_str(text).map_err(|e| {
         let what = format!("line {} column {}: {}", e.span.start.line, e.span.start.col, e.code);
         vec![fault(what, Some("write `(seams: [(sides: [[\"front.edge_3\"], [\"-back.edge_3\"]])])`".into()))]
@@ -210,10 +210,7 @@ mod tests {
         );
         assert_eq!(
             refused(&seam("front.rigth", "back.left")),
-            (
-                "seam 0: piece \"front\" has no edge \"rigth\"".into(),
-                "did you mean \"front.right\"?".into()
-            )
+            ("seam 0: piece \"front\" has no edge \"rigth\"".into(), "did you mean \"front.right\"?".into())
         );
         assert_eq!(
             refused(&seam("front", "back.left")).0,

@@ -32,9 +32,7 @@ pub(super) fn image_word(fold: usize) -> String {
 pub(super) fn distinct<T>(folds: impl IntoIterator<Item = (Fold, T)>) -> Vec<(Fold, T)> {
     let mut out: Vec<(Fold, T)> = Vec::new();
     for (fold, with) in folds {
-        let same = |o: &(Fold, T)| {
-            o.0.way.perp(&fold.way).abs() < 0.02 && o.0.distance(fold.at) <= 2.0 * ON
-        };
+        let same = |o: &(Fold, T)| o.0.way.perp(&fold.way).abs() < 0.02 && o.0.distance(fold.at) <= 2.0 * ON;
         if !out.iter().any(same) {
             out.push((fold, with));
         }
@@ -104,9 +102,13 @@ impl Fold {
         };
         let fold = *runs.iter().min_by(|a, b| far(a).total_cmp(&far(b)))?;
         let mut sides = sides.to_vec();
-        let slits: Vec<usize> =
-            runs.iter().filter(|r| **r != fold).flat_map(|&(k, count)| (k..k + count).map(|i| i % n)).collect();
-        let open = slits.iter().map(|&k| [sides[k].name.clone(), format!("{}{word}", sides[k].name)]).collect();
+        let slits: Vec<usize> = runs
+            .iter()
+            .filter(|r| **r != fold)
+            .flat_map(|&(k, count)| (k..k + count).map(|i| i % n))
+            .collect();
+        let open =
+            slits.iter().map(|&k| [sides[k].name.clone(), format!("{}{word}", sides[k].name)]).collect();
         self.gape(&mut sides, &slits);
         let m = n.checked_sub(fold.1).filter(|m| *m > 0)?;
         let mut half: Vec<Side> = (0..m).map(|k| sides[(fold.0 + fold.1 + k) % n].clone()).collect();
@@ -117,8 +119,10 @@ impl Fold {
         if let Some(s) = half.last_mut() {
             s.end_at(self.foot(s.end()));
         }
-        let image =
-            |s: &Side| Side { name: format!("{}{word}", s.name), ..s.moved(|p| self.mirror(p), true).turned() };
+        let image = |s: &Side| Side {
+            name: format!("{}{word}", s.name),
+            ..s.moved(|p| self.mirror(p), true).turned()
+        };
         let whole: Vec<Side> = half.iter().cloned().chain(half.iter().rev().map(image)).collect();
         // The last side of the half meets its image, and the first one's image the first.
         let goes_on = |one: &Side, other: &Side| smooth(one, other, 2.0 * CORNER);

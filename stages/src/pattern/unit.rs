@@ -186,7 +186,8 @@ mod tests {
     use super::*;
 
     fn of_height(metres: f64) -> Vec<Piece> {
-        let corners = [[0.0, 0.0], [0.01, 0.0], [0.01, metres], [0.0, metres]].map(|[x, y]| Point2::new(x, y));
+        let corners =
+            [[0.0, 0.0], [0.01, 0.0], [0.01, metres], [0.0, metres]].map(|[x, y]| Point2::new(x, y));
         let edges = ["a", "b", "c", "d"].map(|n| PieceEdge { name: n.into(), curve: EdgeCurve::Line });
         let outer = PatternLoop { corners: corners.into(), edges: edges.into() };
         vec![Piece { name: "FRONT".into(), outer, ..Piece::default() }]
@@ -217,7 +218,8 @@ mod tests {
 
     #[test]
     fn of_several_units_the_one_of_a_garments_size_is_the_likeliest() {
-        let all = [DrawingUnit::Millimetres, DrawingUnit::Centimetres, DrawingUnit::Inches, DrawingUnit::Metres];
+        let all =
+            [DrawingUnit::Millimetres, DrawingUnit::Centimetres, DrawingUnit::Inches, DrawingUnit::Metres];
         let found = |size| DrawingUnit::likeliest(size, &all).unwrap();
         assert_eq!(
             [700.0, 70.0, 27.6, 0.7].map(found),

@@ -21,6 +21,7 @@ pub enum DxfStandard {
 #[stage(
     role = Writer,
     source = "DXF-AAMA; ASTM D6673",
+    version = 2,
     example = "PatternDxf(standard: Astm, size: \"M\")",
     contracts(Deterministic, ThreadInvariant)
 )]

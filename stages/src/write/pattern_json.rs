@@ -11,6 +11,7 @@ use toile_pattern_files::garment_code;
 #[stage(
     role = Writer,
     source = "pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023)",
+    version = 2,
     example = "PatternJson(name: \"mine\")",
     contracts(Deterministic, ThreadInvariant)
 )]

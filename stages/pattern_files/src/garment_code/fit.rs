@@ -20,8 +20,9 @@ const FEWEST: usize = 5;
 const ROUNDS: usize = 24;
 /// The share of the whole distance of a point beside that from the tangent.
 const SLIDE: f64 = 1e-6;
-/// Points of a curve that are compared with the line, for each of the line's.
+/// Points of a curve that are compared with the line, for each of the line's; of a line that is drawn more finely than by so many, as many as it has.
 const SAMPLES: usize = 6;
+const FINE: usize = 600;
 
 /// The curves of a line through these points, at least two; they leave it by no more than `tolerance`, metres.
 pub(super) fn fitted(points: &[Point2], tolerance: f64) -> Vec<Curve> {
@@ -156,7 +157,7 @@ fn improved(curve: &CubicBez, p: Point2, t: f64) -> f64 {
 
 /// How far line and curve are apart, and at which of the line's points most.
 fn distance(points: &[Point2], curve: &CubicBez) -> (f64, usize) {
-    let n = points.len() * SAMPLES;
+    let n = (points.len() * SAMPLES).min(points.len().max(FINE));
     let on = |i: usize| {
         let p = curve.eval(i as f64 / n as f64);
         Point2::new(p.x, p.y)

@@ -4,6 +4,7 @@
 mod common;
 mod fuzz;
 mod programs;
+mod pygarment;
 mod real;
 mod round_trip;
 mod told;

@@ -125,11 +125,15 @@ mod tests {
         };
         assert_eq!(
             warned(b"  1\nR\xfccken\n"),
-            ["the file does not say its code page: names are read as windows-1252; look whether they are right"]
+            [
+                "the file does not say its code page: names are read as windows-1252; look whether they are right"
+            ]
         );
         assert_eq!(
             warned(&file("AC1009", "dos850", b"R\xfccken")),
-            ["the file's code page, \"dos850\", is not known: names are read as windows-1252; look whether they are right"]
+            [
+                "the file's code page, \"dos850\", is not known: names are read as windows-1252; look whether they are right"
+            ]
         );
     }
 }

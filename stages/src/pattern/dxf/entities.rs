@@ -209,7 +209,9 @@ impl Body<'_> {
         let mut parts: Vec<(EdgeCurve, Point2)> = arc
             .append_iter(NEAR * long)
             .filter_map(|el| match el {
-                kurbo::PathEl::CurveTo(a, b, end) => Some((EdgeCurve::Cubic { controls: [p(a), p(b)] }, p(end))),
+                kurbo::PathEl::CurveTo(a, b, end) => {
+                    Some((EdgeCurve::Cubic { controls: [p(a), p(b)] }, p(end)))
+                }
                 _ => None,
             })
             .collect();
@@ -333,7 +335,9 @@ pub(super) fn blocks(tags: &[Tag]) -> Result<(Vec<Block>, Block), Damage> {
                 }
             }
             "MTEXT" => {
-                found.extend(body.lines().into_iter().map(|text| (body.layer(), head.line, Shape::Text(text))));
+                found.extend(
+                    body.lines().into_iter().map(|text| (body.layer(), head.line, Shape::Text(text))),
+                );
             }
             kind => found.extend(body.shape(kind)?.map(|shape| (body.layer(), head.line, shape))),
         }

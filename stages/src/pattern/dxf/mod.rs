@@ -41,6 +41,7 @@ const MOST_TOLD: usize = 6;
 #[stage(
     role = Reader,
     source = "AAMA DXF; ASTM D6673",
+    version = 2,
     example = "DxfPattern(file: \"tank.dxf\", size: \"M\")",
     contracts(Deterministic, ThreadInvariant)
 )]
@@ -176,12 +177,7 @@ fn pieces_of(
 }
 
 /// The size that is read.
-fn size_of(
-    asked: &str,
-    drawn: &[Drawn<'_>],
-    outside: &Block,
-    told: &mut Remarks,
-) -> Result<String, Damage> {
+fn size_of(asked: &str, drawn: &[Drawn<'_>], outside: &Block, told: &mut Remarks) -> Result<String, Damage> {
     let mut known: Vec<String> = Vec::new();
     for d in drawn {
         if !d.size.is_empty() && !known.contains(&d.size) {
@@ -241,7 +237,11 @@ fn left_out(blocks: &[Block], outside: &Block, chosen: &[&Drawn<'_>], told: &mut
         out.push(format!("{} lines on layer 1 outside of blocks (line {line})", loose.len()));
     }
     if !out.is_empty() {
-        let more = if out.len() > MOST_TOLD { format!(" and {} more", out.len() - MOST_TOLD) } else { String::new() };
+        let more = if out.len() > MOST_TOLD {
+            format!(" and {} more", out.len() - MOST_TOLD)
+        } else {
+            String::new()
+        };
         told.warnings.push(format!("left out: {}{more}", out[..out.len().min(MOST_TOLD)].join(", ")));
     }
     for e in &outside.entities {

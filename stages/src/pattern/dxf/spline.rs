@@ -42,7 +42,8 @@ impl Spline {
         if p == 0 || p > MOST_DEGREE || n <= p || self.knots.len() != n + p + 1 || !ascending {
             return None;
         }
-        let plain = self.weights.len() != n || self.weights.iter().all(|w| (w - self.weights[0]).abs() < 1e-12);
+        let plain =
+            self.weights.len() != n || self.weights.iter().all(|w| (w - self.weights[0]).abs() < 1e-12);
         let (mut start, mut out) = (None, Vec::new());
         for k in p..n {
             let (a, b) = (self.knots[k], self.knots[k + 1]);
@@ -107,8 +108,7 @@ impl Spline {
         for i in 1..n {
             let (before, behind) = (1.0 / h[i - 1], 1.0 / h[i]);
             (low[i], middle[i], high[i]) = (before, 2.0 * (before + behind), behind);
-            right[i] =
-                ((q[i] - q[i - 1]) * (before * before) + (q[i + 1] - q[i]) * (behind * behind)) * 3.0;
+            right[i] = ((q[i] - q[i - 1]) * (before * before) + (q[i + 1] - q[i]) * (behind * behind)) * 3.0;
         }
         (high[0], right[0]) = (1.0, (q[1] - q[0]) * (3.0 / h[0]));
         (low[n], right[n]) = (1.0, (q[n] - q[n - 1]) * (3.0 / h[n - 1]));

@@ -92,9 +92,18 @@ fn tank() -> Dxf {
     d
 }
 
+/// The pieces and what is told of them, warnings first; of several faults the first. The unit is not looked at.
 fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
-    let mut told = Vec::new();
-    pieces_of(bytes, size, &mut told).map(|p| (p, told))
+    let mut told = Remarks::default();
+    let pieces = pieces_of(bytes, size, DrawingUnit::Millimetres, &mut told);
+    pieces.map(|p| (p, [told.warnings, told.notes].concat())).map_err(|mut all| all.remove(0))
+}
+
+/// The same in the unit that the file says.
+fn in_own_unit(bytes: &[u8]) -> Result<(Vec<Piece>, Remarks), Damage> {
+    let mut told = Remarks::default();
+    let pieces = pieces_of(bytes, "", DrawingUnit::Auto, &mut told);
+    pieces.map(|p| (p, told)).map_err(|mut all| all.remove(0))
 }
 
 fn names(p: &Piece) -> Vec<&str> {
@@ -106,11 +115,7 @@ fn half_pieces_are_turned_unfolded_and_scaled() {
     let (pieces, told) = read(&tank().bytes(Some("METRIC")), "m").unwrap();
     assert_eq!(
         told,
-        [
-            "the file's units are millimetres",
-            "piece \"FRONT\" is unfolded at its mirror line",
-            "piece \"BACK\" is unfolded at its mirror line"
-        ]
+        ["piece \"FRONT\" is unfolded at its mirror line", "piece \"BACK\" is unfolded at its mirror line"]
     );
     let front = &pieces[0];
     assert_eq!(names(front).len(), 9);
@@ -139,18 +144,40 @@ fn half_pieces_are_turned_unfolded_and_scaled() {
 
 #[test]
 fn units_and_sizes_that_are_not_given_are_found_and_told() {
-    let (pieces, told) = read(&tank().bytes(None), "").unwrap();
-    assert_eq!(told[0], "no size is asked for: \"M\" is read of S, M");
+    let (pieces, told) = in_own_unit(&tank().bytes(None)).unwrap();
+    assert_eq!(told.notes[0], "no size is asked for: \"M\" is read of S, M");
     assert_eq!(
-        told[1],
-        "the file does not say its units: read as millimetres, with which its longest edge is 570 mm"
+        told.warnings,
+        [
+            "the file does not say its units: read as millimetres, with which its largest piece is 600 mm long; \
+          `--set pattern.unit=Centimetres` says another"
+        ]
     );
     let mut d = Dxf::default();
     half(&mut d, "FRONT", "M", 1.0 / 25.4, 150.0);
-    let (inches, told) = read(&d.bytes(Some("English")), "").unwrap();
-    assert_eq!(told[0], "the file's units are inches");
+    let (inches, told) = in_own_unit(&d.bytes(Some("English"))).unwrap();
+    assert_eq!(told.notes[0], "the file says that its units are ENGLISH, which are inches");
+    // A header says it, too; what says METRIC and is drawn in centimetres is refused with what helps.
+    let mut d = Dxf::default();
+    half(&mut d, "FRONT", "M", 0.1, 150.0);
+    let text = String::from_utf8(d.bytes(None)).unwrap();
+    let header = "  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n5\n  0\nENDSEC\n".to_owned() + &text;
+    let (centimetres, told) = in_own_unit(header.as_bytes()).unwrap();
+    assert_eq!(told.notes[0], "the file's header says that its units are centimetres");
+    let metric = d.bytes(Some("METRIC"));
+    let refused = in_own_unit(&metric).unwrap_err();
+    assert_eq!(
+        (refused.to_string(), refused.remedy()),
+        (
+            "no one wears a garment of that size: its largest piece, \"FRONT\", would be 6.0 cm long, as the file says that its units are METRIC, which are millimetres".to_owned(),
+            "`--set pattern.unit=Centimetres` makes it 60 cm long, `--set pattern.unit=Inches` makes it 152 cm long; where it is meant to be of that size, `--set pattern.unit=Millimetres` says so".to_owned()
+        )
+    );
+    let asked = pieces_of(&metric, "", DrawingUnit::Centimetres, &mut Remarks::default()).unwrap();
     let length = |p: &[Piece]| p[0].path("edge_3").unwrap().length();
     assert!((length(&inches) - length(&pieces)).abs() < 1e-6);
+    assert!((length(&centimetres) - length(&pieces)).abs() < 1e-9);
+    assert!((length(&asked) - length(&pieces)).abs() < 1e-9);
 }
 
 /// A leg, cut twice, and a waistband in two halves; lengths to a tenth of a millimetre as CAD programs write them.
@@ -180,13 +207,128 @@ fn pairs_are_cut_as_often_as_the_quantity_says() {
     let (pieces, told) = read(&leggings().bytes(Some("METRIC")), "").unwrap();
     let all: Vec<&str> = pieces.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(all, ["LEG", "LEG_mirrored", "BAND"]);
-    assert_eq!(told[1], "piece \"LEG\" is cut 1 times as drawn and 1 times mirrored");
+    assert_eq!(told, ["piece \"LEG\" is cut 1 times as drawn and 1 times mirrored"]);
     assert!(pieces.iter().all(|p| polygon_area(&p.outer.points().0) > 0.0));
     let text = String::from_utf8(leggings().bytes(Some("METRIC"))).unwrap();
     let (pieces, told) = read(text.replace("Quantity: 1,1", "Quantity: 0").as_bytes(), "").unwrap();
-    assert_eq!((pieces.len(), told[1].as_str()), (1, "piece \"LEG\" is cut 0 times: left out"));
+    assert_eq!((pieces.len(), told[0].as_str()), (1, "piece \"LEG\" is cut 0 times: left out"));
     let (pieces, _) = read(text.replace("Quantity: 1,1", "Quantity: 2").as_bytes(), "").unwrap();
     assert_eq!(pieces.len(), 3);
+    for (quantity, both) in
+        [("2", (1, 1)), ("1 pair", (1, 1)), ("1/1", (1, 1)), ("3,0", (3, 0)), ("L1 R1", (1, 1)), ("", (1, 0))]
+    {
+        assert_eq!(cut(Some(quantity)), Ok(both), "{quantity}");
+    }
+    let (_, told) = read(text.replace("Quantity: 1,1", "Quantity: many").as_bytes(), "").unwrap();
+    assert_eq!(told, ["piece \"LEG\" (line 5): the quantity \"many\" is no number: cut once"]);
+}
+
+/// A rectangle of 300 by 200 whose right end is a half circle, drawn by a change of the usual boundary.
+fn rounded(change: &dyn Fn(&mut Dxf)) -> Result<(Vec<Piece>, Vec<String>), Damage> {
+    let mut d = Dxf::default();
+    d.block("TAB", "M", None);
+    change(&mut d);
+    d.end();
+    read(&d.bytes(Some("METRIC")), "")
+}
+
+#[test]
+fn arcs_are_arcs_however_they_are_drawn() {
+    let lw = |d: &mut Dxf| {
+        d.tag(0, "LWPOLYLINE").tag(8, 1).tag(90, 4).tag(70, 1);
+        for (x, y, bulge) in [(0.0, 0.0, 0.0), (300.0, 0.0, 1.0), (300.0, 200.0, 0.0), (0.0, 200.0, 0.0)] {
+            d.tag(10, x).tag(20, y).tag(42, bulge);
+        }
+    };
+    let old = |d: &mut Dxf| {
+        d.tag(0, "POLYLINE").tag(8, 1).tag(66, 1).tag(70, 1);
+        for (x, y, bulge) in [(0.0, 0.0, 0.0), (300.0, 0.0, 1.0), (300.0, 200.0, 0.0), (0.0, 200.0, 0.0)] {
+            d.tag(0, "VERTEX").tag(8, 1).tag(10, x).tag(20, y).tag(42, bulge);
+        }
+        d.tag(0, "SEQEND").tag(8, 1);
+    };
+    let straight = |d: &mut Dxf| {
+        d.poly(1, &[[300.0, 200.0], [0.0, 200.0], [0.0, 0.0], [300.0, 0.0]]);
+    };
+    let arc = |d: &mut Dxf| {
+        straight(d);
+        d.tag(0, "ARC").tag(8, 1).tag(10, 300.0).tag(20, 100.0).tag(40, 100.0).tag(50, 270.0).tag(51, 90.0);
+    };
+    let ellipse = |d: &mut Dxf| {
+        straight(d);
+        d.tag(0, "ELLIPSE").tag(8, 1).tag(10, 300.0).tag(20, 100.0).tag(11, 0.0).tag(21, -100.0).tag(40, 1.0);
+        d.tag(41, 0.0).tag(42, std::f64::consts::PI);
+    };
+    for (k, draw) in [&lw as &dyn Fn(&mut Dxf), &old, &arc, &ellipse].into_iter().enumerate() {
+        let (pieces, told) = rounded(draw).unwrap();
+        let around: f64 = (0..pieces[0].outer.edges.len()).map(|k| pieces[0].outer.path(k).length()).sum();
+        assert!((around - (0.8 + 0.1 * std::f64::consts::PI)).abs() < 1e-6, "{k}: {around}");
+        assert_eq!(told, Vec::<String>::new());
+    }
+    let circle = |d: &mut Dxf| {
+        d.tag(0, "CIRCLE").tag(8, 1).tag(10, 0.0).tag(20, 0.0).tag(40, 150.0);
+    };
+    let area = polygon_area(&rounded(&circle).unwrap().0[0].outer.points().0);
+    assert!((area / (0.0225 * std::f64::consts::PI) - 1.0).abs() < 1e-4, "{area}");
+}
+
+#[test]
+fn what_is_not_read_is_told_with_its_place() {
+    let square = [[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0], [0.0, 0.0]];
+    let (_, told) = rounded(&|d| {
+        d.poly(1, &square).poly(1, &[[50.0, 50.0], [90.0, 50.0], [90.0, 90.0], [50.0, 50.0]]);
+        d.tag(0, "HATCH")
+            .tag(8, 1)
+            .tag(0, "LINE")
+            .tag(8, "PRINT")
+            .tag(10, 0.0)
+            .tag(20, 0.0)
+            .tag(11, 9.0)
+            .tag(21, 9.0);
+        d.tag(0, "DIMENSION").tag(8, 1);
+    })
+    .unwrap();
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(
+        told[0].starts_with("piece \"TAB\": beside its boundary there are closed lines on layer 1 (line ")
+    );
+    assert!(told[1].starts_with("left out: 1 HATCH of piece \"TAB\" (line "), "{}", told[1]);
+    assert!(told[1].contains(", 1 line on layer \"PRINT\" of piece \"TAB\" (line "), "{}", told[1]);
+}
+
+#[test]
+fn layouts_are_no_pieces_and_pieces_without_a_size_are_of_every_one() {
+    let square = [[0.0, 0.0], [300.0, 0.0], [300.0, 300.0], [0.0, 300.0], [0.0, 0.0]];
+    let mut d = tank();
+    d.tag(0, "BLOCK").tag(8, 0).tag(2, "*Model_Space").poly(1, &square).end();
+    d.tag(0, "BLOCK").tag(8, 0).tag(2, "POCKET_LEFT").poly(1, &square).end();
+    d.tag(0, "BLOCK")
+        .tag(8, 0)
+        .tag(2, "COLLAR")
+        .tag(0, "MTEXT")
+        .tag(8, 1)
+        .tag(1, "Size: S\\PPiece Name: COLLAR");
+    d.poly(1, &square).end();
+    let (pieces, told) = read(&d.bytes(Some("METRIC")), "").unwrap();
+    let names: Vec<&str> = pieces.iter().map(|p| p.name.as_str()).collect();
+    assert_eq!(names, ["FRONT", "BACK", "POCKET_LEFT"]);
+    assert!(told[0].starts_with("piece \"COLLAR\" (line "), "{}", told[0]);
+    assert!(told[0].ends_with(") is not there in size \"M\", but in \"S\": left out"), "{}", told[0]);
+    assert!(
+        told[1].starts_with("left out: what is drawn on the layout \"*Model_Space\" (line "),
+        "{}",
+        told[1]
+    );
+}
+
+#[test]
+fn all_faults_of_a_file_are_told_at_once() {
+    let mut d = Dxf::default();
+    for name in ["FRONT", "BACK"] {
+        d.block(name, "M", None).poly(1, &[[0.0, 0.0], [100.0, 0.0], [100.0, 90.0]]).end();
+    }
+    let all = pieces_of(&d.bytes(None), "", DrawingUnit::Millimetres, &mut Remarks::default()).unwrap_err();
+    assert_eq!(all.len(), 2, "{all:?}");
 }
 
 /// The proposals as pairs of words, each in order.
@@ -242,14 +384,15 @@ fn run(
 fn nothing_is_sewn_until_the_proposals_are_given_back() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("leg.dxf"), leggings().bytes(Some("METRIC"))).unwrap();
-    let stage = DxfPattern { file: "leg.dxf".into(), size: "M".into(), seams: String::new() };
+    let unit = DrawingUnit::Auto;
+    let stage = DxfPattern { file: "leg.dxf".into(), size: "M".into(), unit, seams: String::new() };
     let (pattern, plan, files, told) = run(dir.path(), &stage).unwrap();
     assert!(pattern.seams.is_empty() && plan.seams.is_empty() && pattern.check().is_ok());
     let count = propose::propose(&pattern.pieces).len();
     assert_eq!(
         told.last().unwrap(),
         &format!(
-            "no seams are given: {count} are proposed in seams.ron; look through it and give it as `seams`"
+            "no seams are given, and nothing is sewn: {count} are proposed in seams.ron; look through it and give it as `seams`"
         )
     );
     assert_eq!(files.0[0].path, "seams.ron");
@@ -274,11 +417,10 @@ fn damage_is_refused_with_piece_and_line() {
     let blocks = "export it as AAMA or ASTM DXF, a block for each piece and size";
     is(b"  0\nEOF\n", "", "there are no pieces: no block has a boundary on layer 1", blocks);
     is(&tank().bytes(Some("METRIC")), "XL", "there is no size \"XL\"", "the sizes are S, M");
-    is(
-        &tank().bytes(Some("CUBITS")),
-        "",
-        "the units are \"CUBITS\", they are ENGLISH or METRIC",
-        "export it with its units",
+    let cubits = in_own_unit(&tank().bytes(Some("CUBITS"))).unwrap_err();
+    assert_eq!(
+        (cubits.to_string().as_str(), cubits.remedy().as_str()),
+        ("the units are \"CUBITS\", they are ENGLISH or METRIC", "export it with its units")
     );
     let piece = |change: &dyn Fn(&mut Dxf)| {
         let mut d = Dxf::default();
@@ -347,7 +489,7 @@ fn a_boundary_in_one_line_is_split_at_its_corners_and_a_hair_is_closed() {
         .end();
     let (_, told) = read(&d.bytes(Some("METRIC")), "").unwrap();
     assert_eq!(
-        told[1],
+        told[0],
         "the boundary of piece \"P\" was open by 1.00 mm between \"edge_0\" and \"edge_1\": closed"
     );
 }

@@ -27,7 +27,11 @@ pub(super) fn unit(
         unit.metres().map(|metres| Taken { metres, fact, by }).ok_or(Damage::NoPieces)
     };
     if asked != DrawingUnit::Auto {
-        return taken(asked, format!("`unit` says that the file's units are {}", asked.word()), By::Parameter);
+        return taken(
+            asked,
+            format!("`unit` says that the file's units are {}", asked.word()),
+            By::Parameter,
+        );
     }
     let word = outside.value("Units").or_else(|| pieces.iter().find_map(|d| d.block.value("Units")));
     let by_word = match word {
@@ -57,9 +61,10 @@ pub(super) fn unit(
     let unit = DrawingUnit::likeliest(size, &TRIED).unwrap_or(DrawingUnit::Millimetres);
     let metres = unit.metres().unwrap_or(1e-3);
     told.warnings.push(format!(
-        "the file does not say its units: read as {}, with which its largest piece is {:.0} mm long; `--set pattern.unit=...` says another",
+        "the file does not say its units: read as {}, with which its largest piece is {:.0} mm long; `--set pattern.unit={}` says another",
         unit.word(),
-        size * metres * 1e3
+        size * metres * 1e3,
+        if unit == DrawingUnit::Centimetres { "Inches" } else { "Centimetres" }
     ));
     taken(unit, format!("the file does not say its units, and {} come nearest", unit.word()), By::Guess)
 }

@@ -109,7 +109,9 @@ fn chained(
             false if stitched.contains(&i) => {
                 faults.push(Damage::NoLength { panel: raw.name.clone(), edge: i });
             }
-            false => told.warnings.push(format!("edge {i} of panel \"{}\" has no length: left out", raw.name)),
+            false => {
+                told.warnings.push(format!("edge {i} of panel \"{}\" has no length: left out", raw.name))
+            }
         }
     }
     if kept.len() < 2 {
@@ -270,7 +272,8 @@ fn body_part(raw: &RawPanel, told: &mut Remarks) -> Option<BodyPart> {
     let label = raw.label.as_deref()?;
     let found = BodyPart::WORDS.iter().find(|(word, _)| *word == label).map(|(_, part)| *part);
     if found.is_none() {
-        told.notes.push(format!("panel \"{}\" has the label \"{label}\", which is no part of the body", raw.name));
+        told.notes
+            .push(format!("panel \"{}\" has the label \"{label}\", which is no part of the body", raw.name));
     }
     found
 }

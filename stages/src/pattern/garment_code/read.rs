@@ -197,7 +197,11 @@ fn edge(i: usize, value: &Json, panel: &str, count: usize) -> Result<RawEdge, Da
         None | Some(Json::Null) => RawCurve::Line,
         Some(c) => curve(i, c, panel, &at)?,
     };
-    Ok(RawEdge { ends: [vertex(ends[0])?, vertex(ends[1])?], curve, label: text(value, "label").or_else(|| text(value, "name")) })
+    Ok(RawEdge {
+        ends: [vertex(ends[0])?, vertex(ends[1])?],
+        curve,
+        label: text(value, "label").or_else(|| text(value, "name")),
+    })
 }
 
 fn curve(i: usize, value: &Json, panel: &str, at: &str) -> Result<RawCurve, Damage> {

@@ -46,7 +46,11 @@ pub(super) fn seams(
     let mut out = Vec::with_capacity(once.len());
     for (s, turn) in once.iter().zip(turned) {
         if turn {
-            told.warnings.push(format!("stitch {} ({}) runs the wrong way: turned", s.number, words(s.raw, panels)));
+            told.warnings.push(format!(
+                "stitch {} ({}) runs the wrong way: turned",
+                s.number,
+                words(s.raw, panels)
+            ));
         }
         out.push(seam(s.raw, s.start_to_end != turn, made));
     }

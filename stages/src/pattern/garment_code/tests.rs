@@ -50,8 +50,10 @@ fn tube() -> Value {
     file(panels, json!([stitch(("front", 1), ("back", 2)), stitch(("front", 3), ("back", 0))]))
 }
 
+/// The pattern and what is told of it, warnings first; of several faults the first.
 fn read(file: &Value) -> Result<(Pattern, Vec<String>), Damage> {
-    pattern(file.to_string().as_bytes(), "test")
+    let read = pattern(file.to_string().as_bytes(), "test").map_err(|mut all| all.remove(0));
+    read.map(|(pattern, told)| (pattern, [told.warnings, told.notes].concat()))
 }
 
 fn lengths(p: &Piece) -> Vec<f64> {
@@ -338,7 +340,7 @@ fn refused(change: impl Fn(&mut Value), sentence: &str, remedy: &str) {
 #[test]
 fn damage_of_the_files_form_is_refused_with_its_place() {
     let text = |bytes: &[u8]| {
-        let d = pattern(bytes, "test").unwrap_err();
+        let d = pattern(bytes, "test").unwrap_err().remove(0);
         (d.to_string(), d.remedy())
     };
     let again = "write the file again with the program that made it".to_owned();
@@ -453,7 +455,7 @@ fn what_stands_twice_is_refused() {
     );
     let once = serde_json::to_string(&tube()).unwrap();
     let twice = once.replacen("\"stitches\":", "\"stitches\":[],\"stitches\":", 1);
-    let refusal = pattern(twice.as_bytes(), "test").unwrap_err();
+    let refusal = pattern(twice.as_bytes(), "test").unwrap_err().remove(0);
     assert_eq!(
         (refusal.to_string(), refusal.remedy()),
         ("`stitches` stands twice in `pattern`".into(), "keep the one that is meant".into())
@@ -524,7 +526,7 @@ fn damage_of_panels_is_refused_with_panel_and_edge() {
     );
     let mut f = tube();
     f["pattern"]["panels"]["front"]["edges"][0]["curvature"] = json!([0.5, 3.0]);
-    let e = read(&f).unwrap_err().error("a.json");
+    let e = faults::refused("a.json", vec![read(&f).unwrap_err().fault()]);
     assert_eq!((e.code, e.param), (ErrorCode::DegenerateTriangles, Some("file")));
     assert!(
         e.message.starts_with("\"a.json\": panel \"front\" crosses itself: edge 0 meets edge 2 near ("),
@@ -567,6 +569,32 @@ fn damage_of_stitches_is_refused_with_its_number() {
         "stitches 0 and 2 sew the same edges in opposite directions",
         "keep the stitch that is meant",
     );
+}
+
+#[test]
+fn all_faults_of_a_file_are_told_at_once() {
+    let mut f = tube();
+    f["pattern"]["panels"]["front"]["vertices"].as_array_mut().unwrap().push(json!([55, 0]));
+    f["pattern"]["panels"]["front"]["edges"][1]["endpoints"][0] = json!(4);
+    f["pattern"]["panels"]["back"]["edges"][2]["curvature"] = json!({ "type": "cubic", "params": [[0, 1]] });
+    f["pattern"]["stitches"].as_array_mut().unwrap().push(stitch(("front", 0), ("sleeve", 1)));
+    let all = pattern(f.to_string().as_bytes(), "test").unwrap_err();
+    let sentences: Vec<String> = all.iter().map(ToString::to_string).collect();
+    assert_eq!(
+        sentences,
+        [
+            "edge 2 of panel \"back\" has the curvature \"cubic\" with 1 parameters, which is none",
+            "stitch 2 sews panel \"sleeve\", which the file does not have",
+            "the loop of panel \"front\" is open: edge 0 ends 50.0 mm from where edge 1 starts",
+        ]
+    );
+}
+
+#[test]
+fn an_edge_without_a_label_may_have_a_name() {
+    let mut f = tube();
+    f["pattern"]["panels"]["front"]["edges"][0]["name"] = json!("hem");
+    assert!(read(&f).unwrap().0.piece("front").unwrap().path("hem").is_some());
 }
 
 fn run(folder: &FilePath, name: &str) -> Result<(Pattern, Set<Outline>, SewingPlan), StageError> {

@@ -117,7 +117,9 @@ impl Drawing<'_> {
         let leads = |s: &Shape<'_>| {
             let straight = matches!(&s.lines[..], [l] if matches!(l.parts[..], [(EdgeCurve::Line, _)]));
             let meets = |p: &Point2| {
-                arrows.iter().any(|(group, ends)| *group == s.group && ends.iter().any(|q| (p - q).norm() <= LEADER))
+                arrows
+                    .iter()
+                    .any(|(group, ends)| *group == s.group && ends.iter().any(|q| (p - q).norm() <= LEADER))
             };
             s.role == Some(Role::Mark) && straight && ends(s).iter().any(meets)
         };

@@ -32,6 +32,7 @@ use toile_core::prelude::*;
 #[stage(
     role = Reader,
     source = "SVG 1.1; FreeSewing 4",
+    version = 2,
     example = "SvgPattern(file: \"teagan.svg\")",
     contracts(Deterministic, ThreadInvariant)
 )]

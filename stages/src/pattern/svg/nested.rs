@@ -11,7 +11,10 @@ use roxmltree::Node;
 use toile_core::prelude::*;
 
 /// Points of a line that are looked at.
-const SAMPLES: usize = 96;
+const SAMPLES: usize = 48;
+/// Points of all lines together to which they are thinned, and of each at least and at most.
+const POINTS: usize = 60_000;
+const EACH: (usize, usize) = (64, 1024);
 /// What lies as near to an outline as this touches it, metres.
 const TOUCHES: f64 = 1e-3;
 
@@ -38,7 +41,9 @@ pub(super) fn outermost<'d, 't>(all: Vec<Outlined<'d, 't>>, is_sheet: bool) -> C
     let several = (0..all.len()).filter(|&i| alone(&begins_on, i)).count() > 1;
     let kinds: Vec<Kind> = match is_sheet || several {
         true => sheet(&all),
-        false => (0..all.len()).map(|i| if alone(&begins_on, i) { Kind::Piece } else { Kind::Within }).collect(),
+        false => {
+            (0..all.len()).map(|i| if alone(&begins_on, i) { Kind::Piece } else { Kind::Within }).collect()
+        }
     };
     let mut chosen = Chosen { pieces: Vec::new(), within: Vec::new(), frames: Vec::new() };
     for (outline, kind) in all.into_iter().zip(kinds) {
@@ -61,11 +66,13 @@ enum Kind {
 /// What the lines of a sheet of several pieces are.
 fn sheet(all: &[Outlined<'_, '_>]) -> Vec<Kind> {
     let boxes: Vec<(Point2, Point2)> = all.iter().map(|o| bounds(&o.polygon)).collect();
+    let most = (POINTS / all.len().max(1)).clamp(EACH.0, EACH.1);
+    let thin: Vec<Vec<Point2>> = all.iter().map(|o| thinned(&o.polygon, most)).collect();
     // Which lines lie wholly within which; the later is drawn over the earlier.
     let within = |i: usize, j: usize| {
         let (a, b) = (boxes[i], boxes[j]);
         let fits = a.0 >= b.0 - Vector2::repeat(TOUCHES) && a.1 <= b.1 + Vector2::repeat(TOUCHES);
-        i != j && all[j].area > all[i].area && fits && lies_in(&all[i], &all[j])
+        i != j && all[j].area > all[i].area && fits && lies_in(&thin[i], &thin[j])
     };
     let over = |i: usize, j: usize| {
         let fills = [i, j].map(|k| fill(all[k].shape.node));
@@ -99,15 +106,19 @@ fn is_box(polygon: &[Point2], (lo, hi): (Point2, Point2)) -> bool {
     (polygon_area(polygon).abs() - size.x * size.y).abs() <= 1e-6 * size.x * size.y
 }
 
+/// A polygon with every so manieth of its points.
+fn thinned(polygon: &[Point2], most: usize) -> Vec<Point2> {
+    polygon.iter().step_by(polygon.len().div_ceil(most).max(1)).copied().collect()
+}
+
 /// Whether one line lies within another or touches it from within.
-fn lies_in(a: &Outlined<'_, '_>, b: &Outlined<'_, '_>) -> bool {
-    let step = a.polygon.len().div_ceil(SAMPLES);
+fn lies_in(a: &[Point2], b: &[Point2]) -> bool {
     let corner_and_middle = |k: usize| {
-        let (p, q) = (a.polygon[k], a.polygon[(k + 1) % a.polygon.len()]);
+        let (p, q) = (a[k], a[(k + 1) % a.len()]);
         [p, nalgebra::center(&p, &q)]
     };
-    let mut points = (0..a.polygon.len()).step_by(step).flat_map(corner_and_middle);
-    points.all(|p| b.has(p) || distance(p, &b.polygon) <= TOUCHES) && inner_point(&a.polygon).is_some_and(|p| b.has(p))
+    let mut points = (0..a.len()).step_by(a.len().div_ceil(SAMPLES).max(1)).flat_map(corner_and_middle);
+    points.all(|p| inside(b, p) || distance(p, b) <= TOUCHES) && inner_point(a).is_some_and(|p| inside(b, p))
 }
 
 /// The distance of a point from a closed polygon's line.
@@ -143,7 +154,14 @@ fn inner_point(polygon: &[Point2]) -> Option<Point2> {
 /// The colour with which an element is filled, as it says itself.
 fn fill<'t>(node: Node<'t, 't>) -> Option<&'t str> {
     let by_style = node.attribute("style").and_then(|style| {
-        style.split(';').filter_map(|d| d.split_once(':')).find(|(name, _)| name.trim() == "fill").map(|(_, v)| v)
+        style
+            .split(';')
+            .filter_map(|d| d.split_once(':'))
+            .find(|(name, _)| name.trim() == "fill")
+            .map(|(_, v)| v)
     });
-    by_style.or_else(|| node.attribute("fill")).map(str::trim).filter(|fill| !matches!(*fill, "none" | "transparent"))
+    by_style
+        .or_else(|| node.attribute("fill"))
+        .map(str::trim)
+        .filter(|fill| !matches!(*fill, "none" | "transparent"))
 }

@@ -29,7 +29,7 @@ const NEAR: f64 = 0.015;
 /// Pieces of a garment.
 const MOST_PIECES: usize = 500;
 /// Shapes that are looked at to find them.
-const MOST_OUTLINES: usize = 3_000;
+const MOST_OUTLINES: usize = 1_000;
 /// Curves shorter than this are none, metres.
 const POINT: f64 = 1e-7;
 /// Places of what is left out that are told one by one.
@@ -164,6 +164,9 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlin
         let all = shapes.iter().flat_map(|s| closed(s));
         let (mut closed, tiny): (Vec<Outlined<'_, '_>>, Vec<_>) = all.partition(|o| o.area >= LEAST);
         small.extend(tiny.iter().map(|o| o.shape));
+        if closed.len() > MOST_OUTLINES {
+            return Err(Damage::Many { what: "closed lines", most: MOST_OUTLINES });
+        }
         if closed.is_empty() {
             found.extend(open(shapes, folded.contains(group)));
             continue;
@@ -188,7 +191,11 @@ fn outlines<'d, 't>(d: &'d Drawing<'t>, told: &mut Remarks) -> Result<Vec<Outlin
     let around = around_others(d, &found);
     frames.extend(around.iter().map(|k| found[*k].shape));
     left_out("closed lines are too small for pieces", small.into_iter(), told);
-    left_out("closed lines lie on a piece of their group and are not called anything", inner.into_iter(), told);
+    left_out(
+        "closed lines lie on a piece of their group and are not called anything",
+        inner.into_iter(),
+        told,
+    );
     left_out("open lines belong to no outline and are not called anything", loose.into_iter(), told);
     left_out("closed lines around other pieces are taken for frames", frames.into_iter(), told);
     let mut k = 0;

@@ -16,9 +16,16 @@ fn page(inside: &str) -> String {
     )
 }
 
+/// The pieces and what is told of them, warnings first; of several faults the first. A unit is a millimetre, whatever the page says.
 fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
-    let mut told = Vec::new();
-    pieces_of(svg.as_bytes(), &mut told).map(|p| (p, told))
+    let mut told = Remarks::default();
+    let pieces = pieces_of(svg.as_bytes(), DrawingUnit::Millimetres, &mut told);
+    let told = || [told.warnings, told.notes].concat().into_iter().filter(|t| !t.starts_with('`')).collect();
+    pieces.map(|p| (p, told())).map_err(|mut all| all.remove(0))
+}
+
+fn of_bytes(bytes: &[u8]) -> Result<Vec<Piece>, Vec<Damage>> {
+    pieces_of(bytes, DrawingUnit::Millimetres, &mut Remarks::default())
 }
 
 /// The one piece of a page.
@@ -78,7 +85,6 @@ fn parts_of_freesewing_are_unfolded_named_and_cut_as_often_as_they_say() {
     assert_eq!(
         told,
         [
-            "the page's size is given in millimetres: a unit of the file is 1.0000 mm",
             "piece \"front\" is unfolded at its fold",
             "piece \"back\" is unfolded at its fold",
             "piece \"sleeve\" is cut 1 times as drawn and 1 times mirrored",
@@ -184,28 +190,152 @@ fn transforms_nest_and_clones_are_followed() {
 
 #[test]
 fn units_are_those_of_the_page_and_told() {
-    let square = "<path id=\"p\" d=\"M0 0 H96 V96 H0 Z\"/>";
-    let sized = |attributes: &str| {
+    let square = "<path id=\"p\" d=\"M0 0 H960 V960 H0 Z\"/>";
+    let sized = |attributes: &str, unit: DrawingUnit| {
         let svg = format!("<svg xmlns=\"http://www.w3.org/2000/svg\" {attributes}>{square}</svg>");
-        let (pieces, told) = read(&svg).unwrap();
-        (length(&pieces[0], "edge_0") / 96.0, told[0].clone())
+        let mut told = Remarks::default();
+        let pieces = pieces_of(svg.as_bytes(), unit, &mut told).map_err(|mut all| all.remove(0))?;
+        Ok::<_, Damage>((length(&pieces[0], "edge_0") / 960.0, told))
     };
-    let near = |(found, _): &(f64, String), metres: f64| {
-        assert!((found / metres - 1.0).abs() < 1e-9, "{found} {metres}")
+    let near = |found: Result<(f64, Remarks), Damage>, metres: f64| {
+        let (found, told) = found.unwrap();
+        assert!((found / metres - 1.0).abs() < 1e-9, "{found} {metres}");
+        [told.warnings, told.notes]
+            .concat()
+            .into_iter()
+            .find(|t| t.contains("a unit of the drawing"))
+            .unwrap_or_default()
     };
-    near(&sized("width=\"21cm\" height=\"29.7cm\" viewBox=\"0 0 210 297\""), 1e-3);
-    near(&sized("width=\"10in\" height=\"10in\" viewBox=\"0 0 720 720\""), 0.0254 / 72.0);
-    near(&sized("width=\"200mm\" height=\"200mm\""), 0.0254 / 96.0);
-    let bare = sized("viewBox=\"0 0 500 500\"");
-    near(&bare, 0.0254 / 96.0);
+    let auto = |attributes: &str, metres: f64| near(sized(attributes, DrawingUnit::Auto), metres);
     assert_eq!(
-        bare.1,
-        "the page's size is given in no unit of length: read as pixels, 96 an inch, with which the pieces are 25 mm tall together; \
-         write width and height in mm where that is wrong"
+        auto("width=\"21cm\" height=\"29.7cm\" viewBox=\"0 0 210 297\"", 1e-3),
+        "the page's width is 21cm, 210 units of its viewBox: a unit of the drawing is 1.0000 mm"
+    );
+    auto("width=\"10in\" height=\"10in\" viewBox=\"0 0 720 720\"", 0.0254 / 72.0);
+    assert_eq!(
+        auto("width=\"200mm\" height=\"200mm\"", 0.0254 / 96.0),
+        "the page's width is 200mm, and without a viewBox a unit is a pixel: a unit of the drawing is 0.2646 mm"
+    );
+    // Lengths in pixels scale the viewBox, too.
+    assert_eq!(
+        auto("width=\"1000px\" height=\"1000\" viewBox=\"0 0 500 500\"", 2.0 * 0.0254 / 96.0),
+        "the page's width is 1000 pixels, 96 an inch, and 500 units of its viewBox: a unit of the drawing is 0.5292 mm, \
+         and the largest piece 51 cm long; say the drawing's unit where that is wrong, such as `--set pattern.unit=Millimetres`"
+    );
+    assert_eq!(
+        auto("viewBox=\"0 0 500 500\"", 0.0254 / 96.0),
+        "the page's size is given in no unit of length, and pixels are 96 an inch: a unit of the drawing is 0.2646 mm, \
+         and the largest piece 25 cm long; say the drawing's unit where that is wrong, such as `--set pattern.unit=Millimetres`"
+    );
+    near(sized("width=\"1000px\" viewBox=\"0 0 500 500\"", DrawingUnit::Centimetres), 1e-2);
+    let small =
+        sized("width=\"250px\" height=\"250px\" viewBox=\"0 0 500 500\"", DrawingUnit::Auto).unwrap_err();
+    assert_eq!(
+        (small.to_string(), small.remedy()),
+        (
+            "no one wears a garment of that size: its largest piece, \"p\", would be 13 cm long, as the page's width is 250 pixels, 96 an inch, and \
+             500 units of its viewBox: a unit of the drawing is 0.1323 mm".to_owned(),
+            "`--set pattern.unit=Millimetres` makes it 96 cm long".to_owned()
+        )
     );
     let illustrator = "<?xml version=\"1.0\"?><!-- Generator: Adobe Illustrator 28.0 -->".to_owned()
         + &format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"500\" height=\"500\">{square}</svg>");
-    near(&(length(&read(&illustrator).unwrap().0[0], "edge_0") / 96.0, String::new()), 0.0254 / 72.0);
+    let pieces = pieces_of(illustrator.as_bytes(), DrawingUnit::Auto, &mut Remarks::default()).unwrap();
+    assert!((length(&pieces[0], "edge_0") / 960.0 / (0.0254 / 72.0) - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn outlines_without_groups_may_touch_and_overlap() {
+    let pieces = |inside: &str| {
+        let (pieces, told) = read(&page(inside)).unwrap();
+        (pieces.len(), told.into_iter().filter(|t| t.contains("left out")).collect::<Vec<_>>())
+    };
+    let none = Vec::<String>::new();
+    // Two halves that share an edge; a triangle that lies partly in the notch of a skirt and partly on it; one that fills a notch.
+    let halves = "<path d=\"M100 0 H300 V300 H100 Z\"/><path d=\"M300 0 H500 V300 H300 Z\"/>";
+    assert_eq!(pieces(halves), (2, none.clone()));
+    let skirt = "<path d=\"M0 0 H400 V300 H300 L250 150 L200 300 H0 Z\"/>";
+    assert_eq!(pieces(&format!("{skirt}<path d=\"M170 300 L210 200 L270 300 Z\"/>")), (2, none.clone()));
+    assert_eq!(pieces(&format!("{skirt}<path d=\"M300 300 L250 150 L200 300 Z\"/>")), (2, none.clone()));
+    // What lies wholly on another and is filled like it is a piece; else it is left out, with its place.
+    let filled = "<path fill=\"#eee\" d=\"M0 0 H400 V300 H0 Z\"/><path fill=\"#eee\" d=\"M100 100 H200 V200 H100 Z\"/>";
+    assert_eq!(pieces(filled), (2, none.clone()));
+    assert_eq!(
+        pieces("<path id=\"a\" d=\"M0 0 H400 V300 H0 Z\"/><path id=\"b\" d=\"M100 100 H200 V200 H100 Z\"/>"),
+        (1, vec![
+            "1 closed lines lie on a piece of their group and are not called anything: left out (path \"b\" (line 2 column 39))".to_owned()
+        ])
+    );
+    // A frame around all, and one path that draws two pieces.
+    let (count, told) = pieces(&format!(
+        "<rect width=\"900\" height=\"900\"/><g transform=\"translate(50 50)\"/>{}",
+        halves.replace("M100 0", "M100 50").replace("M300 0", "M300 50").replace("V300", "V400")
+    ));
+    assert_eq!((count, told.len()), (2, 1), "{told:?}");
+    assert_eq!(pieces("<path id=\"both\" d=\"M0 0 H200 V200 H0 Z M300 0 H500 V200 H300 Z\"/>"), (2, none));
+}
+
+#[test]
+fn dimensions_are_no_lines_of_pieces() {
+    let front = "<g id=\"front\"><path d=\"M0 0 H300 V300 H0 Z\"/><path class=\"mark\" d=\"M0 150 H300\"/>\
+                 <path class=\"mark dotted\" d=\"M0 300 V350\"/><path class=\"mark dotted\" d=\"M300 300 V350\"/>\
+                 <path class=\"mark\" marker-start=\"url(#dimensionFrom)\" marker-end=\"url(#dimensionTo)\" d=\"M0 350 H300\"/></g>";
+    let (pieces, told) = read(&page(front)).unwrap();
+    assert_eq!(pieces[0].lines.len(), 1);
+    assert!(told.contains(&"3 dimension lines are left out".to_owned()), "{told:?}");
+}
+
+#[test]
+fn a_piece_on_two_folds_is_unfolded_at_both() {
+    let quarter = |inside: &str, folds: [&str; 2]| {
+        let folds = folds.map(|d| format!("<path class=\"fold\" d=\"{d}\"/>")).concat();
+        read(&page(&format!("<g id=\"skirt\"><path d=\"{inside}\"/>{folds}</g>"))).unwrap()
+    };
+    let (pieces, told) = quarter("M0 0 H300 V200 H0 Z", ["M0 20 V180", "M20 0 H280"]);
+    assert!((perimeter(&pieces[0]) - 2.0).abs() < 1e-9);
+    assert!(told.contains(&"piece \"skirt\" is unfolded at its 2 folds".to_owned()), "{told:?}");
+    // A quarter of a ring: the whole is cut open at one fold, and a seam there is proposed.
+    let (pieces, told) = quarter(
+        "M0 100 V500 C276 500 500 276 500 0 H100 C100 55 55 100 0 100 Z",
+        ["M0 120 V480", "M120 0 H480"],
+    );
+    let area = polygon_area(&pieces[0].outer.points().0);
+    assert!((area / (0.24 * PI) - 1.0).abs() < 5e-3, "{area}");
+    assert!(told[0].starts_with("piece \"skirt\" is a ring when both its folds are unfolded: "), "{told:?}");
+    let seams = propose::propose(&pieces);
+    assert!(
+        seams.iter().any(|(s, why)| s.sides.len() == 2 && why.starts_with("confidence 0.99")),
+        "{seams:?}"
+    );
+}
+
+#[test]
+fn edges_run_counter_clockwise_whichever_way_they_are_drawn() {
+    let ends = |d: &str| {
+        let (pieces, told) = read(&page(&format!("<path id=\"p\" d=\"{d}\"/>"))).unwrap();
+        let path = pieces[0].path("edge_0").unwrap();
+        ([path.at(0.0), path.at(path.length())], told)
+    };
+    let (right, left) = (Point2::new(0.3, 0.0), Point2::new(0.0, 0.0));
+    // The upper edge, drawn first, to the right and to the left.
+    let (clockwise, told) = ends("M0 0 H300 V200 H0 Z");
+    assert_eq!(clockwise, [right, left]);
+    assert_eq!(
+        told,
+        [
+            "1 pieces are drawn clockwise: their edges run counter-clockwise all the same, as the arrows in their pictures show"
+        ]
+    );
+    assert_eq!(ends("M300 0 H0 V200 H300 Z"), ([right, left], Vec::new()));
+}
+
+#[test]
+fn all_faults_of_a_drawing_are_told_at_once() {
+    let bow = |id: &str, x: u32| {
+        format!("<g id=\"{id}\" transform=\"translate({x} 0)\"><path d=\"M0 0 L100 80 V0 L0 100 Z\"/></g>")
+    };
+    let all = of_bytes(page(&(bow("front", 0) + &bow("back", 200))).as_bytes()).unwrap_err();
+    assert_eq!(all.len(), 2, "{all:?}");
 }
 
 #[test]
@@ -238,10 +368,10 @@ fn what_is_hidden_small_or_a_frame_is_no_piece() {
     let (pieces, told) = read(&page(inside)).unwrap();
     assert_eq!(names(&pieces), ["front", "back"]);
     assert_eq!(
-        told[1..],
+        told[..3],
         [
-            "1 closed lines are too small for pieces: left out",
-            "1 closed lines around pieces of other groups are taken for frames: left out",
+            "1 closed lines are too small for pieces: left out (rect (line 2 column 201))",
+            "1 closed lines around other pieces are taken for frames: left out (rect (line 2 column 45))",
             "1 pictures of pixels are left out"
         ]
     );
@@ -286,8 +416,8 @@ fn damage_is_refused_with_element_and_place() {
     is("<svg", "it is no XML at line 1 column 1: the document does not have a root node", again);
     is("<html/>", "its first element is \"html\", not \"svg\"", "give a file that was saved as SVG");
     is("\u{1f}\u{8b}", "it is no XML at line 1 column 1: unknown token", again);
-    assert_eq!(pieces_of(&[0x1f, 0x8b, 8], &mut Vec::new()).unwrap_err(), Damage::Compressed);
-    assert_eq!(pieces_of(&[0xff, 0xfe], &mut Vec::new()).unwrap_err(), Damage::Encoding);
+    assert_eq!(of_bytes(&[0x1f, 0x8b, 8]).unwrap_err(), [Damage::Compressed]);
+    assert_eq!(of_bytes(&[0xff, 0xfe]).unwrap_err(), [Damage::Encoding]);
     let redraw = "draw the element again, or take it out";
     is(
         &page("<g>\n <path id=\"hem\" d=\"M 0 0 L x\"/></g>"),
@@ -368,12 +498,12 @@ fn run(folder: &FilePath, stage: &SvgPattern) -> Result<(Pattern, OutputFiles, V
 fn nothing_is_sewn_until_the_proposals_are_given_back() {
     let dir = tempfile::tempdir().unwrap();
     std::fs::write(dir.path().join("tee.svg"), tee()).unwrap();
-    let stage = SvgPattern { file: "tee.svg".into(), seams: String::new() };
+    let stage = SvgPattern { file: "tee.svg".into(), unit: DrawingUnit::Auto, seams: String::new() };
     let (pattern, files, told) = run(dir.path(), &stage).unwrap();
     assert!(pattern.seams.is_empty());
     assert_eq!(
         told.last().unwrap(),
-        "no seams are given: 8 are proposed in seams.ron; look through it and give it as `seams`"
+        "no seams are given, and nothing is sewn: 8 are proposed in seams.ron; look through it and give it as `seams`"
     );
     std::fs::write(dir.path().join("seams.ron"), &files.0[0].bytes).unwrap();
     let (pattern, files, _) = run(dir.path(), &SvgPattern { seams: "seams.ron".into(), ..stage }).unwrap();
@@ -385,7 +515,7 @@ proptest! {
 
     #[test]
     fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
-        let _ = pieces_of(&bytes, &mut Vec::new());
+        let _ = of_bytes(&bytes);
     }
 
     #[test]
@@ -399,7 +529,7 @@ proptest! {
         if cut % 7 == 0 {
             bytes.truncate(cut % n);
         }
-        if let Ok(pieces) = pieces_of(&bytes, &mut Vec::new()) {
+        if let Ok(pieces) = of_bytes(&bytes) {
             let _ = propose::propose(&pieces);
             let pattern = Pattern { name: "spoilt".into(), pieces, seams: Vec::new() };
             proptest::prop_assert_eq!(toile_core::artifact::Artifact::check(&pattern), Ok(()));

@@ -54,7 +54,8 @@ pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result
             };
             Some((per_unit, side, root.attribute(side)?.trim(), units))
         };
-        sides.into_iter().filter_map(side).min_by(|a, b| a.0.total_cmp(&b.0))
+        // Both sides say the same to the last digits.
+        sides.into_iter().filter_map(side).reduce(|a, b| if b.0 < a.0 * (1.0 - 1e-6) { b } else { a })
     };
     let taken = |metres: f64, fact: String, by: By| {
         let fact = format!("{fact}: a unit of the drawing is {:.4} mm", metres * 1e3);
@@ -67,7 +68,11 @@ pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result
         }
         (Some((metres, side, length, None)), _) => {
             let length = short(length);
-            taken(metres, format!("the page's {side} is {length}, and without a viewBox a unit is a pixel"), By::File)
+            taken(
+                metres,
+                format!("the page's {side} is {length}, and without a viewBox a unit is a pixel"),
+                By::File,
+            )
         }
         (None, Some((metres, side, length, Some(units)))) => {
             let length = short(length).trim_end_matches("px").to_owned();
@@ -76,7 +81,11 @@ pub(super) fn unit(root: Node<'_, '_>, text: &str, asked: DrawingUnit) -> Result
             );
             taken(metres, fact, By::Guess)
         }
-        (None, _) => taken(pixel, format!("the page's size is given in no unit of length, and pixels are {inch} an inch"), By::Guess),
+        (None, _) => taken(
+            pixel,
+            format!("the page's size is given in no unit of length, and pixels are {inch} an inch"),
+            By::Guess,
+        ),
     }
 }
 
