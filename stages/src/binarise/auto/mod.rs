@@ -103,7 +103,7 @@ impl Auto {
 
     /// The mask at the photo's size, before it is finished, of the thing that is meant.
     fn one_of_all(&self, photo: &Photo, given: Option<&Mask>, cx: &Context) -> Result<GrayImage, StageError> {
-        let Some([[left, top], [right, bottom]]) = self.part(photo, cx) else {
+        let Some([[left, top], [right, bottom]]) = self.part(photo, cx)? else {
             return self.mask(photo, given, cx);
         };
         let (w, h) = photo.pixels.dimensions();
@@ -128,22 +128,27 @@ impl Auto {
     }
 
     /// The part of the photo that shows the thing that is meant, with ground around; none where that is the whole photo.
-    fn part(&self, photo: &Photo, cx: &Context) -> Option<[[f64; 2]; 2]> {
+    fn part(&self, photo: &Photo, cx: &Context) -> Result<Option<[[f64; 2]; 2]>, StageError> {
         if let Some(((a, b), (c, d))) = of_photo(&self.rect, photo, cx).copied() {
             let ([left, right], [top, bottom]) = ([a.min(c), a.max(c)], [b.min(d), b.max(d)]);
             let (x, y) = (AROUND * (right - left), AROUND * (bottom - top));
-            return Some([
+            return Ok(Some([
                 [(left - x).max(0.0), (top - y).max(0.0)],
                 [(right + x).min(1.0), (bottom + y).min(1.0)],
-            ]);
+            ]));
         }
         let mut all = things(photo);
         let places = of_photo(&self.garment, photo, cx).map_or(&[][..], |places| places);
+        if all.len() < 2 {
+            return Ok(None);
+        }
         let is_meant = |t: &things::Thing| places.iter().all(|place| t.holds(*place));
-        let meant = all.iter().position(is_meant).filter(|_| all.len() > 1)?;
+        let Some(meant) = all.iter().position(is_meant) else {
+            return places.first().map_or(Ok(None), |place| Err(not_held(photo, *place, cx)));
+        };
         let meant = all.remove(meant);
         let (w, h) = photo.pixels.dimensions();
-        Some(meant.alone(&all, f64::from(w) / f64::from(h.max(1))))
+        Ok(Some(meant.alone(&all, f64::from(w) / f64::from(h.max(1)))))
     }
 
     /// Refuses a mask beside the places that are marked.
@@ -152,17 +157,7 @@ impl Auto {
         let at = |share: f64, n: u32| ((share * f64::from(n)) as u32).min(n.saturating_sub(1));
         let places = of_photo(&self.garment, photo, cx).map_or(&[][..], |places| places);
         let beside = |(x, y): &&Place| mask.pixels.get_pixel(at(*x, w), at(*y, h)).0[0] == 0;
-        let Some((x, y)) = places.iter().find(beside) else { return Ok(()) };
-        Err(StageError::invalid(format!(
-            "what was found in \"{}\" does not hold the place ({x}, {y}) that is marked",
-            photo.file
-        ))
-        .hint(format!(
-            "places are shares of the photo's width and height from its left upper corner; or draw a rectangle around the garment: --set 'stages.{}.rect={{\"{}\":              ((0.1, 0.1), (0.5, 0.9))}}'",
-            cx.stage(),
-            cx.entry()
-        ))
-        .at("garment"))
+        places.iter().find(beside).map_or(Ok(()), |place| Err(not_held(photo, *place, cx)))
     }
 
     /// Marks for photos that are not there.
@@ -226,6 +221,19 @@ impl Auto {
         cx.so_far(marked(photo, mask));
         Err(cut_by_frame(photo, pixels, cx.stage(), NEXT))
     }
+}
+
+/// The refusal of a mark that lies on no thing.
+fn not_held(photo: &Photo, (x, y): Place, cx: &Context) -> StageError {
+    let set = format!("--set 'stages.{}.rect={{\"{}\": ((0.1, 0.1), (0.5, 0.9))}}'", cx.stage(), cx.entry());
+    StageError::invalid(format!(
+        "what was found in \"{}\" does not hold the place ({x}, {y}) that is marked",
+        photo.file
+    ))
+    .hint(format!(
+        "places are shares of the photo's width and height from its left upper corner; or draw a rectangle around the garment: {set}"
+    ))
+    .at("garment")
 }
 
 fn same_size(mask: &Mask, photo: &Photo) -> Result<(), StageError> {
