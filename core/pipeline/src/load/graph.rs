@@ -10,7 +10,7 @@
 
 use super::draft::Draft;
 use super::fault::Fault;
-use super::words::{a, all_of, bridge, is_table, list, required};
+use super::words::{a, all_of, bridge, list, required};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, RunLog};
@@ -205,30 +205,7 @@ impl<'a> Graph<'a> {
         let live = self.live.iter().filter(|(_, m)| !m.is_empty()).map(|(k, _)| *k).collect();
         Fault::new("missing_input", format!("`{called}` takes {kind_words}, but nothing before it makes one"))
             .at(&taker.place, format!("takes {kind_words}"))
-            .hint(self.instead(kind).or_else(|| bridge(kind, &live, self.registry)))
-    }
-
-    /// The stage of a section's role that makes the kind, where the section holds another one.
-    fn instead(&self, kind: Kind) -> Option<String> {
-        let makes = |c: &Card| c.outputs.iter().any(|o| o.kind == kind) && !required(c).any(|k| k == kind);
-        self.registry.sections().iter().find_map(|section| {
-            let SectionValue::Stage(role) = section.holds else { return None };
-            let is_held = |d: &&Draft| d.card.as_ref().is_some_and(|c| c.role == role && !makes(c));
-            let held = self.drafts.iter().find(is_held)?.card.as_ref()?.name;
-            let maker = self
-                .registry
-                .in_order()
-                .into_iter()
-                .find(|c| c.role == role && makes(c) && !is_table(c, self.registry))?;
-            // A parameter that has the held one's name among its words.
-            let names = |words: &str| words.split(" | ").any(|word| word.trim() == held);
-            let same = maker.params.iter().find(|p| names(&p.kind));
-            let inner = same.map_or_else(String::new, |p| format!("{}: {held}", p.name));
-            let (field, maker) = (section.field, maker.name);
-            Some(format!(
-                "`{field}: {held}()` makes no {kind}, `{maker}` does: --set '{field}={maker}({inner})'"
-            ))
-        })
+            .hint(bridge(kind, &live, self.registry))
     }
 
     /// Several stages make the kind.
