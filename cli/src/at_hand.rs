@@ -57,7 +57,8 @@ fn with_file(o: &Override) -> Override {
         Ok(full) if Path::new(bare).is_file() => {
             Override { value: format!("{:?}", full.display().to_string()), ..o.clone() }
         }
-        _ if is_text => o.clone(),
+        // A list of seams is none of files.
+        _ if is_text || !o.path.ends_with("file") => o.clone(),
         _ => Override { value: format!("{bare:?}"), ..o.clone() },
     }
 }
@@ -105,5 +106,6 @@ mod tests {
     #[test]
     fn other_fields_are_left_alone() {
         assert_eq!(value("stages.Otsu.bias=3"), "3");
+        assert_eq!(value("seams=[Match(\"a.b\", \"c.d\")]"), "[Match(\"a.b\", \"c.d\")]");
     }
 }

@@ -137,7 +137,7 @@ fn faults_of_the_file_do_not_hide_what_its_stages_find() {
         "unknown stage `Otzu`",
         "unknown parameter `raduis`",
         "the length 16 has no unit",
-        "a comma is missing after `GridMesher(...)`",
+        "a comma is missing after `GridMesher(edge: 16)`",
     ] {
         assert!(words(&answer).contains(text), "{text}: {}", answer.err);
     }

@@ -77,7 +77,7 @@ fn stitching_error() {
     let [a, _] = garment.seams[0].pairs[0];
     garment.positions[a as usize].y += 3e-3;
     let found = shortfalls(garment, None);
-    let words = "the seam \"front.side_left + back.side_left\" stands open by 3 mm (at most 1 mm is good); see that both sides are equally \
+    let words = "the seam \"front.side_left\" stands open by 3 mm (at most 1 mm is good); see that both sides are equally \
                  long, run the same way and start near each other";
     assert_eq!(found[0], (ErrorCode::StitchingError, words.to_owned()));
 }

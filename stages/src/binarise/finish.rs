@@ -1,7 +1,7 @@
 //! What every binariser does at its end: clean the mask, keep one garment, and say so when there is
 //! none, more than one, one in parts, or half of one.
 
-use super::auto::tell_beside;
+use super::beside::tell_beside;
 use super::cut_out::{CutOut, cut_out};
 use super::marked::marked;
 use super::morphology::{MAX_RADIUS, close, open};
@@ -48,9 +48,7 @@ pub fn mask_of(
 ) -> Result<Mask, StageError> {
     has_pixels(photo)?;
     let Some(CutOut { mask, sure }) = cut_out(photo) else {
-        let (mask, second) = finished(method()?, photo, settings, cx)?;
-        tell_beside(photo, &mask, second.as_ref(), cx);
-        return Ok(mask);
+        return finish(method()?, photo, settings, cx);
     };
     if !sure && !photo.mirrored {
         cx.warn(format!(
@@ -71,7 +69,7 @@ pub fn mask_of(
 pub fn finish(mask: GrayImage, photo: &Photo, settings: Finish, cx: &Context) -> Result<Mask, StageError> {
     let (mask, second) = finished(mask, photo, settings, cx)?;
     if second.is_some() {
-        tell_beside(photo, &mask, second.as_ref(), cx);
+        tell_beside(photo, &mask, second.as_ref(), Vec::new, cx);
     }
     Ok(mask)
 }

@@ -15,6 +15,7 @@
 
 mod auto;
 mod background;
+mod beside;
 mod cut;
 mod cut_out;
 mod difference;

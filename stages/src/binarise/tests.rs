@@ -218,7 +218,8 @@ fn parts_of_a_garment_with_a_stripe_between_are_joined_and_told() {
     }));
     let cx = Context::quiet();
     let mask = Otsu { close: 0, ..Otsu::default() }.run(&striped, &cx).unwrap();
-    assert_eq!((mask.area_px(), mask.bounds()), (80 * 120, Some([60, 40, 139, 159])));
+    // The ends of the stripe are rounded where it is joined.
+    assert_eq!((mask.area_px(), mask.bounds()), (80 * 120 - 20, Some([60, 40, 139, 159])));
     let told = format!(
         "the garment in \"front.jpg\" was found in several parts, which are joined: look at the outline; if it is not right, take --set 'stages.{}=GraphCut()'",
         cx.stage()

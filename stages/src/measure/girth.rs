@@ -37,7 +37,7 @@ pub(crate) fn girths(garment: &Garment, body: &Body) -> BTreeMap<String, GirthFi
         };
         let cloth_m = match level {
             "waist" => narrowest(),
-            _ => (0..LOWER.0).filter(|k| front.y - f64::from(*k) * LOWER.1 > least).filter_map(below).next(),
+            _ => (0..LOWER.0).filter(|k| front.y - f64::from(*k) * LOWER.1 >= least).filter_map(below).next(),
         }?;
         Some((level.to_owned(), GirthFigures { cloth_m, body_m }))
     };

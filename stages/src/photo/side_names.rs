@@ -1,9 +1,11 @@
 //! Whether the photos have the names that the pipeline's style takes: a photo named "fornt" would be a piece that nothing is sewn to.
 
-use crate::style::{Needs, Seams, needs};
+use crate::style::{Needs, needs};
 use toile_core::prelude::*;
-use toile_core::{Node, StageMeta, nearest, needed_for};
+use toile_core::{Node, nearest, needed_for};
 
+/// The stage of seams that the file names itself.
+const SEAMS: &str = "Seams";
 /// The sides that the built-in styles sew.
 const SIDES: [&str; 2] = ["front", "back"];
 
@@ -62,7 +64,7 @@ fn styles<'a>(placed: &Placed<'a>) -> Vec<(&'a Node, Needs)> {
     let after = placed.index + 1..placed.nodes.len();
     let reads = |k: &usize| needed_for(placed.nodes, &[*k]).get(placed.index) == Some(&true);
     let behind: Vec<&Node> = after.filter(reads).map(|k| &placed.nodes[k]).collect();
-    if behind.iter().any(|n| n.card.name == Seams::NAME) {
+    if behind.iter().any(|n| n.card.name == SEAMS) {
         return Vec::new();
     }
     let mut styles: Vec<_> = behind.into_iter().filter_map(|n| Some((n, needs(n.card.name)?))).collect();

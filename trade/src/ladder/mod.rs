@@ -22,7 +22,7 @@ use crate::record::{Level, Order, Reference};
 use crate::richardson::{Step, convergence};
 use crate::slot::{Board, Setting, setting_words};
 use crate::source::Source;
-use crate::study::Allowed;
+use crate::study::{Allowed, GROWTH};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
@@ -40,8 +40,6 @@ const MOST_LEVELS: usize = 10;
 const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 /// Said where a finer level there is not.
 const NO_FINER: &str = "no knob can be refined further";
-/// Time of a level in times of the level before it, where only one is known.
-pub(crate) const GROWTH: f64 = 3.0;
 
 /// How the reference is looked for.
 pub struct Search<'a> {

@@ -5,9 +5,11 @@
 
 use super::{LIMIT_SHARE, REFERENCE_SHARE};
 use crate::cost::time;
-use crate::ladder::GROWTH;
 use std::time::Duration;
 use toile_core::{ErrorCode, StageError};
+
+/// Time of a level in times of the level before it, where only one is known.
+pub(crate) const GROWTH: f64 = 3.0;
 
 /// What a run may take beyond what it took, since no two runs take equally long.
 const SPARE: f64 = 1.25;

@@ -11,7 +11,7 @@ mod next;
 mod setting;
 mod store;
 
-pub(crate) use budget::Allowed;
+pub(crate) use budget::{Allowed, GROWTH};
 pub(crate) use setting::measured;
 
 use crate::digest::digest;

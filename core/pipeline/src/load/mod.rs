@@ -137,6 +137,8 @@ pub fn load_with(
     if !is_clean && !changes.asks {
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     }
+    let at_fault: Vec<Range<usize>> =
+        faults.iter().flat_map(|f| f.labels.iter().map(|l| l.span.clone())).collect();
     let mut found = told(faults, &applied.origin);
     let stem = || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
@@ -160,13 +162,21 @@ pub fn load_with(
     if is_clean {
         return Ok(pipeline);
     }
-    let more = crate::faults(&pipeline, |i| own.get(i) == Some(&true), None);
+    // What a stage says of a part with a fault would only follow from it.
+    let spared: Vec<bool> =
+        pipeline.nodes.iter().map(|n| at_fault.iter().any(|f| within(f, &n.span))).collect();
+    let more = crate::faults(&pipeline, |i| own.get(i) == Some(&true) && spared.get(i) != Some(&true), None);
     found.extend(more.err().into_iter().flat_map(|f| f.faults));
     for node in alone {
         pipeline.nodes = vec![node];
         found.extend(crate::faults(&pipeline, |_| true, None).err().into_iter().flat_map(|f| f.faults));
     }
     Err(Faults::new(file, text, found))
+}
+
+/// Whether a place lies in another.
+fn within(place: &Range<usize>, other: &Range<usize>) -> bool {
+    other.start <= place.start && place.end <= other.end && !other.is_empty()
 }
 
 impl Changes<'_> {

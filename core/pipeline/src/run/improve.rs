@@ -5,15 +5,13 @@
 //! are undone together, for none of them leaves a result by itself: a garment in another pose is good once it has settled. Each of them then
 //! passes on what it was given, and the run goes on from the first of them.
 
+use super::node::WORK;
 use super::steps::{Ran, Run, Step};
 use super::value::Held;
 use super::{RunError, typed};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, Garment, Kind};
 use toile_core::{ErrorCode, Event, Feed, Node, PortValue, Remarks};
-
-/// The figure that says how much work a stage took: steps over all of its vertices.
-pub(super) const WORK: &str = "work";
 
 impl Run<'_> {
     /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the runner then goes on behind the steps that are

@@ -1,6 +1,5 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
-use super::improve::WORK;
 use super::pixels::of_the_file;
 use crate::cache::file_hash;
 use crate::load::texts_of;
@@ -23,6 +22,9 @@ pub(crate) struct Made {
     /// The files that it read.
     pub(crate) reads: Vec<(String, Option<Digest>)>,
 }
+
+/// The figure that says how much work a stage took: steps over all of its vertices.
+pub(super) const WORK: &str = "work";
 
 /// The entry that people take a photo of first; the back is often its mirror image, and fails with it.
 const FRONT: &str = "front";

@@ -33,6 +33,7 @@ mod things;
 mod walker;
 mod wedge;
 
+use super::beside::{Thing, at_size, tell_beside};
 use super::finish::{Finish, cut_by_frame, fill_holes, mask_of, no_garment};
 use super::graph_cut::GraphCut;
 use super::marked::marked;
@@ -48,7 +49,6 @@ use image::GrayImage;
 use image::imageops::{crop_imm, replace};
 use methods::methods;
 use std::collections::BTreeMap;
-pub(super) use things::tell_beside;
 use things::things;
 use toile_core::prelude::*;
 use wedge::{follow, with_inlets, with_wedges};
@@ -98,6 +98,7 @@ impl Auto {
         // How far it may touch the frame is told here, with what goes on past it.
         let settings = Finish { open: 0, close: 0, holes: self.holes, touch: f64::INFINITY, next: NEXT };
         let mask = mask_of(photo, settings, cx, || self.one_of_all(photo, given, cx))?;
+        tell_beside(photo, &mask, None, || things(photo), cx);
         self.holds_the_places(photo, &mask, cx).map(|()| mask)
     }
 
@@ -142,7 +143,7 @@ impl Auto {
         if all.len() < 2 {
             return Ok(None);
         }
-        let is_meant = |t: &things::Thing| places.iter().all(|place| t.holds(*place));
+        let is_meant = |t: &Thing| places.iter().all(|place| t.holds(*place));
         let Some(meant) = all.iter().position(is_meant) else {
             return places.first().map_or(Ok(None), |place| Err(not_held(photo, *place, cx)));
         };
@@ -245,13 +246,6 @@ fn same_size(mask: &Mask, photo: &Photo) -> Result<(), StageError> {
             m.0, m.1, p.0, p.1
         ))),
     }
-}
-
-/// A mask of the photo's size at a reduced one.
-fn at_size(mask: &GrayImage, small: &Small) -> Vec<bool> {
-    let (w, h) = (mask.width() as usize, mask.height() as usize);
-    let at = |i: usize| mask.as_raw()[(i / small.w * h / small.h) * w + i % small.w * w / small.w] != 0;
-    (0..small.lab.len()).map(at).collect()
 }
 
 /// The mask with wedges of ground opened; its other holes stay as they are.

@@ -6,6 +6,7 @@
 mod damage;
 mod drawing;
 mod nested;
+mod outlined;
 mod path;
 mod pieces;
 mod role;

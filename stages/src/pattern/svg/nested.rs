@@ -5,7 +5,7 @@
 //! something else is. A rectangle around all other lines, of which several are outlines, is a frame. Cost: lines squared, times the points of
 //! [`SAMPLES`]. Limits: a piece that lies wholly within another and is not filled is taken for a line on it, which the caller tells.
 
-use super::pieces::Outlined;
+use super::outlined::Outlined;
 use crate::mesh::predicates::inside;
 use roxmltree::Node;
 use toile_core::prelude::*;

@@ -13,11 +13,11 @@ use super::super::unfold::{Fold, distinct, image_word, open_ring};
 use super::damage::{Damage, Place};
 use super::drawing::{Drawing, Name, Shape};
 use super::nested;
+use super::outlined::Outlined;
 use super::path::Line;
 use super::role::{Role, cut};
 use super::source::place;
 use crate::mesh::crossing::first_crossing;
-use crate::mesh::predicates::inside;
 use std::collections::BTreeMap;
 use toile_core::Remarks;
 use toile_core::prelude::*;
@@ -38,27 +38,6 @@ const MOST_TOLD: usize = 4;
 const SHORT: f64 = 0.01;
 /// A grain line this near to the horizontal says itself which end is up, as the sine of its angle.
 const LEVEL: f64 = 0.02;
-
-/// An outline with what it is drawn by.
-pub(super) struct Outlined<'d, 't> {
-    pub shape: &'d Shape<'t>,
-    /// Its sides, or the open lines that are to be its sides.
-    sides: Vec<Side>,
-    closed: bool,
-    holes: Vec<Vec<Point2>>,
-    pub polygon: Vec<Point2>,
-    pub area: f64,
-}
-
-impl Outlined<'_, '_> {
-    pub(super) fn has(&self, p: Point2) -> bool {
-        inside(&self.polygon, p)
-    }
-
-    fn says(&self) -> bool {
-        self.shape.role == Some(Role::Outline)
-    }
-}
 
 /// The pieces of a drawing; what was found and left out is told.
 ///
