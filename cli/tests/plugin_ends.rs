@@ -123,7 +123,7 @@ fn whichever_signal_stops_a_plugin_that_loops_it_is_named_at_its_place() {
     }
     let (code, out, _) = signalled(dir.path(), &[&RUN[..], &["--json"]].concat(), &["-INT"]);
     assert_eq!(code, Some(5));
-    assert!(out.starts_with("{\"error\":\"cancelled\""), "{out}");
+    assert!(out.contains("\"error\":\"cancelled\""), "{out}");
 }
 
 #[test]

@@ -9,7 +9,7 @@ pub(super) struct Piece {
     corners: Vec<[f64; 2]>,
 }
 
-/// Two pieces, front first, and the edges that are sewn: the same numbers on both.
+/// Two pieces, front first, and the numbers of the edges that are sewn, from the right side to the left.
 pub(super) struct Pattern {
     pieces: [Piece; 2],
     seams: Vec<usize>,
@@ -57,16 +57,17 @@ pub(super) fn garment_code(pattern: &Pattern, height: f64) -> Vec<u8> {
         let edges: Vec<_> = (0..piece.corners.len())
             .map(|i| json!({ "endpoints": [i, (i + 1) % piece.corners.len()] }))
             .collect();
-        let z = if k == 0 { 22.0 } else { -20.0 };
+        let (z, turned) = if k == 0 { (22.0, 0.0) } else { (-20.0, 180.0) };
         let panel = json!({
-            "translation": [0.0, height, z], "rotation": [0.0, 0.0, 0.0], "vertices": piece.corners, "edges": edges,
+            "translation": [0.0, height, z], "rotation": [0.0, turned, 0.0], "vertices": piece.corners, "edges": edges,
         });
         (piece.name.to_owned(), panel)
     };
     let panels: serde_json::Map<_, _> = pattern.pieces.iter().enumerate().map(panel).collect();
+    // The back faces backwards, so that its left edge lies at the front's right one.
     let stitch =
-        |edge: &usize| json!([{ "panel": "front", "edge": edge }, { "panel": "back", "edge": edge }]);
-    let stitches: Vec<_> = pattern.seams.iter().map(stitch).collect();
+        |(a, b): (&usize, &usize)| json!([{ "panel": "front", "edge": a }, { "panel": "back", "edge": b }]);
+    let stitches: Vec<_> = pattern.seams.iter().zip(pattern.seams.iter().rev()).map(stitch).collect();
     let file = json!({
         "pattern": { "panels": panels, "stitches": stitches, "panel_order": ["front", "back"] },
         "parameters": {}, "parameter_order": [],

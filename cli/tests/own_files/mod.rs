@@ -9,6 +9,11 @@ use crate::readme::{passes, scratch};
 use flat::{hip_skirt, skirt, top};
 use std::path::Path;
 
+/// A drawing as a CAD program writes it.
+pub(crate) fn drawing() -> Vec<u8> {
+    flat::dxf(&skirt(34.5, 64.0, 62.0))
+}
+
 /// The command stands in that page, word for word.
 fn told(page: &str, command: &str) {
     let text = std::fs::read_to_string(crate::readme::root().join(page)).unwrap();
