@@ -33,7 +33,7 @@ fn compared(name: &str) -> (usize, Vec<String>) {
     let listener: Arc<dyn Listener> = Arc::new(());
     let result = run(&pipeline, &options, &Cancel::new(), &listener).unwrap();
     let entries = || result.log.stages.iter().flat_map(|r| &r.outputs).flat_map(|value| value.entries());
-    let pattern = entries().filter_map(|(_, a)| typed::<Pattern>(a)).last().unwrap();
+    let pattern = entries().filter_map(|(_, a)| typed::<Pattern>(a)).next_back().unwrap();
     let panels = entries().filter_map(|(name, a)| Some((name, typed::<Panel>(a)?)));
     let mut differ = Vec::new();
     let mut count = 0;

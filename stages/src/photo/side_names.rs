@@ -18,12 +18,12 @@ pub(super) fn misnamed(names: &[&str], placed: &Placed<'_>) -> Vec<StageError> {
         nearest(name, missing).filter(|_| !SIDES.contains(&name))
     };
     let misspelt = |name: &&str| {
-        let side = meant(*name)?;
+        let side = meant(name)?;
         let e = StageError::invalid(format!("`{}` takes no photo named {name:?}", style.id));
         Some(e.hint(format!("did you mean {side:?}?")).at("photos").within(*name))
     };
     let mut found: Vec<StageError> = names.iter().filter_map(misspelt).collect();
-    let has_front = names.iter().any(|name| *name == SIDES[0] || meant(*name) == Some(SIDES[0]));
+    let has_front = names.iter().any(|name| *name == SIDES[0] || meant(name) == Some(SIDES[0]));
     let cuts = styles.iter().find(|(_, needs)| *needs == Needs::Front);
     if let (Some((style, _)), false) = (cuts, has_front || names.is_empty()) {
         let e = StageError::invalid(format!(

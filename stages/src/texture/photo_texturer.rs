@@ -159,6 +159,9 @@ const RIM: f64 = 2e-3;
 /// What only light brings out.
 const OF_LIGHT: &str = "light does not act on such a photo: leave it out, or give `light: Modulate`";
 
+/// A panel's picture, and its normal map where there is one.
+type Pictures = (Texture, Option<Texture>);
+
 #[stage]
 impl PhotoTexturer {
     pub(super) fn run(
@@ -255,7 +258,7 @@ impl PhotoTexturer {
                 let relief = self.relief(&texture, px_per_metre(garment, panel) * scale, cx)?;
                 Ok(((texture, relief), plain && !is_plain))
             };
-        let textures: Vec<Result<((Texture, Option<Texture>), bool), StageError>> =
+        let textures: Vec<Result<(Pictures, bool), StageError>> =
             pictures.par_iter().copied().map(texture).collect();
         let (textures, patterned): (Vec<_>, Vec<bool>) =
             textures.into_iter().collect::<Result<Vec<_>, _>>()?.into_iter().unzip();

@@ -89,7 +89,7 @@ fn insert(pipeline: &mut Pipeline, stage: Box<dyn Stage>, card: Card, inputs: Ve
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used)]
+    #![allow(clippy::unwrap_used, clippy::panic)]
     use super::*;
     use crate::load::load;
     use crate::load::tests::kit;

@@ -51,10 +51,8 @@ pub(in crate::flat) fn wholes(mesh: &RawMesh) -> Vec<Whole> {
 fn whole(mesh: &RawMesh, triangles: Vec<u32>) -> Whole {
     let corners = |t: &u32| mesh.triangles[*t as usize].map(|v| mesh.positions[v as usize]);
     let first = corners(&triangles[0])[0];
-    let (lo, hi) = triangles
-        .iter()
-        .flat_map(|t| corners(t))
-        .fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
+    let (lo, hi) =
+        triangles.iter().flat_map(&corners).fold((first, first), |(lo, hi), p| (lo.inf(&p), hi.sup(&p)));
     // From its own middle, so that a part far from the origin keeps its digits.
     let middle = nalgebra::center(&lo, &hi);
     let (mut area, mut volume) = (0.0, 0.0);
