@@ -62,7 +62,7 @@ pub use setting::Override;
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::path::Path;
-use toile_core::{Feed, Registry};
+use toile_core::{Feed, Node, Registry};
 
 /// The largest pipeline file, bytes: a thousand times what a garment needs.
 pub const MAX_BYTES: usize = 4 << 20;
@@ -163,11 +163,11 @@ pub fn load_with(
         return Ok(pipeline);
     }
     // What a stage says of a part with a fault would only follow from it.
-    let spared: Vec<bool> =
-        pipeline.nodes.iter().map(|n| at_fault.iter().any(|f| within(f, &n.span))).collect();
-    let more = crate::faults(&pipeline, |i| own.get(i) == Some(&true) && spared.get(i) != Some(&true), None);
+    let is_spared = |node: &Node| at_fault.iter().any(|place| within(place, &node.span));
+    let asked = |i: usize| own.get(i) == Some(&true) && !pipeline.nodes.get(i).is_some_and(is_spared);
+    let more = crate::faults(&pipeline, asked, None);
     found.extend(more.err().into_iter().flat_map(|f| f.faults));
-    for node in alone {
+    for node in alone.into_iter().filter(|node| !is_spared(node)) {
         pipeline.nodes = vec![node];
         found.extend(crate::faults(&pipeline, |_| true, None).err().into_iter().flat_map(|f| f.faults));
     }
