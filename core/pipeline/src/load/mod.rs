@@ -137,8 +137,9 @@ pub fn load_with(
     if !is_clean && !changes.asks {
         return Err(Faults::new(file, text, told(faults, &applied.origin)));
     }
-    let at_fault: Vec<Range<usize>> =
-        faults.iter().flat_map(|f| f.labels.iter().map(|l| l.span.clone())).collect();
+    let is_doubled = |f: &&Fault| f.code == "duplicate_field";
+    let doubled = faults.iter().filter(is_doubled).flat_map(|f| f.labels.iter().map(|l| l.span.clone()));
+    let doubled: Vec<Range<usize>> = doubled.collect();
     let mut found = told(faults, &applied.origin);
     let stem = || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
@@ -162,8 +163,8 @@ pub fn load_with(
     if is_clean {
         return Ok(pipeline);
     }
-    // What a stage says of a part with a fault would only follow from it.
-    let is_spared = |node: &Node| at_fault.iter().any(|place| within(place, &node.span));
+    // What a stage says of a part with a key that is given twice would only follow from that.
+    let is_spared = |node: &Node| doubled.iter().any(|place| within(place, &node.span));
     let asked = |i: usize| own.get(i) == Some(&true) && !pipeline.nodes.get(i).is_some_and(is_spared);
     let more = crate::faults(&pipeline, asked, None);
     found.extend(more.err().into_iter().flat_map(|f| f.faults));
