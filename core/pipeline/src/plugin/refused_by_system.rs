@@ -91,7 +91,7 @@ fn search_path() -> &'static str {
 mod tests {
     use super::*;
 
-    const FILE: &str = "/work/libinvert.so";
+    const FILE: &str = "/opt/libinvert.so";
 
     fn told(words: &str) -> (String, String) {
         let words = bare(words, Path::new("/tmp/toile-plugin-1.so"), Path::new(FILE));
@@ -110,11 +110,11 @@ mod tests {
             ),
             (
                 "Error relocating /tmp/toile-plugin-1.so: helper: symbol not found",
-                "Error relocating /work/libinvert.so: helper: symbol not found",
+                "Error relocating /opt/libinvert.so: helper: symbol not found",
             ),
             (
                 "dlopen(/tmp/toile-plugin-1.so, 0x0002): symbol not found in flat namespace '_helper'",
-                "dlopen(/work/libinvert.so, 0x0002): symbol not found in flat namespace '_helper'",
+                "dlopen(/opt/libinvert.so, 0x0002): symbol not found in flat namespace '_helper'",
             ),
         ] {
             assert_eq!(told(words), (kept.to_owned(), hint.to_owned()));
