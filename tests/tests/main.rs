@@ -22,6 +22,7 @@ mod falls;
 mod flat;
 mod goldens;
 mod lock;
+mod messages;
 mod migrate;
 mod new_stage;
 mod outputs;
