@@ -4,7 +4,7 @@ use crate::args::RunArgs;
 use crate::costs::{self, Known};
 use crate::failing::{fail_load, fail_run};
 use crate::progress::Bar;
-use crate::validate::{Refused, inspect, open, warn_unused};
+use crate::validate::{Refused, inspect, open, warn_before_run};
 use crate::{Streams, cache, exit, interrupt, lock, reads, stdin, threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
@@ -44,9 +44,7 @@ pub(crate) fn once(
         Err(Refused::Run(e)) => return fail_run(&pipeline, &e, args.json, streams),
         Err(Refused::File(faults)) => return fail_load(&faults, args.json, streams),
     }
-    if args.until.is_none() {
-        warn_unused(&pipeline, registry, streams);
-    }
+    warn_before_run(&pipeline, registry, args.until.is_none(), streams);
     if let Err(e) = check_folder(&folder(args)) {
         return unwritable(&pipeline, e, args.json, streams);
     }

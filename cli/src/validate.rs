@@ -55,10 +55,16 @@ fn warn(warnings: &Faults, streams: &mut Streams<'_>) {
     warnings.lines().iter().for_each(|line| streams.warn(line));
 }
 
-/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a run may be for.
-pub(crate) fn warn_unused(pipeline: &Pipeline, registry: &Registry, streams: &mut Streams<'_>) {
+/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a run may be for, and, of a run of a
+/// part, what only the rest would use.
+pub(crate) fn warn_before_run(
+    pipeline: &Pipeline,
+    registry: &Registry,
+    is_whole: bool,
+    streams: &mut Streams<'_>,
+) {
     if let Some(mut warnings) = pipeline.warnings(registry) {
-        warnings.faults.retain(|w| w.code != "no_garment");
+        warnings.faults.retain(|w| w.code != "no_garment" && (is_whole || w.code != "unused"));
         warn(&warnings, streams);
     }
 }

@@ -11,5 +11,6 @@ mod manners;
 mod own_files;
 mod plugin_ends;
 mod readme;
+mod remedies;
 mod sheet;
 mod watch;

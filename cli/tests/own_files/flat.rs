@@ -4,19 +4,19 @@ use serde_json::json;
 use std::fmt::Write;
 
 /// A piece: its name and its corners, cm, counter-clockwise, y up, and a name for each edge.
-pub(super) struct Piece {
+pub(crate) struct Piece {
     name: &'static str,
     corners: Vec<[f64; 2]>,
 }
 
 /// Two pieces, front first, and the numbers of the edges that are sewn, from the right side to the left.
-pub(super) struct Pattern {
+pub(crate) struct Pattern {
     pieces: [Piece; 2],
     seams: Vec<usize>,
 }
 
 /// A flared skirt: widths of waist and hem of one piece, and its length, cm.
-pub(super) fn skirt(waist: f64, hem: f64, length: f64) -> Pattern {
+pub(crate) fn skirt(waist: f64, hem: f64, length: f64) -> Pattern {
     let half = |w: f64| w / 2.0;
     let corners = vec![[-half(hem), -length], [half(hem), -length], [half(waist), 0.0], [-half(waist), 0.0]];
     let piece = |name| Piece { name, corners: corners.clone() };
@@ -24,7 +24,7 @@ pub(super) fn skirt(waist: f64, hem: f64, length: f64) -> Pattern {
 }
 
 /// A skirt that follows waist and hip, for a hip of 96 cm: widths of waist and hem of one piece, and its length, cm.
-pub(super) fn hip_skirt(waist: f64, hem: f64, length: f64) -> Pattern {
+pub(crate) fn hip_skirt(waist: f64, hem: f64, length: f64) -> Pattern {
     let right = [[hem / 2.0, -length], [25.0, -20.0], [waist / 2.0, 0.0]];
     let left = right.iter().rev().map(|[x, y]| [-x, *y]);
     let corners: Vec<[f64; 2]> = right.into_iter().chain(left).collect();
@@ -33,7 +33,7 @@ pub(super) fn hip_skirt(waist: f64, hem: f64, length: f64) -> Pattern {
 }
 
 /// A sleeveless top: width of one piece and its length at the neck, cm; the front's neck is lower.
-pub(super) fn top(width: f64, length: f64) -> Pattern {
+pub(crate) fn top(width: f64, length: f64) -> Pattern {
     let half = width / 2.0;
     let piece = |name, neck: f64| {
         let right = [
@@ -52,7 +52,7 @@ pub(super) fn top(width: f64, length: f64) -> Pattern {
 }
 
 /// As GarmentCode writes it, with its origin that many cm above the floor.
-pub(super) fn garment_code(pattern: &Pattern, height: f64) -> Vec<u8> {
+pub(crate) fn garment_code(pattern: &Pattern, height: f64) -> Vec<u8> {
     let panel = |(k, piece): (usize, &Piece)| {
         let edges: Vec<_> = (0..piece.corners.len())
             .map(|i| json!({ "endpoints": [i, (i + 1) % piece.corners.len()] }))
@@ -80,7 +80,7 @@ pub(super) fn garment_code(pattern: &Pattern, height: f64) -> Vec<u8> {
 }
 
 /// Each piece as a closed line in a group of its name, in millimetres.
-pub(super) fn svg(pattern: &Pattern) -> Vec<u8> {
+pub(crate) fn svg(pattern: &Pattern) -> Vec<u8> {
     let mut text = String::from(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"1600mm\" height=\"900mm\" viewBox=\"0 0 1600 900\">\n",
     );
@@ -102,7 +102,7 @@ pub(super) fn svg(pattern: &Pattern) -> Vec<u8> {
 }
 
 /// A block for each piece, as programs for clothing write DXF (AAMA), in millimetres.
-pub(super) fn dxf(pattern: &Pattern) -> Vec<u8> {
+pub(crate) fn dxf(pattern: &Pattern) -> Vec<u8> {
     let mut pairs: Vec<(u8, String)> = Vec::new();
     let mut put = |code: u8, value: &str| pairs.push((code, value.to_owned()));
     for (code, value) in [(0, "SECTION"), (2, "HEADER"), (9, "$INSUNITS"), (70, "4"), (0, "ENDSEC")] {

@@ -1,9 +1,9 @@
 //! The commands that the guide tells people to run on their own files, with two files each that are no sample: drawn here, of other cuts, sizes
 //! and colours. A template that depends on its sample fails here.
 
-mod flat;
-mod photo;
-mod solid;
+pub(crate) mod flat;
+pub(crate) mod photo;
+pub(crate) mod solid;
 
 use crate::readme::{passes, scratch};
 use flat::{hip_skirt, skirt, top};

@@ -11,7 +11,7 @@ const MARGIN: f64 = 12.0;
 type Half = Vec<[f64; 2]>;
 
 /// A wide T-shirt, 76 cm from cuff to cuff, on boards.
-pub(super) fn boxy_tee() -> Vec<u8> {
+pub(crate) fn boxy_tee() -> Vec<u8> {
     let half = vec![
         [0.0, 2.5],
         [4.0, 2.0],
@@ -34,7 +34,7 @@ pub(super) fn boxy_tee() -> Vec<u8> {
 }
 
 /// A narrow, long T-shirt, 76 cm from cuff to cuff, on a pale sheet.
-pub(super) fn slim_tee() -> Vec<u8> {
+pub(crate) fn slim_tee() -> Vec<u8> {
     let half = vec![
         [0.0, 2.0],
         [4.5, 1.6],
@@ -53,7 +53,7 @@ pub(super) fn slim_tee() -> Vec<u8> {
 }
 
 /// A flared skirt, 62 cm wide at the hem: half of its waist and its length, cm.
-pub(super) fn skirt(waist: f64, length: f64) -> Vec<u8> {
+pub(crate) fn skirt(waist: f64, length: f64) -> Vec<u8> {
     let half = vec![
         [0.0, 0.8],
         [waist, 0.0],

@@ -1,7 +1,8 @@
 //! How much of a garment is still in its place on the body: what slid off shows, whatever holds it up in the end.
 //!
 //! Method: for each piece of cloth (all that hangs together) the height of its upper edge where it starts, but no higher than
-//! the body under it, against that where it ends. The way that it has sunk, as a share of the piece's size (the root of its
+//! the body under it, against that where it ends. What starts upright is also held by the mean way of its vertices down, so that a
+//! skirt that slid on one side alone has sunk. The way that it has sunk, as a share of the piece's size (the root of its
 //! flat area), is what has left its place. So cloth that starts above a ball and comes to lie on it has sunk by nothing, a skirt that
 //! slides 5 cm onto the hips by some hundredths, a skirt that lies about the feet by all. Cost: some hundred
 //! distances a piece. Limit: a body thinner than a ninth of the piece is not seen under it; then its start alone counts.
@@ -25,6 +26,9 @@ const MET: f64 = 1e-3;
 /// Steps down at most.
 const STEPS: usize = 400;
 
+/// What is taller than this at its start, as a share of the piece's size, stands upright; a sheet that lies above a ball does not.
+const UPRIGHT: f64 = 0.3;
+
 /// For each panel the share of it that is still in its place, of its piece that has sunk farthest; 1 for what pins hold. `garment`
 /// stands where it starts, `end` is where its vertices have come to. Empty without a body or weight.
 pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity: &Vector3<f64>) -> Vec<f64> {
@@ -41,9 +45,18 @@ pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity:
         let start: Vec<Vector3<f64>> = piece.vertices.iter().map(|&v| garment.positions[v].coords).collect();
         let under =
             if is_few { body.highest_under(&start, RASTER, |p| down(&skin, p, &up, &body)) } else { None };
-        let from = top(&garment.positions).min(under.unwrap_or(f64::INFINITY));
-        let sunk = (from - top(end)).max(0.0);
-        let share = (1.0 - sunk / piece.area.sqrt()).clamp(0.0, 1.0);
+        let size = piece.area.sqrt();
+        let highest = top(&garment.positions);
+        let from = highest.min(under.unwrap_or(f64::INFINITY));
+        let lowest = start.iter().map(|p| p.dot(&up)).fold(f64::INFINITY, f64::min);
+        let mean = if highest - lowest > UPRIGHT * size {
+            let down = piece.vertices.iter().map(|&v| (garment.positions[v] - end[v]).dot(&up));
+            down.sum::<f64>() / piece.vertices.len() as f64 - (highest - from)
+        } else {
+            0.0
+        };
+        let sunk = (from - top(end)).max(mean).max(0.0);
+        let share = (1.0 - sunk / size).clamp(0.0, 1.0);
         piece.vertices.iter().for_each(|&v| shares[v] = share);
     }
     let panel = |own: &std::ops::Range<usize>| shares[own.clone()].iter().copied().fold(1.0, f64::min);

@@ -107,12 +107,12 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
         .keys()
         .map(|name| resolve(entries, name).map(|side| (name, side)))
         .collect::<Result<Vec<_>, _>>()?;
-    // A file is decoded once for each object that is looked for in it.
-    let files: BTreeMap<(&str, Option<ScaleObject>), &str> = sides
-        .iter()
-        .rev()
-        .map(|(name, (file, _))| ((file.file.as_str(), file.scale), name.as_str()))
-        .collect();
+    // A file is decoded once for each object that is looked for in it; its faults are those of the side that names it.
+    let last_wins = [true, false]
+        .into_iter()
+        .flat_map(|mirrored| sides.iter().rev().filter(move |(_, side)| side.1 == mirrored));
+    let files: BTreeMap<(&str, Option<ScaleObject>), &str> =
+        last_wins.map(|(name, (file, _))| ((file.file.as_str(), file.scale), name.as_str())).collect();
     cx.progress(0.0, format!("reading {} file(s)", files.len()));
     let files: Vec<_> = files.into_iter().collect();
     let read =

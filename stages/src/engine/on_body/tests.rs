@@ -22,6 +22,18 @@ fn a_vest_that_slides_some_centimetres_is_in_its_place_and_one_about_the_feet_is
 }
 
 #[test]
+fn a_vest_that_slides_down_on_one_side_alone_has_sunk_by_the_mean() {
+    let (vest, body) = (vest(&plain(500.0, 50.0, 1e-5)), Capsules::torso());
+    let widest = vest.positions.iter().map(|p| p.x.abs()).fold(0.0, f64::max);
+    // One side stays where it was, the other ends 0.4 m lower.
+    let tilted = |p: &Point3| p - Vector3::y() * 0.2 * (1.0 + p.x / widest);
+    let end: Vec<Point3> = vest.positions.iter().map(tilted).collect();
+    let area: f64 = vest.panels.iter().map(|p| vest.panel_areas(p).0).sum();
+    let sunk = (1.0 - on_body(&vest, &end, &body, &GRAVITY)[0]) * area.sqrt();
+    assert!((sunk - 0.2).abs() < 0.03, "{sunk}");
+}
+
+#[test]
 fn cloth_that_falls_onto_a_ball_has_not_sunk() {
     // 0.2 m square, 0.3 m above a ball of 0.1 m.
     let (mut sheet, _) = hanging(0.2, 0.2, 0.02, &plain(500.0, 50.0, 1e-5));

@@ -65,6 +65,8 @@ const SLEEVE: [f64; 2] = [0.44, 0.04];
 const MOST: f64 = 9.0;
 /// A mean square beyond this is told: no body of the table wears it as usual.
 const ODD: f64 = 5.0;
+/// No garment is wider around chest or waist, or longer, metres: half as much again as the largest sizes that are sold.
+const LARGEST: [f64; 2] = [3.0, 2.5];
 /// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the vertical.
 const ARMS: f64 = 45.0;
 const REACH: (f64, f64) = (30.0, 75.0);
@@ -131,6 +133,7 @@ impl Fitting {
             .map_err(|e| if self.style == BlockStyle::Auto { say(e) } else { e })?;
         let tape = Tape::of(form, &fit);
         tape.tell(cx);
+        tape.worn_by_someone(form.word)?;
         let cost = |s: &[f64; 4]| tape.cost(s);
         let best = SIZES.iter().min_by(|a, b| cost(a).total_cmp(&cost(b))).unwrap_or(&SIZES[16]);
         let [height, bust, waist, usual] = *best;
@@ -260,6 +263,19 @@ impl Tape {
         let all: Vec<f64> =
             (0..3).filter_map(girth).chain(long).chain(sleeve).map(|x| (x * x).min(MOST)).collect();
         all.iter().sum::<f64>() / all.len().max(1) as f64 + ((height - LIKELY[0]) / LIKELY[1]).powi(2)
+    }
+
+    /// Errors: the garment is larger than any that is worn, and so is the stated width.
+    fn worn_by_someone(&self, word: &str) -> Result<(), StageError> {
+        let girth = self.girths[..HIP].iter().flatten().copied().fold(0.0, f64::max);
+        let length = self.length.map_or(0.0, |(l, _)| l);
+        if girth <= LARGEST[0] && length <= LARGEST[1] {
+            return Ok(());
+        }
+        let measured = self.words();
+        let measured = measured.trim_start_matches("a garment of ");
+        Err(StageError::invalid(format!("no one wears {word} of {measured}"))
+            .hint("the photo's `width` gives the scale: it is the garment's own, from its leftmost to its rightmost point, such as \"76 cm\""))
     }
 
     /// The garment's measures as figures, cm: around chest, waist and hip, its length, and from the neck to the wrist.

@@ -21,7 +21,8 @@ pub(super) fn no_axis(panel: &str) -> StageError {
 pub(super) fn none(panel: &str, reasons: &[(&Form, &'static str)]) -> StageError {
     match reasons {
         [(form, reason)] => {
-            StageError::invalid(format!("\"{panel}\" does not look like {}: {reason}", form.word)).hint(LAY)
+            StageError::invalid(format!("\"{panel}\" does not look like {}: {reason}", form.word))
+                .hint(stated_hint())
         }
         _ => {
             let words: Vec<&str> = reasons.iter().map(|(form, _)| form.word).collect();
@@ -46,6 +47,11 @@ pub(super) fn strays(panel: &str, form: &Form, fit: &Fit, stray: f64, auto: bool
     .hint(if auto {
         format!("{LAY}; or say what it is: --set 'style.style=Vest' --set 'body.style=Vest'")
     } else {
-        LAY.to_owned()
+        stated_hint()
     })
+}
+
+/// What helps where the user said what it is.
+fn stated_hint() -> String {
+    format!("{LAY}; or let it be named: --set 'style.style=Auto' --set 'body.style=Auto'")
 }
