@@ -30,6 +30,7 @@ fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_el
         dir.path(),
         &[
             ("vest/front.jpg", "vest/none.jpg"),
+            ("width: \"52 cm\"", "width: \"0 cm\""),
             ("cotton poplin", "coton poplin"),
             ("low: 20", "low: 90"),
             ("Glb()", "Glb(name: \"a/b\")"),
@@ -59,6 +60,7 @@ fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_el
         starts,
         [
             (place.as_str(), "Photos: cannot read \"samples/vest/none.jpg\": no such file"),
+            ("\"0 cm\"),", "Photos: photo \"front\": the garment's width is 0 m, which is not positive"),
             ("\"coton popli", "Preset: there is no fabric preset \"coton poplin\""),
             ("\"back.side_l", "Seams: the panel \"back\" has no edge \"side_lft\""),
             ("\"frnt.hem\", ", "Seams: there is no panel \"frnt\""),
@@ -69,8 +71,8 @@ fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_el
             ),
         ]
     );
-    assert!(faults[2].1.ends_with("did you mean \"back.side_left\"?"), "{:?}", faults[2]);
-    assert!(faults[3].1.ends_with("did you mean \"front.hem\"?"), "{:?}", faults[3]);
+    assert!(faults[3].1.ends_with("did you mean \"back.side_left\"?"), "{:?}", faults[3]);
+    assert!(faults[4].1.ends_with("did you mean \"front.hem\"?"), "{:?}", faults[4]);
 
     // A run says the same before any stage runs, and writes nothing.
     let out = dir.path().join("out").display().to_string();

@@ -5,7 +5,7 @@
 //! line and column: a reader of tagged or untagged enums would lose them.
 
 use super::scale::ScaleObject;
-use serde::de::{DeserializeSeed, EnumAccess, Error, VariantAccess, Visitor};
+use serde::de::{DeserializeSeed, EnumAccess, VariantAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toile_core::{Length, ParamType};
 
@@ -34,10 +34,10 @@ pub struct PhotoFile {
     /// Path, relative to the pipeline file.
     pub file: String,
     /// Real width of the garment's bounding box; the scale follows once its mask is known.
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "width")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width: Option<Length>,
     /// Scale, pixels per metre, where it is known otherwise (a scanner, a ruler in the photo).
-    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "px_per_metre")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub px_per_metre: Option<f64>,
     /// An object of known size beside the garment, which gives the scale; but for a ruler, the photo is rectified by it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -76,16 +76,6 @@ pub(super) fn scale_fault(scale: f64) -> Option<String> {
             "px_per_metre is {scale}, outside {MIN_PX_PER_METRE} to {MAX_PX_PER_METRE} pixels per metre"
         )),
     }
-}
-
-fn width<'de, D: Deserializer<'de>>(d: D) -> Result<Option<Length>, D::Error> {
-    let width = Option::<Length>::deserialize(d)?;
-    width.and_then(width_fault).map_or(Ok(width), |fault| Err(D::Error::custom(fault)))
-}
-
-fn px_per_metre<'de, D: Deserializer<'de>>(d: D) -> Result<Option<f64>, D::Error> {
-    let scale = Option::<f64>::deserialize(d)?;
-    scale.and_then(scale_fault).map_or(Ok(scale), |fault| Err(D::Error::custom(fault)))
 }
 
 impl ParamType for PhotoEntry {

@@ -50,12 +50,16 @@ impl Photos {
             return vec![none()];
         }
         let of_name = self.photos.keys().filter_map(|name| named(name).err());
-        let of_side =
-            self.photos.iter().filter_map(|(name, entry)| match (resolve(&self.photos, name), entry) {
-                (Err(e), _) => Some(e),
-                (Ok((file, _)), PhotoEntry::File(_)) => look(name, &file.file, placed.cx).err(),
-                (Ok(_), PhotoEntry::MirrorOf(_)) => None,
-            });
+        let of_side = self.photos.iter().flat_map(|(name, entry)| {
+            let (own, target) = match entry {
+                PhotoEntry::File(file) => (look(name, &file.file, placed.cx).err(), None),
+                PhotoEntry::MirrorOf(other) => (None, self.photos.get(other)),
+            };
+            // The faults of a file that is mirrored are told at that file.
+            let of_scale =
+                if let Some(PhotoEntry::File(_)) = target { None } else { resolve(&self.photos, name).err() };
+            of_scale.into_iter().chain(own)
+        });
         of_name.chain(of_side).chain(side_names::misnamed(&self.names(), placed)).collect()
     }
 

@@ -37,22 +37,27 @@ fn no_such_photo(entries: &BTreeMap<String, PhotoEntry>, name: &str, target: &st
         .within(name)
 }
 
-/// Values set from code have not passed the pipeline reader.
+/// What is wrong with a file's width and scale.
 fn checked<'a>(name: &str, file: &'a PhotoFile) -> Result<&'a PhotoFile, StageError> {
-    let fault = file.width.and_then(width_fault).or(file.px_per_metre.and_then(scale_fault));
+    let width = file.width.and_then(width_fault).map(|fault| ("width", fault));
+    let scale = || file.px_per_metre.and_then(scale_fault).map(|fault| ("px_per_metre", fault));
+    if let Some((field, fault)) = width.or_else(scale) {
+        let text = format!("photo \"{name}\": {fault}");
+        return Err(StageError::new(ErrorCode::InvalidParameter, text)
+            .at("photos")
+            .within(name)
+            .within(field));
+    }
     let given = [
         ("width", file.width.is_some()),
         ("px_per_metre", file.px_per_metre.is_some()),
         ("scale", file.scale.is_some()),
     ];
     let given: Vec<&str> = given.into_iter().filter(|g| g.1).map(|g| g.0).collect();
-    let twice = || format!("both {} are given; one of them fixes the scale", given.join(" and "));
-    let fault = fault.or_else(|| (given.len() > 1).then(twice));
-    match fault {
-        Some(fault) => {
-            let text = format!("photo \"{name}\": {fault}");
-            Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos").within(name))
-        }
-        None => Ok(file),
+    if given.len() > 1 {
+        let text =
+            format!("photo \"{name}\": both {} are given; one of them fixes the scale", given.join(" and "));
+        return Err(StageError::new(ErrorCode::InvalidParameter, text).at("photos").within(name));
     }
+    Ok(file)
 }

@@ -98,18 +98,11 @@ fn entries_are_written_as_they_are_read() {
 #[test]
 fn a_fault_in_an_entry_keeps_its_place() {
     let cases = [
-        (
-            "{\"a\": (file: \"x\",\n  width: \"-3 cm\")}",
-            "the garment's width is -30 mm, which is not positive",
-            2,
-        ),
-        ("{\"a\": (file: \"x\", width: \"0 m\")}", "the garment's width is 0 m, which is not positive", 1),
-        ("{\"a\": (file: \"x\", width: \"52 m\")}", "the garment's width is 52 m, outside 5 mm to 10 m", 1),
         ("{\"a\": (file: \"x\", width: 52)}", "the length 52 has no unit; write \"52 mm\" or \"52 cm\"", 1),
         (
-            "{\"a\": (file: \"x\", px_per_metre: NaN)}",
-            "px_per_metre is NaN, outside 100 to 100000 pixels per metre",
-            1,
+            "{\"a\": (file: \"x\",\n  width: 52)}",
+            "the length 52 has no unit; write \"52 mm\" or \"52 cm\"",
+            2,
         ),
     ];
     for (text, message, line) in cases {
@@ -144,6 +137,21 @@ fn wrong_sets_are_refused() {
     let error = text(r#"{"front": (file: "b.png")}"#);
     assert_eq!(error.code, ErrorCode::PatternLoading);
     assert_eq!(error.to_string(), "cannot read \"b.png\": no such file");
+}
+
+#[test]
+fn a_wrong_width_or_scale_is_told_at_its_field_and_hides_no_other_fault() {
+    let folder = Folder::new("widths", &[("a.png", encode(red_blue(2, 2), ImageFormat::Png))]);
+    for (given, told, field) in [
+        ("width: \"-3 cm\"", "the garment's width is -30 mm, which is not positive", "width"),
+        ("width: \"0 m\"", "the garment's width is 0 m, which is not positive", "width"),
+        ("width: \"52 m\"", "the garment's width is 52 m, outside 5 mm to 10 m", "width"),
+        ("px_per_metre: NaN", "px_per_metre is NaN, outside 100 to 100000 pixels per metre", "px_per_metre"),
+    ] {
+        let error = folder.read(&format!("{{\"a\": (file: \"a.png\", {given})}}")).unwrap_err();
+        assert_eq!(error.to_string(), format!("photo \"a\": {told}"));
+        assert_eq!((error.param, error.path), (Some("photos"), vec!["a".to_owned(), field.to_owned()]));
+    }
 }
 
 #[test]
