@@ -1,4 +1,5 @@
-//! Tells the program which commit it was built from; a source tree without git gives the version alone.
+//! Tells the program which commit it was built from; a source tree without git gives the version
+//! alone.
 
 // What it prints is for cargo.
 #![allow(clippy::print_stdout)]

@@ -1,7 +1,8 @@
 //! Files named by `--set`: as on any command line, relative to the current folder.
 //!
-//! A pipeline's own paths are relative to the pipeline file. The value of a field that names a file (`FIELDS`) on the command line that is a
-//! file seen from the current folder becomes its full path; quotes may be left out. So does such a field within brackets:
+//! A pipeline's own paths are relative to the pipeline file. The value of a field that names a file
+//! (`FIELDS`) on the command line that is a file seen from the current folder becomes its full
+//! path; quotes may be left out. So does such a field within brackets:
 //! `--set 'body=BodyObj(file: "me.obj")'`.
 
 use std::path::Path;
@@ -41,8 +42,8 @@ fn within(o: &Override) -> Override {
     Override { value, ..o.clone() }
 }
 
-/// What stands before the first plain text in quotes, the text, and what stands behind it; none where an escape or a raw text makes it
-/// another.
+/// What stands before the first plain text in quotes, the text, and what stands behind it; none
+/// where an escape or a raw text makes it another.
 fn next_text(value: &str) -> Option<(&str, &str, &str)> {
     let (before, rest) = value.split_once('"')?;
     let (text, after) = rest.split_once('"')?;

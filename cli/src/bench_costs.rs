@@ -1,4 +1,5 @@
-//! `toile bench costs`: what stages take over edge lengths and photo sizes, and how well that is predicted.
+//! `toile bench costs`: what stages take over edge lengths and photo sizes, and how well that is
+//! predicted.
 
 use crate::args::{CostsArgs, Overrides};
 use crate::failing::fail_run;
@@ -96,8 +97,8 @@ fn here(pipeline: &Pipeline, pool: &ThreadPool, streams: &mut Streams<'_>) -> Re
     pool.install(|| once(pipeline)).map_err(|e| fail_run(pipeline, &e, false, streams))
 }
 
-/// A run in a process of its own: as `toile run` it finds no memory that an earlier run has touched, nor threads that have
-/// worked before.
+/// A run in a process of its own: as `toile run` it finds no memory that an earlier run has
+/// touched, nor threads that have worked before.
 fn alone(
     file: &Path,
     args: &CostsArgs,

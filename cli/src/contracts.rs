@@ -1,8 +1,9 @@
 //! Which stages of plugins were held to their contracts here.
 //!
-//! What a plugin promises is its author's word until somebody ran it. `toile doctor --contracts` does, and what it found is kept
-//! in the cache's folder under the digest of the plugin's file, so that `toile stage` says "checked" of the very library that
-//! was run, and "declared" again of one that was built anew. The built-in stages are held to theirs by the project's own tests.
+//! What a plugin promises is its author's word until somebody ran it. `toile doctor --contracts`
+//! does, and what it found is kept in the cache's folder under the digest of the plugin's file, so
+//! that `toile stage` says "checked" of the very library that was run, and "declared" again of one
+//! that was built anew. The built-in stages are held to theirs by the project's own tests.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

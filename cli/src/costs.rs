@@ -57,7 +57,8 @@ impl Known {
         }
     }
 
-    /// Keeps what a run took for later forecasts. A store that cannot be written does not touch the run.
+    /// Keeps what a run took for later forecasts. A store that cannot be written does not touch the
+    /// run.
     pub(crate) fn keep(&self, pipeline: &Pipeline, costs: &[StageCost]) {
         let Some(store) = self.store.as_ref().filter(|_| !costs.is_empty()) else { return };
         // What stages made before; nothing is fitted for that.

@@ -1,5 +1,5 @@
-//! `toile doctor`: makes every stage that the program knows, runs it on tiny input and says what fails; with `--contracts` it
-//! holds them to what they promise as well.
+//! `toile doctor`: makes every stage that the program knows, runs it on tiny input and says what
+//! fails; with `--contracts` it holds them to what they promise as well.
 
 use crate::args::DoctorArgs;
 use crate::contracts::Contracts;

@@ -68,7 +68,8 @@ pub(crate) fn check(args: &CheckArgs, registry: &Registry, streams: &mut Streams
     })
 }
 
-/// The golden with what it was made by: where it does not say, by the file as it stands, without what the command line changes.
+/// The golden with what it was made by: where it does not say, by the file as it stands, without
+/// what the command line changes.
 fn known(golden: Sheet, path: &Path, overrides: &Overrides, registry: &Registry) -> Sheet {
     let is_changed = !overrides.set.is_empty() || overrides.quality.is_some();
     if !golden.stages.is_empty() || !is_changed {
@@ -125,7 +126,8 @@ pub(crate) fn accept(args: &AcceptArgs, registry: &Registry, streams: &mut Strea
     })
 }
 
-/// The record and the sheet of two equal runs, or why there is none that a later run could be held against.
+/// The record and the sheet of two equal runs, or why there is none that a later run could be held
+/// against.
 fn twice(
     pipeline: &Pipeline,
     streams: &mut Streams<'_>,

@@ -1,8 +1,9 @@
-//! Ctrl-C, and the other signals that ask a program to end (TERM, HUP): the run is asked to stop, and the program is stopped
-//! where a stage does not listen; what did not listen is named.
+//! Ctrl-C, and the other signals that ask a program to end (TERM, HUP): the run is asked to stop,
+//! and the program is stopped where a stage does not listen; what did not listen is named.
 //!
-//! A plugin has longer than a stage of this program: whoever waits for it says which one it is (`toile_pipeline::plugin`). A second
-//! signal ends the program at once. HUP stays ignored where it is, as under `nohup`.
+//! A plugin has longer than a stage of this program: whoever waits for it says which one it is
+//! (`toile_pipeline::plugin`). A second signal ends the program at once. HUP stays ignored where it
+//! is, as under `nohup`.
 
 use crate::{exit, last_words};
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -34,8 +35,8 @@ pub(crate) fn on_ctrl_c() -> Cancel {
     cancel.clone()
 }
 
-/// Waits for signals on a thread of its own. Without one, or with a handler that stands already, the system's own way of
-/// stopping stays.
+/// Waits for signals on a thread of its own. Without one, or with a handler that stands already,
+/// the system's own way of stopping stays.
 #[cfg(unix)]
 fn listen(flag: Cancel) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

@@ -1,4 +1,5 @@
-//! What the program says where it ends elsewhere than at its end: a plugin ends it from within, or what is to stop does not.
+//! What the program says where it ends elsewhere than at its end: a plugin ends it from within, or
+//! what is to stop does not.
 
 use crate::exit;
 use serde_json::json;

@@ -67,8 +67,8 @@ pub mod exit {
     pub const BUG: u8 = 70;
 }
 
-/// Runs the command with its arguments (the program's name first) and the built-in stages; returns the
-/// exit code.
+/// Runs the command with its arguments (the program's name first) and the built-in stages; returns
+/// the exit code.
 pub fn command<A, T>(arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
 where
     A: IntoIterator<Item = T>,
@@ -86,9 +86,9 @@ where
     started(registry, arguments, Streams::new(None, out, err), false)
 }
 
-/// As [`command_with`], for a program whose `main` does nothing else: it starts itself for each run that it measures, so that
-/// memory is the run's own, and a run that the system ends is one lost setting. A signal that asks it to end and a plugin that
-/// ends it are told.
+/// As [`command_with`], for a program whose `main` does nothing else: it starts itself for each run
+/// that it measures, so that memory is the run's own, and a run that the system ends is one lost
+/// setting. A signal that asks it to end and a plugin that ends it are told.
 pub fn program<A, T>(registry: &Registry, arguments: A, out: &mut dyn Write, err: &mut dyn Write) -> u8
 where
     A: IntoIterator<Item = T>,
@@ -146,7 +146,8 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
     match command {
         Command::Run(args) if args.watch => watch::watch(&args, &plugins, registry, streams),
         command => {
-            // A refused plugin ends the command, but for the list of stages and the doctor, which show it.
+            // A refused plugin ends the command, but for the list of stages and the doctor, which
+            // show it.
             let (registry, all) = with_plugins(registry, &plugins);
             streams.apart = streams.apart.take().map(|program| apart::with_plugins(program, &plugins));
             match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {

@@ -1,4 +1,5 @@
-//! `toile lock` and `toile run --locked`: what a pipeline was made of, kept beside it as `PIPELINE.lock`.
+//! `toile lock` and `toile run --locked`: what a pipeline was made of, kept beside it as
+//! `PIPELINE.lock`.
 
 use crate::args::{LockArgs, Overrides};
 use crate::failing::fail_run;

@@ -1,4 +1,5 @@
-//! What the commands that measure share: the pipeline with its source, how runs are made, where measurements lie.
+//! What the commands that measure share: the pipeline with its source, how runs are made, where
+//! measurements lie.
 
 use crate::args::Overrides;
 use crate::failing::{fail_load, fail_run};
@@ -36,7 +37,8 @@ pub(crate) fn opened<'a>(
     Ok((source, pipeline))
 }
 
-/// Asks the stages that will run what is wrong with their parameters and files: a measurement would tell it of its first run alone.
+/// Asks the stages that will run what is wrong with their parameters and files: a measurement would
+/// tell it of its first run alone.
 pub(crate) fn inspected(
     pipeline: &Pipeline,
     until: Option<String>,
@@ -67,7 +69,8 @@ pub(crate) fn quality(overrides: &Overrides) -> Option<&str> {
     overrides.quality.as_deref()
 }
 
-/// Where a measurement of a pipeline lies; each quality, which is another pipeline, has a folder of its own.
+/// Where a measurement of a pipeline lies; each quality, which is another pipeline, has a folder of
+/// its own.
 pub(crate) fn default_folder(pipeline: &Path, quality: Option<&str>, what: &str) -> PathBuf {
     let stem = stdin::stem(pipeline);
     let quality = quality.map_or_else(String::new, |q| format!("-{q}"));

@@ -1,7 +1,9 @@
-//! `toile new-stage NAME [--role ROLE]`: a crate with one stage that builds, loads, and has a test and a benchmark.
+//! `toile new-stage NAME [--role ROLE]`: a crate with one stage that builds, loads, and has a test
+//! and a benchmark.
 //!
-//! A template a role stands in `new_stage/`; `NAME` and `CRATE` in it become the stage's and the crate's names.
-//! The crate depends on toile-core by its folder: that of `--core`, or the source tree that this program was built from.
+//! A template a role stands in `new_stage/`; `NAME` and `CRATE` in it become the stage's and the
+//! crate's names. The crate depends on toile-core by its folder: that of `--core`, or the source
+//! tree that this program was built from.
 
 use crate::{Streams, exit};
 use std::path::{Path, PathBuf};
@@ -85,7 +87,8 @@ fn text(path: &Path) -> String {
     format!("{:?}", path.display().to_string())
 }
 
-/// Where the stage stands in a pipeline: in the field of its role where there is one, else among the stages.
+/// Where the stage stands in a pipeline: in the field of its role where there is one, else among
+/// the stages.
 fn placed(name: &str, role: Role, registry: &Registry) -> String {
     let of_role = |s: &&Section| matches!(s.holds, SectionValue::Stage(held) if held == role);
     let fields: Vec<&Section> = registry.sections().iter().filter(of_role).collect();
@@ -129,7 +132,8 @@ fn role_word(role: Role) -> String {
     role.as_str().replace(' ', "-")
 }
 
-/// The role of that word; without one that which the stage's name ends with, like `FineMesher`, else a binariser.
+/// The role of that word; without one that which the stage's name ends with, like `FineMesher`,
+/// else a binariser.
 fn role(asked: Option<&str>, name: &str) -> Result<Role, Refusal> {
     let Some(asked) = asked else {
         let last = |role: &Role| kebab(name).ends_with(&format!("-{}", role_word(*role)));
@@ -229,7 +233,8 @@ fn stage_name(asked: &str, registry: &Registry) -> Result<String, Refusal> {
     }
 }
 
-/// `fine_mesher` and `fine-mesher` as `FineMesher`, which stays as it is; nothing for what is neither.
+/// `fine_mesher` and `fine-mesher` as `FineMesher`, which stays as it is; nothing for what is
+/// neither.
 fn camel(asked: &str) -> Option<String> {
     let letters = |word: &str| !word.is_empty() && word.chars().all(|c| c.is_ascii_alphanumeric());
     if letters(asked) && asked.starts_with(|c: char| c.is_ascii_uppercase()) {
@@ -253,7 +258,8 @@ fn check_own_names(name: &str, source: &str) -> Result<(), Refusal> {
     }
 }
 
-/// The line that names toile-core by its folder: the one that is asked for, else that of the source tree.
+/// The line that names toile-core by its folder: the one that is asked for, else that of the source
+/// tree.
 fn core_dependency(asked: Option<&Path>, built_from: &Path) -> Result<String, Refusal> {
     let path = asked.unwrap_or(built_from);
     if !path.join("Cargo.toml").is_file() {

@@ -1,4 +1,5 @@
-//! The progress line: which stage is at work, how far it is and what it says; how far a measurement is.
+//! The progress line: which stage is at work, how far it is and what it says; how far a measurement
+//! is.
 
 use crate::Streams;
 use crate::args::StudyArgs;
@@ -76,7 +77,8 @@ fn told(list: &Mutex<Vec<(String, String)>>, who: String, text: &str) {
     }
 }
 
-/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the budget.
+/// Runs `work` on the threads asked for; what it tells is shown line by line above a bar of the
+/// budget.
 pub(crate) fn with_budget<T: Send>(
     study: &StudyArgs,
     streams: &mut Streams<'_>,
@@ -119,7 +121,8 @@ fn measuring(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar 
     bar
 }
 
-/// A bar on standard error, of no colour; silent where that is no terminal, a dumb one, or nothing but errors is to be said.
+/// A bar on standard error, of no colour; silent where that is no terminal, a dumb one, or nothing
+/// but errors is to be said.
 pub(crate) fn drawn(length: u64, template: &str, streams: &Streams<'_>) -> ProgressBar {
     let target = if streams.is_quiet() { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
     let bar = ProgressBar::with_draw_target(Some(length), target);
@@ -129,7 +132,8 @@ pub(crate) fn drawn(length: u64, template: &str, streams: &Streams<'_>) -> Progr
     bar
 }
 
-/// Has a bar that is seen drawn by itself, which takes a thread: where there is none, it is drawn as work goes on.
+/// Has a bar that is seen drawn by itself, which takes a thread: where there is none, it is drawn
+/// as work goes on.
 fn tick(bar: &ProgressBar, milliseconds: u64) {
     if !bar.is_hidden() && std::thread::Builder::new().spawn(|| {}).is_ok() {
         bar.enable_steady_tick(Duration::from_millis(milliseconds));

@@ -1,4 +1,5 @@
-//! `toile tune PIPELINE --quality NAME=LENGTH ...`: the named qualities of a pipeline, measured and written into its file.
+//! `toile tune PIPELINE --quality NAME=LENGTH ...`: the named qualities of a pipeline, measured and
+//! written into its file.
 
 use crate::args::TuneArgs;
 use crate::measuring::{bench, failed};

@@ -16,7 +16,8 @@ use toile_pipeline::{
     write_files,
 };
 
-/// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to `reads`.
+/// Runs a pipeline, writes its files and says what came of it; the paths that it reads are added to
+/// `reads`.
 pub(crate) fn once(
     args: &RunArgs,
     registry: &Registry,
@@ -85,7 +86,8 @@ pub(crate) fn once(
     }
 }
 
-/// Writes what a run that failed has made until then below its own folder, where nobody takes it for a result.
+/// Writes what a run that failed has made until then below its own folder, where nobody takes it
+/// for a result.
 fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
     let files = std::mem::take(&mut *so_far.lock().unwrap_or_else(PoisonError::into_inner));
     if files.is_empty() {
@@ -107,7 +109,8 @@ fn leave(dir: &Path, so_far: &SoFar, json: bool, streams: &mut Streams<'_>) {
 /// The folder of a run that failed, within its output folder.
 const FAILED: &str = "failed";
 
-/// Takes away what an earlier run that failed has left in its folder; a folder that is not such a run's stays.
+/// Takes away what an earlier run that failed has left in its folder; a folder that is not such a
+/// run's stays.
 fn clear(dir: &Path) {
     if dir.join("reason.txt").is_file() {
         // What cannot be taken away lies beside the new files.
@@ -115,8 +118,8 @@ fn clear(dir: &Path) {
     }
 }
 
-/// Says of the quality that is asked for if its claim was not measured for the pipeline as it is; so do metrics and report, but
-/// where they say already that `--set` changed it.
+/// Says of the quality that is asked for if its claim was not measured for the pipeline as it is;
+/// so do metrics and report, but where they say already that `--set` changed it.
 fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>) {
     let asked = args.overrides.quality.as_deref();
     let quality = pipeline.qualities.iter().find(|q| Some(q.name.as_str()) == asked);
@@ -131,7 +134,8 @@ fn tell_doubt(args: &RunArgs, pipeline: &mut Pipeline, streams: &mut Streams<'_>
     }
 }
 
-/// Runs with a progress line; tells the notes and warnings of the stages, then the warnings of the cache.
+/// Runs with a progress line; tells the notes and warnings of the stages, then the warnings of the
+/// cache.
 fn under_a_bar(
     pipeline: &Pipeline,
     options: &RunOptions,

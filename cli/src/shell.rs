@@ -1,4 +1,5 @@
-//! `toile completions SHELL` and `toile man`: what a shell and the manual know of the arguments, made from the arguments.
+//! `toile completions SHELL` and `toile man`: what a shell and the manual know of the arguments,
+//! made from the arguments.
 
 use crate::args::Arguments;
 use crate::{Streams, exit};

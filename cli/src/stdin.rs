@@ -1,4 +1,5 @@
-//! A pipeline from standard input, for which `-` stands: its paths are relative to the current folder.
+//! A pipeline from standard input, for which `-` stands: its paths are relative to the current
+//! folder.
 
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;

@@ -33,7 +33,8 @@ impl Color {
     }
 }
 
-/// Where a command writes: `out` for its answer, `err` for progress and messages; and how the program starts itself.
+/// Where a command writes: `out` for its answer, `err` for progress and messages; and how the
+/// program starts itself.
 pub(crate) struct Streams<'a> {
     /// Starts a process for a run that is measured; none where the command is called as a function.
     pub(crate) apart: Option<Apart>,
@@ -102,7 +103,8 @@ impl<'a> Streams<'a> {
         self.tell(text.trim_end());
     }
 
-    /// Says why a command is refused: to a program that asked for JSON in its answer, else to the person at the terminal.
+    /// Says why a command is refused: to a program that asked for JSON in its answer, else to the
+    /// person at the terminal.
     pub(crate) fn refuse(&mut self, json: bool, words: impl std::fmt::Display) -> u8 {
         match json {
             true => {
@@ -130,7 +132,8 @@ impl<'a> Streams<'a> {
         exit::BUG
     }
 
-    /// The exit code of a command that ends with `code`: an answer that could not be written is not done.
+    /// The exit code of a command that ends with `code`: an answer that could not be written is not
+    /// done.
     pub(crate) fn ended(&mut self, code: u8) -> u8 {
         let flushed = self.out.flush();
         self.note(flushed);

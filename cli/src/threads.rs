@@ -1,4 +1,5 @@
-//! The threads that a command works on: as many as are asked for, as the machine has cores, as the system gives.
+//! The threads that a command works on: as many as are asked for, as the machine has cores, as the
+//! system gives.
 
 use crate::Streams;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
@@ -7,9 +8,11 @@ use std::num::NonZero;
 /// Threads, where there are some.
 pub(crate) type Pool = Result<ThreadPool, ThreadPoolBuildError>;
 
-/// A pool of threads for work of the present thread; what is asked for beyond the machine's cores, and what the system does not give, is told.
+/// A pool of threads for work of the present thread; what is asked for beyond the machine's cores,
+/// and what the system does not give, is told.
 ///
-/// More threads than cores only wait for each other. Where the system starts no thread at all, the present one does the work.
+/// More threads than cores only wait for each other. Where the system starts no thread at all, the
+/// present one does the work.
 pub(crate) fn pool(asked: Option<u16>, streams: &mut Streams<'_>) -> Pool {
     let (pool, told) = pool_of(asked, cores());
     told.into_iter().for_each(|words| streams.warn(words));
@@ -24,7 +27,8 @@ pub(crate) fn in_pool<T: Send>(pool: Pool, work: impl FnOnce() -> T + Send) -> T
     }
 }
 
-/// Sets up the threads of the whole program, for commands that take those: as many as the system gives, else the present one.
+/// Sets up the threads of the whole program, for commands that take those: as many as the system
+/// gives, else the present one.
 pub(crate) fn for_the_program() {
     // That pool can be tried once only, so others are tried before.
     let given = halves(cores()).find(|n| ThreadPoolBuilder::new().num_threads(*n).build().is_ok());
@@ -39,7 +43,8 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, NonZero::get)
 }
 
-/// A pool of threads for work of the present thread on a machine of so many cores, and what is to be told of it.
+/// A pool of threads for work of the present thread on a machine of so many cores, and what is to
+/// be told of it.
 pub(crate) fn pool_of(asked: Option<u16>, cores: usize) -> (Pool, Vec<String>) {
     let mut told = Vec::new();
     let most = asked.map_or(cores, usize::from);

@@ -55,8 +55,8 @@ fn warn(warnings: &Faults, streams: &mut Streams<'_>) {
     warnings.lines().iter().for_each(|line| streams.warn(line));
 }
 
-/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a run may be for, and, of a run of a
-/// part, what only the rest would use.
+/// Shows what is likely a slip of the user's: all but that a pipeline writes no garment, which a
+/// run may be for, and, of a run of a part, what only the rest would use.
 pub(crate) fn warn_before_run(
     pipeline: &Pipeline,
     registry: &Registry,
@@ -110,7 +110,8 @@ pub(crate) struct Stood {
     pub(crate) now: Option<Basis>,
 }
 
-/// The named qualities of a pipeline, each with what its claim is worth for the file with the overrides of the command line.
+/// The named qualities of a pipeline, each with what its claim is worth for the file with the
+/// overrides of the command line.
 pub(crate) fn standings(
     path: &Path,
     overrides: &Overrides,
@@ -119,7 +120,8 @@ pub(crate) fn standings(
 ) -> Vec<Stood> {
     let stood = |quality: &Quality| {
         let with = Overrides { quality: Some(quality.name.clone()), set: overrides.set.clone() };
-        // A file that loads without its qualities loads with each of them, unless it changed meanwhile.
+        // A file that loads without its qualities loads with each of them, unless it changed
+        // meanwhile.
         let with = open(path, &with, registry).ok();
         let standing = with.as_ref().map_or(Standing::Unknown, |p| quality.standing(p));
         Stood { quality: quality.clone(), standing, now: with.as_ref().map(Basis::of) }

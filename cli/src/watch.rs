@@ -1,9 +1,10 @@
-//! `toile run --watch`: runs again on every edit of the pipeline, of a file that it reads or of a plugin.
+//! `toile run --watch`: runs again on every edit of the pipeline, of a file that it reads or of a
+//! plugin.
 //!
-//! The few files of a pipeline are looked at five times a second: their times and sizes, and where those
-//! differ their content. That needs no service of the system, works on every file system (network drives too), and does
-//! not lose a file that an editor replaces by another. A change counts once two looks in a row see the same,
-//! so that a file half written is not run.
+//! The few files of a pipeline are looked at five times a second: their times and sizes, and where
+//! those differ their content. That needs no service of the system, works on every file system
+//! (network drives too), and does not lose a file that an editor replaces by another. A change
+//! counts once two looks in a row see the same, so that a file half written is not run.
 
 use crate::args::RunArgs;
 use crate::reads::{Look, look, note};
@@ -61,8 +62,8 @@ pub(crate) fn watch(
     }
 }
 
-/// Notes the pipeline and the plugins that it and the command line name: they are watched even where one of them cannot
-/// be read.
+/// Notes the pipeline and the plugins that it and the command line name: they are watched even
+/// where one of them cannot be read.
 fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
     note(reads, pipeline);
     let text = toile_core::read_text(pipeline).unwrap_or_default();
@@ -74,7 +75,8 @@ fn note_named(reads: &Reads, pipeline: &Path, plugins: &[PathBuf]) {
 /// How files are now; none of one that is not there.
 type Looks = BTreeMap<PathBuf, Option<Look>>;
 
-/// Waits until the content of a file is another than the one that was used, and then stays; none once `stopped`.
+/// Waits until the content of a file is another than the one that was used, and then stays; none
+/// once `stopped`.
 fn wait(used: &BTreeMap<PathBuf, Option<Digest>>, stopped: impl Fn() -> bool) -> Option<Vec<PathBuf>> {
     let mut last: Looks = used.keys().map(|path| (path.clone(), look(path, None))).collect();
     while !stopped() {

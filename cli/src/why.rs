@@ -92,8 +92,8 @@ fn why_run(args: &WhyArgs, registry: &Registry, streams: &mut Streams<'_>) -> u8
     }
 }
 
-/// The outlook of the stage that was named with those of the stages that are the cause where it is not itself, or of
-/// all stages.
+/// The outlook of the stage that was named with those of the stages that are the cause where it is
+/// not itself, or of all stages.
 fn explained(
     args: &WhyArgs,
     pipeline: &Pipeline,

@@ -1,4 +1,5 @@
-//! The program as it starts itself for each run that it measures: memory of each run, equal results, lost runs.
+//! The program as it starts itself for each run that it measures: memory of each run, equal
+//! results, lost runs.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used)]
 
@@ -104,7 +105,8 @@ fn a_study_goes_on_from_what_runs_apart_left() {
     assert_eq!(after["points"].as_array().unwrap()[..2], before["points"].as_array().unwrap()[..]);
 }
 
-/// Runs through a shell, which counts them and does something else in the place of the one of that number.
+/// Runs through a shell, which counts them and does something else in the place of the one of that
+/// number.
 fn shell(counter: &Path, number: usize, instead: &str) -> Option<Apart> {
     let counter = counter.display();
     let script = format!(

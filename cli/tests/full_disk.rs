@@ -1,5 +1,5 @@
-//! A cache that runs out of room is a warning, through the process: its files may not grow beyond a limit of the
-//! shell, as on a disk that is full.
+//! A cache that runs out of room is a warning, through the process: its files may not grow beyond a
+//! limit of the shell, as on a disk that is full.
 
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,7 @@
 //! The program as users of a shell meet it: every test starts it as a process.
 //!
-//! `apart` and `panics` stand beside it: they call the library in their own process, and `panics` starts itself.
+//! `apart` and `panics` stand beside it: they call the library in their own process, and `panics`
+//! starts itself.
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 

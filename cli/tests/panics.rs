@@ -1,4 +1,5 @@
-//! A panic of a stage, of the runner and of the loader: exit code 70, who it was and what to do, and nothing else.
+//! A panic of a stage, of the runner and of the loader: exit code 70, who it was and what to do,
+//! and nothing else.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use serde_json::Value;

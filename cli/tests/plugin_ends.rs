@@ -90,7 +90,8 @@ fn settle(child: &Child) {
     std::thread::sleep(Duration::from_millis(700));
 }
 
-/// Whether this process leaves the end of its terminal unheard, as under `nohup`: the program then does so too, and would go on for ever.
+/// Whether this process leaves the end of its terminal unheard, as under `nohup`: the program then
+/// does so too, and would go on for ever.
 fn is_hup_ignored() -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|l| l.strip_prefix("SigIgn:"));

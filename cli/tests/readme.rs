@@ -1,9 +1,10 @@
-//! The commands of the README, of docs/reference/cli.md and of docs/guide run, word for word and in that order, and end with
-//! exit code 0.
+//! The commands of the README, of docs/reference/cli.md and of docs/guide run, word for word and in
+//! that order, and end with exit code 0.
 //!
-//! A command is a line of an indented block that begins with `toile `, `cargo ` or `.ci/`, and in the README a piece of code within a
-//! line that does. Those of the program run in a copy of `pipelines`, which some of them change, beside the files of a reader that the
-//! guide names. A whole run that the guide alone names is checked by `toile validate` here, and run by `.ci/wide`.
+//! A command is a line of an indented block that begins with `toile `, `cargo ` or `.ci/`, and in
+//! the README a piece of code within a line that does. Those of the program run in a copy of
+//! `pipelines`, which some of them change, beside the files of a reader that the guide names. A
+//! whole run that the guide alone names is checked by `toile validate` here, and run by `.ci/wide`.
 
 use std::collections::BTreeSet;
 use std::ffi::OsString;

@@ -1,4 +1,5 @@
-//! The `--set` lines that messages offer, typed by someone who reads them: each mends what it stands behind.
+//! The `--set` lines that messages offer, typed by someone who reads them: each mends what it
+//! stands behind.
 //!
 //! tests/tests/proposals.rs holds what the binariser `Auto` offers.
 

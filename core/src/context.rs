@@ -139,8 +139,9 @@ impl Context {
         Context { allowance, ..self }
     }
 
-    /// Counts work that was done: 1 for a step over all vertices of the garment. A stage that only improves on a result may take as much as that
-    /// result took; beyond, [`Context::check`] errs. Steps count, not seconds: a result does not depend on the machine.
+    /// Counts work that was done: 1 for a step over all vertices of the garment. A stage that only
+    /// improves on a result may take as much as that result took; beyond, [`Context::check`] errs.
+    /// Steps count, not seconds: a result does not depend on the machine.
     pub fn work(&self, steps: f64) {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner) += steps;
     }
@@ -150,9 +151,9 @@ impl Context {
         *self.work.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's cache where an
-    /// earlier run made it, else made by `make` and kept. For parts that outlive a change of the others, such as
-    /// the light on a garment whose texture is edited.
+    /// A part of the stage's work that depends on nothing but what `key` was fed: from the run's
+    /// cache where an earlier run made it, else made by `make` and kept. For parts that outlive a
+    /// change of the others, such as the light on a garment whose texture is edited.
     ///
     /// Errors: those of `make`, such as that of a stop; then nothing is kept.
     pub fn memo(
@@ -166,8 +167,8 @@ impl Context {
         }
     }
 
-    /// Calls `body(i)` for every `i` below `count` on the threads that the user allows, in any order, and
-    /// returns when all are done. Inside a plugin these are the program's threads.
+    /// Calls `body(i)` for every `i` below `count` on the threads that the user allows, in any
+    /// order, and returns when all are done. Inside a plugin these are the program's threads.
     pub fn parallel_for(&self, count: usize, body: impl Fn(usize) + Sync) {
         match &self.parallel {
             Some(parallel) => parallel.run(count, &body),
@@ -211,7 +212,8 @@ impl Context {
         &self.entry
     }
 
-    /// Errs once the user has asked to stop, or the stage has taken more work than it may. Call it at least every 50 ms.
+    /// Errs once the user has asked to stop, or the stage has taken more work than it may. Call it
+    /// at least every 50 ms.
     pub fn check(&self) -> Result<(), StageError> {
         if self.cancel.is_cancelled() {
             return Err(StageError::new(ErrorCode::Cancelled, "stopped on request"));
@@ -236,8 +238,8 @@ impl Context {
         self.listener.event(&self.stage, &self.entry, &event);
     }
 
-    /// Tells what was decided, and by what fact: "the front is taken for a T-shirt". It stands in the report, and in the
-    /// terminal where the user asks for more.
+    /// Tells what was decided, and by what fact: "the front is taken for a T-shirt". It stands in
+    /// the report, and in the terminal where the user asks for more.
     pub fn note(&self, text: impl Into<String>) {
         let text = text.into();
         self.listener.event(&self.stage, &self.entry, &Event::Note(text.clone()));
@@ -255,8 +257,8 @@ impl Context {
         self.remarks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Keeps what the stage has come to, for a look should it fail: a garment with an open seam, the mask of a photo that is refused. The last
-    /// one counts.
+    /// Keeps what the stage has come to, for a look should it fail: a garment with an open seam,
+    /// the mask of a photo that is refused. The last one counts.
     pub fn so_far(&self, artifact: impl ArtifactType) {
         self.take_over(Some(PortValue::One(Arc::new(artifact))));
     }
@@ -307,7 +309,8 @@ impl Context {
         there
     }
 
-    /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else did.
+    /// Keeps note of a file that was read elsewhere; its content is hashed here where nobody else
+    /// did.
     pub fn note_read(&self, path: &str, digest: Option<Digest>) {
         let digest = digest.or_else(|| digest_of(&crate::read_file(&self.resolve(path)).ok()?));
         self.reads.lock().unwrap_or_else(PoisonError::into_inner).push((path.to_owned(), digest));
@@ -333,8 +336,8 @@ impl Context {
         }
     }
 
-    /// The files that the stage has read so far, with the digests of their contents; `None` for one that could
-    /// not be read.
+    /// The files that the stage has read so far, with the digests of their contents; `None` for one
+    /// that could not be read.
     pub fn take_reads(&self) -> Vec<(String, Option<Digest>)> {
         std::mem::take(&mut *self.reads.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -383,8 +386,8 @@ const RELATIVE: &str = "paths are relative to the pipeline file";
 /// The most files of a folder that are compared with a name.
 const MAX_FILES: usize = 1000;
 
-/// A file beside one that is not there, with a name so like it that it was probably meant: its path as the pipeline would
-/// write it.
+/// A file beside one that is not there, with a name so like it that it was probably meant: its path
+/// as the pipeline would write it.
 fn near_file(path: &str, full: &Path) -> Option<String> {
     let name = full.file_name()?.to_str()?;
     let files = std::fs::read_dir(full.parent()?).ok()?.take(MAX_FILES).flatten();

@@ -69,8 +69,8 @@ impl ErrorCode {
         }
     }
 
-    /// The exit code of a run that ends with it: 3 what is wrong before anything is solved, 4 what solving came to, 5 out of
-    /// time or stopped, 70 a bug.
+    /// The exit code of a run that ends with it: 3 what is wrong before anything is solved, 4 what
+    /// solving came to, 5 out of time or stopped, 70 a bug.
     pub fn exit_code(self) -> u8 {
         match self {
             ErrorCode::PatternLoading
@@ -105,11 +105,13 @@ pub struct StageError {
     pub message: String,
     /// What the user may do about it.
     pub hint: Option<String>,
-    /// What lies behind it, for who asks: forces, counts, places in metres. Told with `--verbose`, in `reason.txt` and in the report.
+    /// What lies behind it, for who asks: forces, counts, places in metres. Told with `--verbose`,
+    /// in `reason.txt` and in the report.
     pub detail: Option<String>,
     /// The parameter at fault, so that the runner can point at it.
     pub param: Option<&'static str>,
-    /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside in.
+    /// The element of the parameter's value at fault: keys, or numbers in a list, from the outside
+    /// in.
     pub path: Vec<String>,
 }
 
@@ -155,7 +157,8 @@ impl StageError {
         self
     }
 
-    /// Names an element of the parameter's value: a key of a map, a field, the number of an item. Called again, one within it.
+    /// Names an element of the parameter's value: a key of a map, a field, the number of an item.
+    /// Called again, one within it.
     ///
     /// `error.at("photos").within("front").within("file")`
     pub fn within(mut self, key: impl ToString) -> Self {

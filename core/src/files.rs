@@ -1,7 +1,8 @@
 //! Reading files that somebody names: ordinary files alone.
 //!
-//! A pipe gives nothing until somebody writes into it, a device may give bytes for ever, and both may stand where a file is
-//! expected, as links too. So the kind is looked at before a file is opened, and no more is read than a file may hold.
+//! A pipe gives nothing until somebody writes into it, a device may give bytes for ever, and both
+//! may stand where a file is expected, as links too. So the kind is looked at before a file is
+//! opened, and no more is read than a file may hold.
 
 use std::fs::{File, Metadata};
 use std::io::{self, ErrorKind, Read};

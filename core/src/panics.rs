@@ -1,7 +1,8 @@
 //! Panics as words.
 //!
-//! A panic is a bug of the program or of a stage, never of its input. It ends the work at hand with an error that says what
-//! was said and where in the source, and what to do about it; the program goes on to say so and to clean up.
+//! A panic is a bug of the program or of a stage, never of its input. It ends the work at hand with
+//! an error that says what was said and where in the source, and what to do about it; the program
+//! goes on to say so and to clean up.
 
 use std::any::Any;
 use std::collections::VecDeque;
@@ -17,8 +18,8 @@ const KEPT: usize = 16;
 /// The last panics: what was said, and where.
 static PLACES: Mutex<VecDeque<(String, String)>> = Mutex::new(VecDeque::new());
 
-/// From now on panics print nothing by themselves, and their places are remembered for [`caught`]. With `RUST_BACKTRACE` set they
-/// are printed as usual.
+/// From now on panics print nothing by themselves, and their places are remembered for [`caught`].
+/// With `RUST_BACKTRACE` set they are printed as usual.
 pub fn quiet() {
     let usual = std::panic::take_hook();
     let loud = std::env::var_os("RUST_BACKTRACE").is_some_and(|v| v != "0");
@@ -37,7 +38,8 @@ pub fn quiet() {
     }));
 }
 
-/// Does the work; a panic in it becomes words: `index out of bounds: ... (core/pipeline/src/run/recall.rs:40)`.
+/// Does the work; a panic in it becomes words:
+/// `index out of bounds: ... (core/pipeline/src/run/recall.rs:40)`.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(words)
 }

@@ -1,4 +1,5 @@
-//! Loops over the threads of the program's pool; with the feature `rayon`, else one after the other.
+//! Loops over the threads of the program's pool; with the feature `rayon`, else one after the
+//! other.
 
 use std::sync::{Mutex, PoisonError};
 

@@ -97,16 +97,18 @@ impl Registry {
         self.cards.insert((card.name, card.role), Entry { card, maker, order });
     }
 
-    /// Adds the stages of a plugin that was loaded from `path`, all or none. A plugin that is there already is not added again.
+    /// Adds the stages of a plugin that was loaded from `path`, all or none. A plugin that is there
+    /// already is not added again.
     ///
-    /// Errors: why it is refused, by the loader or since a name is taken; a refused plugin stays listed with its reason.
+    /// Errors: why it is refused, by the loader or since a name is taken; a refused plugin stays
+    /// listed with its reason.
     pub fn add_plugin(&mut self, path: &Path, loaded: Result<Plugin, Refused>) -> Result<(), Refused> {
         let added = loaded.and_then(|plugin| self.take_plugin(path, plugin));
         added.inspect_err(|refused| self.refused.push(refused.clone()))
     }
 
-    /// From now on loads copies of plugins, so that their files may be replaced or written over while the program
-    /// goes on. A copy does not see libraries that lie beside the file.
+    /// From now on loads copies of plugins, so that their files may be replaced or written over
+    /// while the program goes on. A copy does not see libraries that lie beside the file.
     pub fn load_plugins_apart(&mut self) -> &mut Self {
         self.apart = true;
         self
@@ -147,8 +149,8 @@ impl Registry {
         &self.refused
     }
 
-    /// Says what was renamed or removed since pipeline files were written; changes stand in the order in which they
-    /// were made, and stay for good.
+    /// Says what was renamed or removed since pipeline files were written; changes stand in the
+    /// order in which they were made, and stay for good.
     pub fn migrate(&mut self, migration: Migration) -> &mut Self {
         self.migrations.push(migration);
         self
@@ -159,7 +161,8 @@ impl Registry {
         &self.migrations
     }
 
-    /// The version of a stage's parameters: one more than the changes of them and of the stage's name.
+    /// The version of a stage's parameters: one more than the changes of them and of the stage's
+    /// name.
     pub fn params_version(&self, stage: &str) -> u32 {
         let mut names = vec![stage];
         // Names lead to older names; each change is taken once.

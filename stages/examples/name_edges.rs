@@ -2,9 +2,10 @@
 //!
 //!     TOILE_SHARED=... cargo run --release -p toile-stages --example name_edges [OUT_DIR] [NAME]...
 //!
-//! Reads `$TOILE_SHARED/data/photos/*.jpg` (tees, tops and vests, or those named), makes the mask with `GraphCut()`,
-//! the outline with `Canny()` and names its edges; prints what came out, and draws the edges over the
-//! photos into OUT_DIR where one is given. Without `TOILE_SHARED` it prints "skipped".
+//! Reads `$TOILE_SHARED/data/photos/*.jpg` (tees, tops and vests, or those named), makes the mask
+//! with `GraphCut()`, the outline with `Canny()` and names its edges; prints what came out, and
+//! draws the edges over the photos into OUT_DIR where one is given. Without `TOILE_SHARED` it
+//! prints "skipped".
 
 #![allow(clippy::print_stdout)]
 

@@ -2,9 +2,9 @@
 //!
 //!     TOILE_SHARED=... cargo run --release -p toile-stages --example score_masks [OUT_DIR] ["STAGE(...)"]...
 //!
-//! Reads `$TOILE_SHARED/data/photos/*.jpg` and `masks/*.png`, prints the intersection over union of each
-//! photo and stage, and writes the masks beside the photos into OUT_DIR where one is given. Without
-//! `TOILE_SHARED` it prints "skipped".
+//! Reads `$TOILE_SHARED/data/photos/*.jpg` and `masks/*.png`, prints the intersection over union of
+//! each photo and stage, and writes the masks beside the photos into OUT_DIR where one is given.
+//! Without `TOILE_SHARED` it prints "skipped".
 
 #![allow(clippy::print_stdout)]
 

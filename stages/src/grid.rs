@@ -1,10 +1,12 @@
 //! Laplace and Poisson equations on the pixels of a picture.
 //!
-//! Neighbours `i`, `j` are joined by a weight `w` and a step `s` that is wanted between them. Found are the values `x` that make
-//! the sum of `w (x_j - x_i - s)^2` least, where some of them are given. With steps of zero this is Laplace's equation.
+//! Neighbours `i`, `j` are joined by a weight `w` and a step `s` that is wanted between them. Found
+//! are the values `x` that make the sum of `w (x_j - x_i - s)^2` least, where some of them are
+//! given. With steps of zero this is Laplace's equation.
 //!
-//! Method: conjugate gradients with the diagonal as preconditioner (Hestenes and Stiefel, 1952). Cost: ten operations a pixel and
-//! round. Limits: one thread; the rounds grow with the picture's longer side.
+//! Method: conjugate gradients with the diagonal as preconditioner (Hestenes and Stiefel, 1952).
+//! Cost: ten operations a pixel and round. Limits: one thread; the rounds grow with the picture's
+//! longer side.
 
 use toile_core::prelude::*;
 
@@ -30,7 +32,8 @@ pub(crate) struct End {
 }
 
 impl Grid {
-    /// The values between those that `fixed` gives, with steps of zero. Those of a part that is joined to no fixed value stay zero.
+    /// The values between those that `fixed` gives, with steps of zero. Those of a part that is
+    /// joined to no fixed value stay zero.
     ///
     /// Errors: the run was stopped.
     pub(crate) fn between_fixed(
@@ -43,8 +46,9 @@ impl Grid {
         self.improved(x, None, fixed, end, cx)
     }
 
-    /// The values that have these steps, known but for a constant: first on grids of half, a quarter and so on of the cells, each a start for
-    /// the next (nested iteration: Brandt, 1977), so that slow changes are right after few rounds.
+    /// The values that have these steps, known but for a constant: first on grids of half, a
+    /// quarter and so on of the cells, each a start for the next (nested iteration: Brandt, 1977),
+    /// so that slow changes are right after few rounds.
     ///
     /// Errors: the run was stopped.
     pub(crate) fn sum_of(&self, steps: &Steps<'_>, end: &End, cx: &Context) -> Result<Vec<f64>, StageError> {
@@ -66,7 +70,8 @@ impl Grid {
             return None;
         }
         let (cw, ch) = (w.div_ceil(2), h.div_ceil(2));
-        // Three steps lead from the middle of one pair to that of the next: half of the first, the second, half of the last.
+        // Three steps lead from the middle of one pair to that of the next: half of the first, the
+        // second, half of the last.
         let path = |list: &[f64], from: usize, next: usize, both: [usize; 2]| {
             let at = |k: usize, row: usize| list.get(from + k * next + row).copied().unwrap_or(0.0);
             both.map(|row| [at(0, row), at(1, row), at(2, row)])
@@ -131,7 +136,8 @@ impl Grid {
         Ok(x)
     }
 
-    /// Half the gradient of the sum; zero where values are fixed. Without steps: the product of the Laplacian with `x`.
+    /// Half the gradient of the sum; zero where values are fixed. Without steps: the product of the
+    /// Laplacian with `x`.
     fn gradient(&self, x: &[f64], steps: Option<&Steps<'_>>, fixed: &[Option<f64>], out: &mut [f64]) {
         out.fill(0.0);
         let (w, n) = (self.width, x.len());

@@ -1,5 +1,5 @@
-//! What a loaded collider costs in the solver's inner loop, by pairs: the vest sewn and draped on `SdfCollider`, in
-//! turn linked in and loaded, processor seconds of one thread. Linux.
+//! What a loaded collider costs in the solver's inner loop, by pairs: the vest sewn and draped on
+//! `SdfCollider`, in turn linked in and loaded, processor seconds of one thread. Linux.
 //!
 //!     RAYON_NUM_THREADS=1 cargo run --release -p toile-tests --example border -- 20
 //!

@@ -3,9 +3,9 @@
 //!     cargo run --release -p toile-tests --example held_against -- \
 //!         pipelines/vest.ron Settle stages.Subdivide.parts=6 -- pipelines/vest.ron Settle -- my.ron Settle KEY=VALUE ...
 //!
-//! Each group between `--` is a pipeline's file, the stage up to which it runs, and changed values. For every group after
-//! the first: triangles, processor seconds of the run, then distance and displacement from the first's garment (mean, 95 %,
-//! worst, mm).
+//! Each group between `--` is a pipeline's file, the stage up to which it runs, and changed values.
+//! For every group after the first: triangles, processor seconds of the run, then distance and
+//! displacement from the first's garment (mean, 95 %, worst, mm).
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::path::Path;

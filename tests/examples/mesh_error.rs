@@ -2,9 +2,10 @@
 //!
 //!     cargo run --release -p toile-tests --example mesh_error -- pipelines/vest.ron StaticEquilibrium "8 mm" [KEY=VALUE ...]
 //!
-//! Runs the pipeline up to the stage named second; then lays a grid of that fine edge over the same outlines, carries the drape over,
-//! lets it settle straight, and prints how far the settled garment is from the one it was carried from (mean, 95 %, worst, mm): the
-//! same state of rest on a mesh without, or nearly without, error. Beside it: processor seconds up to that stage and of
+//! Runs the pipeline up to the stage named second; then lays a grid of that fine edge over the same
+//! outlines, carries the drape over, lets it settle straight, and prints how far the settled
+//! garment is from the one it was carried from (mean, 95 %, worst, mm): the same state of rest on a
+//! mesh without, or nearly without, error. Beside it: processor seconds up to that stage and of
 //! that stage, triangles, and the outline's own errors.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 

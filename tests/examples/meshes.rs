@@ -2,8 +2,9 @@
 //!
 //!     cargo run --release -p toile-tests --example meshes -- pipelines/vest.ron StaticEquilibrium stages.GridMesher.edge '"16 mm","11.3 mm","8 mm"' [KEY=VALUE ...]
 //!
-//! Solves up to the stage named second with each of the values, and prints for each and the one before the distance and
-//! displacement (mean, 95 %, worst, mm), then by squares of the flat panels, 5 cm wide, the mean displacement (x, y, z, mm).
+//! Solves up to the stage named second with each of the values, and prints for each and the one
+//! before the distance and displacement (mean, 95 %, worst, mm), then by squares of the flat
+//! panels, 5 cm wide, the mean displacement (x, y, z, mm).
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::collections::BTreeMap;

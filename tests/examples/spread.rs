@@ -2,9 +2,10 @@
 //!
 //!     cargo run --release -p toile-tests --example spread -- pipelines/vest.ron StaticEquilibrium 4 0.001,0.1,1 [KEY=VALUE ...]
 //!
-//! Solves up to the stage named second, from the pipeline's own start and from so many starts moved by each of the amounts
-//! (mm, root mean square of a smooth field), and prints for each the distance between the two garments (mean, 95 %,
-//! worst, mm) and the displacement of the same points of cloth.
+//! Solves up to the stage named second, from the pipeline's own start and from so many starts moved
+//! by each of the amounts (mm, root mean square of a smooth field), and prints for each the
+//! distance between the two garments (mean, 95 %, worst, mm) and the displacement of the same
+//! points of cloth.
 #![allow(clippy::unwrap_used, clippy::print_stdout, missing_docs)]
 
 use std::path::Path;

@@ -16,8 +16,8 @@ pub struct Answer {
     pub err: String,
 }
 
-/// Calls `toile` with arguments, in this process. A run uses no cache but one that the arguments name: tests run stages,
-/// and leave no trace in the home folder.
+/// Calls `toile` with arguments, in this process. A run uses no cache but one that the arguments
+/// name: tests run stages, and leave no trace in the home folder.
 pub fn toile(arguments: &[&str]) -> Answer {
     let (mut out, mut err) = (Vec::new(), Vec::new());
     let caches = matches!(arguments.first(), Some(&"run" | &"explain"));
@@ -40,7 +40,8 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A pipeline's text without its solver: no line of `StaticEquilibrium` or `Subdivide`, and no qualities, which set them.
+/// A pipeline's text without its solver: no line of `StaticEquilibrium` or `Subdivide`, and no
+/// qualities, which set them.
 #[must_use]
 pub fn without_rest(text: &str) -> String {
     let (head, qualities) = text.split_once("    qualities: [").unwrap_or((text, ""));

@@ -14,7 +14,8 @@ pub const PIPELINE: &str = r#"// A napkin held at two corners.
 )
 "#;
 
-/// A square of 5 x 5 vertices, held at two corners, bent a little so that it knows which way to fall.
+/// A square of 5 x 5 vertices, held at two corners, bent a little so that it knows which way to
+/// fall.
 pub fn scene() -> Value {
     let (n, step) = (5, 0.05);
     let at = |i: usize| ((i % n) as f64 * step, (i / n) as f64 * step);

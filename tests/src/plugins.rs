@@ -7,8 +7,8 @@ use std::sync::Arc;
 use toile_core::{Cancel, Listener, Registry};
 use toile_pipeline::{Override, RunOptions, RunResult, load, run};
 
-/// The library of a plugin crate that the tests depend on, such as `toile_faulty`: cargo puts it beside the tests'
-/// programs, which lie in `deps`, as examples do not.
+/// The library of a plugin crate that the tests depend on, such as `toile_faulty`: cargo puts it
+/// beside the tests' programs, which lie in `deps`, as examples do not.
 pub fn library(name: &str) -> PathBuf {
     let file = format!("{}{name}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let program = std::env::current_exe().unwrap_or_default();
@@ -17,7 +17,8 @@ pub fn library(name: &str) -> PathBuf {
     beside.into_iter().chain(in_deps).find(|path| path.is_file()).unwrap_or_else(|| PathBuf::from(file))
 }
 
-/// The shipped vest sewn and draped against `SdfCollider`, which is asked in the solver's inner loop.
+/// The shipped vest sewn and draped against `SdfCollider`, which is asked in the solver's inner
+/// loop.
 ///
 /// Errors: what the loader or a stage says.
 pub fn vest_on_sdf(registry: &Registry) -> Result<RunResult, Box<dyn Error>> {

@@ -1,4 +1,5 @@
-//! `toile trade --ablate` on a small sheet: kept run by run, gone on with, started anew, cut short by its budget.
+//! `toile trade --ablate` on a small sheet: kept run by run, gone on with, started anew, cut short
+//! by its budget.
 
 use std::fs;
 use std::path::{Path, PathBuf};

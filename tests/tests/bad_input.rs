@@ -1,4 +1,5 @@
-//! What bad input gets: a clear error with its place and a hint, exit code 3, and no result written.
+//! What bad input gets: a clear error with its place and a hint, exit code 3, and no result
+//! written.
 
 use image::{Rgb, RgbImage};
 use std::path::{Path, PathBuf};

@@ -353,7 +353,8 @@ fn values_out_of_range_come_out_with_all_other_faults_in_the_order_of_the_file()
     assert!(message(1).starts_with("`height` is 105 m, above its greatest value "), "{}", message(1));
     assert!(message(4).starts_with("`edge` is 16 m, above its greatest value "), "{}", message(4));
 
-    // Of a stage with such a value nothing else is said: what it takes by default in its place is not the user's.
+    // Of a stage with such a value nothing else is said: what it takes by default in its place is
+    // not the user's.
     let file = vest(dir.path(), &[("low: 20", "low: 90"), ("high: 60", "high: 6000")]);
     let answer = toile(&["validate", &file]);
     assert_eq!((answer.code, answer.err.matches('×').count()), (3, 1), "{}", answer.err);

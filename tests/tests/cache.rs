@@ -1,4 +1,5 @@
-//! The cache on whole pipelines: the same bytes with and without it, and only what changed runs again.
+//! The cache on whole pipelines: the same bytes with and without it, and only what changed runs
+//! again.
 
 use serde_json::Value;
 use std::fs;

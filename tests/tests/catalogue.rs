@@ -1,6 +1,8 @@
-//! stages.md, stages.json and pipeline.schema.json in docs/reference are what the stages say of themselves.
+//! stages.md, stages.json and pipeline.schema.json in docs/reference are what the stages say of
+//! themselves.
 //!
-//! After a change of a stage's card: `UPDATE_DOCS=1 cargo test --release -p toile-tests --test whole catalogue::`.
+//! After a change of a stage's card:
+//! `UPDATE_DOCS=1 cargo test --release -p toile-tests --test whole catalogue::`.
 
 use std::collections::BTreeMap;
 use toile_core::{Card, Role};

@@ -1,7 +1,8 @@
 //! Files that import each other in a circle: none outside a module and its own children.
 //!
-//! Each file's paths are read (uses, and paths that begin with `crate`, `self` or `super`) and followed to the file that defines the
-//! name, through what a module hands on (`pub use`). A module and its descendants may name each other. Tests are passed over.
+//! Each file's paths are read (uses, and paths that begin with `crate`, `self` or `super`) and
+//! followed to the file that defines the name, through what a module hands on (`pub use`). A module
+//! and its descendants may name each other. Tests are passed over.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -19,7 +19,8 @@ fn cards(registry: &Registry) -> Vec<&Card> {
     registry.cards().filter(|c| only.as_ref().is_none_or(|name| name == c.name)).collect()
 }
 
-/// Holds every stage to those of its contracts that `wanted` picks; each that is shown as checked is run.
+/// Holds every stage to those of its contracts that `wanted` picks; each that is shown as checked
+/// is run.
 fn hold(wanted: impl Fn(Contract) -> bool) {
     let registry = registry();
     let mut broken = Vec::new();

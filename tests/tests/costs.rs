@@ -1,4 +1,5 @@
-//! What runs are expected to take, on the shipped pipelines: sizes, words, the record of earlier runs.
+//! What runs are expected to take, on the shipped pipelines: sizes, words, the record of earlier
+//! runs.
 
 use serde_json::Value;
 use std::path::Path;

@@ -1,11 +1,13 @@
-//! What pipelines leave out by facts of their scene: `toile explain` tells it, `toile trade --ablate` turns it round.
+//! What pipelines leave out by facts of their scene: `toile explain` tells it,
+//! `toile trade --ablate` turns it round.
 
 use image::{RgbImage, codecs::jpeg::JpegEncoder};
 use serde_json::Value;
 use std::path::Path;
 use toile_tests::{Answer, pipeline, root, toile};
 
-/// The lines on decisions that `explain` prints, without what a decision saves, which depends on the machine.
+/// The lines on decisions that `explain` prints, without what a decision saves, which depends on
+/// the machine.
 fn decisions(arguments: &[&str]) -> String {
     let answer = toile(&[&["explain"], arguments].concat());
     assert_eq!((answer.code, answer.err.as_str()), (0, ""));

@@ -1,8 +1,10 @@
-//! The documentation's shelves keep their form: links lead somewhere, the README and the guide stay short, the log is dated.
+//! The documentation's shelves keep their form: links lead somewhere, the README and the guide stay
+//! short, the log is dated.
 //!
-//! *Prose* is a page without fenced code, lines indented by four spaces, code within a line and the targets of links. A *number* is a
-//! group of digits, with points and commas between digits (`1,024.5` is one); numbers of lists at the begin of a line do not count. A
-//! *word* is a piece between white space that holds a letter.
+//! *Prose* is a page without fenced code, lines indented by four spaces, code within a line and the
+//! targets of links. A *number* is a group of digits, with points and commas between digits
+//! (`1,024.5` is one); numbers of lists at the begin of a line do not count. A *word* is a piece
+//! between white space that holds a letter.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -121,7 +123,8 @@ fn relative_links_lead_somewhere() {
     assert!(broken.is_empty(), "{broken:#?}");
 }
 
-/// Pages of the documentation that sources name by their path from the root. The log keeps the names of its day.
+/// Pages of the documentation that sources name by their path from the root. The log keeps the
+/// names of its day.
 #[test]
 fn pages_that_sources_name_exist() {
     let kinds = [".rs", ".ron", ".toml", ".md", ".h", ".sh", ".py", ".ci/run", ".ci/wide"];
@@ -194,4 +197,42 @@ fn prose_is_what_is_counted() {
     assert_eq!(targets(text), ["7.md"]);
     assert_eq!(numbers("0.5 to 12, then 3."), 3);
     assert_eq!(anchor("## Help it find the garment"), "help-it-find-the-garment");
+}
+
+/// The longest line of a comment, but for code, tables and headings of examples.
+const COMMENT: usize = 100;
+
+/// Lines of comments that are too long, with their numbers.
+fn long_comments(code: &str) -> Vec<usize> {
+    let mut fenced = false;
+    let is_long = |(number, line): (usize, &str)| {
+        let own = line.trim_start();
+        let Some(text) = ["/// ", "//! ", "// "].iter().find_map(|start| own.strip_prefix(start)) else {
+            fenced &= own.starts_with("//");
+            return None;
+        };
+        fenced ^= text.starts_with("```");
+        let is_prose = !fenced && !text.starts_with("    ") && !text.starts_with('|');
+        (is_prose && line.chars().count() > COMMENT).then_some(number + 1)
+    };
+    code.lines().enumerate().filter_map(is_long).collect()
+}
+
+#[test]
+fn comments_are_no_wider_than_a_page() {
+    let long = "word ".repeat(25);
+    let code = format!(
+        "/// {long}\n//!     {long}\n// | {long}\n// ```\n// {long}\n// ```\nlet x = \"{long}\";\n// {long}"
+    );
+    assert_eq!(long_comments(&code), [1, 8]);
+    let sources = files(&root(), &[".rs"]);
+    assert!(sources.len() > 900, "{}", sources.len());
+    let wide: Vec<String> = sources
+        .iter()
+        .flat_map(|file| {
+            let long = long_comments(&fs::read_to_string(file).unwrap());
+            long.into_iter().map(move |line| format!("{}:{line}", file.display()))
+        })
+        .collect();
+    assert!(wide.is_empty(), "{wide:#?}");
 }

@@ -1,4 +1,5 @@
-//! Whatever is sewn is what is written: the last pattern of every shipped pipeline has the outlines of its panels.
+//! Whatever is sewn is what is written: the last pattern of every shipped pipeline has the outlines
+//! of its panels.
 
 use std::any::Any;
 use std::sync::Arc;

@@ -101,7 +101,8 @@ fn body_intersection() {
     assert!(body.1.starts_with("the cloth lies in the body at "), "{}", body.1);
 }
 
-/// A needle of a triangular section that stands in a triangle of the garment, no longer than its side.
+/// A needle of a triangular section that stands in a triangle of the garment, no longer than its
+/// side.
 fn needle_through(garment: &Garment, triangle: usize) -> Body {
     let [a, b, c] = garment.triangles[triangle].map(|i| garment.positions[i as usize]);
     let middle = Point3::from((a.coords + b.coords + c.coords) / 3.0);

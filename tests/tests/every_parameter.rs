@@ -1,7 +1,8 @@
-//! Every parameter acts: with another value a stage gives something else on some input of the shared suite, or refuses it.
+//! Every parameter acts: with another value a stage gives something else on some input of the
+//! shared suite, or refuses it.
 //!
-//! A value is made from the parameter's type, default and range; [`VALUES`] has those that no rule makes. What the suite does not
-//! show stands in [`UNSEEN`], which only gets shorter.
+//! A value is made from the parameter's type, default and range; [`VALUES`] has those that no rule
+//! makes. What the suite does not show stands in [`UNSEEN`], which only gets shorter.
 #![allow(clippy::unwrap_used)]
 
 use image::{Rgb, RgbImage};
@@ -43,7 +44,8 @@ const BESIDE: &[(&str, &str)] = &[
     ("Usdz.quality", "textures: Jpeg"),
 ];
 
-/// Parameters that change nothing on the shared suite: each wants an input on which it must matter, or goes.
+/// Parameters that change nothing on the shared suite: each wants an input on which it must matter,
+/// or goes.
 const UNSEEN: &[&str] = &[
     "Arrange.bend",
     "Arrange.clearance",
@@ -158,7 +160,8 @@ fn more(card: &Card) -> Vec<Inputs> {
     [hard_photos(card), garments_alone(card)].concat()
 }
 
-/// Photos of a garment with a hole, specks and a shadow on uneven ground, whole and cut by the frame.
+/// Photos of a garment with a hole, specks and a shadow on uneven ground, whole and cut by the
+/// frame.
 fn hard_photos(card: &Card) -> Vec<Inputs> {
     let Some(port) = card.inputs.iter().position(|p| p.kind == Photo::KIND) else { return Vec::new() };
     let with = |cut: bool| {
@@ -170,7 +173,8 @@ fn hard_photos(card: &Card) -> Vec<Inputs> {
     [false, true].into_iter().filter_map(with).collect()
 }
 
-/// A garment held at its upper rim, without phases, which would set gravity and air; and one that bulges and so cannot be laid flat.
+/// A garment held at its upper rim, without phases, which would set gravity and air; and one that
+/// bulges and so cannot be laid flat.
 fn garments_alone(card: &Card) -> Vec<Inputs> {
     let Some(port) = card.inputs.iter().position(|p| p.kind == Garment::KIND) else { return Vec::new() };
     let with = |garment: Garment| {

@@ -1,4 +1,5 @@
-//! A garment that misses its body or slides off it is a failure, told early; one that keeps its place is not.
+//! A garment that misses its body or slides off it is a failure, told early; one that keeps its
+//! place is not.
 
 use serde_json::{Value, json};
 use toile_tests::{Answer, root, toile};

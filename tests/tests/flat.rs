@@ -131,7 +131,8 @@ fn the_programs_own_garment_comes_back_as_the_pattern_that_it_was_sewn_from() {
     }
 }
 
-/// The greatest distance of an outline from where it was cut, mm, after a shipped pipeline and a flattener.
+/// The greatest distance of an outline from where it was cut, mm, after a shipped pipeline and a
+/// flattener.
 fn round_trip(name: &str, flattener: &str) -> f64 {
     let dir = tempfile::tempdir().unwrap();
     run_with(name, &format!("{flattener}(), FlatTable()"), dir.path());
@@ -140,7 +141,8 @@ fn round_trip(name: &str, flattener: &str) -> f64 {
     far.fold(0.0, f64::max)
 }
 
-/// Outlines are at most so far from where they were cut, mm, by `Arap` and by `Woven`, which knows the fabric.
+/// Outlines are at most so far from where they were cut, mm, by `Arap` and by `Woven`, which knows
+/// the fabric.
 fn within(limits: &[(&str, [f64; 2])]) {
     for (name, limits) in limits {
         for (flattener, limit) in ["Arap", "Woven"].iter().zip(limits) {
@@ -156,7 +158,8 @@ fn a_draped_skirt_comes_back_as_it_was_cut() {
     within(&[("scene.ron", [1.5, 1.5]), ("skirt.ron", [1.5, 1.5])]);
 }
 
-/// All that sew a garment. What is farther than 2 mm is stretched by the body that it lies tight on, and by its weight.
+/// All that sew a garment. What is farther than 2 mm is stretched by the body that it lies tight
+/// on, and by its weight.
 #[test]
 #[ignore = "slow: .ci/wide"]
 fn every_shipped_style_comes_back_as_it_was_cut() {
@@ -205,7 +208,8 @@ fn dart_tips(file: &Path) -> Vec<(String, [f64; 2])> {
     tips
 }
 
-/// The place in space of the vertex whose flat place on a panel is nearest; of a `GarmentObj(flat: true, groups: true)`.
+/// The place in space of the vertex whose flat place on a panel is nearest; of a
+/// `GarmentObj(flat: true, groups: true)`.
 fn in_space(obj: &str, panel: &str, flat: [f64; 2]) -> [f64; 3] {
     let numbers = |kind: &str| -> Vec<Vec<f64>> {
         let lines = obj.lines().filter_map(|l| l.strip_prefix(kind));
@@ -222,7 +226,8 @@ fn in_space(obj: &str, panel: &str, flat: [f64; 2]) -> [f64; 3] {
     [0, 1, 2].map(|k| places[nearest][k])
 }
 
-/// The draped dress as a mesh without its pattern: its bodice, sewn shut at six darts, is cut open at six again.
+/// The draped dress as a mesh without its pattern: its bodice, sewn shut at six darts, is cut open
+/// at six again.
 #[test]
 #[ignore = "slow: .ci/wide"]
 fn darts_of_a_fitted_bodice_are_found_again() {

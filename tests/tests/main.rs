@@ -1,7 +1,9 @@
-//! Tests of whole pipelines, in one program: linking one for each file took longer than most of them run.
+//! Tests of whole pipelines, in one program: linking one for each file took longer than most of
+//! them run.
 //!
-//! Beside it stand `any_input` and `fuzz`, which `.ci/wide` runs with more cases (`fuzz` counts what its process holds), and
-//! `contracts`, which holds stages to milliseconds: another test's work on the same threads would be counted as theirs.
+//! Beside it stand `any_input` and `fuzz`, which `.ci/wide` runs with more cases (`fuzz` counts
+//! what its process holds), and `contracts`, which holds stages to milliseconds: another test's
+//! work on the same threads would be counted as theirs.
 #![allow(clippy::unwrap_used, clippy::print_stdout, clippy::print_stderr)]
 
 mod ablation;

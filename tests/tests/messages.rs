@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use toile_tests::root;
 
-/// Words that only who knows the engine understands. A parameter's name stands in backticks, and may be one of them.
+/// Words that only who knows the engine understands. A parameter's name stands in backticks, and
+/// may be one of them.
 const ENGINE_WORDS: [&str; 15] = [
     " lay,",
     "smoother lay",
@@ -25,7 +26,8 @@ const ENGINE_WORDS: [&str; 15] = [
     "converge",
 ];
 
-/// Where such a word is the user's own: it stands in the file that they gave, or in the one that is written.
+/// Where such a word is the user's own: it stands in the file that they gave, or in the one that is
+/// written.
 const OWN_WORDS: [(&str, &str, &str); 15] = [
     ("flat/sheet.rs", "vertex", "the mesh to flatten is the user's"),
     ("flat/file/read_glb.rs", "vert", "the mesh to flatten is the user's"),
@@ -57,7 +59,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Text literals of a source with their lines, without comments and attributes, continued lines joined.
+/// Text literals of a source with their lines, without comments and attributes, continued lines
+/// joined.
 fn literals(code: &str) -> Vec<(usize, String)> {
     let bytes: Vec<char> = code.chars().collect();
     let (mut found, mut i, mut line) = (Vec::new(), 0, 1);

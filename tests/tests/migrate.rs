@@ -3,8 +3,8 @@
 use std::fs;
 use toile_tests::{PIPELINES, pipeline, toile};
 
-/// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium, Refine is Subdivide; parameters have other
-/// names, `tugs` of the stitcher is gone.
+/// As the first versions wrote it: LaplacianEdges is Laplacian now, Rest is StaticEquilibrium,
+/// Refine is Subdivide; parameters have other names, `tugs` of the stitcher is gone.
 const OLD: &str = r#"// My vest.
 (
     photos: { "front": (file: "front.jpg", width: "52 cm"), "back": MirrorOf("front") },

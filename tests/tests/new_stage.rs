@@ -1,7 +1,8 @@
-//! `toile new-stage`: what it writes builds, loads and passes its own tests; what it refuses it names.
+//! `toile new-stage`: what it writes builds, loads and passes its own tests; what it refuses it
+//! names.
 //!
-//! Crates are built by `.ci/wide` alone: they share the workspace's target folder, and still compile for a minute what has other
-//! features there.
+//! Crates are built by `.ci/wide` alone: they share the workspace's target folder, and still
+//! compile for a minute what has other features there.
 
 use std::collections::BTreeSet;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -40,7 +41,8 @@ fn cargo(folder: &Path, arguments: &[&str]) -> String {
     text
 }
 
-/// The crates that are built for a package with its build scripts, without what its tests need; none where cargo is not at hand.
+/// The crates that are built for a package with its build scripts, without what its tests need;
+/// none where cargo is not at hand.
 fn crates(package: &str) -> Option<BTreeSet<String>> {
     let arguments = ["tree", "--offline", "-p", package, "-e", "normal,build", "--prefix", "none"];
     let out = Command::new(env!("CARGO")).args(arguments).current_dir(root()).output().ok()?;
@@ -49,8 +51,8 @@ fn crates(package: &str) -> Option<BTreeSet<String>> {
     Some(text.lines().filter(|l| !l.is_empty() && !l.ends_with("(*)")).map(str::to_owned).collect())
 }
 
-/// What the author of a mesher builds: the crate that `toile new-stage` writes depends on toile-core alone, and
-/// `plugins/lattice` on a triangulation as well.
+/// What the author of a mesher builds: the crate that `toile new-stage` writes depends on
+/// toile-core alone, and `plugins/lattice` on a triangulation as well.
 #[test]
 fn the_author_of_a_mesher_builds_thirty_crates_at_most() {
     let (Some(core), Some(lattice)) = (crates("toile-core"), crates("toile-lattice")) else { return };

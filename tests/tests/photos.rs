@@ -1,7 +1,7 @@
 //! Real photos, carried through to the draped garment.
 //!
-//! The photos are no part of the repository: `TOILE_SHARED` names a folder with `data/photos/*.jpg`; without it
-//! the tests say "skipped". docs/log tells of all photos.
+//! The photos are no part of the repository: `TOILE_SHARED` names a folder with
+//! `data/photos/*.jpg`; without it the tests say "skipped". docs/log tells of all photos.
 
 use std::path::PathBuf;
 use toile_tests::{pipeline, toile};

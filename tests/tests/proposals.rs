@@ -32,7 +32,8 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// Calls such as `Neckline(depth: ...)` in a text: the stage, and the parameters that it names outside of any inner parentheses.
+/// Calls such as `Neckline(depth: ...)` in a text: the stage, and the parameters that it names
+/// outside of any inner parentheses.
 fn calls(text: &str) -> Vec<(String, Vec<String>)> {
     let mut found = Vec::new();
     for (at, _) in text.match_indices('(') {
@@ -109,7 +110,8 @@ fn proposed(message: &str) -> Vec<String> {
     joined.split("--set '").skip(1).filter_map(|rest| Some(rest.split_once('\'')?.0.to_owned())).collect()
 }
 
-/// A photo that `Auto` refuses is taken with the line that it offers, and the line is not offered again.
+/// A photo that `Auto` refuses is taken with the line that it offers, and the line is not offered
+/// again.
 fn helps(photo: &RgbImage, reason: &str) {
     let dir = tempfile::tempdir().unwrap();
     let file = dir.path().join("mine.png");

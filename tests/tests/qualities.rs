@@ -171,7 +171,8 @@ fn stamped(name: &str) -> (String, String) {
     (text, stamped)
 }
 
-/// Where a pipeline or its stages changed and the measurement still holds (the golden's bits are the same, or it was made anew):
+/// Where a pipeline or its stages changed and the measurement still holds (the golden's bits are
+/// the same, or it was made anew):
 /// `UPDATE_QUALITIES=1 cargo test --release -p toile-tests --test whole qualities::the_shipped`.
 #[test]
 fn the_shipped_qualities_were_measured_for_their_pipelines() {

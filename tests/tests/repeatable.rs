@@ -5,7 +5,8 @@ use std::path::Path;
 use toile_cloth::scene::{Scene, body_to_obj, generate, to_json};
 use toile_tests::{pipeline, toile};
 
-/// Where the vertices of a scene come to rest by `pipelines/scene.ron`, mm; `code` is the exit code that it must end with.
+/// Where the vertices of a scene come to rest by `pipelines/scene.ron`, mm; `code` is the exit code
+/// that it must end with.
 fn at_rest(dir: &Path, scene: &Scene, code: u8, more: &[&str]) -> Vec<[f64; 3]> {
     fs::write(dir.join("scene.json"), to_json(scene, "body.obj")).unwrap();
     fs::write(dir.join("body.obj"), body_to_obj(scene)).unwrap();
@@ -21,8 +22,8 @@ fn at_rest(dir: &Path, scene: &Scene, code: u8, more: &[&str]) -> Vec<[f64; 3]> 
     text.lines().filter_map(vertex).collect()
 }
 
-/// How far 95 % of the vertices end at most from where they end without the move, over starts of which every vertex is moved by
-/// 1 mm, mm.
+/// How far 95 % of the vertices end at most from where they end without the move, over starts of
+/// which every vertex is moved by 1 mm, mm.
 fn spread(scene: &Scene, starts: u64, code: u8, more: &[&str]) -> f64 {
     let dir = tempfile::tempdir().unwrap();
     let own = at_rest(dir.path(), scene, code, more);

@@ -1,4 +1,5 @@
-//! `toile trade` and `toile tune` on a small sheet: measured, gone on with, picked, proved, written.
+//! `toile trade` and `toile tune` on a small sheet: measured, gone on with, picked, proved,
+//! written.
 
 use serde_json::Value;
 use std::fs;

@@ -1,5 +1,6 @@
-//! The turntable's page in a browser without WebGL: it loads, and shows the garment. Skipped where no Chromium is on the path. A browser
-//! beside other tests may come too late, so `.ci/wide` runs it.
+//! The turntable's page in a browser without WebGL: it loads, and shows the garment. Skipped where
+//! no Chromium is on the path. A browser beside other tests may come too late, so `.ci/wide` runs
+//! it.
 #![allow(clippy::unwrap_used, clippy::print_stderr)]
 
 use base64::Engine;
@@ -69,7 +70,8 @@ fn the_page_loads_without_webgl_and_shows_the_garment() {
     assert!(dark > 5_000, "{dark} dark pixels");
 }
 
-/// Puts the picture on the page's canvas into the page's text, two seconds after the views are read.
+/// Puts the picture on the page's canvas into the page's text, two seconds after the views are
+/// read.
 const SHOW: &str = "<script>const wait = setInterval(() => {
   if (!document.querySelector('[data-tt-loaded]')) return;
   clearInterval(wait);
@@ -98,7 +100,8 @@ fn shown(browser: &Path, dir: &Path, page: &Path, azimuth: f64, elevation: f64) 
 /// The stage's ground.
 const GROUND: f64 = 232.0;
 
-/// Peak signal-to-noise ratio over the pixels that the truth covers whole, dB; what is shown lies on the stage's ground.
+/// Peak signal-to-noise ratio over the pixels that the truth covers whole, dB; what is shown lies
+/// on the stage's ground.
 fn psnr(shown: &RgbaImage, truth: &RgbaImage) -> f64 {
     let on_ground = |p: [u8; 4], c: usize| {
         let a = f64::from(p[3]) / 255.0;
@@ -111,7 +114,8 @@ fn psnr(shown: &RgbaImage, truth: &RgbaImage) -> f64 {
     10.0 * (255.0_f64.powi(2) * 3.0 * seen().count() as f64 / squares).log10()
 }
 
-/// Rendered views laid over each other with these weights: what a page would show that moves no pixel.
+/// Rendered views laid over each other with these weights: what a page would show that moves no
+/// pixel.
 fn faded(views: &[(RgbaImage, f64)]) -> RgbaImage {
     RgbaImage::from_fn(views[0].0.width(), views[0].0.height(), |x, y| {
         let sum = |value: &dyn Fn([u8; 4]) -> f64| -> f64 {
@@ -123,8 +127,9 @@ fn faded(views: &[(RgbaImage, f64)]) -> RgbaImage {
     })
 }
 
-/// Places between the views of 24 azimuths and the tiers of -5, 15 and 40 degrees, with the nearest views and their weights, and the
-/// least that `Depth` shows of them and that `Flow` gains over laying the views over each other, dB.
+/// Places between the views of 24 azimuths and the tiers of -5, 15 and 40 degrees, with the nearest
+/// views and their weights, and the least that `Depth` shows of them and that `Flow` gains over
+/// laying the views over each other, dB.
 type Place = ((f64, f64), &'static [(f64, f64, f64)], (f64, f64));
 const PLACES: [Place; 5] = [
     ((7.5, 15.0), &[(0.0, 15.0, 0.5), (15.0, 15.0, 0.5)], (35.0, 3.0)),

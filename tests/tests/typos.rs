@@ -1,10 +1,12 @@
-//! Typical slips in every shipped pipeline: each is one fault, at its place, with the name that was meant.
+//! Typical slips in every shipped pipeline: each is one fault, at its place, with the name that was
+//! meant.
 
 use serde_json::Value;
 use std::fs;
 use toile_tests::{PIPELINES, pipeline, toile};
 
-/// What stands in the file, the slip with `^` before the place of its fault, what is said, and the hint's beginning.
+/// What stands in the file, the slip with `^` before the place of its fault, what is said, and the
+/// hint's beginning.
 type Slip = (&'static str, &'static str, &'static str, &'static str);
 
 const SLIPS: [Slip; 32] = [

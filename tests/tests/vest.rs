@@ -1,5 +1,5 @@
-//! The README's job: two photos in, a sewn and draped vest out, within its quality limits; in the quality that is quickest, since
-//! goldens and the README's commands run the file as it stands.
+//! The README's job: two photos in, a sewn and draped vest out, within its quality limits; in the
+//! quality that is quickest, since goldens and the README's commands run the file as it stands.
 
 use serde_json::Value;
 use std::path::Path;

@@ -111,7 +111,8 @@ fn a_triangle_is_followed_to_its_panel_edge_and_pixel() {
             )
         )
     );
-    // The last triangles of the GLB file are those of the wrong side of the last panel; its right side has the same place.
+    // The last triangles of the GLB file are those of the wrong side of the last panel; its right
+    // side has the same place.
     let end = count.parse::<usize>().unwrap() - 1;
     let wrong = why("garment.glb", &end.to_string(), &[]).out;
     assert!(wrong.contains(" of panel \"front\"\n"), "{wrong}");

@@ -1,8 +1,9 @@
 //! What is turned where the user names no knob.
 //!
-//! The stages decide most of a garment's time and error in this order: edge length of the mesh, solver, when it stops,
-//! mesher. Where a draped garment is laid out finer and draped on, that mesh and the last solver are turned: the first mesh picks the
-//! folds, and another one would pick others. Their ranges are factors around the pipeline's own values.
+//! The stages decide most of a garment's time and error in this order: edge length of the mesh,
+//! solver, when it stops, mesher. Where a draped garment is laid out finer and draped on, that mesh
+//! and the last solver are turned: the first mesh picks the folds, and another one would pick
+//! others. Their ranges are factors around the pipeline's own values.
 
 use crate::dial::{Form, is_spatial, numeric};
 use crate::knob::{KnobSpec, Number, Values};

@@ -93,7 +93,8 @@ impl Dial {
         is_same(a, b) || matches!((self.share(a), self.share(b)), (Some(x), Some(y)) if (x - y).abs() < share)
     }
 
-    /// The share of its range at which a number stands, below 0 or above 1 for one outside; none where there is no range.
+    /// The share of its range at which a number stands, below 0 or above 1 for one outside; none
+    /// where there is no range.
     fn share(&self, value: &str) -> Option<f64> {
         let Dial::Range { lo, hi, log, .. } = self else { return None };
         let x = numeric(value)?;
@@ -134,7 +135,8 @@ pub fn numeric(text: &str) -> Option<f64> {
     bare.parse::<f64>().ok().or_else(|| bare.parse::<Length>().ok().map(Length::metres))
 }
 
-/// Which way a parameter is refined, by its card: 1 where less is finer, -1 where more is; none where it is no resolution.
+/// Which way a parameter is refined, by its card: 1 where less is finer, -1 where more is; none
+/// where it is no resolution.
 pub(crate) fn way(doc: &ParamDoc) -> Option<f64> {
     doc.finer.map(|finer| match finer {
         Finer::Less => 1.0,
@@ -142,8 +144,8 @@ pub(crate) fn way(doc: &ParamDoc) -> Option<f64> {
     })
 }
 
-/// True of a resolution in space, such as an edge length or the parts of an edge: the reference must have a finer one than what it
-/// judges. Steps and tolerances may be equal.
+/// True of a resolution in space, such as an edge length or the parts of an edge: the reference
+/// must have a finer one than what it judges. Steps and tolerances may be equal.
 pub(crate) fn is_spatial(doc: &ParamDoc) -> bool {
     let parts = Form::of(doc) == Some(Form::Whole) && doc.unit == "parts";
     doc.finer.is_some() && (Form::of(doc) == Some(Form::Length) || parts)
@@ -154,7 +156,8 @@ pub(crate) fn rounded(x: f64) -> f64 {
     to_digits(x, 3)
 }
 
-/// True where `value` is finer than `other` by a factor; `way` is 1 where less is finer, -1 where more is.
+/// True where `value` is finer than `other` by a factor; `way` is 1 where less is finer, -1 where
+/// more is.
 pub(crate) fn is_finer(way: f64, value: f64, other: f64, factor: f64) -> bool {
     (other / value).powf(way) >= factor * (1.0 - 1e-9)
 }

@@ -1,12 +1,13 @@
 //! The error below which figures against a reference mean nothing.
 //!
-//! It is the greatest of what is known of the reference's own fault: what its finest level still lacks (Richardson), or, where its
-//! levels show no order, what it would lack if its last refinement were one of first order; and how far its own moved
-//! starts and its neighbours, a little finer and coarser, end from it.
+//! It is the greatest of what is known of the reference's own fault: what its finest level still
+//! lacks (Richardson), or, where its levels show no order, what it would lack if its last
+//! refinement were one of first order; and how far its own moved starts and its neighbours, a
+//! little finer and coarser, end from it.
 //!
-//! Why first order: the last move alone says too little. A vest whose last refinement, of 4 to 6 parts of an edge, moved it by
-//! 0.39 mm lay 0.84 mm from one of 16 parts (0.78 at first order), and one whose last refinement by a root of two moved it by
-//! 3.9 mm went on by 20 mm (9.4).
+//! Why first order: the last move alone says too little. A vest whose last refinement, of 4 to 6
+//! parts of an edge, moved it by 0.39 mm lay 0.84 mm from one of 16 parts (0.78 at first order),
+//! and one whose last refinement by a root of two moved it by 3.9 mm went on by 20 mm (9.4).
 
 use crate::record::{Neighbours, OwnSpread, Reference};
 use crate::richardson::{Step, at_first_order};
@@ -36,7 +37,8 @@ pub enum By {
 }
 
 impl Floor {
-    /// `the reference is known to 8.32 mm only: its levels show no order, and at first order so much is missing`.
+    /// "the reference is known to 8.32 mm only: its levels show no order, and at first order so
+    /// much is missing".
     pub fn words(&self) -> String {
         let why = match self.by {
             By::Nothing => return "nothing tells how well the reference is known: it was not refined".into(),
@@ -65,8 +67,8 @@ impl Floor {
 }
 
 impl Reference {
-    /// How well it is known; none where neither its levels nor moved starts tell. Of a reference of one level nothing is
-    /// known, however well its moved starts agree: the floor is infinite.
+    /// How well it is known; none where neither its levels nor moved starts tell. Of a reference of
+    /// one level nothing is known, however well its moved starts agree: the floor is infinite.
     pub fn floor(&self) -> Option<Floor> {
         if self.levels.len() == 1 {
             return Some(Floor { mm: f64::INFINITY, by: By::Nothing });
@@ -119,8 +121,8 @@ mod tests {
         let floor = |missing, start| reference(levels(), missing, start).floor();
         assert_eq!(floor(Some(0.2), Some(5.8)), Some(Floor { mm: 5.8, by: By::Spread }));
         assert_eq!(floor(Some(0.2), Some(0.0)), Some(Floor { mm: 0.2, by: By::Missing }));
-        // Levels that do not come nearer: quiet starts do not make them a reference. Half as fine again would be a third of
-        // the way to the limit at first order.
+        // Levels that do not come nearer: quiet starts do not make them a reference. Half as fine
+        // again would be a third of the way to the limit at first order.
         assert_eq!(floor(None, Some(0.0)), Some(Floor { mm: 2.0 * 8.32, by: By::Unordered }));
         // Quiet starts of one level do not make it known.
         let alone = reference(vec![moved(None)], None, Some(0.1));

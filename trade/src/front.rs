@@ -19,7 +19,8 @@ impl Cost {
     }
 }
 
-/// Indices of the points that nothing beats, by ascending time. Points that are not finite are never among them.
+/// Indices of the points that nothing beats, by ascending time. Points that are not finite are
+/// never among them.
 pub fn front(costs: &[Cost]) -> Vec<usize> {
     let finite = |c: &Cost| c.time.is_finite() && c.error.is_finite();
     let mut order: Vec<usize> = (0..costs.len()).filter(|&i| finite(&costs[i])).collect();

@@ -1,15 +1,15 @@
 //! The tape measure around a garment or a body at some height.
 //!
-//! The surface is cut by a level plane; pieces of the cut that hang together form one curve each; the trunk's is the
-//! longest of those that go around the middle. A tape spans hollows, so a girth is the length of the convex hull
-//! (ISO 8559). Cost: one pass over the triangles. Limit: where the garment is open at that height (a neckline), the tape
-//! still closes.
+//! The surface is cut by a level plane; pieces of the cut that hang together form one curve each;
+//! the trunk's is the longest of those that go around the middle. A tape spans hollows, so a girth
+//! is the length of the convex hull (ISO 8559). Cost: one pass over the triangles. Limit: where the
+//! garment is open at that height (a neckline), the tape still closes.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{Body, Garment, Point2, Point3};
 
-/// The girth of the part of a surface that goes around the vertical line x = `middle`, metres; none where the plane
-/// meets no such part.
+/// The girth of the part of a surface that goes around the vertical line x = `middle`, metres; none
+/// where the plane meets no such part.
 pub(crate) fn girth(positions: &[Point3], triangles: &[[u32; 3]], height: f64, middle: f64) -> Option<f64> {
     let pieces = pieces(positions, triangles, height);
     let astride =

@@ -1,10 +1,12 @@
 //! Starts that differ a little: a garment's own spread of equilibria.
 //!
-//! Folds and friction have many states of rest; a start moved by a millimetre may end in another. The start is moved by
-//! a smooth field, a sum of plane waves of 5 to 40 cm with random directions and phases: the same field for every mesh of
-//! the same garment, and too smooth to fold a triangle or cross two layers. Pinned vertices stay.
+//! Folds and friction have many states of rest; a start moved by a millimetre may end in another.
+//! The start is moved by a smooth field, a sum of plane waves of 5 to 40 cm with random directions
+//! and phases: the same field for every mesh of the same garment, and too smooth to fold a triangle
+//! or cross two layers. Pinned vertices stay.
 //!
-//! [`insert`] puts the move before the first stage that sews or drapes; it is no stage of the catalogue.
+//! [`insert`] puts the move before the first stage that sews or drapes; it is no stage of the
+//! catalogue.
 
 use toile_core::prelude::*;
 use toile_core::{Feed, Node};

@@ -1,7 +1,8 @@
 //! `--knob KEY=VALUES`: what may be turned, as the user writes it.
 //!
-//! A key names a stage of the pipeline or a role (`mesher`, `collider`, `solver` for the draper), alone for the choice
-//! of the stage itself, or with a parameter. Values are a range with a unit, or a list:
+//! A key names a stage of the pipeline or a role (`mesher`, `collider`, `solver` for the draper),
+//! alone for the choice of the stage itself, or with a parameter. Values are a range with a unit,
+//! or a list:
 //!
 //! ```text
 //! mesher.edge=6..24 mm        GridMesher.edge=6 mm..2.4 cm      StaticEquilibrium.speed=1e-4..1e-2

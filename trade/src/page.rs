@@ -1,4 +1,5 @@
-//! The files of a measurement: CSV, JSON, the picture twice, and a page on which each setting shows its garment.
+//! The files of a measurement: CSV, JSON, the picture twice, and a page on which each setting shows
+//! its garment.
 
 use crate::measure::Ran;
 use crate::plot::{marks, png, svg};

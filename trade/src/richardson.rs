@@ -1,15 +1,20 @@
-//! Has a sequence of refinements stopped moving? Richardson's observed order and what is still missing.
+//! Has a sequence of refinements stopped moving? Richardson's observed order and what is still
+//! missing.
 //!
-//! Of meshes each r_k times finer than the one before let d_k be the distance between result k - 1 and k. Where the error is
-//! C h^p, d_{k-1} / d_k = (r_{k-1}^p - 1) / (1 - r_k^-p), which grows with p and is r^p where the factors are equal, and the
-//! finest result still lacks d_last / (r_last^p - 1) (Richardson 1911; Roache 1998). Factors differ where a resolution is a
-//! whole number: of 2, 3 and 4 parts the second is 1.5 times finer than the first, the third 1.33 times than the second.
+//! Of meshes each r_k times finer than the one before let d_k be the distance between result k - 1
+//! and k. Where the error is C h^p, d_{k-1} / d_k = (r_{k-1}^p - 1) / (1 - r_k^-p), which grows
+//! with p and is r^p where the factors are equal, and the finest result still lacks d_last /
+//! (r_last^p - 1) (Richardson 1911; Roache 1998). Factors differ where a resolution is a whole
+//! number: of 2, 3 and 4 parts the second is 1.5 times finer than the first, the third 1.33 times
+//! than the second.
 //!
-//! Limits: with exactly two distances nothing tells an order from luck; with more, each of the last three must be smaller
-//! for its factor (over its logarithm) than the one before. Where they do not shrink there is no order, and nothing is claimed.
-//! An order above that of the method ([`FORMAL_ORDER`]) is luck as well, so what is missing is estimated with no more.
+//! Limits: with exactly two distances nothing tells an order from luck; with more, each of the last
+//! three must be smaller for its factor (over its logarithm) than the one before. Where they do not
+//! shrink there is no order, and nothing is claimed. An order above that of the method
+//! ([`FORMAL_ORDER`]) is luck as well, so what is missing is estimated with no more.
 
-/// Below this order a sequence is not said to converge: the estimate would be many times the last step.
+/// Below this order a sequence is not said to converge: the estimate would be many times the last
+/// step.
 pub const LEAST_ORDER: f64 = 0.2;
 
 /// Order of linear finite elements in the places of their vertices: the estimate counts on no more.
@@ -63,8 +68,8 @@ pub fn at_first_order(last: Step) -> f64 {
     last.distance / (last.ratio - 1.0)
 }
 
-/// The order at which two refinements by these factors move a result by distances of that quotient; between 0 and
-/// [`MOST_ORDER`].
+/// The order at which two refinements by these factors move a result by distances of that quotient;
+/// between 0 and [`MOST_ORDER`].
 fn order(quotient: f64, [first, second]: [f64; 2]) -> f64 {
     let (mut low, mut high) = (0.0, MOST_ORDER);
     for _ in 0..HALVINGS {

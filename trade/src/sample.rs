@@ -1,12 +1,13 @@
 //! Which settings to try: a space-filling start, then the gaps of the front.
 //!
-//! The start is Halton's sequence (1960) in the unit cube of the knobs, its bases the first primes: any number of points
-//! covers the cube evenly, and more can be added. Then every gap between neighbours on the front (in decades of time
-//! plus decades of error, the two open ends included) is a place to look: the setting half-way between its two ends, or,
-//! where that is known, a step of one knob away from an end, with steps that halve.
+//! The start is Halton's sequence (1960) in the unit cube of the knobs, its bases the first primes:
+//! any number of points covers the cube evenly, and more can be added. Then every gap between
+//! neighbours on the front (in decades of time plus decades of error, the two open ends included)
+//! is a place to look: the setting half-way between its two ends, or, where that is known, a step
+//! of one knob away from an end, with steps that halve.
 //!
-//! Cost: nothing beside a run. Limits: the midpoint of two settings need not lie on the front; what lies far from any
-//! measured point is only found by the start.
+//! Cost: nothing beside a run. Limits: the midpoint of two settings need not lie on the front; what
+//! lies far from any measured point is only found by the start.
 
 use crate::front::Cost;
 
@@ -34,8 +35,8 @@ fn radical_inverse(mut i: u64, base: u32) -> f64 {
     sum
 }
 
-/// Places to look at next, the best first; `front` holds place and cost of the front's points by ascending time.
-/// Knobs marked in `discrete` are not averaged: both values of a pair are tried.
+/// Places to look at next, the best first; `front` holds place and cost of the front's points by
+/// ascending time. Knobs marked in `discrete` are not averaged: both values of a pair are tried.
 pub fn candidates(front: &[(Vec<f64>, Cost)], discrete: &[bool]) -> Vec<Vec<f64>> {
     let mut gaps: Vec<(f64, Vec<Vec<f64>>)> =
         front.windows(2).map(|w| (gap(&w[0].1, &w[1].1), between(&w[0].0, &w[1].0, discrete))).collect();

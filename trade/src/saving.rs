@@ -1,4 +1,5 @@
-//! What a decision saves: as it was measured, by the cost model, or by an estimate that its rule carries; and which of these.
+//! What a decision saves: as it was measured, by the cost model, or by an estimate that its rule
+//! carries; and which of these.
 
 use crate::ablate::{Ablation, Row, path_to};
 use crate::cost::{Costs, predict, time, total};
@@ -35,7 +36,8 @@ pub struct Saving {
     pub clock: Clock,
     /// Twice the standard error of measured seconds; none for a single round.
     pub noise_s: Option<f64>,
-    /// Share of the stage's time as it would be without the decision, where that is what is estimated.
+    /// Share of the stage's time as it would be without the decision, where that is what is
+    /// estimated.
     pub share: Option<f64>,
     /// Day of the measurement.
     pub date: Option<String>,

@@ -1,11 +1,13 @@
 //! The shape of a garment against the light, from the front and from the side.
 //!
-//! Parallel projection on a grid of [`PIXEL`]; a pixel is covered where its middle lies in a triangle. Agreement is the
-//! intersection over the union: 1 for equal shapes. Cost: pixels and triangles.
+//! Parallel projection on a grid of [`PIXEL`]; a pixel is covered where its middle lies in a
+//! triangle. Agreement is the intersection over the union: 1 for equal shapes. Cost: pixels and
+//! triangles.
 
 use toile_core::artifact::{Garment, Point2};
 
-/// Side of a pixel, metres: a millimetre's difference along the whole edge of a vest shows in the third digit.
+/// Side of a pixel, metres: a millimetre's difference along the whole edge of a vest shows in the
+/// third digit.
 const PIXEL: f64 = 1e-3;
 /// Pixels along a side at most; a larger scene gets larger pixels.
 const MOST_PIXELS: f64 = 2000.0;

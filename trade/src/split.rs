@@ -22,7 +22,8 @@ pub(crate) fn at_commas(text: &str) -> Vec<&str> {
     parts.into_iter().map(str::trim).filter(|p| !p.is_empty()).collect()
 }
 
-/// The value of the field `name` in a stage's canonical parameters, `(edge: "12 mm", least_angle: 28.0)`.
+/// The value of the field `name` in a stage's canonical parameters,
+/// `(edge: "12 mm", least_angle: 28.0)`.
 pub(crate) fn field<'a>(params: &'a str, name: &str) -> Option<&'a str> {
     let inside = params.trim().strip_prefix('(')?.strip_suffix(')')?;
     let named = |part: &&'a str| part.split_once(':').is_some_and(|(key, _)| key.trim() == name);

@@ -90,7 +90,8 @@ fn quoted(value: Option<&String>) -> String {
     }
 }
 
-/// The reference and the settings as lines; the front is marked with a star. `only_front` leaves out all else.
+/// The reference and the settings as lines; the front is marked with a star. `only_front` leaves
+/// out all else.
 pub fn lines(trade: &Trade, only_front: bool) -> Vec<String> {
     let mut lines = reference(trade);
     lines.push(String::new());

@@ -1,12 +1,13 @@
 //! How differently two models are coloured, at the same points of the pattern.
 //!
-//! Colours are read from the textures without light, so that neither folds nor the camera count. Limit: a panel without a
-//! texture has its material's one colour.
+//! Colours are read from the textures without light, so that neither folds nor the camera count.
+//! Limit: a panel without a texture has its material's one colour.
 
 use crate::surface::{Spot, Surface, pairs};
 use toile_core::artifact::{Mesh, Model};
 
-/// Root mean square difference in grey levels (0 to 255) over the surface; none where a panel is missing in a model.
+/// Root mean square difference in grey levels (0 to 255) over the surface; none where a panel is
+/// missing in a model.
 pub(crate) fn difference(a: (&Surface<'_>, &Model), b: (&Surface<'_>, &Model)) -> Option<f64> {
     let pairs = pairs(a.0, b.0);
     let squares: Option<Vec<f64>> = pairs

@@ -20,10 +20,12 @@ pub(crate) struct ValidateArgs {
 pub(crate) struct DoctorArgs {
     /// Stages to examine [default: all]
     pub(crate) stages: Vec<String>,
-    /// Hold them to the contracts that they promise, too; what is found of plugins is kept for `toile stage`
+    /// Hold them to the contracts that they promise, too; what is found of plugins is kept for
+    /// `toile stage`
     #[arg(long)]
     pub(crate) contracts: bool,
-    /// Folder of the cache, beside which that is kept [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+    /// Folder of the cache, beside which that is kept [default: TOILE_CACHE, else
+    /// XDG_CACHE_HOME/toile, else ~/.cache/toile]
     #[arg(long, value_name = "DIR")]
     pub(crate) cache_dir: Option<PathBuf>,
     /// Print one JSON object and nothing else
@@ -54,14 +56,16 @@ pub(crate) struct MigrateArgs {
 pub(crate) struct NewStageArgs {
     /// The stage's name, like FineMesher or fine_mesher
     pub(crate) name: String,
-    /// What it is for: reader, denoiser, binariser, edge-detector, style, mesher, smoother, body, fabric, placement, collider,
-    /// stitcher, draper, flattener, texturer or writer [default: what NAME ends with, else binariser]
+    /// What it is for: reader, denoiser, binariser, edge-detector, style, mesher, smoother, body,
+    /// fabric, placement, collider, stitcher, draper, flattener, texturer or writer [default: what
+    /// NAME ends with, else binariser]
     #[arg(long)]
     pub(crate) role: Option<String>,
     /// The folder in which the crate's own folder is made [default: the current one]
     #[arg(long)]
     pub(crate) dir: Option<PathBuf>,
-    /// The folder of toile-core to build against [default: that of the source tree that this program was built from]
+    /// The folder of toile-core to build against [default: that of the source tree that this
+    /// program was built from]
     #[arg(long, value_name = "PATH")]
     pub(crate) core: Option<PathBuf>,
 }

@@ -32,7 +32,8 @@ pub(crate) struct Arguments {
     /// Colour messages: on a terminal unless NO_COLOR is set or TERM is dumb, always, or never
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Color::Auto, global = true)]
     pub(crate) color: Color,
-    /// Say nothing but errors and the answer that is asked for: no progress, no warnings, no summary
+    /// Say nothing but errors and the answer that is asked for: no progress, no warnings, no
+    /// summary
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
 }
@@ -62,7 +63,8 @@ pub(crate) enum Command {
     Stage {
         /// The stage's name, like Otsu
         name: String,
-        /// Folder of the cache, where `toile doctor --contracts` keeps what it found [default: TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
+        /// Folder of the cache, where `toile doctor --contracts` keeps what it found [default:
+        /// TOILE_CACHE, else XDG_CACHE_HOME/toile, else ~/.cache/toile]
         #[arg(long, value_name = "DIR")]
         cache_dir: Option<PathBuf>,
         /// Print one JSON object and nothing else
@@ -83,7 +85,8 @@ pub(crate) enum Command {
     Trade(TradeArgs),
     /// Pick a setting for an error or a time from the measured front, and prove it by fresh runs
     Tune(TuneArgs),
-    /// One run of a measurement in a process of its own: its task on standard input, its answer on standard output
+    /// One run of a measurement in a process of its own: its task on standard input, its answer on
+    /// standard output
     #[command(hide = true)]
     RunApart,
     /// Keep goldens: text sheets of measures for every edge of a pipeline

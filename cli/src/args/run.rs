@@ -7,7 +7,8 @@ use toile_pipeline::cache::Bytes;
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArgs {
-    /// The pipeline file; `-` reads it from standard input, with paths relative to the current folder
+    /// The pipeline file; `-` reads it from standard input, with paths relative to the current
+    /// folder
     pub(crate) pipeline: PathBuf,
     /// Folder for the results [default: out/NAME, of standard input out/stdin]
     #[arg(long)]
@@ -23,7 +24,8 @@ pub(crate) struct RunArgs {
     pub(crate) keep: bool,
     #[command(flatten)]
     pub(crate) overrides: Overrides,
-    /// Number of threads, at most one for each core, which is the default; the result is the same for any number
+    /// Number of threads, at most one for each core, which is the default; the result is the same
+    /// for any number
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     /// Print the metrics as one JSON object on standard output and nothing else
@@ -49,10 +51,13 @@ pub(crate) struct ExplainArgs {
     /// Explain a run that stops after this stage
     #[arg(long, value_name = "STAGE")]
     pub(crate) until: Option<String>,
-    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default: out/NAME-ablation or, with --quality, out/NAME-QUALITY-ablation, where it is of the pipeline as it is]
+    /// Folder of a `toile trade --ablate` of this pipeline, for what decisions save [default:
+    /// out/NAME-ablation or, with --quality, out/NAME-QUALITY-ablation, where it is of the pipeline
+    /// as it is]
     #[arg(long, value_name = "DIR")]
     pub(crate) ablation: Option<PathBuf>,
-    /// Print one JSON object and nothing else: the stages with what each will take and its range, and the decisions (docs/reference/costs.md)
+    /// Print one JSON object and nothing else: the stages with what each will take and its range,
+    /// and the decisions (docs/reference/costs.md)
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]

@@ -13,10 +13,12 @@ use toile_trade::slot::ReferenceValue;
 pub(crate) struct TradeArgs {
     /// The pipeline file
     pub(crate) pipeline: PathBuf,
-    /// What to turn, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`; may be given again [default: edge length, mesher and solver]
+    /// What to turn, like `mesher.edge=6..24 mm` or `solver=StaticEquilibrium,Xpbd`; may be given
+    /// again [default: edge length, mesher and solver]
     #[arg(long = "knob", value_name = "KEY=VALUES")]
     pub(crate) knobs: Vec<String>,
-    /// Folder for the results, and for going on with them [default: out/NAME-trade or, with --quality, out/NAME-QUALITY-trade; with --ablate -ablation]
+    /// Folder for the results, and for going on with them [default: out/NAME-trade or, with
+    /// --quality, out/NAME-QUALITY-trade; with --ablate -ablation]
     #[arg(long)]
     pub(crate) out: Option<PathBuf>,
     /// Measure runs that stop after this stage
@@ -25,10 +27,12 @@ pub(crate) struct TradeArgs {
     /// Most settings, those of earlier sessions counted [default: as many as the budget allows]
     #[arg(long, value_name = "COUNT")]
     pub(crate) points: Option<usize>,
-    /// Moved starts of the reference, which tell its own spread; with 0 no neighbouring meshes are tried either
+    /// Moved starts of the reference, which tell its own spread; with 0 no neighbouring meshes are
+    /// tried either
     #[arg(long, value_name = "COUNT", default_value_t = 3)]
     pub(crate) starts: usize,
-    /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what it saves and changes
+    /// Instead: turn round each decision that `toile explain` shows, one at a time, and print what
+    /// it saves and changes
     #[arg(long, conflicts_with_all = ["knobs", "points", "starts", "jitter", "reference", "clock"])]
     pub(crate) ablate: bool,
     /// Print the record as one JSON object on standard output and nothing else
@@ -55,7 +59,8 @@ pub(crate) struct StudyArgs {
     /// Root mean square move of a moved start
     #[arg(long, value_name = "LENGTH", default_value = "1 mm", value_parser = super::amounts::length)]
     pub(crate) jitter: Length,
-    /// Value of a knob for the reference alone, like `StaticEquilibrium.bending_continuation=true`; may be given again [default: the pipeline's own]
+    /// Value of a knob for the reference alone, like `StaticEquilibrium.bending_continuation=true`;
+    /// may be given again [default: the pipeline's own]
     #[arg(long, value_name = "KEY=VALUE")]
     pub(crate) reference: Vec<ReferenceValue>,
     /// Clock of the front; on a busy machine the processors' own is steadier
@@ -83,7 +88,8 @@ pub(crate) struct TuneArgs {
     /// Keep a run this short, like 800ms or 1s
     #[arg(long, value_name = "TIME", value_parser = super::amounts::duration)]
     pub(crate) max_time: Option<Duration>,
-    /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the pipeline's named qualities; may be given again
+    /// Instead: the quickest setting for each of several errors, like "Draft=10 mm", written as the
+    /// pipeline's named qualities; may be given again
     #[arg(long = "quality", value_name = "NAME=LENGTH", conflicts_with_all = ["max_error", "max_time"])]
     pub(crate) qualities: Vec<Asked>,
     /// Folder of `toile trade` to pick from [default: measure now, in out/NAME-trade]

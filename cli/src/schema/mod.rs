@@ -1,7 +1,7 @@
 //! The JSON schema of pipeline files, written from the stages' cards.
 //!
-//! A pipeline file is RON; the schema describes the same values as JSON, for editors and for programs that write
-//! pipelines. RON's names become JSON's objects of one field:
+//! A pipeline file is RON; the schema describes the same values as JSON, for editors and for
+//! programs that write pipelines. RON's names become JSON's objects of one field:
 //!
 //! | RON | JSON |
 //! |---|---|
@@ -15,7 +15,8 @@
 //! | `(0.01, 60)` | `[0.01, 60]` |
 //! | `None` | `null` |
 //!
-//! Types are read from the words by which cards describe them, so that a schema cannot say other than the card.
+//! Types are read from the words by which cards describe them, so that a schema cannot say other
+//! than the card.
 
 mod kind;
 

@@ -9,7 +9,8 @@ pub(crate) struct Piece {
     corners: Vec<[f64; 2]>,
 }
 
-/// Two pieces, front first, and the numbers of the edges that are sewn, from the right side to the left.
+/// Two pieces, front first, and the numbers of the edges that are sewn, from the right side to the
+/// left.
 pub(crate) struct Pattern {
     pieces: [Piece; 2],
     seams: Vec<usize>,
@@ -23,7 +24,8 @@ pub(crate) fn skirt(waist: f64, hem: f64, length: f64) -> Pattern {
     Pattern { pieces: [piece("front"), piece("back")], seams: vec![1, 3] }
 }
 
-/// A skirt that follows waist and hip, for a hip of 96 cm: widths of waist and hem of one piece, and its length, cm.
+/// A skirt that follows waist and hip, for a hip of 96 cm: widths of waist and hem of one piece,
+/// and its length, cm.
 pub(crate) fn hip_skirt(waist: f64, hem: f64, length: f64) -> Pattern {
     let right = [[hem / 2.0, -length], [25.0, -20.0], [waist / 2.0, 0.0]];
     let left = right.iter().rev().map(|[x, y]| [-x, *y]);
@@ -47,7 +49,8 @@ pub(crate) fn top(width: f64, length: f64) -> Pattern {
         let middle = [[4.0, length - neck], [-4.0, length - neck]];
         Piece { name, corners: right.into_iter().chain(middle).chain(left).collect() }
     };
-    // Edges: side 0, armhole 1 and 2, shoulder 3, neck 4 to 6, shoulder 7, armhole 8 and 9, side 10, hem 11.
+    // Edges: side 0, armhole 1 and 2, shoulder 3, neck 4 to 6, shoulder 7, armhole 8 and 9, side
+    // 10, hem 11.
     Pattern { pieces: [piece("front", 9.0), piece("back", 3.0)], seams: vec![0, 3, 7, 10] }
 }
 

@@ -1,5 +1,6 @@
-//! The commands that the guide tells people to run on their own files, with two files each that are no sample: drawn here, of other cuts, sizes
-//! and colours. A template that depends on its sample fails here.
+//! The commands that the guide tells people to run on their own files, with two files each that are
+//! no sample: drawn here, of other cuts, sizes and colours. A template that depends on its sample
+//! fails here.
 
 pub(crate) mod flat;
 pub(crate) mod photo;
@@ -20,7 +21,8 @@ fn told(page: &str, command: &str) {
     assert!(text.lines().any(|line| line.trim() == command), "{page} does not tell: {command}");
 }
 
-/// Runs the page's commands one after the other with each of the files in the place of `own`; after each file, `made` must be there.
+/// Runs the page's commands one after the other with each of the files in the place of `own`; after
+/// each file, `made` must be there.
 fn with_each(page: &str, commands: &[&str], own: &str, files: [Vec<u8>; 2], made: &[&str]) {
     let dir = scratch();
     let cache = dir.path().join("cache");

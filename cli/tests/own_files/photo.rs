@@ -1,4 +1,5 @@
-//! Photos of garments laid flat: an outline filled with cloth on a ground, with grain, at 14 pixels a centimetre.
+//! Photos of garments laid flat: an outline filled with cloth on a ground, with grain, at 14 pixels
+//! a centimetre.
 
 use image::{ImageFormat, Rgb, RgbImage};
 use std::io::Cursor;
@@ -7,7 +8,8 @@ use std::io::Cursor;
 const PX: f64 = 14.0;
 const MARGIN: f64 = 12.0;
 
-/// The right half of an outline, cm, from the middle of the neck or waist to the middle of the hem, y down.
+/// The right half of an outline, cm, from the middle of the neck or waist to the middle of the hem,
+/// y down.
 type Half = Vec<[f64; 2]>;
 
 /// A wide T-shirt, 76 cm from cuff to cuff, on boards.

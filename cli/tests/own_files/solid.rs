@@ -5,7 +5,8 @@ use std::fmt::Write;
 const AROUND: usize = 32;
 const UP: usize = 14;
 
-/// An OBJ file in centimetres: radii at the lower and the upper end, and the length, cm; the halves are groups `front` and `back`.
+/// An OBJ file in centimetres: radii at the lower and the upper end, and the length, cm; the halves
+/// are groups `front` and `back`.
 pub(crate) fn tube(radii: [f64; 2], length: f64) -> Vec<u8> {
     let mut text = String::new();
     for j in 0..=UP {

@@ -2,8 +2,8 @@
 //! form, the checks, the card and the [`Stage`] implementation.
 //!
 //! `#[stage(role = ..., source = "...", example = "...")]` stands on the parameter struct,
-//! `#[stage]` on the `impl` with its `run` function, `#[choice]` on an enum used as a parameter, `#[params]` on parameters that
-//! several stages share.
+//! `#[stage]` on the `impl` with its `run` function, `#[choice]` on an enum used as a parameter,
+//! `#[params]` on parameters that several stages share.
 
 mod choice;
 mod params;
@@ -44,8 +44,8 @@ pub fn choice(_attr: TokenStream, item: TokenStream) -> TokenStream {
         .into()
 }
 
-/// `plugin!(A, B);` at the end of a crate makes its stages a plugin: built as `cdylib` it can be loaded
-/// by name, linked in it is added by one line, `my_crate::register(&mut registry)`.
+/// `plugin!(A, B);` at the end of a crate makes its stages a plugin: built as `cdylib` it can be
+/// loaded by name, linked in it is added by one line, `my_crate::register(&mut registry)`.
 #[proc_macro]
 pub fn plugin(stages: TokenStream) -> TokenStream {
     plugin::expand(stages.into()).unwrap_or_else(syn::Error::into_compile_error).into()

@@ -1,4 +1,5 @@
-//! `plugin!(A, B)`: one line that makes a crate's stages a plugin, and registers them where it is linked in.
+//! `plugin!(A, B)`: one line that makes a crate's stages a plugin, and registers them where it is
+//! linked in.
 
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -142,7 +142,8 @@ fn warnings(item: &ItemImpl) -> TokenStream {
     }
 }
 
-/// The trait's `improves`, where the author says by a function of that name with which parameters it does.
+/// The trait's `improves`, where the author says by a function of that name with which parameters
+/// it does.
 fn improves(item: &ItemImpl) -> TokenStream {
     match has(item, "improves") {
         false => TokenStream::new(),
@@ -159,7 +160,8 @@ fn has(item: &ItemImpl, name: &str) -> bool {
     item.items.iter().any(|i| matches!(i, ImplItem::Fn(f) if f.sig.ident == name))
 }
 
-/// The arguments between `&self` and the context; `#[original]` and `#[sewn]` are read and taken off.
+/// The arguments between `&self` and the context; `#[original]` and `#[sewn]` are read and taken
+/// off.
 fn ports(run: &mut ImplItemFn) -> syn::Result<Vec<Port>> {
     let count = run.sig.inputs.len();
     let mut ports = Vec::new();

@@ -1,8 +1,9 @@
 //! Files on their way: written beside their place under a name of their own, then renamed.
 //!
-//! A program that is killed leaves such a file behind. Each is locked while its program works on it, and the system takes the
-//! lock from a program that ends in whatever way; so a file that can be locked is one that nobody will finish, and
-//! [`sweep`] takes it away. On a file system without locks nothing is swept.
+//! A program that is killed leaves such a file behind. Each is locked while its program works on
+//! it, and the system takes the lock from a program that ends in whatever way; so a file that can
+//! be locked is one that nobody will finish, and [`sweep`] takes it away. On a file system without
+//! locks nothing is swept.
 
 use std::fs::File;
 use std::io;

@@ -1,8 +1,8 @@
 //! Lock files: what a pipeline was made of when it was locked, and what differs since.
 //!
-//! A lock holds, stage by stage, everything on which the result rests, in JSON with its fields in a fixed
-//! order: the same pipeline and program give the same text. It is compared field by field, so that a
-//! run against it says *what* differs and not only that something does.
+//! A lock holds, stage by stage, everything on which the result rests, in JSON with its fields in a
+//! fixed order: the same pipeline and program give the same text. It is compared field by field, so
+//! that a run against it says *what* differs and not only that something does.
 
 use crate::RunResult;
 use crate::load::{Pipeline, fields_of};
@@ -50,7 +50,8 @@ pub struct LockedStage {
 }
 
 impl Lock {
-    /// The lock of a pipeline after a run of it that took digests (with a cache, or [`crate::cache::Cache::nowhere`]).
+    /// The lock of a pipeline after a run of it that took digests (with a cache, or
+    /// [`crate::cache::Cache::nowhere`]).
     pub fn of(pipeline: &Pipeline, registry: &Registry, run: &RunResult) -> Self {
         let ran = |id: &str| run.results.iter().any(|(ran, _)| ran == id);
         let mut lock = Lock::held_against(pipeline, registry, run);
@@ -58,8 +59,8 @@ impl Lock {
         lock
     }
 
-    /// What [`Lock::differences`] holds against a lock: stages that the run left out, as with `--until`, are in it and have no
-    /// result.
+    /// What [`Lock::differences`] holds against a lock: stages that the run left out, as with
+    /// `--until`, are in it and have no result.
     pub fn held_against(pipeline: &Pipeline, registry: &Registry, run: &RunResult) -> Self {
         let stage = |node: &Node| {
             let ran = run.results.iter().find(|(id, _)| *id == node.id);
@@ -100,7 +101,8 @@ impl Lock {
         }
     }
 
-    /// What differs in `now`, a line each: `GridMesher: edge 16 mm -> 12 mm`. Nothing where all is as it was.
+    /// What differs in `now`, a line each: `GridMesher: edge 16 mm -> 12 mm`. Nothing where all is
+    /// as it was.
     pub fn differences(&self, now: &Lock) -> Vec<String> {
         let find = |lock: &'_ Lock, id: &str| lock.stages.iter().find(|s| s.id == id).cloned();
         let mut lines = Vec::new();

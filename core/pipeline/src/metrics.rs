@@ -66,7 +66,8 @@ pub struct Metrics {
     pub stages: Vec<StageMetrics>,
     /// By panel.
     pub panels: BTreeMap<String, PanelFigures>,
-    /// By piece that was laid flat: how far the flat piece is from the garment. `panels` and `garment` are those of the pattern that it was sewn from.
+    /// By piece that was laid flat: how far the flat piece is from the garment. `panels` and
+    /// `garment` are those of the pattern that it was sewn from.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub flat: BTreeMap<String, PanelFigures>,
     /// The garment; `None` where the run made none.

@@ -9,9 +9,9 @@ use tempfile::NamedTempFile;
 use toile_core::artifact::OutputFile;
 use toile_core::{ErrorCode, StageError};
 
-/// Writes files below `dir`: every one first beside its place, then all are renamed, so that a
-/// stop or a full disk leaves no half file and, short of a failing rename, no half set. What a program that was killed meanwhile
-/// has left in these folders is swept.
+/// Writes files below `dir`: every one first beside its place, then all are renamed, so that a stop
+/// or a full disk leaves no half file and, short of a failing rename, no half set. What a program
+/// that was killed meanwhile has left in these folders is swept.
 ///
 /// A file that was there keeps its permissions.
 ///
@@ -48,7 +48,8 @@ fn stage_file(dir: &Path, file: &OutputFile) -> Result<(NamedTempFile, PathBuf),
     Ok((temp, path))
 }
 
-/// Temporary files are private to the user; finished ones are not: as the file was, or readable by all.
+/// Temporary files are private to the user; finished ones are not: as the file was, or readable by
+/// all.
 #[cfg(unix)]
 fn permit(file: &fs::File, path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;

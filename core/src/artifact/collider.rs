@@ -75,14 +75,14 @@ pub trait Collide: Send + Sync + std::fmt::Debug {
     /// Vertices within `reach` metres of the skin or inside the body, ascending, appended to `out`.
     fn body_contacts(&self, positions: &[Point3], reach: f64, out: &mut Vec<BodyContact>);
 
-    /// The first places where paths `from[i] -> to[i]` enter the body (path against triangle, Fan et
-    /// al. 1999), ascending, appended to `out`; the contact is at the skin, `distance` the signed
-    /// distance of the end of the path. A path that only leaves the body is no hit.
+    /// The first places where paths `from[i] -> to[i]` enter the body (path against triangle, Fan
+    /// et al. 1999), ascending, appended to `out`; the contact is at the skin, `distance` the
+    /// signed distance of the end of the path. A path that only leaves the body is no hit.
     fn body_hits(&self, from: &[Point3], to: &[Point3], out: &mut Vec<BodyContact>);
 
-    /// Vertex-triangle and edge-edge pairs of the cloth nearer than `reach`, appended to `out`: first
-    /// the vertex-triangle pairs, `[vertex, corners of the triangle]`, then the edge-edge pairs,
-    /// `[first edge, second edge]`, each in ascending order of their vertices.
+    /// Vertex-triangle and edge-edge pairs of the cloth nearer than `reach`, appended to `out`:
+    /// first the vertex-triangle pairs, `[vertex, corners of the triangle]`, then the edge-edge
+    /// pairs, `[first edge, second edge]`, each in ascending order of their vertices.
     ///
     /// Triangles hold node indices: pairs that share a node are no contact. Each pair of closest
     /// features comes once, so that penalties do not add up: a vertex nearest to a corner or side
@@ -107,14 +107,16 @@ pub trait Collide: Send + Sync + std::fmt::Debug {
     /// pierces the other, the two sharing no node. Touching is no crossing.
     fn self_crossings(&self, positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<[u32; 2]>;
 
-    /// The body's mesh, from which a solver finds edges and corners that are too sharp for the distances of single
-    /// vertices. `None` where there is no body or the scheme keeps no mesh: cloth may then cross sharp edges of the body
-    /// between its vertices. The C interface has no place for it: a scheme of a plugin answers `None`.
+    /// The body's mesh, from which a solver finds edges and corners that are too sharp for the
+    /// distances of single vertices. `None` where there is no body or the scheme keeps no mesh:
+    /// cloth may then cross sharp edges of the body between its vertices. The C interface has no
+    /// place for it: a scheme of a plugin answers `None`.
     fn surface(&self) -> Option<Surface<'_>> {
         None
     }
 
-    /// Named places on the body, by which people are told where something is. `None` where the scheme knows none, as that of a plugin.
+    /// Named places on the body, by which people are told where something is. `None` where the
+    /// scheme knows none, as that of a plugin.
     fn landmarks(&self) -> Option<&BTreeMap<String, Point3>> {
         None
     }

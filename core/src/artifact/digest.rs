@@ -60,7 +60,8 @@ impl<'de> Deserialize<'de> for Digest {
 ///
 /// Floats are fed as their bits, so that two values are equal only where every bit is.
 ///
-/// Without the feature `digest` it takes everything and comes to nothing: a plugin's artifacts are digested by the program.
+/// Without the feature `digest` it takes everything and comes to nothing: a plugin's artifacts are
+/// digested by the program.
 #[derive(Debug, Default)]
 pub struct Digester(#[cfg(feature = "digest")] blake3::Hasher);
 

@@ -76,7 +76,8 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending stiffness along the weft, N m.
     pub bending_weft: f64,
-    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. 0 where it is not known.
+    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per
+    /// m of width. 0 where it is not known.
     #[serde(default)]
     pub bending_friction_warp: f64,
     /// The same along the weft.

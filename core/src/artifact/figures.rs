@@ -63,7 +63,8 @@ pub struct GarmentFigures {
     pub body_crossings: Option<usize>,
     /// Pairs of triangles that cross; `None` where nothing looked.
     pub self_crossings: Option<usize>,
-    /// The share that is still in its place on the body, of the panel that has slid farthest; `None` where nothing told.
+    /// The share that is still in its place on the body, of the panel that has slid farthest;
+    /// `None` where nothing told.
     pub on_body: Option<f64>,
     /// By level (`bust`, `waist`, `hip`): where the garment closes around its body.
     pub girths: BTreeMap<String, GirthFigures>,
@@ -93,7 +94,8 @@ pub struct Figures {
     pub panels: BTreeMap<String, PanelFigures>,
     /// The whole garment.
     pub garment: GarmentFigures,
-    /// By name of a piece that was laid flat: how far the flat piece is from the garment; empty where nothing was laid flat.
+    /// By name of a piece that was laid flat: how far the flat piece is from the garment; empty
+    /// where nothing was laid flat.
     pub flat: BTreeMap<String, PanelFigures>,
     /// The limits that are missed; empty for a good result.
     pub shortfalls: Vec<Shortfall>,

@@ -13,8 +13,8 @@ pub struct OutputFile {
 }
 
 impl OutputFile {
-    /// A file with its content. What the content's buffer holds in reserve, up to as much again where it was grown by
-    /// doubling, is given back: files are kept until the end of the run.
+    /// A file with its content. What the content's buffer holds in reserve, up to as much again
+    /// where it was grown by doubling, is given back: files are kept until the end of the run.
     pub fn new(path: impl Into<String>, mut bytes: Vec<u8>) -> Self {
         bytes.shrink_to_fit();
         OutputFile { path: path.into(), bytes }

@@ -45,14 +45,16 @@ pub struct GarmentSeam {
     pub state: SeamState,
 }
 
-/// How friction holds a garment at rest, as the solver left it: another run goes on from it without a slide. Empty where nothing is known.
+/// How friction holds a garment at rest, as the solver left it: another run goes on from it without
+/// a slide. Empty where nothing is known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Held {
     /// How far friction holds each vertex back on the body, metres.
     pub slides: Vec<Vector3>,
     /// Distance at which the body begins to press on each vertex, metres; empty without a body.
     pub offsets: Vec<f64>,
-    /// Angles at which friction between yarns holds the folds; empty where there is no such friction.
+    /// Angles at which friction between yarns holds the folds; empty where there is no such
+    /// friction.
     pub folds: Vec<f64>,
     /// The points that meet where cloth lies on cloth.
     pub contacts: Vec<[u32; 4]>,
@@ -69,11 +71,12 @@ pub struct SolveStatus {
     pub converged: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
-    /// Greatest speed of a vertex at the end, m/s; of a solver that waits for rest, by its way over the
-    /// solver's last look.
+    /// Greatest speed of a vertex at the end, m/s; of a solver that waits for rest, by its way over
+    /// the solver's last look.
     pub max_speed: f64,
-    /// For each panel the share of it that is still in its place on the body, after all solvers: 1 less the way that its upper edge has
-    /// sunk, as a share of its size. Empty where nothing told: no body, no weight.
+    /// For each panel the share of it that is still in its place on the body, after all solvers: 1
+    /// less the way that its upper edge has sunk, as a share of its size. Empty where nothing told:
+    /// no body, no weight.
     pub on_body: Vec<f64>,
     /// How friction holds it, for a solver that goes on from there.
     pub held: Held,
@@ -89,8 +92,8 @@ pub struct Garment {
     pub positions: Vec<Point3>,
     /// Velocities, m/s.
     pub velocities: Vec<Vector3>,
-    /// Flat rest positions, metres, each in its panel's own plane; warp along y, weft along x. All zero where the flat shape is not
-    /// known: a garment from a 3D file.
+    /// Flat rest positions, metres, each in its panel's own plane; warp along y, weft along x. All
+    /// zero where the flat shape is not known: a garment from a 3D file.
     pub rest: Vec<Point2>,
     /// Triangles, counter-clockwise in `rest` and from outside the wearer.
     pub triangles: Vec<[u32; 3]>,
@@ -136,7 +139,8 @@ impl Garment {
         ensure(all, || "some of it belongs to no panel".to_owned())
     }
 
-    /// Two triangles of a panel that share an edge run along it in opposite ways: both have the same side up.
+    /// Two triangles of a panel that share an edge run along it in opposite ways: both have the
+    /// same side up.
     fn check_sides(&self, panel: &GarmentPanel) -> Result<(), String> {
         let first = panel.triangles.start;
         match alike(self.triangles.get(panel.triangles.clone()).unwrap_or_default()) {

@@ -1,12 +1,13 @@
-//! Flat and present sizes of a garment: edges, triangles, panels; along gathered seams as the gathers leave them.
+//! Flat and present sizes of a garment: edges, triangles, panels; along gathered seams as the
+//! gathers leave them.
 
 use super::gathers;
 use super::{Garment, GarmentPanel, Point2, SeamKind};
 use nalgebra::{Matrix2, Matrix3x2};
 
 impl Garment {
-    /// Every mesh edge once, ascending, with its flat length, metres: the mean of what its triangles say, whose corners are drawn together
-    /// along gathered seams.
+    /// Every mesh edge once, ascending, with its flat length, metres: the mean of what its
+    /// triangles say, whose corners are drawn together along gathered seams.
     pub fn flat_lengths(&self) -> Vec<([u32; 2], f64)> {
         let Some(corners) = gathers::corners(self) else {
             return self.edges().into_iter().map(|e| (e, self.cut_length(e))).collect();
@@ -23,8 +24,8 @@ impl Garment {
         sides.chunk_by(|a, b| a.0 == b.0).map(mean).collect()
     }
 
-    /// The flat corners of every triangle, metres, those along gathered seams drawn together as a solver has them; nothing where no seam
-    /// gathers, for all are then as they are cut.
+    /// The flat corners of every triangle, metres, those along gathered seams drawn together as a
+    /// solver has them; nothing where no seam gathers, for all are then as they are cut.
     pub fn gathered_corners(&self) -> Option<Vec<[Point2; 3]>> {
         gathers::corners(self)
     }
@@ -46,7 +47,8 @@ impl Garment {
         strains
     }
 
-    /// The greatest stretch of each triangle in any direction, present over flat length; 1 of a triangle without flat area.
+    /// The greatest stretch of each triangle in any direction, present over flat length; 1 of a
+    /// triangle without flat area.
     pub fn stretches(&self) -> Vec<f64> {
         let gathered = gathers::corners(self);
         let one = |(k, t): (usize, &[u32; 3])| {
@@ -65,7 +67,8 @@ impl Garment {
         self.panel_areas_but(panel, |_, _, _| false)
     }
 
-    /// The same with the flat area of those triangles that are `spared` for their present one, by their vertices, flat and present area.
+    /// The same with the flat area of those triangles that are `spared` for their present one, by
+    /// their vertices, flat and present area.
     pub fn panel_areas_but(
         &self,
         panel: &GarmentPanel,
@@ -87,7 +90,8 @@ impl Garment {
         self.panel_boundaries_but(panel, |_| false)
     }
 
-    /// The same with the flat length of those edges that are `spared` for their present one, by their vertices.
+    /// The same with the flat length of those edges that are `spared` for their present one, by
+    /// their vertices.
     pub fn panel_boundaries_but(
         &self,
         panel: &GarmentPanel,

@@ -1,12 +1,13 @@
 //! Rest shapes of triangles along gathered seams.
 //!
-//! The folds of a gather are too small for a mesh. They are left out: the longer side of a gathered seam counts as long as the shorter one, and the
-//! corners of its triangles are drawn together to that.
+//! The folds of a gather are too small for a mesh. They are left out: the longer side of a gathered
+//! seam counts as long as the shorter one, and the corners of its triangles are drawn together to
+//! that.
 
 use super::{Garment, Point2, SeamKind};
 
-/// The flat corners of every triangle of the garment, metres, those along a gathered seam drawn together; nothing where no seam gathers, for
-/// all are then as they are cut.
+/// The flat corners of every triangle of the garment, metres, those along a gathered seam drawn
+/// together; nothing where no seam gathers, for all are then as they are cut.
 pub(super) fn corners(garment: &Garment) -> Option<Vec<[Point2; 3]>> {
     let gathered = garment.seams.iter().filter(|s| s.kind == SeamKind::Gathered);
     let mut point: Vec<Option<u32>> = vec![None; garment.positions.len()];

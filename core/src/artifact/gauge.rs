@@ -2,10 +2,10 @@
 //!
 //! Method: for a ladder of chord lengths it is measured how far chords of that length leave the
 //! curve, wherever they begin (its *sag*). A mesher takes the longest chord whose sag its edge
-//! length allows; what chords of the shortest rung leave the curve by is the outline's own noise and
-//! asks for no division. Two edges that are sewn together take the longer length and the greater
-//! sag of both, so that both come to the same count without knowing each other.
-//! Cost: linear in the points of the edge times the points under the longest chord, once an edge.
+//! length allows; what chords of the shortest rung leave the curve by is the outline's own noise
+//! and asks for no division. Two edges that are sewn together take the longer length and the
+//! greater sag of both, so that both come to the same count without knowing each other. Cost:
+//! linear in the points of the edge times the points under the longest chord, once an edge.
 
 use super::{Point2, Vector2};
 

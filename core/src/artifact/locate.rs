@@ -1,13 +1,15 @@
 //! Finds the triangle of a flat mesh in which a point lies.
 //!
-//! Method: triangles are entered into the cells of a uniform grid that their boxes touch; a point looks into its own cell, then
-//! into wider and wider rings. Cost: linear in the triangles; a point costs what its cell holds.
-//! Limits: a point beyond the mesh gets the triangle nearest to it, by distance to its sides.
+//! Method: triangles are entered into the cells of a uniform grid that their boxes touch; a point
+//! looks into its own cell, then into wider and wider rings. Cost: linear in the triangles; a point
+//! costs what its cell holds. Limits: a point beyond the mesh gets the triangle nearest to it, by
+//! distance to its sides.
 
 use super::{Point2, Point3, Vector3};
 use std::collections::BTreeMap;
 
-/// Where a point lies: a triangle, its weights (which sum to 1), and how far beyond the mesh it is, metres.
+/// Where a point lies: a triangle, its weights (which sum to 1), and how far beyond the mesh it is,
+/// metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Located {
     /// Index of the triangle.
@@ -41,10 +43,12 @@ pub struct Locator {
 }
 
 impl Locator {
-    /// Of triangles with some area, for points at most `reach` (metres) beyond them; none where there are none.
+    /// Of triangles with some area, for points at most `reach` (metres) beyond them; none where
+    /// there are none.
     pub fn new(corners: Vec<[Point2; 3]>, reach: f64) -> Option<Self> {
         let area: f64 = corners.iter().map(|[a, b, c]| (b - a).perp(&(c - a)).abs() / 2.0).sum();
-        // With the mean square of the boxes for a cell, all boxes together touch a number of cells linear in theirs.
+        // With the mean square of the boxes for a cell, all boxes together touch a number of cells
+        // linear in theirs.
         let extent = |[a, b, c]: &[Point2; 3]| (a.sup(b).sup(c) - a.inf(b).inf(c)).max().powi(2);
         let mean = corners.iter().map(extent).sum::<f64>() / corners.len() as f64;
         let cell = mean.sqrt().max(reach / CELLS_A_REACH);

@@ -1,7 +1,9 @@
 //! Where the inside of a panel lies in its photo, when its outline was straightened.
 //!
-//! Method: mean value coordinates (Floater 2003; Hormann and Floater 2006): smooth, exact on the outline, and exact for rigid motions and
-//! scalings of it. Cost: one pass over the outline a point. Limits: where the outline as it lies is far from what it was straightened to, the map may fold over.
+//! Method: mean value coordinates (Floater 2003; Hormann and Floater 2006): smooth, exact on the
+//! outline, and exact for rigid motions and scalings of it. Cost: one pass over the outline a
+//! point. Limits: where the outline as it lies is far from what it was straightened to, the map may
+//! fold over.
 
 use super::{Outline, Point2, Vector2};
 

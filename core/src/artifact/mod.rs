@@ -84,29 +84,30 @@ impl std::fmt::Display for Kind {
 pub trait Artifact: Any + Send + Sync + Debug {
     /// The artifact's kind.
     fn kind(&self) -> Kind;
-    /// Feeds everything that makes this artifact what it is, in a fixed order: its kind and its record. What has no record
-    /// says what makes it what it is.
+    /// Feeds everything that makes this artifact what it is, in a fixed order: its kind and its
+    /// record. What has no record says what makes it what it is.
     fn digest(&self, digester: &mut Digester) {
         digester.text(self.kind().0);
         if let Some(record) = self.record() {
             record.digest(digester);
         }
     }
-    /// What is wrong with it, where no stage may give it: numbers that are not finite, indices beyond
-    /// their lists, lists of unequal length. The runner asks after every stage.
+    /// What is wrong with it, where no stage may give it: numbers that are not finite, indices
+    /// beyond their lists, lists of unequal length. The runner asks after every stage.
     ///
     /// Errors: one sentence in lower case, such as `vertex 12 is not a finite number below 1e9`.
     fn check(&self) -> Result<(), String>;
     /// The figures that goldens and the report keep of it.
     fn measures(&self) -> Measures;
-    /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's border;
-    /// `None` for a service.
+    /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's
+    /// border; `None` for a service.
     fn record(&self) -> Option<stored::Record<'_>> {
         None
     }
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.
     ///
-    /// An empty list where the kind has no file form, or one that the runner encodes: pictures, and tables as JSON.
+    /// An empty list where the kind has no file form, or one that the runner encodes: pictures, and
+    /// tables as JSON.
     fn export(&self) -> Vec<(&'static str, Vec<u8>)>;
 }
 

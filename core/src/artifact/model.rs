@@ -9,14 +9,17 @@ use super::{Artifact, ArtifactType, Kind, Measures, Point3, RgbImage, Shared, Ve
 pub struct Texture {
     /// Name, also its file's stem.
     pub name: String,
-    /// Pixels, top row first: sRGB colours. In a normal map (Blinn, 1978) the share of 255 counts, without a transfer function: red is
-    /// x along growing u, green y along falling v (up the picture), blue z out of the surface, each from -1 to 1.
+    /// Pixels, top row first: sRGB colours. In a normal map (Blinn, 1978) the share of 255 counts,
+    /// without a transfer function: red is x along growing u, green y along falling v (up the
+    /// picture), blue z out of the surface, each from -1 to 1.
     pub pixels: Shared<RgbImage>,
-    /// True where the picture goes on beyond its edges by repeating itself; else its border goes on.
+    /// True where the picture goes on beyond its edges by repeating itself; else its border goes
+    /// on.
     pub repeats: bool,
 }
 
-/// The soft shine of fibres that stand off a cloth, seen at grazing angles (Estevez and Kulla, 2017).
+/// The soft shine of fibres that stand off a cloth, seen at grazing angles (Estevez and Kulla,
+/// 2017).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sheen {
     /// Colour, linear RGB, 0 (none) to 1.
@@ -34,7 +37,8 @@ pub struct Material {
     pub colour: [f32; 3],
     /// Index into the model's textures.
     pub texture: Option<usize>,
-    /// Index of the texture that is this surface's normal map. It is read at the same texture coordinates.
+    /// Index of the texture that is this surface's normal map. It is read at the same texture
+    /// coordinates.
     pub normal_texture: Option<usize>,
     /// True where the texture is the final colour (*replace*), false where light acts on it
     /// (*modulate*).
@@ -45,7 +49,8 @@ pub struct Material {
     pub sheen: Option<Sheen>,
     /// True where both faces are seen, as for cloth.
     pub double_sided: bool,
-    /// Colour of the cloth's wrong side, linear RGB, which is then plain; none where it looks like the right side.
+    /// Colour of the cloth's wrong side, linear RGB, which is then plain; none where it looks like
+    /// the right side.
     pub wrong_side: Option<[f32; 3]>,
     /// Name of the fabric; empty where it is none.
     pub fabric: String,
@@ -60,9 +65,9 @@ pub struct Mesh {
     pub positions: Vec<Point3>,
     /// Unit normals, one a vertex.
     pub normals: Vec<Vector3>,
-    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom right, and what lies outside is as
-    /// [`Texture::repeats`] says.
-    /// Empty where the material has no texture.
+    /// Texture coordinates, one a vertex: (0, 0) is the picture's top left, (1, 1) its bottom
+    /// right, and what lies outside is as [`Texture::repeats`] says. Empty where the material has
+    /// no texture.
     pub uv: Vec<[f32; 2]>,
     /// Triangles.
     pub triangles: Vec<[u32; 3]>,
@@ -88,7 +93,8 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// Textures.
     pub textures: Vec<Texture>,
-    /// Looks to choose from; the first is that of the meshes' own materials. None where there is one look only.
+    /// Looks to choose from; the first is that of the meshes' own materials. None where there is
+    /// one look only.
     pub variants: Vec<Variant>,
 }
 
@@ -98,7 +104,8 @@ impl Model {
         self.materials.iter().any(|m| m.normal_texture == Some(texture))
     }
 
-    /// Adds the look of another model of the same meshes as a variant; what both share is kept once. `own` names this model's look where it has no variants yet.
+    /// Adds the look of another model of the same meshes as a variant; what both share is kept
+    /// once. `own` names this model's look where it has no variants yet.
     ///
     /// Errors: the other model has more or fewer meshes.
     pub fn add_variant(&mut self, own: &str, name: &str, other: &Model) -> Result<(), String> {

@@ -51,12 +51,13 @@ pub struct InnerLine {
     pub kind: InnerKind,
     /// Vertices from its start, metres.
     pub points: Vec<Point2>,
-    /// Divisions agreed with the edge or line it is sewn to; none where it is not sewn, or its partner is known by its place.
+    /// Divisions agreed with the edge or line it is sewn to; none where it is not sewn, or its
+    /// partner is known by its place.
     pub gauge: Option<Gauge>,
 }
 
-/// How pattern coordinates map to the photo: turned, then `px = origin + (x, -y) * px_per_metre`, x mirrored
-/// where the photo is.
+/// How pattern coordinates map to the photo: turned, then `px = origin + (x, -y) * px_per_metre`, x
+/// mirrored where the photo is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PhotoFrame {
     /// Pixel coordinates of the pattern's origin.
@@ -65,7 +66,8 @@ pub struct PhotoFrame {
     pub px_per_metre: f64,
     /// True where the pattern is the mirror image of the photo.
     pub mirrored: bool,
-    /// How far the pattern lies turned in its photo, counter-clockwise, radians; before it is mirrored.
+    /// How far the pattern lies turned in its photo, counter-clockwise, radians; before it is
+    /// mirrored.
     pub turn: f64,
 }
 
@@ -125,8 +127,8 @@ pub struct Outline {
     pub inner: Vec<InnerLine>,
     /// Where the outline lies in its photo.
     pub frame: Option<PhotoFrame>,
-    /// Where each point of `outer` lies in the coordinates of `frame`, metres, for a piece that was straightened; empty where the photo shows the
-    /// outline as it is.
+    /// Where each point of `outer` lies in the coordinates of `frame`, metres, for a piece that was
+    /// straightened; empty where the photo shows the outline as it is.
     pub lies: Vec<Point2>,
 }
 
@@ -237,7 +239,8 @@ impl Artifact for Outline {
 /// Named edges get alternating colours so that a wrong corner is seen at once.
 const EDGE_COLOURS: [&str; 6] = ["#c0392b", "#2471a3", "#1e8449", "#b9770e", "#6c3483", "#117a65"];
 
-/// The outline drawn in millimetres with its corners and its edges, each with its name and an arrow in the direction in which it runs.
+/// The outline drawn in millimetres with its corners and its edges, each with its name and an arrow
+/// in the direction in which it runs.
 fn svg(outline: &Outline) -> String {
     use std::fmt::Write;
     let (lo, hi) = outline.bounds();

@@ -82,7 +82,8 @@ impl Panel {
             .fold(180.0, f64::min)
     }
 
-    /// Root mean square of the edges' lengths, each counted for each of its triangles, metres; 0 for an empty mesh.
+    /// Root mean square of the edges' lengths, each counted for each of its triangles, metres; 0
+    /// for an empty mesh.
     pub fn edge_rms(&self) -> f64 {
         let square = |t: &[u32; 3]| -> f64 {
             let p = t.map(|i| self.positions[i as usize]);
@@ -97,7 +98,8 @@ impl Panel {
         self.edges.iter().find(|e| e.name == name)
     }
 
-    /// No triangle lies with its back up. One without area lies neither way, and rounding may turn it.
+    /// No triangle lies with its back up. One without area lies neither way, and rounding may turn
+    /// it.
     fn check_sides(&self) -> Result<(), String> {
         let turned = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| self.positions[i as usize]);
@@ -139,7 +141,8 @@ impl Artifact for Panel {
         let outline: Vec<Point2> = self.boundary.iter().map(|&i| self.positions[i as usize]).collect();
         let n = self.triangles.len();
         let mut m = Measures::new();
-        // A mesh may gain or lose a few triangles when the outline moves by a tenth of a millimetre.
+        // A mesh may gain or lose a few triangles when the outline moves by a tenth of a
+        // millimetre.
         m.push("vertices", self.positions.len() as f64, "", 0.01 * self.positions.len() as f64);
         m.push("triangles", n as f64, "", 0.01 * n as f64);
         m.push("area", self.area() * 1e4, "cm2", 1.0);
@@ -149,7 +152,8 @@ impl Artifact for Panel {
         m.push("box_height", (hi.y - lo.y) * 1e3, "mm", 0.5);
         m.count("boundary_loops", 1 + self.holes.len());
         m.push("least_angle", self.least_angle(), "deg", 2.0);
-        // How the vertices lie within the outline, which all else hardly tells: a mesher's or a smoother's own work.
+        // How the vertices lie within the outline, which all else hardly tells: a mesher's or a
+        // smoother's own work.
         m.push("edge_rms", self.edge_rms() * 1e3, "mm", 0.001);
         m
     }

@@ -20,10 +20,12 @@ pub struct Photo {
     pub garment_width: Option<f64>,
     /// True where the photo stands in for its mirror image (`back: MirrorOf("front")`).
     pub mirrored: bool,
-    /// How many pixels of the file, to a side, were joined into each of these: 1 for the photo as it was read.
+    /// How many pixels of the file, to a side, were joined into each of these: 1 for the photo as
+    /// it was read.
     ///
-    /// Stages need not look at it: the runner brings the frames of outlines to the file's pixels. Who holds an outline
-    /// against a photo of joined pixels takes its frame by [`PhotoFrame::joined`](super::PhotoFrame::joined).
+    /// Stages need not look at it: the runner brings the frames of outlines to the file's pixels.
+    /// Who holds an outline against a photo of joined pixels takes its frame by
+    /// [`PhotoFrame::joined`](super::PhotoFrame::joined).
     pub joined: u32,
     /// The file it was read from, for messages and the report.
     pub file: String,

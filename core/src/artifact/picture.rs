@@ -1,8 +1,9 @@
 //! Pictures: the rows of pixels of photos, masks and textures, from the top.
 //!
-//! With the feature `image` they are those of the crate of that name, whose functions stages that look at pixels use. Without it
-//! the same names have the functions below and no more, so that a mesher does not build what it never calls; what compiles
-//! without the feature compiles with it, and does the same.
+//! With the feature `image` they are those of the crate of that name, whose functions stages that
+//! look at pixels use. Without it the same names have the functions below and no more, so that a
+//! mesher does not build what it never calls; what compiles without the feature compiles with it,
+//! and does the same.
 
 #[cfg(feature = "image")]
 pub use image::{GrayImage, RgbImage};
@@ -52,7 +53,8 @@ mod own {
             Rows { width, height, bytes: vec![0; C * width as usize * height as usize] }
         }
 
-        /// The picture of these bytes; none where they are too few. What is beyond the last pixel is kept.
+        /// The picture of these bytes; none where they are too few. What is beyond the last pixel
+        /// is kept.
         pub fn from_raw(width: u32, height: u32, bytes: Vec<u8>) -> Option<Self> {
             let wanted = (C as u64).checked_mul(u64::from(width))?.checked_mul(u64::from(height))?;
             (bytes.len() as u64 >= wanted).then_some(Rows { width, height, bytes })

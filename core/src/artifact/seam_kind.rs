@@ -1,7 +1,7 @@
 //! How the sides of a seam meet: one list for patterns, plans and garments.
 //!
-//! A stage that acts on a kind matches it without a wildcard, so that a new kind is found by the compiler; one that cannot
-//! carry a kind out refuses it by [`SeamKind::word`].
+//! A stage that acts on a kind matches it without a wildcard, so that a new kind is found by the
+//! compiler; one that cannot carry a kind out refuses it by [`SeamKind::word`].
 
 use super::sound::{Sound, finite_figure, positive};
 
@@ -23,18 +23,21 @@ pub enum SeamKind {
     Gathered,
     /// The two legs of a dart, which end in one point.
     Dart,
-    /// Two lines of one piece are laid on each other and sewn, the cloth between them folded behind. The first side is a fold that is seen;
-    /// of a box pleat the second is, too, and they meet in the middle.
+    /// Two lines of one piece are laid on each other and sewn, the cloth between them folded
+    /// behind. The first side is a fold that is seen; of a box pleat the second is, too, and they
+    /// meet in the middle.
     Pleat(PleatFold),
-    /// A band that is shorter than the edge that it is sewn to and draws it in. Of one side it lies along an edge or an inner line; of
-    /// more sides these are sewn to each other, too, and the first counts.
+    /// A band that is shorter than the edge that it is sewn to and draws it in. Of one side it lies
+    /// along an edge or an inner line; of more sides these are sewn to each other, too, and the
+    /// first counts.
     Elastic {
         /// The band's length at rest as a share of the edge's, above 0.
         ratio: f64,
         /// Its stiffness: the force that stretches it to twice its length, N.
         stiffness: f64,
     },
-    /// The edge of a piece that lies on another (the first side), sewn to a line inside that (the second).
+    /// The edge of a piece that lies on another (the first side), sewn to a line inside that (the
+    /// second).
     Patch,
     /// Matched, and pressed to stay folded.
     Folded {
@@ -71,7 +74,8 @@ impl SeamKind {
         }
     }
 
-    /// The kind after it in the order of declaration, with figures that are to be replaced: a new kind is named here by the compiler.
+    /// The kind after it in the order of declaration, with figures that are to be replaced: a new
+    /// kind is named here by the compiler.
     fn next(self) -> Option<Self> {
         Some(match self {
             SeamKind::Matched => SeamKind::Gathered,

@@ -7,8 +7,8 @@ use std::sync::Arc;
 
 /// A value that is shared and never changed, like an [`Arc`], and may be lent by whoever made it.
 ///
-/// A picture that crosses a plugin's border is not copied: it stays where it was made, and is freed there
-/// once its last user is gone.
+/// A picture that crosses a plugin's border is not copied: it stays where it was made, and is freed
+/// there once its last user is gone.
 pub struct Shared<T: Default>(Arc<Inner<T>>);
 
 struct Inner<T: Default> {
@@ -23,8 +23,8 @@ impl<T: Default> Shared<T> {
         Shared(Arc::new(Inner { value, owner: None }))
     }
 
-    /// Shares a value that shows memory of `owner`, which frees it when it is dropped. The value itself is
-    /// never dropped.
+    /// Shares a value that shows memory of `owner`, which frees it when it is dropped. The value
+    /// itself is never dropped.
     pub(crate) fn lent(value: T, owner: Arc<dyn Any + Send + Sync>) -> Self {
         Shared(Arc::new(Inner { value, owner: Some(owner) }))
     }

@@ -6,7 +6,8 @@
 /// Says what is wrong: `vertex 12 is not a finite number`.
 pub(super) type Sound = Result<(), String>;
 
-/// No length, speed or pixel of a garment comes near this; squares and cubes of it are still finite.
+/// No length, speed or pixel of a garment comes near this; squares and cubes of it are still
+/// finite.
 pub(super) const LARGEST: f64 = 1e9;
 
 /// All coordinates of all items are finite, and not absurdly large.
@@ -50,8 +51,8 @@ pub(super) fn ensure(holds: bool, message: impl FnOnce() -> String) -> Sound {
     if holds { Ok(()) } else { Err(message()) }
 }
 
-/// The first two triangles that run along one side in the same way, and what that means: in a sheet, two that share a side run
-/// along it in opposite ways.
+/// The first two triangles that run along one side in the same way, and what that means: in a
+/// sheet, two that share a side run along it in opposite ways.
 pub(super) fn alike(triangles: &[[u32; 3]]) -> Option<([usize; 2], &'static str)> {
     let of = |(i, t): (usize, &[u32; 3])| {
         let t = *t;

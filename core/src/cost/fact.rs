@@ -5,7 +5,8 @@ use crate::PortValue;
 use crate::artifact::{Artifact, Body, Garment, Mask, Model, Outline, Panel, Photo};
 use std::any::Any;
 
-/// The size of a port's value, of a set all entries together. Empty for kinds whose size no stage's work depends on.
+/// The size of a port's value, of a set all entries together. Empty for kinds whose size no stage's
+/// work depends on.
 pub fn size_of(value: &PortValue) -> Size {
     value.entries().into_iter().fold(Size::new(), |sum, (_, a)| sum.plus(&of_artifact(a.as_ref())))
 }

@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Share of a photo's frame that the garment's outline encloses, the scale being such that the garment is as wide as
-/// the frame.
+/// Share of a photo's frame that the garment's outline encloses, the scale being such that the
+/// garment is as wide as the frame.
 const FILL: f64 = 0.745;
 
 /// What is counted.
@@ -80,7 +80,8 @@ impl Size {
         })
     }
 
-    /// Both together, as of two ports that may go back to the same photo: of each quantity the greater.
+    /// Both together, as of two ports that may go back to the same photo: of each quantity the
+    /// greater.
     #[must_use]
     pub fn joined(self, other: &Size) -> Self {
         other.iter().fold(self, |all, (q, a)| {
@@ -106,7 +107,8 @@ impl Size {
     }
 }
 
-/// A guess at a garment's area, square metres, from its photo's size, px, and its real width, metres.
+/// A guess at a garment's area, square metres, from its photo's size, px, and its real width,
+/// metres.
 ///
 /// The garment fills its photo about as well from side to side as from top to bottom.
 pub fn garment_area(width_px: f64, height_px: f64, garment_width: f64) -> f64 {

@@ -59,7 +59,8 @@ fn shown(x: f64) -> f64 {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Saves {
-    /// What the cost model says of the pipeline with it and without it: the sizes at its stages differ.
+    /// What the cost model says of the pipeline with it and without it: the sizes at its stages
+    /// differ.
     Modelled,
     /// This share of its stage's time as it would be without it, measured on the shipped pipelines.
     Share(f64),

@@ -1,7 +1,8 @@
 //! Groups of parameters: what several stages share, as if each had it for its own.
 //!
-//! A struct under `#[params]` is a group. A stage takes it as one field, `#[param(flatten)] care: Care`; in pipeline files, on its
-//! card and in every check the group's parameters stand among the stage's own, in the place of that field.
+//! A struct under `#[params]` is a group. A stage takes it as one field,
+//! `#[param(flatten)] care: Care`; in pipeline files, on its card and in every check the group's
+//! parameters stand among the stage's own, in the place of that field.
 
 use super::ParamDoc;
 use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
@@ -15,7 +16,8 @@ pub trait Params: Default {
     const NAMES: &'static [&'static str];
     /// Their table, with the values of `self` as defaults.
     fn docs(&self) -> Vec<ParamDoc>;
-    /// Reads the value of the parameter `name` from the map; false where there is none of that name.
+    /// Reads the value of the parameter `name` from the map; false where there is none of that
+    /// name.
     fn read<'de, M: MapAccess<'de>>(&mut self, name: &str, map: &mut M) -> Result<bool, M::Error>;
     /// Writes all of them.
     fn write<S: SerializeStruct>(&self, out: &mut S) -> Result<(), S::Error>;

@@ -1,7 +1,8 @@
 //! Parameters of stages: lengths with units, and the table that documents and checks them.
 //!
-//! - `length`, `kind`: what a parameter may be; `doc`: what is known of one; `group`: what several stages share; `check`, `range`, `words`, `fault`: whether a text is its value, and
-//!   why not; `dialect`: the form of the files.
+//! - `length`, `kind`: what a parameter may be; `doc`: what is known of one; `group`: what several
+//!   stages share; `check`, `range`, `words`, `fault`: whether a text is its value, and why not;
+//!   `dialect`: the form of the files.
 
 mod check;
 mod dialect;

@@ -1,8 +1,9 @@
 //! The types that cross the border of a plugin, as C has them (`core/include/toile_plugin.h`).
 //!
-//! Rules, told in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers crosses; fields
-//! are only ever added at the end of a structure, with a new minor version; whoever passes memory keeps
-//! it until the call that passed it returns; nobody frees what the other side made.
+//! Rules, told in full in docs/reference/plugin-abi.md: nothing but these types and plain numbers
+//! crosses; fields are only ever added at the end of a structure, with a new minor version; whoever
+//! passes memory keeps it until the call that passed it returns; nobody frees what the other side
+//! made.
 
 use std::ffi::c_void;
 
@@ -10,7 +11,8 @@ use std::ffi::c_void;
 pub const MAGIC: [u8; 8] = *b"TOILEPLG";
 /// Raised when a plugin built before can no longer be understood.
 pub const MAJOR: u32 = 1;
-/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`, `Host::reads`. 2: `Host::note`.
+/// Raised when fields are added. 1: `StageTable::check`, `Host::parallel_for`, `Host::reads`. 2:
+/// `Host::note`.
 pub const MINOR: u32 = 2;
 
 /// What a call gives back: done.
@@ -54,7 +56,8 @@ pub struct Field {
 pub struct Owner {
     /// Argument of `retain`.
     pub ctx: *mut c_void,
-    /// Gives a handle that keeps the list where it is, unchanged, until `release`; null where it cannot.
+    /// Gives a handle that keeps the list where it is, unchanged, until `release`; null where it
+    /// cannot.
     pub retain: Option<unsafe extern "C" fn(ctx: *mut c_void) -> *mut c_void>,
     /// Ends a handle; may be called from any thread.
     pub release: Option<unsafe extern "C" fn(handle: *mut c_void)>,
@@ -118,7 +121,8 @@ pub struct Param {
     pub name: Text,
     /// What it does.
     pub doc: Text,
-    /// Its type in words: `number`, `whole number`, `length`, `true | false`, `text`, `Four | Eight`, ...
+    /// Its type in words: `number`, `whole number`, `length`, `true | false`, `text`,
+    /// `Four | Eight`, ...
     pub kind: Text,
     /// Its unit; may be empty.
     pub unit: Text,
@@ -128,7 +132,8 @@ pub struct Param {
     pub min: f64,
     /// Its greatest value.
     pub max: f64,
-    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`, and `PARAM_WAY`; a host leaves bits alone that it does not know.
+    /// `PARAM_TRADES`, `PARAM_FINER_LESS` or `PARAM_FINER_MORE`, and `PARAM_WAY`; a host leaves
+    /// bits alone that it does not know.
     pub flags: u32,
     /// Zero.
     pub reserved: u32,
@@ -205,21 +210,22 @@ pub struct Host {
     pub threads: u32,
     /// First argument of all functions below.
     pub ctx: *mut c_void,
-    /// Memory for an output, 16-byte aligned and zero; the program frees it after the call. Null where the
-    /// limit is passed: give back `FAILED` then.
+    /// Memory for an output, 16-byte aligned and zero; the program frees it after the call. Null
+    /// where the limit is passed: give back `FAILED` then.
     pub alloc: Option<unsafe extern "C" fn(ctx: *mut c_void, bytes: usize) -> *mut c_void>,
-    /// Gives an artifact to an output port, under a name where the port is a set. The program has its own
-    /// copy when this returns. Anything but `OK`: give back `FAILED`.
+    /// Gives an artifact to an output port, under a name where the port is a set. The program has
+    /// its own copy when this returns. Anything but `OK`: give back `FAILED`.
     pub give:
         Option<unsafe extern "C" fn(ctx: *mut c_void, port: u32, name: Text, record: *const Record) -> i32>,
-    /// Gives a collider to an output port. The program calls its `destroy` once it needs it no more,
-    /// also where this does not give back `OK`.
+    /// Gives a collider to an output port. The program calls its `destroy` once it needs it no
+    /// more, also where this does not give back `OK`.
     pub give_collider:
         Option<unsafe extern "C" fn(ctx: *mut c_void, port: u32, collider: *const Collider) -> i32>,
     /// Answers a question for a text, such as [`StageTable::params`].
     pub answer: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
-    /// Tells why a call fails: code (`invalid_input`, ...), one sentence in lower case, a hint (may be empty),
-    /// and the parameter at fault (may be empty; of a check, the reason without the parameter's name).
+    /// Tells why a call fails: code (`invalid_input`, ...), one sentence in lower case, a hint (may
+    /// be empty), and the parameter at fault (may be empty; of a check, the reason without the
+    /// parameter's name).
     pub fail:
         Option<unsafe extern "C" fn(ctx: *mut c_void, code: Text, message: Text, hint: Text, about: Text)>,
     /// Tells what the user should look at; it also stands in the report.
@@ -230,8 +236,8 @@ pub struct Host {
     pub figure: Option<unsafe extern "C" fn(ctx: *mut c_void, name: Text, value: f64, unit: Text)>,
     /// Not zero once the user has asked to stop. Ask at least every 50 ms.
     pub cancelled: Option<unsafe extern "C" fn(ctx: *mut c_void) -> u8>,
-    /// Since 1.1. Calls `body(data, i)` for every `i` below `count`, on the program's threads, in any order,
-    /// and returns when all are done.
+    /// Since 1.1. Calls `body(data, i)` for every `i` below `count`, on the program's threads, in
+    /// any order, and returns when all are done.
     pub parallel_for: Option<
         unsafe extern "C" fn(
             ctx: *mut c_void,
@@ -240,11 +246,12 @@ pub struct Host {
             body: Option<unsafe extern "C" fn(data: *mut c_void, index: usize)>,
         ),
     >,
-    /// Since 1.1. Tells that a file was read, so that the stage runs again when it has changed: its path as
-    /// the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null: the program then
-    /// looks itself.
+    /// Since 1.1. Tells that a file was read, so that the stage runs again when it has changed: its
+    /// path as the pipeline names it, and the BLAKE3 digest of its content, 32 bytes, or null: the
+    /// program then looks itself.
     pub reads: Option<unsafe extern "C" fn(ctx: *mut c_void, path: Text, digest: *const u8)>,
-    /// Since 1.2. Tells what was decided, for a user who wants to know; it also stands in the report.
+    /// Since 1.2. Tells what was decided, for a user who wants to know; it also stands in the
+    /// report.
     pub note: Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)>,
 }
 
@@ -258,7 +265,8 @@ pub struct StageTable {
     pub reserved: u32,
     /// Its name in pipeline files.
     pub name: Text,
-    /// `denoiser`, `binariser`, `edge detector`, `mesher`, `smoother`, `collider`, `stitcher`, `texturer`, ...
+    /// `denoiser`, `binariser`, `edge detector`, `mesher`, `smoother`, `collider`, `stitcher`,
+    /// `texturer`, ...
     pub role: Text,
     /// Its user page.
     pub doc: Text,
@@ -291,8 +299,8 @@ pub struct StageTable {
     pub run: Option<unsafe extern "C" fn(stage: *const c_void, host: *const Host, call: *const Call) -> i32>,
     /// Frees it.
     pub destroy: Option<unsafe extern "C" fn(stage: *mut c_void)>,
-    /// Since 1.1, may be null. Checks a RON text as the value of a parameter; tells the byte at fault, or
-    /// -1, through `offset`.
+    /// Since 1.1, may be null. Checks a RON text as the value of a parameter; tells the byte at
+    /// fault, or -1, through `offset`.
     pub check:
         Option<unsafe extern "C" fn(param: usize, text: Text, host: *const Host, offset: *mut i64) -> i32>,
 }
@@ -334,7 +342,8 @@ pub const HOST_SIZE_1_0: u32 = std::mem::offset_of!(Host, parallel_for) as u32;
 pub struct Sink {
     /// First argument of `grow`.
     pub ctx: *mut c_void,
-    /// Room for so many further results, to be filled before the next call; null where there is none.
+    /// Room for so many further results, to be filled before the next call; null where there is
+    /// none.
     pub grow: Option<unsafe extern "C" fn(ctx: *mut c_void, count: usize) -> *mut c_void>,
 }
 
@@ -370,7 +379,8 @@ pub struct ColliderCard {
     pub reserved: u32,
 }
 
-/// A collision scheme, called in the solvers' inner loops, from any thread and from several at once.
+/// A collision scheme, called in the solvers' inner loops, from any thread and from several at
+/// once.
 ///
 /// The functions give back `OK`, or anything else where they failed; `why` then tells the reason.
 #[repr(C)]
@@ -406,8 +416,8 @@ pub struct ColliderTable {
     /// Fills the sink with pairs of triangle indices (`uint32_t[2]`).
     pub self_crossings:
         Option<unsafe extern "C" fn(this: *const c_void, cloth: *const Cloth, sink: *const Sink) -> i32>,
-    /// Makes a second handle of the same collider, with a `destroy` of its own, so that it may be kept
-    /// beyond the call. Colliders of the program have it; of a plugin it may be null.
+    /// Makes a second handle of the same collider, with a `destroy` of its own, so that it may be
+    /// kept beyond the call. Colliders of the program have it; of a plugin it may be null.
     pub share: Option<unsafe extern "C" fn(this: *const c_void, collider: *mut Collider) -> i32>,
     /// Why the last call on this thread failed, good until the next one; may be null.
     pub why: Option<unsafe extern "C" fn(this: *const c_void) -> Text>,

@@ -1,9 +1,9 @@
-//! Colliders across the border, both ways: a collider of this side lent as a table of functions, and a
-//! table of the other side behind [`Collide`].
+//! Colliders across the border, both ways: a collider of this side lent as a table of functions,
+//! and a table of the other side behind [`Collide`].
 //!
-//! Positions and triangles cross as they lie in memory, results are written straight into the asker's
-//! list; a call costs one indirect jump more than a collider that is linked in, and one pass over its
-//! results, whose indices are checked.
+//! Positions and triangles cross as they lie in memory, results are written straight into the
+//! asker's list; a call costs one indirect jump more than a collider that is linked in, and one
+//! pass over its results, whose indices are checked.
 
 use super::abi::{self, Cloth, Sink, Text};
 use super::guard::{guarded, last_failure, meaning};
@@ -269,8 +269,8 @@ fn cloth(positions: &[Point3], triangles: &[[u32; 3]]) -> Cloth {
 }
 
 impl Foreign {
-    /// Leaves the solver with an error: the trait's functions cannot return one, and a contact that is
-    /// missed must not pass for none.
+    /// Leaves the solver with an error: the trait's functions cannot return one, and a contact that
+    /// is missed must not pass for none.
     fn ensure(&self, status: i32, what: &str) {
         if status != abi::OK {
             let why = self.table.why.map(|why| unsafe { text(why(self.collider.this)).unwrap_or("") });

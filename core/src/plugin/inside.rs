@@ -1,11 +1,12 @@
 //! Where the program is inside a plugin: which one, for whoever must say so from outside.
 //!
-//! Two have to. A plugin that calls `exit` ends the program from within, and the system's exit code is that of the plugin:
-//! [`name_who_exits`] has the C library call back while a program ends, so that a plugin that ends it is named. And a program
-//! that is asked to stop says what did not.
+//! Two have to. A plugin that calls `exit` ends the program from within, and the system's exit code
+//! is that of the plugin: [`name_who_exits`] has the C library call back while a program ends, so
+//! that a plugin that ends it is named. And a program that is asked to stop says what did not.
 //!
-//! Every call into a plugin notes itself for its thread, which costs two stores; calls that may be long note themselves for all
-//! threads too. Limits: `_exit`, `abort` and a fault of memory pass no handler and are not caught.
+//! Every call into a plugin notes itself for its thread, which costs two stores; calls that may be
+//! long note themselves for all threads too. Limits: `_exit`, `abort` and a fault of memory pass no
+//! handler and are not caught.
 
 use std::cell::Cell;
 use std::ffi::c_int;
@@ -14,7 +15,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 
 thread_local! {
-    /// The plugin that this thread is in. Without a destructor, so that it can be read while the thread ends.
+    /// The plugin that this thread is in. Without a destructor, so that it can be read while the
+    /// thread ends.
     static HERE: Cell<Option<&'static str>> = const { Cell::new(None) };
 }
 
@@ -75,7 +77,8 @@ unsafe extern "C" {
     fn _exit(code: c_int) -> !;
 }
 
-/// From now on a plugin that ends the program is named by `last_words`, which gives the exit code, unless [`end`] came first.
+/// From now on a plugin that ends the program is named by `last_words`, which gives the exit code,
+/// unless [`end`] came first.
 ///
 /// For a program that ends by returning from `main` or by [`end`] alone.
 pub fn name_who_exits(last_words: LastWords) {

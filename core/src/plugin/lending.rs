@@ -1,5 +1,5 @@
-//! Pictures that cross the border without a copy: they stay where they were made, and whoever made them
-//! is told when the other side needs them no more.
+//! Pictures that cross the border without a copy: they stay where they were made, and whoever made
+//! them is told when the other side needs them no more.
 
 use super::abi;
 use crate::artifact::{Picture, Shared};
@@ -9,7 +9,8 @@ use std::sync::Arc;
 
 type Keeper = Arc<dyn Any + Send + Sync>;
 
-/// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list grows.
+/// The owners of a record's lists, in C's form; boxed, since they are pointed at while the list
+/// grows.
 #[derive(Debug, Default)]
 #[allow(clippy::vec_box)]
 pub struct Owners(Vec<Box<abi::Owner>>);
@@ -100,8 +101,9 @@ impl Lending {
     /// `bytes` is the list that this owner was named for.
     pub(crate) fn picture<P: Picture>(&self, bytes: &[u8], w: u32, h: u32) -> Option<Shared<P>> {
         let keeper = self.keep().filter(|_| !bytes.is_empty())?;
-        // The vector only shows the bytes: `Shared` gives out references alone and never drops it, so that
-        // it is neither grown nor freed; the keeper keeps the bytes for as long as it lives.
+        // The vector only shows the bytes: `Shared` gives out references alone and never drops it,
+        // so that it is neither grown nor freed; the keeper keeps the bytes for as long as it
+        // lives.
         let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
         let length = bytes.len() as u64;
         if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNELS) {

@@ -3,12 +3,13 @@
 //! - `abi` holds the types that cross; docs/reference/plugin-abi.md is their specification and
 //!   `core/include/toile_plugin.h` their C form.
 //! - The plugin's side: `sdk`, behind the macro [`plugin!`](crate::plugin).
-//! - Both sides: `view` (records), `lending` (pictures), `collide` (colliders), `guard` (panics), `inside` (which plugin the
-//!   program is in), `loaded` (what a plugin brings).
+//! - Both sides: `view` (records), `lending` (pictures), `collide` (colliders), `guard` (panics),
+//!   `inside` (which plugin the program is in), `loaded` (what a plugin brings).
 //! - The program's side, which loads libraries, is `toile_pipeline::plugin`.
 //!
-//! Architecture invariant: this folder and that one hold all the `unsafe` code of the project. Nothing but
-//! `repr(C)` types crosses, no memory is freed by the side that did not make it, no panic passes.
+//! Architecture invariant: this folder and that one hold all the `unsafe` code of the project.
+//! Nothing but `repr(C)` types crosses, no memory is freed by the side that did not make it, no
+//! panic passes.
 
 pub mod abi;
 mod card;

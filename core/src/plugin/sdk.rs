@@ -1,7 +1,7 @@
 //! The plugin's side: what the macro [`plugin!`](crate::plugin) puts behind a crate's stages.
 //!
-//! A stage written with `#[stage]` knows nothing of the border: its artifacts are made from the records
-//! that it is given, its context asks the program, and what it returns is lent as records.
+//! A stage written with `#[stage]` knows nothing of the border: its artifacts are made from the
+//! records that it is given, its context asks the program, and what it returns is lent as records.
 
 use super::abi::{self, Text};
 use super::guard::guarded;
@@ -337,7 +337,8 @@ impl Remote {
     }
 }
 
-/// The program's own way to take a note; none in programs before 1.2, whose structure ends before it.
+/// The program's own way to take a note; none in programs before 1.2, whose structure ends before
+/// it.
 fn host_note(host: &abi::Host) -> Option<unsafe extern "C" fn(ctx: *mut c_void, text: Text)> {
     host.note.filter(|_| host.minor >= 2)
 }

@@ -69,7 +69,8 @@ pub struct InPort {
     pub optional: bool,
     /// True where it wants the first made of its kind (the photo as read), not the latest.
     pub original: bool,
-    /// True where it wants what was sewn: of a garment that flatteners have laid flat, the one that they were given.
+    /// True where it wants what was sewn: of a garment that flatteners have laid flat, the one that
+    /// they were given.
     pub sewn: bool,
 }
 
@@ -78,7 +79,8 @@ pub struct InPort {
 pub struct OutPort {
     /// What it gives.
     pub kind: Kind,
-    /// `All` where one run gives a whole named set; `One` else (a mapped stage gives a set as well).
+    /// `All` where one run gives a whole named set; `One` else (a mapped stage gives a set as
+    /// well).
     pub arity: Arity,
 }
 

@@ -30,7 +30,8 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
     /// Its parameters as RON: `(bias: 3.0)`.
     fn params(&self) -> String;
 
-    /// How much it makes of so much, all ports together; none where the rules of its role tell (see [`crate::cost`]).
+    /// How much it makes of so much, all ports together; none where the rules of its role tell (see
+    /// [`crate::cost`]).
     fn sizes(&self, _given: &Size, _cx: &Context) -> Option<Size> {
         None
     }
@@ -40,21 +41,24 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
         Vec::new()
     }
 
-    /// What is wrong with its parameters and files, as far as it can be told before anything runs: all of it, each at its own
-    /// parameter and element ([`StageError::at`], [`StageError::within`]). It is asked before every run and by `toile validate`, so
-    /// it must be quick: it looks at files, and computes nothing. What it finds, the run would find as well.
+    /// What is wrong with its parameters and files, as far as it can be told before anything runs:
+    /// all of it, each at its own parameter and element ([`StageError::at`],
+    /// [`StageError::within`]). It is asked before every run and by `toile validate`, so it must be
+    /// quick: it looks at files, and computes nothing. What it finds, the run would find as well.
     fn faults(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }
 
-    /// What the user should look at before anything runs, such as a name of no edge of a file, each at its own parameter. It is asked after
-    /// [`Stage::faults`] found nothing, and must be as quick.
+    /// What the user should look at before anything runs, such as a name of no edge of a file, each
+    /// at its own parameter. It is asked after [`Stage::faults`] found nothing, and must be as
+    /// quick.
     fn warnings(&self, _placed: &Placed<'_>) -> Vec<StageError> {
         Vec::new()
     }
 
-    /// Whether it only improves on what it is given, which is good without it: where it fails, or takes more work than what it was given took, the
-    /// run goes on with that (docs/reference/pipeline.md).
+    /// Whether it only improves on what it is given, which is good without it: where it fails, or
+    /// takes more work than what it was given took, the run goes on with that
+    /// (docs/reference/pipeline.md).
     fn improves(&self) -> bool {
         self.card().contracts.contains(&Contract::Improves)
     }

@@ -39,7 +39,8 @@ pub enum Feed {
     },
 }
 
-/// For each stage, whether it is one of `sinks` or feeds one, near or far; each stage stands after all that feed it.
+/// For each stage, whether it is one of `sinks` or feeds one, near or far; each stage stands after
+/// all that feed it.
 pub fn needed_for(nodes: &[Node], sinks: &[usize]) -> Vec<bool> {
     let mut needed: Vec<bool> = (0..nodes.len()).map(|i| sinks.contains(&i)).collect();
     // Producers stand before their consumers, so one pass from the end reaches all.

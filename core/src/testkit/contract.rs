@@ -245,7 +245,8 @@ fn boundary_preserving(trial: &Trial<'_>, cases: &[Case]) -> Result<Kept, String
     tally(&outcomes)
 }
 
-/// Boundary vertices lie on the outline, its corners are among them, named edges run between the same points.
+/// Boundary vertices lie on the outline, its corners are among them, named edges run between the
+/// same points.
 fn on_outline(outline: &Outline, panel: &Panel) -> Result<(), String> {
     let (low, high) = outline.bounds();
     let most = ON_OUTLINE * (high - low).norm();
@@ -320,7 +321,8 @@ fn refuses_empty(trial: &Trial<'_>, bare: Option<&dyn Stage>, card: &Card) -> Re
     Ok(Kept { cases, answered: 0 })
 }
 
-/// Looks whether the stage takes each kind that it makes, so that this can go on in the place of its result.
+/// Looks whether the stage takes each kind that it makes, so that this can go on in the place of
+/// its result.
 fn improves(card: &Card) -> Result<Kept, String> {
     let takes = |out: &&crate::OutPort| card.inputs.iter().any(|p| p.kind == out.kind && !p.original);
     match card.outputs.iter().find(|out| !takes(out)) {
@@ -373,7 +375,8 @@ fn lateness(trial: &Trial<'_>, inputs: &Inputs, after: u64) -> Result<Option<Dur
     if after == 0 {
         cancel.cancel();
     }
-    // Threads of its own: one that waits would else take up what other tests have to do, and be late by that.
+    // Threads of its own: one that waits would else take up what other tests have to do, and be
+    // late by that.
     let threads = rayon::current_num_threads();
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().map_err(|e| e.to_string())?;
     let outcome = pool.install(|| trial.run_until(inputs, cancel));

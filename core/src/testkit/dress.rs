@@ -103,7 +103,8 @@ pub fn garment_panel() -> Panel {
     shapes::panel(9, 8, PANEL[0], PANEL[1])
 }
 
-/// The pattern of the suite's garment: a front and a back, sewn at shoulders and sides, standing before and behind the body.
+/// The pattern of the suite's garment: a front and a back, sewn at shoulders and sides, standing
+/// before and behind the body.
 pub fn pattern() -> Pattern {
     let [w, h] = PANEL;
     let third = w / 6.0;

@@ -15,7 +15,8 @@ const PATTERN: &str = r#"{"pattern": {"panels": {
 "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 2}], [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 0}]]},
 "properties": {"units_in_meter": 100, "curvature_coords": "relative"}}"#;
 
-/// Two half pieces with a fold, a grain line and a notch, as a drawing program saves them, millimetres.
+/// Two half pieces with a fold, a grain line and a notch, as a drawing program saves them,
+/// millimetres.
 const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="600mm" height="700mm" viewBox="0 0 600 700">
 <g id="front"><path d="M 20,80 V 650 H 270 Q 262,400 270,280 C 215,270 190,200 205,60 L 120,30 C 110,70 70,80 20,80 Z"/>
 <path class="fold" d="M 20,100 V 600"/><path class="grain" d="M 60,200 V 500"/><circle class="notch" cx="266" cy="400" r="2"/></g>
@@ -23,7 +24,8 @@ const DRAWING: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" width="600mm" 
 <path class="fold" d="M 20,100 V 600"/><path class="grain" d="M 60,200 V 500"/><circle class="notch" cx="266" cy="400" r="2"/></g>
 </svg>"##;
 
-/// Two half pieces of size M, as CAD programs exchange them: mirror line above, grain along x, millimetres.
+/// Two half pieces of size M, as CAD programs exchange them: mirror line above, grain along x,
+/// millimetres.
 fn pieces() -> String {
     use std::fmt::Write;
     let mut out = String::from("  0\nSECTION\n  2\nBLOCKS\n");
@@ -47,8 +49,10 @@ fn pieces() -> String {
     out + "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n  0\nTEXT\n  8\n1\n  1\nUnits: METRIC\n  0\nENDSEC\n  0\nEOF\n"
 }
 
-/// Lays the files that an example names into a folder: pictures (`empty.jpg` shows the ground without the garment), a body as OBJ (a garment where its name says so), a GarmentCode pattern under its usual ending, a DXF and an SVG of pieces,
-/// and, of other kinds, whatever a writer of the registry makes of the suite's garment under that extension, with all that goes with it.
+/// Lays the files that an example names into a folder: pictures (`empty.jpg` shows the ground
+/// without the garment), a body as OBJ (a garment where its name says so), a GarmentCode pattern
+/// under its usual ending, a DXF and an SVG of pieces, and, of other kinds, whatever a writer of
+/// the registry makes of the suite's garment under that extension, with all that goes with it.
 ///
 /// Errors: the system's, where a file cannot be written.
 pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<(), String> {
@@ -81,7 +85,8 @@ pub fn files_for(registry: &Registry, example: &str, folder: &Path) -> Result<()
     Ok(())
 }
 
-/// All cards, first those that are named after the stage of the example: `SceneJson` writes what `Scene` reads.
+/// All cards, first those that are named after the stage of the example: `SceneJson` writes what
+/// `Scene` reads.
 fn writers_for<'r>(registry: &'r Registry, example: &'r str) -> impl Iterator<Item = &'r Card> {
     let stage = example.split('(').next().unwrap_or("").trim();
     let kin = move |card: &&Card| card.name.starts_with(stage);
@@ -100,8 +105,9 @@ fn garment_file() -> Vec<u8> {
     dress::sewn_garment().export().pop().map(|(_, bytes)| bytes).unwrap_or_default()
 }
 
-/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the registry makes without
-/// arguments, since readers of bodies look for shoulders and legs, else the suite's own.
+/// A body as an OBJ file, lying on its back where z is to be up: the one that a stage of the
+/// registry makes without arguments, since readers of bodies look for shoulders and legs, else the
+/// suite's own.
 fn body_file(registry: &Registry, z_up: bool) -> Vec<u8> {
     let made = registry.of_role(crate::Role::Body).find_map(|card| {
         let outcome =

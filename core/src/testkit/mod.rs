@@ -1,7 +1,7 @@
 //! Turns what stages promise into tests.
 //!
-//! A stage's card declares contracts; this kit runs the stage on a shared suite of inputs, hard ones included, and
-//! holds it to them. A stage crate names the kit in its dev-dependencies,
+//! A stage's card declares contracts; this kit runs the stage on a shared suite of inputs, hard
+//! ones included, and holds it to them. A stage crate names the kit in its dev-dependencies,
 //!
 //! ```toml
 //! [dev-dependencies]
@@ -15,14 +15,16 @@
 //! toile_core::contracts!(MyMesher, MySmoother);
 //! ```
 //!
-//! - [`suite`]: the inputs. [`shapes`], [`dress`], [`capsules`]: what they are made of. [`files`]: those that examples name.
+//! - [`suite`]: the inputs. [`shapes`], [`dress`], [`capsules`]: what they are made of. [`files`]:
+//!   those that examples name.
 //! - [`contract`]: one check for each contract, and which of them the kit can check for a card.
 //! - [`motion`]: artifacts moved, turned and scaled.
 //! - [`trial`]: a single run and its outcome.
 //!
-//! Method: properties over fixed inputs, no random ones, so that a failure comes back. Cost: each case of a stage is
-//! run two to five times a contract. Limits: a contract is checked on the suite and not proved; equivariance is
-//! checked where the kit knows how to move what a stage takes and how to compare what it gives.
+//! Method: properties over fixed inputs, no random ones, so that a failure comes back. Cost: each
+//! case of a stage is run two to five times a contract. Limits: a contract is checked on the suite
+//! and not proved; equivariance is checked where the kit knows how to move what a stage takes and
+//! how to compare what it gives.
 
 pub mod capsules;
 pub mod contract;
@@ -76,7 +78,8 @@ pub fn typed<T: 'static>(artifact: &dyn Artifact) -> Option<&T> {
     any.downcast_ref()
 }
 
-/// The stage of a card as its example sets it, with the files that the example names laid into `folder`.
+/// The stage of a card as its example sets it, with the files that the example names laid into
+/// `folder`.
 ///
 /// Errors: why the example cannot be loaded.
 pub fn from_example(registry: &Registry, card: &Card, folder: &Path) -> Result<Box<dyn Stage>, String> {
@@ -98,7 +101,8 @@ pub fn folder() -> Result<(tempfile::TempDir, PathBuf), String> {
     Ok((dir, path))
 }
 
-/// Makes a `#[test]` for each of the stages and contracts; those that a stage does not promise say so.
+/// Makes a `#[test]` for each of the stages and contracts; those that a stage does not promise say
+/// so.
 ///
 /// Use it once in a file.
 #[macro_export]

@@ -1,7 +1,8 @@
 //! Artifacts moved, turned and scaled, and results compared with what they should have become.
 //!
-//! Pictures move by whole pixels and scale by their px per metre, so that their pixels stay the same; outlines and
-//! panels move exactly. Compared are shapes, not lists: a closed line may start elsewhere.
+//! Pictures move by whole pixels and scale by their px per metre, so that their pixels stay the
+//! same; outlines and panels move exactly. Compared are shapes, not lists: a closed line may start
+//! elsewhere.
 
 use crate::artifact::*;
 use crate::{Card, Contract, Inputs, PortValue};
@@ -9,7 +10,8 @@ use image::{ImageBuffer, Pixel};
 use std::any::Any;
 use std::sync::Arc;
 
-/// How far shapes may leave each other, as a share of their size: rounding, and what it tips over in a search.
+/// How far shapes may leave each other, as a share of their size: rounding, and what it tips over
+/// in a search.
 pub const TOLERANCE: f64 = 1e-6;
 /// How far the outline of a photo that was moved by whole pixels may be off, px.
 pub const TOLERANCE_PX: f64 = 0.02;
@@ -37,7 +39,8 @@ pub fn of(contract: Contract) -> Option<Motion> {
     }
 }
 
-/// True where every kind that a card takes can be moved so, and every kind that it gives be compared.
+/// True where every kind that a card takes can be moved so, and every kind that it gives be
+/// compared.
 pub fn applies(card: &Card, motion: Motion) -> bool {
     let turns = matches!(motion, Motion::Turn(_));
     let takes =

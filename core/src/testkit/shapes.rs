@@ -272,10 +272,12 @@ pub fn noisy_photo(width: u32, height: u32) -> Photo {
     photo_from(RgbImage::from_fn(width, height, level))
 }
 
-/// A rectangular panel of `columns` by `rows` cells, `width` by `height` metres, its lower middle at the origin.
+/// A rectangular panel of `columns` by `rows` cells, `width` by `height` metres, its lower middle
+/// at the origin.
 ///
-/// Edges: `hem`, `side_left`, `shoulder_left`, `neck`, `shoulder_right`, `side_right`; the neck is the middle
-/// third of the top. Inner vertices are a little off their places, so that a smoother has something to do.
+/// Edges: `hem`, `side_left`, `shoulder_left`, `neck`, `shoulder_right`, `side_right`; the neck is
+/// the middle third of the top. Inner vertices are a little off their places, so that a smoother
+/// has something to do.
 pub fn panel(columns: usize, rows: usize, width: f64, height: f64) -> Panel {
     let at = |i: usize, j: usize| (j * (columns + 1) + i) as u32;
     let inner = |i: usize, j: usize| i > 0 && i < columns && j > 0 && j < rows;

@@ -1,7 +1,9 @@
-//! The inputs that stages are run on: a few whole scenes, and hard cases of images, outlines and panels.
+//! The inputs that stages are run on: a few whole scenes, and hard cases of images, outlines and
+//! panels.
 //!
-//! A scene holds what belongs together: a photo with its mask and its outline. A card's cases are the scenes that
-//! hold what its ports take; what a scene does not hold comes from [`dress`](super::dress).
+//! A scene holds what belongs together: a photo with its mask and its outline. A card's cases are
+//! the scenes that hold what its ports take; what a scene does not hold comes from
+//! [`dress`](super::dress).
 
 use super::{capsules, dress, shapes};
 use crate::artifact::*;
@@ -152,8 +154,8 @@ type Maker = fn() -> Arc<dyn Artifact>;
 /// A kind with an artifact that is made where it is first asked for.
 type Own = (Kind, LazyLock<Arc<dyn Artifact>, Maker>);
 
-/// What stands on ports that no scene fills, a kind each. They are made once a process: the contracts of all cards ask for
-/// them some thousand times.
+/// What stands on ports that no scene fills, a kind each. They are made once a process: the
+/// contracts of all cards ask for them some thousand times.
 fn own() -> &'static [Own] {
     static OWN: LazyLock<Vec<Own>> = LazyLock::new(|| {
         let all: [(Kind, Maker); 14] = [
@@ -196,7 +198,8 @@ pub fn own_value(card: &Card, port: &InPort) -> Option<PortValue> {
     default_value(port)
 }
 
-/// What a stage that is being stopped works on: large enough that most take longer than the time they have.
+/// What a stage that is being stopped works on: large enough that most take longer than the time
+/// they have.
 pub fn large_value(card: &Card, port: &InPort) -> Option<PortValue> {
     let artifact: Arc<dyn Artifact> = match port.kind {
         k if k == Photo::KIND => Arc::new(enlarged(&shapes::photo())),

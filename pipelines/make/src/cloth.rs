@@ -74,7 +74,8 @@ fn crease(seed: u64, p: P) -> f64 {
     (0.8 + 1.5 * r(6)) * (width / 6.0) * (-across * across - 2.0 * along * along).exp()
 }
 
-/// Light on the relief: a lamp from the upper left, Lambert's cosine with much light from all round.
+/// Light on the relief: a lamp from the upper left, Lambert's cosine with much light from all
+/// round.
 pub(crate) fn relief_light(seed: u64, p: P) -> f64 {
     let e = 0.6;
     let dx = (height(seed, [p[0] + e, p[1]]) - height(seed, [p[0] - e, p[1]])) / (2.0 * e);

@@ -1,9 +1,9 @@
 //! The sample garments as exact curves, millimetres.
 //!
-//! All are drafted for a figure of height 172 cm, bust 88, waist 70 and hip 96 cm. The frame is that
-//! of the pattern: x to the right as seen from outside, y up, the origin below the middle of the
-//! garment at its lowest point. Front and back share shoulders, sides (and sleeves), so that what is
-//! sewn together has the same length; necks and armholes differ as a tailor cuts them.
+//! All are drafted for a figure of height 172 cm, bust 88, waist 70 and hip 96 cm. The frame is
+//! that of the pattern: x to the right as seen from outside, y up, the origin below the middle of
+//! the garment at its lowest point. Front and back share shoulders, sides (and sleeves), so that
+//! what is sewn together has the same length; necks and armholes differ as a tailor cuts them.
 
 /// A point or a vector, millimetres.
 pub(crate) type P = [f64; 2];
@@ -108,7 +108,8 @@ pub(crate) fn longsleeve() -> Outline {
     close(&half, &[neck_curve(neck, 92.0)], &[hem_curve(hem)], Side::Front)
 }
 
-/// A shirt that is buttoned in front, 108 cm around the chest, 125 cm from cuff to cuff, 72 cm long.
+/// A shirt that is buttoned in front, 108 cm around the chest, 125 cm from cuff to cuff, 72 cm
+/// long.
 pub(crate) fn shirt() -> Outline {
     let (neck, armpit, hem) = ([88.0, 717.0], [270.0, 366.0], [276.0, 8.0]);
     let (cuff_top, cuff_low) = ([626.0, 191.0], [546.0, 128.0]);
@@ -172,7 +173,8 @@ pub(crate) fn shorts() -> Outline {
     close(&half, &[[waist, [120.0, 466.0], [60.0, 464.0], [0.0, 464.0]]], &bottom, Side::Front)
 }
 
-/// A child's one-piece with short sleeves and short legs, 64 cm around the chest, 42 cm from neck to fork.
+/// A child's one-piece with short sleeves and short legs, 64 cm around the chest, 42 cm from neck
+/// to fork.
 pub(crate) fn onepiece() -> Outline {
     let (neck, armpit, outer, inner) = ([62.0, 540.0], [160.0, 378.0], [172.0, 6.0], [32.0, 0.0]);
     let (cuff_top, cuff_low, fork) = ([258.0, 442.0], [212.0, 334.0], [0.0, 92.0]);
@@ -195,7 +197,8 @@ fn line(a: P, b: P) -> Cubic {
     [a, mix(a, b, 1.0 / 3.0), mix(a, b, 2.0 / 3.0), b]
 }
 
-/// The right half of a neckline: it leaves the shoulder at a right angle and is level in the middle.
+/// The right half of a neckline: it leaves the shoulder at a right angle and is level in the
+/// middle.
 fn neck_curve(neck: P, depth: f64) -> Cubic {
     let low = [0.0, neck[1] - depth];
     [neck, [neck[0] - 0.18 * depth, neck[1] - 0.62 * depth], [neck[0] * 0.55, low[1]], low]

@@ -1,9 +1,9 @@
-//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a prepared scene, a panorama, and sewing patterns of a shirt,
-//! trousers, a dress and a one-piece.
+//! Makes the samples under `pipelines/samples`: photos, each with its true mask and outline, a
+//! prepared scene, a panorama, and sewing patterns of a shirt, trousers, a dress and a one-piece.
 //!
 //! The pictures are drawn, not taken, so that tests have a truth; they are the same bits on every
-//! run. Another folder may be given as the first argument, and as the second a factor for the photos' resolution:
-//! `toile-samples out/large 2.4` makes photos of 12.9 and 16.6 megapixels.
+//! run. Another folder may be given as the first argument, and as the second a factor for the
+//! photos' resolution: `toile-samples out/large 2.4` makes photos of 12.9 and 16.6 megapixels.
 
 mod cloth;
 mod colour;

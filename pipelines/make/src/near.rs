@@ -1,6 +1,7 @@
 //! Where a point lies with respect to an outline: signed distance, nearest edge, place along it.
 //!
-//! A grid of cells keeps, for each cell, only the segments that can be nearest to one of its points.
+//! A grid of cells keeps, for each cell, only the segments that can be nearest to one of its
+//! points.
 
 use crate::garment::{Outline, P, distance};
 
@@ -64,7 +65,8 @@ impl<'a> NearField<'a> {
         ];
         let reach: Vec<f64> =
             (0..self.outline.points.len()).map(|i| to_segment(centre, self.segment(i)).0).collect();
-        // The nearest segment of any point of the cell is at most one diagonal farther from the centre.
+        // The nearest segment of any point of the cell is at most one diagonal farther from the
+        // centre.
         let limit = reach.iter().copied().fold(f64::INFINITY, f64::min) + CELL * 2f64.sqrt();
         (0..reach.len()).filter(|&i| reach[i] <= limit).map(|i| i as u32).collect()
     }

@@ -1,6 +1,8 @@
-//! A photographer's studio all around, as an equirectangular picture: warm walls, a floor, a large window and a lamp with a screen.
+//! A photographer's studio all around, as an equirectangular picture: warm walls, a floor, a large
+//! window and a lamp with a screen.
 //!
-//! The room is a box around the camera; the direction of every pixel is followed to the wall that it meets.
+//! The room is a box around the camera; the direction of every pixel is followed to the wall that
+//! it meets.
 
 use crate::QUALITY;
 use crate::colour::{Rgb, blend, encode, scale, smoothstep, srgb};

@@ -1,8 +1,8 @@
 //! Patterns in GarmentCode's form: a shirt, trousers, a dress, and a child's one-piece.
 //!
-//! They are drafted for mannequins whose measures stand in their files, and stand around them as GarmentCode's panels
-//! do: centimetres, y up, panels before and behind the body, sleeves along the arms. Panels behind the body run clockwise, as
-//! GarmentCode writes them.
+//! They are drafted for mannequins whose measures stand in their files, and stand around them as
+//! GarmentCode's panels do: centimetres, y up, panels before and behind the body, sleeves along the
+//! arms. Panels behind the body run clockwise, as GarmentCode writes them.
 
 mod dress;
 mod onepiece;
@@ -16,8 +16,8 @@ use std::path::Path;
 
 type P = [f64; 2];
 
-/// An edge to the next corner: straight without controls, a quadratic curve with one, a cubic curve with two. Controls are
-/// relative to the chord: along it, and across it to the left.
+/// An edge to the next corner: straight without controls, a quadratic curve with one, a cubic curve
+/// with two. Controls are relative to the chord: along it, and across it to the left.
 #[derive(Clone)]
 struct Edge {
     name: &'static str,
@@ -54,7 +54,8 @@ fn curve(name: &'static str, from: P, to: P, controls: &[P]) -> Edge {
     Edge { name, controls: controls.iter().map(relative).collect() }
 }
 
-/// The corners of a dart in a straight edge: one end of its mouth, its tip to the left of the edge, the other end.
+/// The corners of a dart in a straight edge: one end of its mouth, its tip to the left of the edge,
+/// the other end.
 fn dart(from: P, to: P, distance: f64, width: f64, depth: f64) -> [P; 3] {
     let d = [to[0] - from[0], to[1] - from[1]];
     let long = d[0].hypot(d[1]);
@@ -70,13 +71,15 @@ fn distance(a: P, b: P) -> f64 {
 }
 
 impl Edge {
-    /// The edge run through backwards; `side` is -1 where what was to its left then lies to its right.
+    /// The edge run through backwards; `side` is -1 where what was to its left then lies to its
+    /// right.
     fn reversed(&self, side: f64) -> Self {
         let controls = self.controls.iter().rev().map(|[along, across]| [1.0 - along, side * across]);
         Edge { controls: controls.collect(), ..*self }
     }
 
-    /// Its length between two corners, from many chords: what is matched by it is matched to a hundredth of a millimetre.
+    /// Its length between two corners, from many chords: what is matched by it is matched to a
+    /// hundredth of a millimetre.
     fn length(&self, from: P, to: P) -> f64 {
         let d = [to[0] - from[0], to[1] - from[1]];
         let point = |[along, across]: P| {
@@ -108,7 +111,8 @@ impl Panel {
         }
     }
 
-    /// The same panel for the other side of the body: mirrored about x = 0, still counter-clockwise.
+    /// The same panel for the other side of the body: mirrored about x = 0, still
+    /// counter-clockwise.
     fn mirrored(&self, name: &str) -> Self {
         let n = self.corners.len();
         let corners = (0..n).map(|k| self.corners[(n - k) % n]).map(|[x, y]| [-x, y]).collect();

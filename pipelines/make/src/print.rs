@@ -115,7 +115,8 @@ pub(crate) fn tshirt_back(base: Rgb, p: P) -> Rgb {
 }
 
 fn sleeve_bands(base: Rgb, p: P) -> Rgb {
-    // Parallel to the cuff, which runs from (317, 334) to (380, 525); the line would meet the sides.
+    // Parallel to the cuff, which runs from (317, 334) to (380, 525); the line would meet the
+    // sides.
     let from_cuff = ((380.0 - p[0].abs()) * 191.0 + (p[1] - 525.0) * 63.0) / 191f64.hypot(63.0);
     let ink = srgb(108, 116, 96);
     let on = |centre: f64, half: f64| (from_cuff - centre).abs() - half;

@@ -1,4 +1,5 @@
-//! The prepared scene: two panels before and behind a dress form, to be sewn into a skirt of 1,056 triangles.
+//! The prepared scene: two panels before and behind a dress form, to be sewn into a skirt of 1,056
+//! triangles.
 
 use std::error::Error;
 use std::path::Path;

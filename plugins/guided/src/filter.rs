@@ -1,12 +1,12 @@
 //! The guided filter, with the photo's own channels or a bilaterally smoothed photo as the guide.
 //!
-//! In every window the output is a line of the guide, q = a g + b, with a = cov(g, p) / (var(g) + noise^2) and
-//! b = mean(p) - a mean(g); a pixel takes the mean of the lines of all windows that hold it (He, Sun, Tang 2010,
-//! equations 5, 6 and 8). With the photo as its own guide grain near an edge stays, because the guide has it too;
-//! a guide that a joint bilateral filter has cleaned (Petschnigg et al. 2004) does not.
-//! Window means come from running sums, so the cost is the same for every radius. The photo is worked on in strips
-//! of fixed height, in parallel, so that memory stays small and the number of threads changes no bit.
-//! Limits: windows are cut off at the frame.
+//! In every window the output is a line of the guide, q = a g + b, with a = cov(g, p) / (var(g) +
+//! noise^2) and b = mean(p) - a mean(g); a pixel takes the mean of the lines of all windows that
+//! hold it (He, Sun, Tang 2010, equations 5, 6 and 8). With the photo as its own guide grain near
+//! an edge stays, because the guide has it too; a guide that a joint bilateral filter has cleaned
+//! (Petschnigg et al. 2004) does not. Window means come from running sums, so the cost is the same
+//! for every radius. The photo is worked on in strips of fixed height, in parallel, so that memory
+//! stays small and the number of threads changes no bit. Limits: windows are cut off at the frame.
 
 use crate::bilateral;
 use image::RgbImage;
@@ -96,7 +96,8 @@ fn channel(
     Ok((0..p.len()).map(|i| a[i] * g[i] + b[i]).collect())
 }
 
-/// The mean over the window around every pixel, by running sums along rows, then down the columns all at once.
+/// The mean over the window around every pixel, by running sums along rows, then down the columns
+/// all at once.
 fn window_means(plane: &[f32], (w, h): (usize, usize), radius: usize) -> Vec<f32> {
     let mut rows = vec![0.0f32; plane.len()];
     for (row, out) in plane.chunks_exact(w).zip(rows.chunks_exact_mut(w)) {

@@ -1,4 +1,5 @@
-//! A denoiser as a third party writes it: the guided filter, by the photo itself or by a bilaterally smoothed photo.
+//! A denoiser as a third party writes it: the guided filter, by the photo itself or by a
+//! bilaterally smoothed photo.
 
 mod bilateral;
 mod filter;
@@ -19,8 +20,9 @@ pub enum Guide {
 
 /// Takes grain off and keeps edges, at a cost that does not grow with the radius.
 ///
-/// Where a window of the guide varies by less than `noise`, the photo becomes flat; where it varies by more, as at
-/// the garment's outline, it follows the guide. Unlike a bilateral filter it makes no steps out of soft shading.
+/// Where a window of the guide varies by less than `noise`, the photo becomes flat; where it varies
+/// by more, as at the garment's outline, it follows the guide. Unlike a bilateral filter it makes
+/// no steps out of soft shading.
 #[stage(
     role = Denoiser,
     source = "He, Sun, Tang 2010; Petschnigg et al. 2004",

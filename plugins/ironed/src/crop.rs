@@ -1,7 +1,8 @@
 //! The panel's part of its photo, scaled down by whole numbers.
 //!
-//! A pixel is inside where its centre lies in a triangle of the panel. Scaling down takes the mean of the inside
-//! pixels of a block, in linear light, so that no background is mixed in. Linear in the pixels.
+//! A pixel is inside where its centre lies in a triangle of the panel. Scaling down takes the mean
+//! of the inside pixels of a block, in linear light, so that no background is mixed in. Linear in
+//! the pixels.
 
 use image::RgbImage;
 use toile_core::artifact::{Photo, Point2};
@@ -20,7 +21,8 @@ pub(crate) struct Crop {
 }
 
 impl Crop {
-    /// Around a panel, its longer side at most `size`; `None` where the panel covers no pixel of the photo.
+    /// Around a panel, its longer side at most `size`; `None` where the panel covers no pixel of
+    /// the photo.
     pub(crate) fn of(photo: &Photo, places: &[Point2], triangles: &[[u32; 3]], size: u32) -> Option<Self> {
         let (w, h) = photo.pixels.dimensions();
         let first = *places.first()?;
@@ -60,7 +62,8 @@ impl Crop {
         inside.contains(&true).then(|| Crop { pixels, inside, step: f64::from(step), origin })
     }
 
-    /// Texture coordinates of a photo pixel: (0, 0) and (1, 1) are the outer corners of the first and last pixel.
+    /// Texture coordinates of a photo pixel: (0, 0) and (1, 1) are the outer corners of the first
+    /// and last pixel.
     pub(crate) fn uv(&self, px: &Point2) -> [f32; 2] {
         let (w, h) = self.pixels.dimensions();
         let share = |v: f64, from: f64, size: u32| ((v - from + 0.5) / (f64::from(size) * self.step)) as f32;

@@ -1,5 +1,6 @@
-//! Colours beyond the panel's rim, by pulling means up a pyramid and pushing them down again (Gortler, Grzeszczuk,
-//! Szeliski and Cohen 1996): what is filled is smooth, and matches the rim. Linear in the pixels.
+//! Colours beyond the panel's rim, by pulling means up a pyramid and pushing them down again
+//! (Gortler, Grzeszczuk, Szeliski and Cohen 1996): what is filled is smooth, and matches the rim.
+//! Linear in the pixels.
 
 use image::RgbImage;
 

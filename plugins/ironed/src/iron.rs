@@ -1,11 +1,13 @@
 //! Takes slow shading out of a picture and leaves edges and grain.
 //!
-//! Method: of the logarithm of the light two means are taken at each pixel over cloth of about the same level: a
-//! near one, as wide as the finest wrinkle, and a far one, wider than the widest. Cloth of one colour has the same
-//! far mean everywhere, once it is asked at its own answer a few times (mean shift, Comaniciu & Meer 2002), so near
-//! minus far is the shading, and is divided out of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a coarse grid of place and level (Chen, Paris & Durand 2007).
-//! Cost: a few operations a pixel, and the grid, some hundred thousand cells.
-//! Limits: one level is one colour: a soft gradient of the dye is taken for shading.
+//! Method: of the logarithm of the light two means are taken at each pixel over cloth of about the
+//! same level: a near one, as wide as the finest wrinkle, and a far one, wider than the widest.
+//! Cloth of one colour has the same far mean everywhere, once it is asked at its own answer a few
+//! times (mean shift, Comaniciu & Meer 2002), so near minus far is the shading, and is divided out
+//! of the linear colours. Both means are bilateral filters (Tomasi & Manduchi 1998), made on a
+//! coarse grid of place and level (Chen, Paris & Durand 2007). Cost: a few operations a pixel, and
+//! the grid, some hundred thousand cells. Limits: one level is one colour: a soft gradient of the
+//! dye is taken for shading.
 
 use image::RgbImage;
 use rayon::prelude::*;
@@ -13,9 +15,11 @@ use toile_core::{Context, StageError};
 
 /// Cells of the grid that `contrast` spans.
 const LEVELS: f64 = 4.0;
-/// Half the width of the far mean's box in level, cells: three passes fall off with six tenths of `contrast`.
+/// Half the width of the far mean's box in level, cells: three passes fall off with six tenths of
+/// `contrast`.
 const FAR_LEVELS: usize = 2;
-/// How often the far mean is asked again at its own answer (mean shift): each leaves a quarter of the shading.
+/// How often the far mean is asked again at its own answer (mean shift): each leaves a quarter of
+/// the shading.
 const SHIFTS: usize = 3;
 /// The darkest light that is told from black.
 const BLACK: f64 = 1.0 / 2048.0;
@@ -48,7 +52,8 @@ struct Grid {
     cells: Vec<Cell>,
 }
 
-/// Irons the pixels that `inside` marks; gives the picture and the root mean square of what was taken out, a share.
+/// Irons the pixels that `inside` marks; gives the picture and the root mean square of what was
+/// taken out, a share.
 pub fn iron(
     pixels: &RgbImage,
     inside: &[bool],
@@ -139,7 +144,8 @@ impl Grid {
         (weight > 0.0).then(|| sum / weight)
     }
 
-    /// Boxes of `radius` cells in place and `levels` in level, `passes` times (three are nearly a Gaussian).
+    /// Boxes of `radius` cells in place and `levels` in level, `passes` times (three are nearly a
+    /// Gaussian).
     fn blurred(&self, radius: usize, levels: usize, passes: usize, cx: &Context) -> Result<Grid, StageError> {
         let [nx, ny, nl] = self.size;
         let mut cells = self.cells.clone();

@@ -1,5 +1,5 @@
-//! A texturer that irons the photo: light and shade of the wrinkles in which the garment lay are taken out, so that
-//! they do not show beside those that the drape makes.
+//! A texturer that irons the photo: light and shade of the wrinkles in which the garment lay are
+//! taken out, so that they do not show beside those that the drape makes.
 //!
 //! - [`Ironed`]: the stage.
 //! - [`iron`]: the filter, on pixels alone.
@@ -17,10 +17,11 @@ use toile_core::prelude::*;
 
 /// Dresses each panel in its own photo, with the shading of wrinkles taken out.
 ///
-/// Cloth of one colour varies in the photo because it does not lie flat. Where the light level wanders by less than
-/// `contrast` from that of equal cloth around it, and over more than `detail`, it is brought back; prints, stripes
-/// and seams, which differ by more, and the weave, which is finer, stay. What is left of a deep fold, darker than
-/// `contrast` allows, stays too. A panel without a photo gets a plain cloth.
+/// Cloth of one colour varies in the photo because it does not lie flat. Where the light level
+/// wanders by less than `contrast` from that of equal cloth around it, and over more than `detail`,
+/// it is brought back; prints, stripes and seams, which differ by more, and the weave, which is
+/// finer, stay. What is left of a deep fold, darker than `contrast` allows, stays too. A panel
+/// without a photo gets a plain cloth.
 #[stage(
     role = Texturer,
     source = "Tomasi & Manduchi 1998; Chen, Paris & Durand 2007",

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-/// Runs the vest with a texturer, as it is placed: what is painted on it is the same before it is sewn.
+/// Runs the vest with a texturer, as it is placed: what is painted on it is the same before it is
+/// sewn.
 fn dress(texturer: &str, out: &Path) {
     let mut registry = toile::registry();
     toile_ironed::register(&mut registry);

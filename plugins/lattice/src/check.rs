@@ -1,7 +1,8 @@
 //! What an outline must be before it can be meshed.
 //!
-//! Finite, with area, counter-clockwise, not crossing itself, holes inside. Crossings are looked for with exact
-//! tests among segments that share a cell of a uniform grid; about linear for outlines.
+//! Finite, with area, counter-clockwise, not crossing itself, holes inside. Crossings are looked
+//! for with exact tests among segments that share a cell of a uniform grid; about linear for
+//! outlines.
 
 use toile_core::prelude::*;
 

@@ -1,11 +1,11 @@
 //! Outline and inner lines as the segments that the mesh must contain.
 //!
-//! Method: a named edge is cut into `gauge.divisions(h)` parts of equal arc length, the contract by which two edges
-//! that are sewn together get equal counts. A stretch without a name runs from corner to corner and takes its own
-//! gauge. Corners inside a stretch and the feet of inner lines are kept: the division nearest to each slides
-//! onto it, so that the count stays.
-//! Cost: linear in the outline, times the inner lines' ends.
-//! Limits: a named edge that is rougher than its gauge says is followed no better than its count allows.
+//! Method: a named edge is cut into `gauge.divisions(h)` parts of equal arc length, the contract by
+//! which two edges that are sewn together get equal counts. A stretch without a name runs from
+//! corner to corner and takes its own gauge. Corners inside a stretch and the feet of inner lines
+//! are kept: the division nearest to each slides onto it, so that the count stays. Cost: linear in
+//! the outline, times the inner lines' ends. Limits: a named edge that is rougher than its gauge
+//! says is followed no better than its count allows.
 
 use crate::check::first_crossing;
 use toile_core::prelude::*;
@@ -178,7 +178,8 @@ fn hole_stops(hole: &Loop) -> Vec<usize> {
     stops
 }
 
-/// The points of a closed loop from one index to another, round its end; all the way where they are the same.
+/// The points of a closed loop from one index to another, round its end; all the way where they are
+/// the same.
 fn walk(points: &[Point2], from: usize, to: usize) -> Vec<Point2> {
     let n = points.len();
     (0..=(to + n - from - 1) % n + 1).map(|k| points[(from + k) % n]).collect()

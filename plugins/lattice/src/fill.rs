@@ -1,16 +1,18 @@
 //! Points of an equilateral lattice inside the outline.
 //!
-//! Method: for each row the crossings with the loops are sorted and paired into inside runs, half-open in y so
-//! that no row is torn; points nearer to a segment than [`CLEAR`] are left out. Linear in points and segments.
+//! Method: for each row the crossings with the loops are sorted and paired into inside runs,
+//! half-open in y so that no row is torn; points nearer to a segment than [`CLEAR`] are left out.
+//! Linear in points and segments.
 
 use crate::divide::Division;
 use toile_core::prelude::*;
 
-/// Lattice points keep this distance from every segment, in edge lengths: less makes needles at the border, more
-/// leaves room for a second, irregular row.
+/// Lattice points keep this distance from every segment, in edge lengths: less makes needles at the
+/// border, more leaves room for a second, irregular row.
 const CLEAR: f64 = 0.62;
 
-/// Points within this distance of a segment (edge lengths) may be moved; farther in they are equilateral already.
+/// Points within this distance of a segment (edge lengths) may be moved; farther in they are
+/// equilateral already.
 const BORDER: f64 = 2.6;
 
 /// A point of the lattice, and whether it is near enough to the border to be moved.

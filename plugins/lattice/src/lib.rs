@@ -1,8 +1,8 @@
 //! A mesher whose triangles are near-equilateral everywhere but at the border.
 //!
-//! Right-angled triangles, as a square grid gives them, bend more easily along their diagonals than across;
-//! equilateral ones bend alike in all directions. This crate lays a lattice of them over the panel, rows along
-//! the weft, and joins it to the outline.
+//! Right-angled triangles, as a square grid gives them, bend more easily along their diagonals than
+//! across; equilateral ones bend alike in all directions. This crate lays a lattice of them over
+//! the panel, rows along the weft, and joins it to the outline.
 //!
 //! - [`LatticeMesher`]: the stage.
 //! - `check`: what an outline must be.
@@ -21,10 +21,11 @@ use triangulate::Meshed;
 
 /// Fills the panel with a lattice of equilateral triangles.
 ///
-/// Rows run along the weft. Choose it where bending should be the same in all directions; `GridMesher` keeps
-/// springs on the threads instead. Named edges are divided as their gauges say, so that two edges that are sewn
-/// together get equal counts. Darts, pleats and folds lie on mesh edges. Away from the border every triangle is
-/// equilateral; near it vertices are moved and added until no angle is less than the outline's own corners force.
+/// Rows run along the weft. Choose it where bending should be the same in all directions;
+/// `GridMesher` keeps springs on the threads instead. Named edges are divided as their gauges say,
+/// so that two edges that are sewn together get equal counts. Darts, pleats and folds lie on mesh
+/// edges. Away from the border every triangle is equilateral; near it vertices are moved and added
+/// until no angle is less than the outline's own corners force.
 #[stage(
     role = Mesher,
     source = "Chew, 1989; Freitag and Ollivier-Gooch, 1997",

@@ -1,11 +1,11 @@
 //! Constrained Delaunay triangulation, and vertices near the border moved to better places.
 //!
-//! Method: `spade` triangulates all points with every segment as a constraint; triangles inside are found by
-//! flood fill from those on the left of the loops. In each round free vertices near the border move to where the
-//! least angle around them is greatest (pattern search, Freitag and Ollivier-Gooch 1997) and all is triangulated
-//! anew. Between the rounds circumcentres of poor triangles are added where they are clear of everything
-//! (Ruppert 1995, without splitting segments).
-//! Cost: n log n a round. Limits: an angle that two segments of the outline force stays.
+//! Method: `spade` triangulates all points with every segment as a constraint; triangles inside are
+//! found by flood fill from those on the left of the loops. In each round free vertices near the
+//! border move to where the least angle around them is greatest (pattern search, Freitag and
+//! Ollivier-Gooch 1997) and all is triangulated anew. Between the rounds circumcentres of poor
+//! triangles are added where they are clear of everything (Ruppert 1995, without splitting
+//! segments). Cost: n log n a round. Limits: an angle that two segments of the outline force stays.
 
 use crate::check::orient;
 use crate::divide::Division;
@@ -21,7 +21,8 @@ const POOR: f64 = 28.0;
 const SPACING: f64 = 0.7;
 /// A move must gain this much (radians).
 const GAIN: f64 = 2e-3;
-/// Around a vertex whose angles are all above this (degrees) the mean counts, and it moves to its neighbours' middle.
+/// Around a vertex whose angles are all above this (degrees) the mean counts, and it moves to its
+/// neighbours' middle.
 const FINE: f64 = 38.0;
 /// A move to the middle that is shorter than this share of the spokes is none.
 const STILL: f64 = 0.01;
@@ -95,8 +96,8 @@ fn inside_triangles(
 /// Vertices entered between two looks at the stop flag: a few milliseconds.
 const CHECK_EVERY: usize = 2000;
 
-/// All triangles of the hull, counter-clockwise. Points come row by row, so entering them one by one costs little
-/// more than all at once, and can be stopped.
+/// All triangles of the hull, counter-clockwise. Points come row by row, so entering them one by
+/// one costs little more than all at once, and can be stopped.
 fn hull_triangles(
     points: &[Point2],
     segments: &[[u32; 2]],
@@ -224,7 +225,8 @@ fn least_angle(a: Point2, b: Point2, c: Point2) -> f64 {
     at(a, b, c).min(at(b, c, a)).min(at(c, a, b))
 }
 
-/// Adds circumcentres of poor triangles that lie within the triangle or a neighbour, worst first; says how many.
+/// Adds circumcentres of poor triangles that lie within the triangle or a neighbour, worst first;
+/// says how many.
 fn add(points: &mut Vec<Point2>, triangles: &[[u32; 3]], h: f64) -> usize {
     let corners = |t: &[u32; 3]| t.map(|v| points[v as usize]);
     let mut poor: Vec<(f64, usize)> = triangles

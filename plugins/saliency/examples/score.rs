@@ -2,8 +2,9 @@
 //!
 //!     TOILE_SHARED=... TOILE_SALIENCY_WEIGHTS=u2netp.onnx cargo run --release --example score [OUT_DIR]
 //!
-//! Reads `$TOILE_SHARED/data/photos/masks/*.png` and the photos beside them, prints the intersection over union of each photo, the
-//! confidence of `Auto` and the times, and writes the masks into OUT_DIR where one is given. Without the variables it prints "skipped".
+//! Reads `$TOILE_SHARED/data/photos/masks/*.png` and the photos beside them, prints the
+//! intersection over union of each photo, the confidence of `Auto` and the times, and writes the
+//! masks into OUT_DIR where one is given. Without the variables it prints "skipped".
 
 #![allow(clippy::print_stdout)]
 

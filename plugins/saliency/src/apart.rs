@@ -1,7 +1,8 @@
 //! Work on a thread of its own.
 //!
-//! A network is run in one call, which takes most of a second and cannot be stopped. It is therefore made apart, while the
-//! stage asks whether it is to stop; the thread of a run that was stopped ends by itself, and what it made is dropped.
+//! A network is run in one call, which takes most of a second and cannot be stopped. It is
+//! therefore made apart, while the stage asks whether it is to stop; the thread of a run that was
+//! stopped ends by itself, and what it made is dropped.
 
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;

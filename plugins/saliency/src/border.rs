@@ -1,12 +1,13 @@
 //! The map at the photo's size, its border drawn to the photo's edges.
 //!
-//! Around every pixel of the map a line through the photo's colours is fitted to it, q = a . I + b, by least squares with a
-//! small weight against steep lines (guided filter by a colour photo: He, Sun, Tang 2010). Lines of windows that overlap are
-//! averaged, brought to the photo's size, and read off at the photo's own colours (He, Sun, Fast guided filter, 2015). So the
-//! border lies where the photo has an edge, and stays where it was where there is none.
+//! Around every pixel of the map a line through the photo's colours is fitted to it, q = a . I + b,
+//! by least squares with a small weight against steep lines (guided filter by a colour photo: He,
+//! Sun, Tang 2010). Lines of windows that overlap are averaged, brought to the photo's size, and
+//! read off at the photo's own colours (He, Sun, Fast guided filter, 2015). So the border lies
+//! where the photo has an edge, and stays where it was where there is none.
 //!
-//! Cost: 35 ms for the lines; 10 ns a pixel of the photo. Limits: an edge of the garment within the window, such as that of a
-//! print beside the border, draws the border too.
+//! Cost: 35 ms for the lines; 10 ns a pixel of the photo. Limits: an edge of the garment within the
+//! window, such as that of a print beside the border, draws the border too.
 
 use crate::network::{Guide, Map, SIDE};
 use image::{GrayImage, Luma};
@@ -23,7 +24,8 @@ const OPAQUE: u8 = 128;
 /// A line through the colours at a pixel: three slopes and what is added.
 type Line = Vector4<f64>;
 
-/// The mask of a photo: 255 where the map, drawn to the photo's edges, is above the threshold. `guide` is that photo's.
+/// The mask of a photo: 255 where the map, drawn to the photo's edges, is above the threshold.
+/// `guide` is that photo's.
 pub fn mask(map: &Map, guide: &Guide, photo: &Photo, threshold: f64) -> GrayImage {
     let lines = lines(map, guide);
     let (w, h) = photo.pixels.dimensions();
@@ -48,7 +50,8 @@ fn colour(pixel: &[u8; 3]) -> Vector3<f64> {
     Vector3::from(pixel.map(|v| f64::from(v) / 255.0))
 }
 
-/// Where pixel `i` of `n` lies in the map: the pixel before it, and the share of the way to the next.
+/// Where pixel `i` of `n` lies in the map: the pixel before it, and the share of the way to the
+/// next.
 fn place(i: u32, n: u32) -> (usize, f64) {
     let at = (f64::from(i) + 0.5) * SIDE as f64 / f64::from(n) - 0.5;
     let at = at.clamp(0.0, (SIDE - 1) as f64);

@@ -1,7 +1,8 @@
 //! Holes of a mask, filled: garments are laid down whole.
 //!
-//! The ground is what is reached from the frame over pixels off the mask, up, down and sideways (flood fill on a stack). Cost: one
-//! look at every pixel. Limits: ground that a sleeve closes off against the body is filled, too; `Auto()` opens it again.
+//! The ground is what is reached from the frame over pixels off the mask, up, down and sideways
+//! (flood fill on a stack). Cost: one look at every pixel. Limits: ground that a sleeve closes off
+//! against the body is filled, too; `Auto()` opens it again.
 
 use image::{GrayImage, Luma};
 

@@ -1,16 +1,18 @@
 //! The network: a photo in, a map of the salient object out.
 //!
-//! U2-Net and its small sibling U2-Net-p: nested U-shaped stacks of convolutions, trained on pictures of single objects (Qin,
-//! Zhang, Huang, Dehghan, Zaiane, Jagersand, U2-Net: going deeper with nested U-structure for salient object detection,
-//! Pattern Recognition 106, 2020). The photo is brought to 320 x 320 pixels, whatever its shape, as it was in training; of the
-//! seven maps that come out the first is the answer.
+//! U2-Net and its small sibling U2-Net-p: nested U-shaped stacks of convolutions, trained on
+//! pictures of single objects (Qin, Zhang, Huang, Dehghan, Zaiane, Jagersand, U2-Net: going deeper
+//! with nested U-structure for salient object detection, Pattern Recognition 106, 2020). The photo
+//! is brought to 320 x 320 pixels, whatever its shape, as it was in training; of the seven maps
+//! that come out the first is the answer.
 //!
-//! A convolution sums in the same order for any number of threads (tests/weights.rs holds the bits). Processors with vectors of another
-//! width may differ in the last bits.
+//! A convolution sums in the same order for any number of threads (tests/weights.rs holds the
+//! bits). Processors with vectors of another width may differ in the last bits.
 //!
-//! Cost: 0.5 to 0.7 s and 80 MB for U2-Net-p with AVX-512; a second thread saves a twentieth. Limits: whatever is no object of its own to the
-//! eye (a dark sleeve on dark wood) is left out. A file may ask for any amount of memory: its digest is held against the pipeline's
-//! before it comes here.
+//! Cost: 0.5 to 0.7 s and 80 MB for U2-Net-p with AVX-512; a second thread saves a twentieth.
+//! Limits: whatever is no object of its own to the eye (a dark sleeve on dark wood) is left out. A
+//! file may ask for any amount of memory: its digest is held against the pipeline's before it comes
+//! here.
 
 use crate::fault::Unfit;
 use image::RgbImage;
@@ -34,7 +36,8 @@ const SPREAD: [f32; 3] = [0.229, 0.224, 0.225];
 /// The longest message of the runtime that is repeated, characters.
 const MAX_WORDS: usize = 200;
 
-/// How sure the network is that a pixel belongs to the object, 0 to 1, row by row, [`SIDE`] x [`SIDE`].
+/// How sure the network is that a pixel belongs to the object, 0 to 1, row by row, [`SIDE`] x
+/// [`SIDE`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Map(Vec<f32>);
 
@@ -82,7 +85,8 @@ impl Network {
     /// The network of an ONNX file.
     ///
     /// # Errors
-    /// The file is no ONNX file, is damaged, uses operators that U2-Net does not use, or takes or gives other shapes.
+    /// The file is no ONNX file, is damaged, uses operators that U2-Net does not use, or takes or
+    /// gives other shapes.
     pub fn load(file: Vec<u8>) -> Result<Network, Unfit> {
         let model = caught(|| options().load(file)).map_err(|said| Unfit::Broken(short(&said)))?;
         let model = model.map_err(|e| match e.kind() {
@@ -183,7 +187,8 @@ fn short(said: &str) -> String {
     first.chars().map(|c| if c.is_control() { ' ' } else { c }).take(MAX_WORDS).collect()
 }
 
-/// The pixels as the network was trained on them: shares of the lightest level, then by mean and spread, channel by channel.
+/// The pixels as the network was trained on them: shares of the lightest level, then by mean and
+/// spread, channel by channel.
 fn levels(guide: &RgbImage) -> Vec<f32> {
     let lightest = f32::from(guide.as_raw().iter().copied().max().unwrap_or(0).max(1));
     let level = |c: usize, v: u8| (f32::from(v) / lightest - MEAN[c]) / SPREAD[c];

@@ -1,9 +1,10 @@
 //! The network's file: it must be named, there, and the one that is meant.
 //!
-//! A pipeline states the file's digest, so that it gives the same mask wherever the file came from, and so that nothing is
-//! parsed but what the user has chosen.
+//! A pipeline states the file's digest, so that it gives the same mask wherever the file came from,
+//! and so that nothing is parsed but what the user has chosen.
 //!
-//! Cost: 15 ms for 4.6 MB. Limits: a run is not stopped while the file is read and digested, which takes half a second for 176 MB.
+//! Cost: 15 ms for 4.6 MB. Limits: a run is not stopped while the file is read and digested, which
+//! takes half a second for 176 MB.
 
 use toile_core::artifact::Digester;
 use toile_core::{Context, ErrorCode, StageError};

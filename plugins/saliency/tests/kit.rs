@@ -1,4 +1,5 @@
-//! A network of one convolution that takes what is light for the object, and the stage that runs it.
+//! A network of one convolution that takes what is light for the object, and the stage that runs
+//! it.
 
 use crate::onnx::Net;
 use std::path::Path;
@@ -7,7 +8,8 @@ use toile_core::artifact::{Digester, Mask, Photo};
 use toile_core::{Artifact, Cancel, Context, Event, Inputs, Listener, PortValue, Stage, StageError};
 use toile_saliency::Saliency;
 
-/// Slopes of the convolution: the sum of the channels, each by its spread in training, so that it is the sum of levels.
+/// Slopes of the convolution: the sum of the channels, each by its spread in training, so that it
+/// is the sum of levels.
 const SLOPES: [f32; 3] = [0.229, 0.224, 0.225];
 /// What makes a mean level of one half the border: the means of training, less three halves.
 const SHIFT: f32 = 0.485 + 0.456 + 0.406 - 1.5;

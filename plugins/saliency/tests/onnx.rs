@@ -1,4 +1,5 @@
-//! A writer of ONNX files for networks of a few nodes: protocol buffers by hand, fields as numbered in `onnx.proto3`.
+//! A writer of ONNX files for networks of a few nodes: protocol buffers by hand, fields as numbered
+//! in `onnx.proto3`.
 
 /// A message under way.
 #[derive(Default)]
@@ -33,7 +34,8 @@ impl Message {
     }
 }
 
-/// A network of a chain of nodes, `x` first, each fed by the one before it and by the constants that it names.
+/// A network of a chain of nodes, `x` first, each fed by the one before it and by the constants
+/// that it names.
 pub(crate) struct Net {
     /// Shape of what it takes; a side of 0 is left open.
     pub takes: Vec<u64>,

@@ -56,7 +56,8 @@ fn transparent_pixels_are_ground() {
 #[test]
 fn a_higher_threshold_wants_more() {
     let (dir, stage) = given(&tiny().file());
-    // The right half is as sure as 0.73: 20 (0.55 3 - 1.5) = 3 before the division by the lightest level.
+    // The right half is as sure as 0.73: 20 (0.55 3 - 1.5) = 3 before the division by the lightest
+    // level.
     let photo = square(|x, _| if x < 40 { [255; 3] } else { [133; 3] });
     let on = |threshold| {
         let mask = run(&Saliency { threshold, ..stage.clone() }, &photo, dir.path()).0.unwrap();

@@ -1,5 +1,5 @@
-//! The network itself. Its weights are no part of the repository: `TOILE_SALIENCY_WEIGHTS` names the file `u2netp.onnx`; without
-//! it these tests say "skipped".
+//! The network itself. Its weights are no part of the repository: `TOILE_SALIENCY_WEIGHTS` names
+//! the file `u2netp.onnx`; without it these tests say "skipped".
 
 use crate::kit::{digest, given, overlap, run};
 use toile_core::artifact::Artifact;

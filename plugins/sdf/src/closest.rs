@@ -1,5 +1,6 @@
-//! Closest points of a triangle and of two segments (Ericson, *Real-Time Collision Detection*, 2005, 5.1.5 and
-//! 5.1.9), where triangles without area count as their sides and segments without length as points.
+//! Closest points of a triangle and of two segments (Ericson, *Real-Time Collision Detection*,
+//! 2005, 5.1.5 and 5.1.9), where triangles without area count as their sides and segments without
+//! length as points.
 
 use toile_core::artifact::{Point3, Vector3};
 
@@ -8,7 +9,8 @@ const PARALLEL: f64 = 1e-20;
 /// Distances below this share of the coordinates have no direction left in them.
 const TOUCHING: f64 = 1e-14;
 
-/// The closest point of a triangle: its barycentric weights, zero for corners that have no part in it.
+/// The closest point of a triangle: its barycentric weights, zero for corners that have no part in
+/// it.
 pub(crate) fn on_triangle(p: &Point3, t: &[Point3; 3]) -> [f64; 3] {
     let (ab, ac) = (t[1] - t[0], t[2] - t[0]);
     if ab.cross(&ac).norm_squared() <= PARALLEL * ab.norm_squared() * ac.norm_squared() {

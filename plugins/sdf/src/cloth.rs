@@ -1,11 +1,11 @@
 //! Cloth against itself: a uniform grid finds triangles near each other, exact tests decide.
 //!
-//! Broad phase: each triangle's box, widened by half of the reach, is entered into the cells it overlaps; the list
-//! of (cell, triangle) is sorted, and a pair is tested in the one cell that holds the least corner of the boxes'
-//! overlap, so that it comes once. Narrow phase: each vertex and edge is owned by the first triangle that has it
-//! (Curtis, Tamstorf, Manocha 2008), and a pair of triangles tests what it owns.
-//! Cost: n log n for the sorting, then the pairs.
-//! Limits: triangles of very different sizes share one cell size, the mean one's.
+//! Broad phase: each triangle's box, widened by half of the reach, is entered into the cells it
+//! overlaps; the list of (cell, triangle) is sorted, and a pair is tested in the one cell that
+//! holds the least corner of the boxes' overlap, so that it comes once. Narrow phase: each vertex
+//! and edge is owned by the first triangle that has it (Curtis, Tamstorf, Manocha 2008), and a pair
+//! of triangles tests what it owns. Cost: n log n for the sorting, then the pairs. Limits:
+//! triangles of very different sizes share one cell size, the mean one's.
 
 use crate::closest::{Proximity, edge_edge, vertex_triangle};
 use rayon::prelude::*;
@@ -101,8 +101,8 @@ impl<'a> Cloth<'a> {
         [q.x.floor() as i32, q.y.floor() as i32, q.z.floor() as i32]
     }
 
-    /// Visits every pair of usable triangles whose boxes meet, lower first; the order of what is pushed depends on
-    /// the cloth alone.
+    /// Visits every pair of usable triangles whose boxes meet, lower first; the order of what is
+    /// pushed depends on the cloth alone.
     fn pairs<T: Send>(&self, visit: impl Fn(u32, u32, &mut Vec<T>) + Sync) -> Vec<T> {
         let mut entries: Vec<(Cell, u32)> = Vec::with_capacity(4 * self.boxes.len());
         for (t, b) in self.boxes.iter().enumerate().filter_map(|(t, b)| b.map(|b| (t, b))) {
@@ -198,7 +198,8 @@ impl<'a> Cloth<'a> {
         }
     }
 
-    /// Contacts nearer than the reach, each pair of closest features once, in the order of the service.
+    /// Contacts nearer than the reach, each pair of closest features once, in the order of the
+    /// service.
     pub(crate) fn contacts(&self, out: &mut Vec<SelfContact>) {
         let pairs = self.close_pairs();
         let vertices = pairs.iter().filter(|p| p.kind == PairKind::VertexTriangle);
@@ -217,7 +218,8 @@ impl<'a> Cloth<'a> {
         }));
     }
 
-    /// For each vertex the least distance of what it belongs to from anything else, at most the reach.
+    /// For each vertex the least distance of what it belongs to from anything else, at most the
+    /// reach.
     pub(crate) fn bounds(&self) -> Vec<f64> {
         let mut bounds = vec![self.reach; self.positions.len()];
         for pair in self.close_pairs() {
@@ -253,8 +255,8 @@ impl<'a> Cloth<'a> {
     }
 }
 
-/// What makes a vertex-triangle pair the same as another: the nodes that carry weight, from whichever side two
-/// single vertices were seen.
+/// What makes a vertex-triangle pair the same as another: the nodes that carry weight, from
+/// whichever side two single vertices were seen.
 fn features(pair: &Pair) -> [u32; 4] {
     const NONE: u32 = u32::MAX;
     let [v, t @ ..] = pair.nodes;
@@ -284,8 +286,8 @@ fn ownership(triangles: &[[u32; 3]], boxes: &[Option<Box3>], vertices: usize) ->
     owned
 }
 
-/// True where the open segment from `p` to `q` passes through the inside of the triangle; exact signs (Shewchuk
-/// 1997), so touching is no crossing.
+/// True where the open segment from `p` to `q` passes through the inside of the triangle; exact
+/// signs (Shewchuk 1997), so touching is no crossing.
 fn pierces(p: &Point3, q: &Point3, [a, b, c]: &[Point3; 3]) -> bool {
     let coord = |p: &Point3| Coord3D { x: p.x, y: p.y, z: p.z };
     let volume = |a, b, c, d| orient3d(coord(a), coord(b), coord(c), coord(d));

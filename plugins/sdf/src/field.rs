@@ -1,13 +1,14 @@
 //! The signed-distance grid.
 //!
-//! Making: nodes within [`BAND`] cells of a triangle get the exact distance to the closest one; the closest
-//! triangle is then handed on from node to node by sweeps in eight directions (Bridson 2003; Zhao 2005), which
-//! leaves distances far from the skin a little long now and then. The sign is exact in the band and flows from
-//! there: no two nodes beyond the band that stand side by side have skin between them.
-//! Cost: triangles times the nodes around each, and eight passes; 0.5 s for the mannequin at 8 mm on one core.
-//! Asking: eight nodes and their trilinear value, some 20 ns, where the skin is farther than [`NEAR`] cells. Nearer, the
-//! triangles that the eight nodes are closest to are the guesses from which the closest point is walked to, some 200
-//! ns: what is read there is the distance itself. (Interpolated distances alone, linear or cubic, leave force and
+//! Making: nodes within [`BAND`] cells of a triangle get the exact distance to the closest one; the
+//! closest triangle is then handed on from node to node by sweeps in eight directions (Bridson
+//! 2003; Zhao 2005), which leaves distances far from the skin a little long now and then. The sign
+//! is exact in the band and flows from there: no two nodes beyond the band that stand side by side
+//! have skin between them. Cost: triangles times the nodes around each, and eight passes; 0.5 s for
+//! the mannequin at 8 mm on one core. Asking: eight nodes and their trilinear value, some 20 ns,
+//! where the skin is farther than [`NEAR`] cells. Nearer, the triangles that the eight nodes are
+//! closest to are the guesses from which the closest point is walked to, some 200 ns: what is read
+//! there is the distance itself. (Interpolated distances alone, linear or cubic, leave force and
 //! energy at odds by a few per cent, and a solver that goes straight to rest never arrives.)
 //! Limits: beyond the near zone walls thinner than a cell are not seen; at most [`MAX_NODES`].
 
@@ -260,7 +261,8 @@ impl Field {
         Vector3::new(x, y, z)
     }
 
-    /// Trilinear value and its gradient; near the skin the closest point, from what the cell's nodes are closest to.
+    /// Trilinear value and its gradient; near the skin the closest point, from what the cell's
+    /// nodes are closest to.
     fn inside(&self, p: &Point3) -> Reading {
         let q = (p - self.low) / self.cell;
         let base = [0, 1, 2].map(|a| (q[a].max(0.0) as usize).min(self.size[a] - 2));

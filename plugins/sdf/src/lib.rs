@@ -1,7 +1,7 @@
 //! A collider that keeps the body as a signed-distance grid.
 //!
-//! A question about the body costs eight numbers of the grid and no search, whatever the body's number of
-//! triangles; what is paid is memory and the fineness of the skin, both by `cell`.
+//! A question about the body costs eight numbers of the grid and no search, whatever the body's
+//! number of triangles; what is paid is memory and the fineness of the skin, both by `cell`.
 //!
 //! - [`SdfCollider`]: the stage.
 //! - [`Field`]: the grid, its making and its questions.
@@ -25,12 +25,14 @@ use toile_core::prelude::*;
 
 /// Keeps cloth out of the body by a signed-distance grid, and out of itself.
 ///
-/// Far from the skin a question costs eight numbers of the grid; near it the closest point of the skin is found from
-/// the triangles that these nodes are closest to. On the mannequin, with cells of 8 mm, 99 of 100 distances below 1 cm
-/// are exact and the worst is 0.1 mm off; up to 5 cm they are interpolated, 0.05 mm off in the median, 4 mm at worst;
-/// beyond that they are a little too long. The grid of 2.3 million nodes takes two seconds to make and 19 MB.
+/// Far from the skin a question costs eight numbers of the grid; near it the closest point of the
+/// skin is found from the triangles that these nodes are closest to. On the mannequin, with cells
+/// of 8 mm, 99 of 100 distances below 1 cm are exact and the worst is 0.1 mm off; up to 5 cm they
+/// are interpolated, 0.05 mm off in the median, 4 mm at worst; beyond that they are a little too
+/// long. The grid of 2.3 million nodes takes two seconds to make and 19 MB.
 ///
-/// The body must be a closed mesh that faces outwards. Without a body only cloth against itself is looked for.
+/// The body must be a closed mesh that faces outwards. Without a body only cloth against itself is
+/// looked for.
 #[stage(
     role = Collider,
     source = "Baerentzen & Aanaes 2005; Bridson 2003",

@@ -1,7 +1,8 @@
 //! The collision service: the body's field, cloth against itself, and the settings.
 //!
-//! A path enters the body where the field along it turns from positive to negative. It is followed in steps of
-//! the distance itself, at least [`STEP`] of a cell (sphere tracing, Hart 1996), and the place is found by halving.
+//! A path enters the body where the field along it turns from positive to negative. It is followed
+//! in steps of the distance itself, at least [`STEP`] of a cell (sphere tracing, Hart 1996), and
+//! the place is found by halving.
 
 use crate::cloth::Cloth;
 use crate::field::Field;

@@ -1,10 +1,12 @@
 //! The body's triangles, with the normals that give a distance its sign.
 //!
-//! The closest triangle of a place is found from a good guess by walking over the mesh: where the closest point lies on
-//! a side or a corner, the triangles around it are tried, until none is nearer.
+//! The closest triangle of a place is found from a good guess by walking over the mesh: where the
+//! closest point lies on a side or a corner, the triangles around it are tried, until none is
+//! nearer.
 //!
-//! The sign comes from the angle-weighted normal of the closest feature, which is right for faces, edges and
-//! corners alike (Baerentzen & Aanaes 2005). That needs a closed mesh that faces outwards, so it is checked first.
+//! The sign comes from the angle-weighted normal of the closest feature, which is right for faces,
+//! edges and corners alike (Baerentzen & Aanaes 2005). That needs a closed mesh that faces
+//! outwards, so it is checked first.
 
 use crate::closest::{at, on_triangle};
 use toile_core::artifact::{Artifact, Body, Point3, Vector3};

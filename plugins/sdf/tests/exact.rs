@@ -60,7 +60,8 @@ fn exact(body: &Body) -> impl Fn(&Point3) -> f64 {
     }
 }
 
-/// Errors of the field at random places around the body, in bands of distance: (band, median, 99 %, greatest), metres.
+/// Errors of the field at random places around the body, in bands of distance: (band, median, 99 %,
+/// greatest), metres.
 fn errors(body: &Body, cell: f64, bands: &[f64]) -> Vec<(f64, f64, f64, f64)> {
     let (field, truth) = (Field::of(body, cell, &Context::quiet()).unwrap(), exact(body));
     let mut next = numbers(3);

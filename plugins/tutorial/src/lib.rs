@@ -5,8 +5,8 @@ use toile_core::prelude::*;
 
 /// Removes single pixels that stand out from everything around them.
 ///
-/// A speck of dust or a dead sensor pixel differs from all eight neighbours in the same direction; it takes the
-/// nearest of their levels. Edges and weave stay, since there some neighbour is alike.
+/// A speck of dust or a dead sensor pixel differs from all eight neighbours in the same direction;
+/// it takes the nearest of their levels. Edges and weave stay, since there some neighbour is alike.
 #[stage(
     role = Denoiser,
     source = "the tutorial, 2026",
@@ -49,7 +49,8 @@ impl Dust {
     }
 }
 
-/// The pixel, each channel held between the levels of its neighbours where it leaves them by more than the step.
+/// The pixel, each channel held between the levels of its neighbours where it leaves them by more
+/// than the step.
 fn cleaned(photo: &RgbImage, x: u32, y: u32, dust: &Dust) -> Rgb<u8> {
     let around = |v: u32, size: u32| v.saturating_sub(1)..(v + 2).min(size);
     let mut range = [[u8::MAX, 0]; 3];

@@ -1,5 +1,5 @@
-//! docs/guide/writing-a-stage.md tells this crate: every block that names a file stands in it, and together they are the
-//! whole of it.
+//! docs/guide/writing-a-stage.md tells this crate: every block that names a file stands in it, and
+//! together they are the whole of it.
 #![allow(clippy::unwrap_used)]
 
 use std::collections::BTreeMap;

@@ -1,5 +1,6 @@
-//! Brings a square of cloth on two pins to rest, `left_out [CELLS]`: no body, no contact with itself. tests/costs/left_out.sh counts its
-//! instructions beside those of builds that do not know bodies or self-contact at all.
+//! Brings a square of cloth on two pins to rest, `left_out [CELLS]`: no body, no contact with
+//! itself. tests/costs/left_out.sh counts its instructions beside those of builds that do not know
+//! bodies or self-contact at all.
 #![allow(clippy::print_stdout)]
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,5 +1,5 @@
-//! Slides the fabric of a garment at rest and measures how many states a second follow: `live [SCENE.json] [STATES]`. One
-//! core: `RAYON_NUM_THREADS=1`. Prints one line of JSON.
+//! Slides the fabric of a garment at rest and measures how many states a second follow:
+//! `live [SCENE.json] [STATES]`. One core: `RAYON_NUM_THREADS=1`. Prints one line of JSON.
 #![allow(clippy::print_stdout)]
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,4 +1,6 @@
-//! Brings a scene file to rest and writes the result: `scene SCENE.json RESULT.obj [--continuation] [--trace] [--jitter SEED]`; prints one line of JSON.
+//! Brings a scene file to rest and writes the result:
+//! `scene SCENE.json RESULT.obj [--continuation] [--trace] [--jitter SEED]`; prints one line of
+//! JSON.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 use std::error::Error;
 use std::ops::ControlFlow;

@@ -1,6 +1,6 @@
 //! Lets a stack of sheets come to rest on a ball and says where the time goes.
 //!
-//! `cargo run --release -p toile-cloth --example stack -- SHEETS CELLS SECONDS [STATE.obj] [--trace]`
+//!     cargo run --release -p toile-cloth --example stack -- SHEETS CELLS SECONDS [STATE.obj] [--trace]
 
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,8 +1,10 @@
-//! What the engine refuses, each with the place and the value, so that a caller can point at the culprit.
+//! What the engine refuses, each with the place and the value, so that a caller can point at the
+//! culprit.
 
 use thiserror::Error;
 
-/// A fault of the input or a stop of a solver. Checked before the first step wherever that is possible.
+/// A fault of the input or a stop of a solver. Checked before the first step wherever that is
+/// possible.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ClothError {
     /// A triangle without area, or so thin that its strain is noise.

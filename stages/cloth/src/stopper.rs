@@ -4,8 +4,8 @@ use crate::error::ClothError;
 use std::fmt;
 use std::sync::Arc;
 
-/// Says whether a caller wants a solver to stop. It is asked between the parts of a step, so that a long step ends soon; without a caller's
-/// word it never stops.
+/// Says whether a caller wants a solver to stop. It is asked between the parts of a step, so that a
+/// long step ends soon; without a caller's word it never stops.
 #[derive(Clone, Default)]
 pub struct Stopper(Option<Arc<dyn Fn() -> bool + Send + Sync>>);
 

@@ -1,10 +1,11 @@
-//! Flattens a garment or a piece: `flat METHOD IN.obj OUT.obj [TRUE.obj] [--up z] [--tension WARP,WEFT]
-//! [--care] [--darts] [--svg]`.
+//! Flattens a garment or a piece:
 //!
-//! METHOD: lscm, arap, sd, springs or woven. Corners with `f v/vt` are cut into UV islands. OUT.obj holds the
-//! flat places as `vt`, in the order of the input's triangles, and OUT.obj.svg shows them with `--svg`.
-//! TRUE.obj holds the garment's true flat pieces, the same triangles in the same order: the table then says how
-//! far each piece's area and outline are from the truth.
+//!     flat METHOD IN.obj OUT.obj [TRUE.obj] [--up z] [--tension WARP,WEFT] [--care] [--darts] [--svg]
+//!
+//! METHOD: lscm, arap, sd, springs or woven. Corners with `f v/vt` are cut into UV islands. OUT.obj
+//! holds the flat places as `vt`, in the order of the input's triangles, and OUT.obj.svg shows them
+//! with `--svg`. TRUE.obj holds the garment's true flat pieces, the same triangles in the same
+//! order: the table then says how far each piece's area and outline are from the truth.
 #![allow(clippy::print_stdout, clippy::print_stderr)]
 
 use nalgebra::{Point2, Point3, Vector3};
@@ -113,7 +114,8 @@ fn print_darts(method: &str, garment: &Pieces, placement: &Placement) -> Result<
     Ok(())
 }
 
-/// Makes seams equal, straight edges straight, and left and right mirror images; prints what changed.
+/// Makes seams equal, straight edges straight, and left and right mirror images; prints what
+/// changed.
 fn take_care(
     method: &str,
     garment: &Pieces,

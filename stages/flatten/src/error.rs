@@ -155,7 +155,8 @@ pub enum FlattenError {
         /// The first of them.
         triangle: usize,
     },
-    /// A triangle so small beside the piece that the digits of its flat places do not keep its area.
+    /// A triangle so small beside the piece that the digits of its flat places do not keep its
+    /// area.
     #[error("triangle {triangle} is too small beside the piece for its flat places")]
     TooSmall {
         /// The triangle.

@@ -1,9 +1,9 @@
 //! The linear map of each triangle from its own plane to the flat pattern.
 //!
-//! Each triangle of the surface is laid into its plane with the first edge along x. With the gradients `g_i` of
-//! the three hat functions there, flat corners `q_i` give the map `J = sum_i q_i g_i^T` (2 x 2): its singular
-//! values are the stretches from 3D to 2D. Lengths are counted in the root of the surface's area, so that
-//! energies have no unit.
+//! Each triangle of the surface is laid into its plane with the first edge along x. With the
+//! gradients `g_i` of the three hat functions there, flat corners `q_i` give the map
+//! `J = sum_i q_i g_i^T` (2 x 2): its singular values are the stretches from 3D to 2D. Lengths are
+//! counted in the root of the surface's area, so that energies have no unit.
 
 use crate::surface::Surface;
 use nalgebra::{Matrix2, Point2, Vector2, Vector3};
@@ -84,7 +84,8 @@ impl Frames {
     }
 }
 
-/// Two edges from corner 0 of a triangle, in its plane: the first along x, the second above it; as it was cut where that is known.
+/// Two edges from corner 0 of a triangle, in its plane: the first along x, the second above it; as
+/// it was cut where that is known.
 #[must_use]
 pub(crate) fn local_edges(surface: &Surface, triangle: usize) -> [Vector2<f64>; 2] {
     if let Some(edges) = surface.cut_shape(triangle) {

@@ -1,7 +1,8 @@
 //! The grain: which direction of the garment is the pattern's y.
 //!
-//! A direction in space maps to the plane by the mean over the area of `J d`, d its part in each triangle's
-//! plane. That mean is a weighted sum of the flat places, so keeping it upright is one linear equation.
+//! A direction in space maps to the plane by the mean over the area of `J d`, d its part in each
+//! triangle's plane. That mean is a weighted sum of the flat places, so keeping it upright is one
+//! linear equation.
 
 use crate::error::FlattenError;
 use crate::frames::{Frames, local_axes};
@@ -34,8 +35,8 @@ impl Grain {
         Self::Direction(Vector3::y())
     }
 
-    /// The same grain on a piece that was cut out, by its lists of the vertices and triangles that it came from; none if
-    /// the piece does not have them.
+    /// The same grain on a piece that was cut out, by its lists of the vertices and triangles that
+    /// it came from; none if the piece does not have them.
     #[must_use]
     pub fn on_piece(&self, vertices: &[u32], triangles: &[u32]) -> Option<Self> {
         let find = |list: &[u32], k: u32| list.iter().position(|&x| x == k).map(|x| x as u32);
@@ -75,8 +76,8 @@ impl Grain {
         }
     }
 
-    /// The weighted sum of flat places (in units of [`Frames::unit`]) that becomes upright; the length of a
-    /// direction is made 1.
+    /// The weighted sum of flat places (in units of [`Frames::unit`]) that becomes upright; the
+    /// length of a direction is made 1.
     pub(crate) fn weights(&self, surface: &Surface, frames: &Frames) -> Vec<(u32, f64)> {
         match self {
             Self::Direction(d) => {

@@ -6,8 +6,8 @@
 //!                              +------- distortion -----+
 //! ```
 //!
-//! A [`surface::Surface`] is a checked mesh. A flattener gives it flat places; all of them go without flipped
-//! triangles, and the same input gives the same bits for any number of threads.
+//! A [`surface::Surface`] is a checked mesh. A flattener gives it flat places; all of them go
+//! without flipped triangles, and the same input gives the same bits for any number of threads.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -26,10 +26,11 @@
 //! # Ok::<(), toile_flatten::FlattenError>(())
 //! ```
 //!
-//! Limits: a piece needs a boundary and no handles; a tube must be cut along a seam before, or it comes out as
-//! a ring. Boundaries may cross themselves in the plane (counted by [`distortion::distortion`]), triangles do
-//! not flip. A garment that is stretched flattens to its stretched size unless a tension is stated. Cost of a
-//! piece of n triangles: about n^1.5 products; a million triangles take about 1.5 GB.
+//! Limits: a piece needs a boundary and no handles; a tube must be cut along a seam before, or it
+//! comes out as a ring. Boundaries may cross themselves in the plane (counted by
+//! [`distortion::distortion`]), triangles do not flip. A garment that is stretched flattens to its
+//! stretched size unless a tension is stated. Cost of a piece of n triangles: about n^1.5 products;
+//! a million triangles take about 1.5 GB.
 
 pub mod care;
 #[cfg(test)]

@@ -6,8 +6,8 @@ use nalgebra::{Point2, Point3};
 /// A mesh: places and triangles.
 pub(crate) type Mesh = (Vec<Point3<f64>>, Vec<[u32; 3]>);
 
-/// A grid of `m` x `n` squares of the unit square, each of two triangles that run counter-clockwise in (u, v),
-/// put into space.
+/// A grid of `m` x `n` squares of the unit square, each of two triangles that run counter-clockwise
+/// in (u, v), put into space.
 pub(crate) fn grid(m: usize, n: usize, place: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
     let at = |i: usize, j: usize| (j * (m + 1) + i) as u32;
     let places = (0..=n).flat_map(|j| (0..=m).map(move |i| (i as f64 / m as f64, j as f64 / n as f64)));
@@ -72,7 +72,8 @@ pub(crate) fn cone(rings: usize, sectors: usize, missing: f64) -> Mesh {
     (places, triangles)
 }
 
-/// The largest distance between flat places and the exact ones, after the best rigid motion without mirror.
+/// The largest distance between flat places and the exact ones, after the best rigid motion without
+/// mirror.
 pub(crate) fn apart(flat: &[Point2<f64>], exact: &[Point2<f64>]) -> f64 {
     let middle =
         |p: &[Point2<f64>]| p.iter().fold(nalgebra::Vector2::zeros(), |s, p| s + p.coords) / p.len() as f64;

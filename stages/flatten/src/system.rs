@@ -1,4 +1,5 @@
-//! What every solver of one piece shares: its triangles, the graph of its vertices, and the order of elimination.
+//! What every solver of one piece shares: its triangles, the graph of its vertices, and the order
+//! of elimination.
 
 use crate::linear::{Graph, elimination_order};
 use crate::surface::Surface;

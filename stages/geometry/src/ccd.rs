@@ -1,16 +1,17 @@
 //! When moving pieces of cloth first come near each other: continuous collision detection.
 //!
-//! Additive continuous collision detection (Li, Kaufman, Jiang 2021): step by step, each as long as the distance divided
-//! by the fastest approach allows, so that no step can jump over a contact. No roots of cubics are sought, whose rounding
-//! misses contacts. The answer is early by at most a share [`NEARNESS`] of the starting distance, never late.
+//! Additive continuous collision detection (Li, Kaufman, Jiang 2021): step by step, each as long as
+//! the distance divided by the fastest approach allows, so that no step can jump over a contact. No
+//! roots of cubics are sought, whose rounding misses contacts. The answer is early by at most a
+//! share [`NEARNESS`] of the starting distance, never late.
 //!
 //! Some ten distance evaluations where nothing is hit. Motion is straight and even over the step.
 
 use crate::pair::{Kind, Pair};
 
 use crate::Vec3;
-/// Share of the starting distance at which pieces count as in contact. Smaller finds the contact more exactly in more
-/// steps.
+/// Share of the starting distance at which pieces count as in contact. Smaller finds the contact
+/// more exactly in more steps.
 pub const NEARNESS: f64 = 0.1;
 
 /// Steps after which the time reached is given as the answer: early, but safe.
@@ -27,10 +28,12 @@ pub fn approach(kind: Kind, moves: &[Vec3; 4]) -> f64 {
     fastest(&moves[..first]) + fastest(&moves[first..])
 }
 
-/// Pieces nearer than this may hardly come nearer: much below it, rounding of places could turn the sides about, m.
+/// Pieces nearer than this may hardly come nearer: much below it, rounding of places could turn the
+/// sides about, m.
 const CLOSEST: f64 = 1e-6;
 
-/// Share of a place, m, that is surely more than its rounding and what sums and products make of it.
+/// Share of a place, m, that is surely more than its rounding and what sums and products make of
+/// it.
 const ROUNDING: f64 = 1e-14;
 
 /// The distance that a pair which starts at `start` keeps through the step.
@@ -39,7 +42,8 @@ pub fn kept(start: f64) -> f64 {
     (NEARNESS * start).max(CLOSEST.min(0.9 * start))
 }
 
-/// The time, 0 to 1, until which the pair surely keeps the distance [`kept`] of its start; `None` for all of the step.
+/// The time, 0 to 1, until which the pair surely keeps the distance [`kept`] of its start; `None`
+/// for all of the step.
 ///
 /// Zero where the two touch at the start or a coordinate is no finite number.
 #[must_use]
@@ -73,11 +77,13 @@ pub fn impact(pair: &Pair, from: &[Vec3; 4], moves: &[Vec3; 4]) -> Option<f64> {
     Some(time)
 }
 
-/// Whether the lines of the two edges, or the vertex and the triangle's plane, keep a distance of `least` for all of the step.
+/// Whether the lines of the two edges, or the vertex and the triangle's plane, keep a distance of
+/// `least` for all of the step.
 ///
-/// The distance is the volume that the pair spans over the area of its two sides: a cubic and a quadratic of time, whose
-/// coefficients in Bernstein's form bound them. A pair that turns as one spans the same volume, where the steps of
-/// [`impact`] see its ends come down and grow too short to get anywhere, if it is close.
+/// The distance is the volume that the pair spans over the area of its two sides: a cubic and a
+/// quadratic of time, whose coefficients in Bernstein's form bound them. A pair that turns as one
+/// spans the same volume, where the steps of [`impact`] see its ends come down and grow too short
+/// to get anywhere, if it is close.
 fn stays_apart(kind: Kind, from: &[Vec3; 4], moves: &[Vec3; 4], least: f64) -> bool {
     let sides = |x: &[Vec3; 4]| match kind {
         Kind::VertexTriangle => (x[0] - x[1], x[2] - x[1], x[3] - x[1]),

@@ -1,13 +1,13 @@
 //! Closest points of a triangle and of two segments.
 //!
-//! Ericson, *Real-Time Collision Detection*, 2005, sections 5.1.5 and 5.1.9, with what is divided by kept away from
-//! zero: triangles without area are taken as their sides, segments without length as points, and parallel segments by
-//! their ends.
+//! Ericson, *Real-Time Collision Detection*, 2005, sections 5.1.5 and 5.1.9, with what is divided
+//! by kept away from zero: triangles without area are taken as their sides, segments without length
+//! as points, and parallel segments by their ends.
 
 use crate::Vec3;
 
-/// Squared sine of the angle below which two sides or segments count as parallel: the closest point that an inverse of
-/// it would give has lost all its digits.
+/// Squared sine of the angle below which two sides or segments count as parallel: the closest point
+/// that an inverse of it would give has lost all its digits.
 const PARALLEL: f64 = 1e-20;
 
 /// The part of a triangle that a point is closest to.

@@ -1,9 +1,11 @@
 //! Which parts of a sheet may meet during a step: a tree of volumes over its triangles.
 //!
-//! The tree's shape is made once, best where the sheet lies flat; each query only fits the volumes to the swept triangles. Each
-//! vertex and edge belongs to one triangle, so that every pair is found once (representative triangles: Curtis, Tamstorf, Manocha
-//! 2008). Cost O(n + pairs): in a sheet that touches nothing, some ten pairs a triangle, which the exact test then drops.
-//! Where nothing moves, all volumes give the same pairs; where cloth moves, they differ in pairs that do not come within reach.
+//! The tree's shape is made once, best where the sheet lies flat; each query only fits the volumes
+//! to the swept triangles. Each vertex and edge belongs to one triangle, so that every pair is
+//! found once (representative triangles: Curtis, Tamstorf, Manocha 2008). Cost O(n + pairs): in a
+//! sheet that touches nothing, some ten pairs a triangle, which the exact test then drops. Where
+//! nothing moves, all volumes give the same pairs; where cloth moves, they differ in pairs that do
+//! not come within reach.
 
 mod lie;
 mod part;
@@ -30,7 +32,8 @@ pub struct ClothTree<V = Aabb> {
     order: Vec<u32>,
     /// Which corners and which sides (k to k + 1) each triangle answers for.
     owns: Vec<Owned>,
-    /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are neighbours.
+    /// Nodes with equal numbers are sewn to each other, or about to be: their triangles are
+    /// neighbours.
     point: Vec<u32>,
     /// Which parts and triangles look for others, where not all do.
     active: Option<Active>,
@@ -48,7 +51,8 @@ struct Active {
 }
 
 impl ClothTree {
-    /// Builds the tree with boxes along the axes; `layout` holds a place for each node, best where the sheet lies flat.
+    /// Builds the tree with boxes along the axes; `layout` holds a place for each node, best where
+    /// the sheet lies flat.
     #[must_use]
     pub fn new(triangles: &[[u32; 3]], layout: &[Vec3]) -> Self {
         Self::of(triangles, layout)
@@ -56,7 +60,8 @@ impl ClothTree {
 }
 
 impl<V: BoundingVolume> ClothTree<V> {
-    /// Builds the tree; `layout` holds a finite place for each node, and triangles name three nodes that there are.
+    /// Builds the tree; `layout` holds a finite place for each node, and triangles name three nodes
+    /// that there are.
     #[must_use]
     pub fn of(all: &[[u32; 3]], layout: &[Vec3]) -> Self {
         let corners: Vec<[Vec3; 3]> = all.iter().map(|t| t.map(|v| layout[v as usize])).collect();
@@ -67,7 +72,8 @@ impl<V: BoundingVolume> ClothTree<V> {
         Self { tree, triangles, order, owns, point, active: None, volume: std::marker::PhantomData }
     }
 
-    /// The same, where nodes with equal numbers are about to be sewn: features that share one are no pair.
+    /// The same, where nodes with equal numbers are about to be sewn: features that share one are
+    /// no pair.
     #[must_use]
     pub fn sewing(self, point: Vec<u32>) -> Self {
         Self { point, ..self }
@@ -109,7 +115,8 @@ impl<V: BoundingVolume> ClothTree<V> {
         self.triangles.iter().map(|t| V::fit(&t.map(|v| x[v as usize]))).collect()
     }
 
-    /// What `visit` adds for every pair of triangles whose volumes are within reach; where not all look for others, of those that do.
+    /// What `visit` adds for every pair of triangles whose volumes are within reach; where not all
+    /// look for others, of those that do.
     fn meetings<T: Send>(
         &self,
         active: Option<&Active>,
@@ -122,8 +129,9 @@ impl<V: BoundingVolume> ClothTree<V> {
         self.tree.meetings(&Meeting { parts, things, reach, active, visit })
     }
 
-    /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted. Ends that lie in a triangle's plane
-    /// but for rounding do not cross it: cloth that lies flat does not cross itself.
+    /// Triangles that cross at `x`: pairs of an edge of one and the inside of another, sorted. Ends
+    /// that lie in a triangle's plane but for rounding do not cross it: cloth that lies flat does
+    /// not cross itself.
     #[must_use]
     pub fn crossings(&self, x: &[Vec3]) -> Vec<([u32; 2], [u32; 3])> {
         let crosses = |e: [u32; 2], t: &[u32; 3]| {
@@ -144,8 +152,8 @@ impl<V: BoundingVolume> ClothTree<V> {
         all
     }
 
-    /// Pairs of triangles of which an edge of one pierces the inside of the other at `x`, by exact signs: their numbers as they were
-    /// given, lower first, ascending.
+    /// Pairs of triangles of which an edge of one pierces the inside of the other at `x`, by exact
+    /// signs: their numbers as they were given, lower first, ascending.
     #[must_use]
     pub fn exact_crossings(&self, x: &[Vec3]) -> Vec<[u32; 2]> {
         let crossing = |s: usize, t: usize, out: &mut Vec<_>| {

@@ -2,7 +2,8 @@
 //!
 //! Cost: nearly linear in the pairs.
 
-/// Numbers the groups of `0..n` that `pairs` connect, in the order of their first members; with their count.
+/// Numbers the groups of `0..n` that `pairs` connect, in the order of their first members; with
+/// their count.
 ///
 /// Every member of a pair must be below `n`.
 #[must_use]

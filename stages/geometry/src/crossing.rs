@@ -1,9 +1,10 @@
 //! Triangles that cross.
 //!
-//! Two of one mesh cross where an edge of one pierces the inside of the other, the edge and the pierced triangle sharing no node. One
-//! crosses one of another mesh where their insides have a segment in common and their planes differ. Decided by exact signs of volumes
-//! (Shewchuk 1997), so that neither rounding nor scale matters; touching and coplanar triangles do
-//! not cross. Cost: a tree of boxes over the smaller mesh, O(log n) a triangle of the other.
+//! Two of one mesh cross where an edge of one pierces the inside of the other, the edge and the
+//! pierced triangle sharing no node. One crosses one of another mesh where their insides have a
+//! segment in common and their planes differ. Decided by exact signs of volumes (Shewchuk 1997), so
+//! that neither rounding nor scale matters; touching and coplanar triangles do not cross. Cost: a
+//! tree of boxes over the smaller mesh, O(log n) a triangle of the other.
 
 use crate::tree::Bvh;
 use crate::volume::{Aabb, BoundingVolume};
@@ -23,8 +24,8 @@ const CHUNK: usize = 256;
 /// A mesh: vertices and triangles.
 pub type Mesh<'a> = (&'a [Vec3], &'a [[u32; 3]]);
 
-/// Pairs of a triangle of one mesh and one of the other that cross, in this order, ascending. Triangles with a vertex that is no
-/// finite number are in none.
+/// Pairs of a triangle of one mesh and one of the other that cross, in this order, ascending.
+/// Triangles with a vertex that is no finite number are in none.
 #[must_use]
 pub fn between_meshes(one: Mesh<'_>, other: Mesh<'_>) -> Vec<[u32; 2]> {
     let (one, other) = (finite_triangles(one), finite_triangles(other));
@@ -61,9 +62,9 @@ fn crossings_of(few: &[(u32, Corners)], many: &[(u32, Corners)]) -> Vec<[u32; 2]
 
 /// True where the insides of two triangles have a segment in common and their planes differ.
 ///
-/// Guigue, Devillers 2003: each must have corners on both sides of the other's plane; then both meet
-/// the line in which the planes meet in an interval, and the intervals overlap where two more volumes
-/// have the right sign.
+/// Guigue, Devillers 2003: each must have corners on both sides of the other's plane; then both
+/// meet the line in which the planes meet in an interval, and the intervals overlap where two more
+/// volumes have the right sign.
 #[must_use]
 pub fn insides_cross(a: &Corners, b: &Corners) -> bool {
     let Some((a, is_inner)) = lone_corner_first(a, b) else { return false };
@@ -74,8 +75,8 @@ pub fn insides_cross(a: &Corners, b: &Corners) -> bool {
     volume(&a[0], &a[1], &b[0], &b[1]) > 0.0 && volume(&a[0], &a[2], &b[2], &b[0]) > 0.0
 }
 
-/// The triangle's corners in their order from the one that is alone on its side of the plane of `other`,
-/// and whether that is the inner side; `None` where not both sides have a corner.
+/// The triangle's corners in their order from the one that is alone on its side of the plane of
+/// `other`, and whether that is the inner side; `None` where not both sides have a corner.
 fn lone_corner_first(t: &Corners, other: &Corners) -> Option<(Corners, bool)> {
     let [o, p, q] = other;
     let side = t.map(|corner| volume(o, p, q, &corner));
@@ -129,8 +130,9 @@ pub fn pierces(p: &Vec3, q: &Vec3, t: &Corners) -> bool {
     (s1 > 0.0 && s2 > 0.0 && s3 > 0.0) || (s1 < 0.0 && s2 < 0.0 && s3 < 0.0)
 }
 
-/// True where the open segment from `p` to `q` passes through the inside of the triangle `t` and neither end lies in its plane but
-/// for rounding ([`FLAT`]): in doubles, for cloth that lies flat and does not cross itself.
+/// True where the open segment from `p` to `q` passes through the inside of the triangle `t` and
+/// neither end lies in its plane but for rounding ([`FLAT`]): in doubles, for cloth that lies flat
+/// and does not cross itself.
 #[must_use]
 pub fn pierces_clearly(p: &Vec3, q: &Vec3, [a, b, c]: &Corners) -> bool {
     let volume = |o: &Vec3, u: &Vec3, v: &Vec3, w: &Vec3| (u - o).dot(&(v - o).cross(&(w - o)));

@@ -1,7 +1,8 @@
 //! The triangles of a body, to find where cloth passes through them.
 //!
-//! Method: a tree of boxes; each side of one triangle against the other by signs of volumes (Möller 1997 compares intervals, which gives
-//! no places). Cost: O(n log n) to build, O(log n) for a triangle that meets few.
+//! Method: a tree of boxes; each side of one triangle against the other by signs of volumes (Möller
+//! 1997 compares intervals, which gives no places). Cost: O(n log n) to build, O(log n) for a
+//! triangle that meets few.
 
 use crate::crossing::passing;
 use crate::tree::Bvh;
@@ -30,7 +31,8 @@ impl Facets {
         Some(Self { corners, bvh })
     }
 
-    /// The places where sides of the triangle pass through those of the body, or sides of these through the triangle.
+    /// The places where sides of the triangle pass through those of the body, or sides of these
+    /// through the triangle.
     #[must_use]
     pub fn crossings(&self, triangle: &Corners) -> Vec<Vec3> {
         let mut places = Vec::new();

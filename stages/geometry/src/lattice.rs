@@ -4,11 +4,13 @@
 //! every point in the cell: most vertices are known to be too far out without a look at the
 //! skin, and points deep inside get a bound to search within. The bounds are exact, never a guess.
 //!
-//! Cells are filled where points ask for them, each once; a body is mostly larger than what cloth comes near. Cost: a
-//! closest-point query a cell that is asked for; all [`CELLS`] of them, some 50 ms for a body of 20,000 triangles, where
-//! they are filled ahead. Half a megabyte. Outside the lattice the distance to its box is the bound.
+//! Cells are filled where points ask for them, each once; a body is mostly larger than what cloth
+//! comes near. Cost: a closest-point query a cell that is asked for; all [`CELLS`] of them, some 50
+//! ms for a body of 20,000 triangles, where they are filled ahead. Half a megabyte. Outside the
+//! lattice the distance to its box is the bound.
 //!
-//! Bounds sort points out and never decide: which cells are filled, and by which thread, changes no answer.
+//! Bounds sort points out and never decide: which cells are filled, and by which thread, changes no
+//! answer.
 
 use crate::Vec3;
 use crate::volume::{Aabb, BoundingVolume};
@@ -51,7 +53,8 @@ impl Lattice {
         Lattice { origin: frame.min, cell, counts, distances, slack }
     }
 
-    /// Fills every cell; `distance` gives the signed distance of a point whose skin is within a bound.
+    /// Fills every cell; `distance` gives the signed distance of a point whose skin is within a
+    /// bound.
     ///
     /// # Errors
     /// That of `check`, which is asked once a layer.

@@ -1,11 +1,14 @@
-//! Geometry of triangle meshes in space, in metres and `f64`: what the cloth engine, colliders and readers of meshes share.
+//! Geometry of triangle meshes in space, in metres and `f64`: what the cloth engine, colliders and
+//! readers of meshes share.
 //!
-//! - [`closest`], [`pair`]: closest points of a triangle and of two segments; two pieces of cloth near each other.
+//! - [`closest`], [`pair`]: closest points of a triangle and of two segments; two pieces of cloth
+//!   near each other.
 //! - [`ccd`]: when two moving pieces first come near each other.
 //! - [`crossing`]: whether triangles cross, by exact signs.
 //! - [`volume`], [`tree`]: bounding volumes and the one tree over them.
 //! - [`cloth_tree`]: which parts of a moving sheet may meet.
-//! - [`signed_distance`]: distance to a closed mesh, negative inside; [`lattice`] bounds it cheaply.
+//! - [`signed_distance`]: distance to a closed mesh, negative inside; [`lattice`] bounds it
+//!   cheaply.
 //! - [`sharp`], [`facets`]: sharp edges of a body, and where triangles pass through it.
 //! - [`components`]: what hangs together.
 //! - [`obj`]: Wavefront OBJ.

@@ -28,7 +28,8 @@ pub struct Closest {
     pub distance: f64,
     /// From the second feature to the first: the sum of nodes times weights.
     pub between: Vec3,
-    /// Weights of the nodes; positive on the first feature (sum 1), negative on the second (sum -1).
+    /// Weights of the nodes; positive on the first feature (sum 1), negative on the second (sum
+    /// -1).
     pub weights: [f64; 4],
     /// True where both closest points lie inside their features.
     pub inside: bool,
@@ -77,7 +78,8 @@ impl Pair {
         self.kind.closest(&self.at(x))
     }
 
-    /// What carries weight, whichever pair it was seen in: a vertex against a corner or a side of several triangles.
+    /// What carries weight, whichever pair it was seen in: a vertex against a corner or a side of
+    /// several triangles.
     #[must_use]
     pub fn key(&self, c: &Closest) -> [u32; 4] {
         let [v, a, b, d] = self.nodes;

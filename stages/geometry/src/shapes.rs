@@ -83,7 +83,8 @@ pub fn numbers(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// A soup of triangles of size `size` in the unit cube; every third shares a vertex with the one before.
+/// A soup of triangles of size `size` in the unit cube; every third shares a vertex with the one
+/// before.
 #[must_use]
 pub fn soup(seed: u64, count: u32, size: f64) -> Shape {
     let mut next = numbers(seed);

@@ -1,12 +1,16 @@
-//! Edges and corners of a body that are too sharp for distances of single points to keep cloth off them.
+//! Edges and corners of a body that are too sharp for distances of single points to keep cloth off
+//! them.
 //!
-//! A vertex of the cloth is held off by its distance from the surface, and so is the cloth between its vertices where the surface bends
-//! gently. An edge of a table, a blade or the tip of a cone comes through between them. These features are found once, from the
-//! angles of the mesh, and each knows on which side of it a point lies: outside where its closest point of the surface is on the
-//! feature (the point is in the feature's normal cone), inside where the point is hidden behind all faces that meet there.
+//! A vertex of the cloth is held off by its distance from the surface, and so is the cloth between
+//! its vertices where the surface bends gently. An edge of a table, a blade or the tip of a cone
+//! comes through between them. These features are found once, from the angles of the mesh, and each
+//! knows on which side of it a point lies: outside where its closest point of the surface is on the
+//! feature (the point is in the feature's normal cone), inside where the point is hidden behind all
+//! faces that meet there.
 //!
-//! Cost: O(n) for the body's triangles, of which only those about vertices where the surface bends are looked at edge by edge;
-//! O(log m) for a look at the m features. Limits: a rounded edge of many small angles is none.
+//! Cost: O(n) for the body's triangles, of which only those about vertices where the surface bends
+//! are looked at edge by edge; O(log m) for a look at the m features. Limits: a rounded edge of
+//! many small angles is none.
 
 use crate::pair::Kind;
 use crate::tree::Bvh;
@@ -17,16 +21,18 @@ use crate::{Corners, Vec3};
 /// Features in a leaf of the tree.
 const LEAF: usize = 4;
 
-/// Cosine of the angle between the normals of two faces from which on their edge is sharp: 44 degrees, less than in a
-/// prism of eight sides and more than in all but some hundred edges of a mannequin.
+/// Cosine of the angle between the normals of two faces from which on their edge is sharp: 44
+/// degrees, less than in a prism of eight sides and more than in all but some hundred edges of a
+/// mannequin.
 const SHARP_EDGE: f64 = 0.719;
 
-/// Cosine of the angle between a face and the mean of all about a corner from which on that is sharp: 45 degrees; a
-/// corner of a box has 55.
+/// Cosine of the angle between a face and the mean of all about a corner from which on that is
+/// sharp: 45 degrees; a corner of a box has 55.
 const SHARP_CORNER: f64 = 0.707;
 
-/// Cosine of half the angle of a sharp edge, and a little less: a vertex of whose faces none stands farther from their mean has no
-/// sharp edge, for of two faces one stands from any direction at least half as far as they stand from each other.
+/// Cosine of half the angle of a sharp edge, and a little less: a vertex of whose faces none stands
+/// farther from their mean has no sharp edge, for of two faces one stands from any direction at
+/// least half as far as they stand from each other.
 const BENDS: f64 = 0.9275;
 
 /// Cosine of the angle from which on an edge of a sharp corner counts: 1 degree.
@@ -42,7 +48,8 @@ pub struct Feature {
     pub kind: Kind,
     /// Its two ends; of a corner the same place.
     pub ends: [Vec3; 2],
-    /// Unit directions from it into the surface: into the two faces, or along the edges of a corner.
+    /// Unit directions from it into the surface: into the two faces, or along the edges of a
+    /// corner.
     pub into: Vec<Vec3>,
 }
 
@@ -118,7 +125,8 @@ impl Sharp {
         any
     }
 
-    /// Visits every feature of a kind whose box meets that from `low` to `high`, in the order of the tree.
+    /// Visits every feature of a kind whose box meets that from `low` to `high`, in the order of
+    /// the tree.
     pub fn within(&self, kind: Kind, low: &Vec3, high: &Vec3, mut visit: impl FnMut(u32)) {
         let around = Aabb { min: *low, max: *high };
         self.bvh.within(&around, 0.0, |f| {
@@ -193,7 +201,8 @@ fn means(count: usize, triangles: &[[u32; 3]], faces: &[Vec3]) -> Vec<Vec3> {
     means
 }
 
-/// Vertices of which a face stands farther from the mean of all than an angle whose cosine is `least`.
+/// Vertices of which a face stands farther from the mean of all than an angle whose cosine is
+/// `least`.
 fn far_from_mean(triangles: &[[u32; 3]], faces: &[Vec3], means: &[Vec3], least: f64) -> Vec<bool> {
     let bounds: Vec<f64> = means.iter().map(|m| least * m.norm()).collect();
     let mut far = vec![false; means.len()];

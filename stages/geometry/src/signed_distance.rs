@@ -1,8 +1,9 @@
 //! Distance to a closed mesh, negative inside, and paths that enter it.
 //!
-//! A tree over the triangles. The sign comes from the angle-weighted normal of the closest feature, which is right for faces, edges
-//! and vertices alike (Baerentzen, Aanaes 2005); a path is tested by exact signs of volumes, so that it cannot slip between two
-//! triangles. O(log n) a query, about a microsecond on 20,000 triangles; less where the caller knows an upper bound.
+//! A tree over the triangles. The sign comes from the angle-weighted normal of the closest feature,
+//! which is right for faces, edges and vertices alike (Baerentzen, Aanaes 2005); a path is tested
+//! by exact signs of volumes, so that it cannot slip between two triangles. O(log n) a query, about
+//! a microsecond on 20,000 triangles; less where the caller knows an upper bound.
 //!
 //! The mesh must be closed and face outwards; an empty one is far from everything.
 
@@ -15,7 +16,8 @@ use crate::{Corners, Vec3};
 /// Triangles a leaf of the tree: below that, testing them all is cheaper than more volumes.
 const LEAF: usize = 4;
 
-/// Distance below which the direction from surface to point is noise and the feature's own normal is taken, m.
+/// Distance below which the direction from surface to point is noise and the feature's own normal
+/// is taken, m.
 const ON_SURFACE: f64 = 1e-9;
 
 /// A closed, static triangle mesh whose triangles face outwards.
@@ -78,7 +80,8 @@ impl<V: BoundingVolume> SignedDistance<V> {
         &self.triangles
     }
 
-    /// The closest point of the surface, where it is within `bound` of `p`; of equals that of the first triangle.
+    /// The closest point of the surface, where it is within `bound` of `p`; of equals that of the
+    /// first triangle.
     #[must_use]
     pub fn nearest(&self, p: &Vec3, bound: f64) -> Option<Nearest> {
         let mut best: Option<(f64, u32, OnTriangle)> = None;
@@ -115,7 +118,8 @@ impl<V: BoundingVolume> SignedDistance<V> {
         Nearest { point: on.point, normal, distance }
     }
 
-    /// Where the path from `p` to `q` first enters; nothing for a path that only leaves, or is no finite number.
+    /// Where the path from `p` to `q` first enters; nothing for a path that only leaves, or is no
+    /// finite number.
     #[must_use]
     pub fn entry(&self, p: &Vec3, q: &Vec3) -> Option<Entry> {
         if !p.iter().chain(q).all(|x| x.is_finite()) {

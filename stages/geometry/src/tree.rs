@@ -1,9 +1,10 @@
 //! A binary tree over triangles or other things with boxes, and what is asked of it.
 //!
-//! Built top-down by the surface-area heuristic on 12 bins along the longest axis (Wald 2007), in an order that depends on
-//! the input alone; O(n log n). Parts lie in depth-first order, so that a fit is one backward sweep. The tree holds no
-//! volumes: [`Tree::fit`] gives one a part, so that one tree serves any volume, and cloth that moves. [`Bvh`] is a tree with the
-//! volumes of things that stand still.
+//! Built top-down by the surface-area heuristic on 12 bins along the longest axis (Wald 2007), in
+//! an order that depends on the input alone; O(n log n). Parts lie in depth-first order, so that a
+//! fit is one backward sweep. The tree holds no volumes: [`Tree::fit`] gives one a part, so that
+//! one tree serves any volume, and cloth that moves. [`Bvh`] is a tree with the volumes of things
+//! that stand still.
 //!
 //! Limits: up to 2^32 things. Depth stays under [`MAX_DEPTH`] + 32, so recursion is safe.
 
@@ -54,7 +55,8 @@ impl Tree {
         p.first as usize..(p.first + p.count) as usize
     }
 
-    /// One value a part: `leaf` makes that of a leaf's things, `both` that of an inner part from its children's.
+    /// One value a part: `leaf` makes that of a leaf's things, `both` that of an inner part from
+    /// its children's.
     pub fn sweep<V: Copy>(
         &self,
         leaf: impl Fn(std::ops::Range<usize>) -> V,
@@ -81,7 +83,8 @@ impl Tree {
         self.sweep(leaf, V::merge)
     }
 
-    /// A volume a part, each fitted to all points below it: tighter than [`Tree::fit`], for what stands still.
+    /// A volume a part, each fitted to all points below it: tighter than [`Tree::fit`], for what
+    /// stands still.
     #[must_use]
     pub fn fit_tightly<V: BoundingVolume>(&self, corners: &[Corners]) -> Vec<V> {
         let ranges = self.sweep(|r| (r.start, r.end), |a, b| (a.0, b.1));
@@ -89,9 +92,9 @@ impl Tree {
         ranges.par_iter().map(fit).collect()
     }
 
-    /// Visits the things nearest to `p` first. `visit` takes a thing and the squared distance beyond which nothing matters,
-    /// and returns that bound, lowered where the thing is nearer. At equal distance both sides are looked into: the caller
-    /// settles ties.
+    /// Visits the things nearest to `p` first. `visit` takes a thing and the squared distance
+    /// beyond which nothing matters, and returns that bound, lowered where the thing is nearer. At
+    /// equal distance both sides are looked into: the caller settles ties.
     pub fn nearest<V: BoundingVolume>(
         &self,
         volumes: &[V],

@@ -1,14 +1,16 @@
 //! Seam allowance: the line along which a piece is cut, outside of the line along which it is sewn.
 //!
-//! Method: the piece, a strip as wide as its allowance along each edge, and a mitre at each corner that turns outwards are united;
-//! the outer boundary of the union is the cut line (`i_overlay`, on a grid far below a micrometre). So it never crosses itself:
-//! at corners that turn inwards, and where strips of edges that face each other meet, it is trimmed. A mitre that reaches
-//! farther than [`MITRE`] allowances is cut off at right angles. Between unlike allowances of edges that run on smoothly there is a
-//! step. A dart, two neighbouring edges that are sewn to each other, is not cut out: the cut line runs over its mouth along the
-//! edges beside it as they lie when the dart is folded.
+//! Method: the piece, a strip as wide as its allowance along each edge, and a mitre at each corner
+//! that turns outwards are united; the outer boundary of the union is the cut line (`i_overlay`, on
+//! a grid far below a micrometre). So it never crosses itself: at corners that turn inwards, and
+//! where strips of edges that face each other meet, it is trimmed. A mitre that reaches farther
+//! than [`MITRE`] allowances is cut off at right angles. Between unlike allowances of edges that
+//! run on smoothly there is a step. A dart, two neighbouring edges that are sewn to each other, is
+//! not cut out: the cut line runs over its mouth along the edges beside it as they lie when the
+//! dart is folded.
 //!
-//! Cost: some milliseconds a piece. Limits: holes have no allowance; a dart whose fold would reach out farther than its mouth
-//! is wide is closed straight.
+//! Cost: some milliseconds a piece. Limits: holes have no allowance; a dart whose fold would reach
+//! out farther than its mouth is wide is closed straight.
 
 use crate::error::WriteError;
 use crate::flatten::flatten;
@@ -69,8 +71,8 @@ impl Allowances {
 /// The cut lines of a pattern's pieces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CutLines {
-    /// For each piece, in the order of the pattern, its cut line: closed, counter-clockwise, metres, not repeating its first
-    /// point; none where the piece is cut along its outline.
+    /// For each piece, in the order of the pattern, its cut line: closed, counter-clockwise,
+    /// metres, not repeating its first point; none where the piece is cut along its outline.
     pub lines: Vec<Option<Vec<Point2>>>,
     /// For each piece the allowance of each of its outer edges, metres.
     pub widths: Vec<Vec<f64>>,
@@ -122,7 +124,8 @@ fn told(trimmed: &[Trimmed<'_>]) -> Option<String> {
     })
 }
 
-/// The first edge of each dart of a piece: it and the next are sewn to each other, and the piece turns inwards between them.
+/// The first edge of each dart of a piece: it and the next are sewn to each other, and the piece
+/// turns inwards between them.
 pub(crate) fn darts(pattern: &Pattern, p: &Piece) -> Vec<usize> {
     let n = p.outer.edges.len();
     let dart = |s: &toile_core::artifact::PatternSeam| {
@@ -221,8 +224,8 @@ fn folded(p: &Piece, widths: &[f64], darts: &[usize]) -> Vec<Segment> {
     out
 }
 
-/// The point over a dart's mouth where its fold ends: there the edge beside it, mirrored at the leg, meets the middle of the dart.
-/// None where that is not just outside the mouth.
+/// The point over a dart's mouth where its fold ends: there the edge beside it, mirrored at the
+/// leg, meets the middle of the dart. None where that is not just outside the mouth.
 fn roof(p: &Piece, first: usize) -> Option<Point2> {
     let n = p.outer.corners.len();
     let corner = |k: usize| p.outer.corners[k % n];

@@ -3,7 +3,8 @@
 use thiserror::Error;
 use toile_core::artifact::{Artifact, Pattern};
 
-/// No piece may reach farther from the origin than this, metres: beyond it no reader takes a file for a garment.
+/// No piece may reach farther from the origin than this, metres: beyond it no reader takes a file
+/// for a garment.
 pub const FARTHEST: f64 = 1000.0;
 
 /// Why a pattern is refused, with its place.

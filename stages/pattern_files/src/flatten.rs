@@ -1,7 +1,8 @@
 //! Curves as points.
 //!
-//! Method: Bézier curves by `kurbo`'s subdivision, arcs by equal angles whose chords leave them by no more than the tolerance.
-//! Cost: points grow with the square root of length over tolerance. Limits: [`MOST_ARC`] points an arc.
+//! Method: Bézier curves by `kurbo`'s subdivision, arcs by equal angles whose chords leave them by
+//! no more than the tolerance. Cost: points grow with the square root of length over tolerance.
+//! Limits: [`MOST_ARC`] points an arc.
 
 use kurbo::{BezPath, PathEl};
 use toile_core::artifact::{EdgeCurve, EdgePath, PatternLoop, Point2};
@@ -9,7 +10,8 @@ use toile_core::artifact::{EdgeCurve, EdgePath, PatternLoop, Point2};
 /// Points of one arc.
 const MOST_ARC: f64 = 4_000.0;
 
-/// The points of an edge from `start` to `end`, both included; the edge is nowhere farther than `tolerance` from them, metres.
+/// The points of an edge from `start` to `end`, both included; the edge is nowhere farther than
+/// `tolerance` from them, metres.
 pub(crate) fn flatten(start: Point2, end: Point2, curve: &EdgeCurve, tolerance: f64) -> Vec<Point2> {
     let mut points = match curve {
         EdgeCurve::Line => vec![start],

@@ -1,8 +1,8 @@
-//! Widths and letters of the two fonts of pages, Helvetica and Helvetica-Bold, which every reader of PDF has; drawings without fonts of their own are
-//! laid out by them too.
+//! Widths and letters of the two fonts of pages, Helvetica and Helvetica-Bold, which every reader
+//! of PDF has; drawings without fonts of their own are laid out by them too.
 //!
-//! Limits: letters of Western Europe (Windows code page 1252); others become a question mark. Widths are those of the plain
-//! font; bold text is taken for a tenth wider.
+//! Limits: letters of Western Europe (Windows code page 1252); others become a question mark.
+//! Widths are those of the plain font; bold text is taken for a tenth wider.
 
 /// Letters of code page 1252 from 0x80, where it differs from Latin-1; a space where it has none.
 const FROM_80: [char; 32] = [

@@ -2,7 +2,8 @@
 
 use toile_core::artifact::Point2;
 
-/// The least and the greatest corner of the box around points; both at the origin where there are none.
+/// The least and the greatest corner of the box around points; both at the origin where there are
+/// none.
 pub(crate) fn bounds(points: &[Point2]) -> (Point2, Point2) {
     let Some(&first) = points.first() else { return (Point2::origin(), Point2::origin()) };
     points.iter().fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)))

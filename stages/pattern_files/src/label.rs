@@ -1,8 +1,9 @@
 //! Where the words of a piece stand on it.
 //!
-//! Method: the greatest size at which the block of words, lying or upright, fits between all lines of the piece; of the places where it
-//! fits the one nearest to the piece's middle. Cost: sizes times places times lines, some milliseconds a piece. Limit: on a
-//! piece that is too small for the least size the words stand over its lines.
+//! Method: the greatest size at which the block of words, lying or upright, fits between all lines
+//! of the piece; of the places where it fits the one nearest to the piece's middle. Cost: sizes
+//! times places times lines, some milliseconds a piece. Limit: on a piece that is too small for the
+//! least size the words stand over its lines.
 
 use crate::font;
 use crate::inside::{bounds, contains, crosses};
@@ -34,7 +35,8 @@ pub(crate) struct Place {
     pub upright: bool,
 }
 
-/// The place for the words of a piece; the polygon is its outline, lines are all that is drawn on it, mm.
+/// The place for the words of a piece; the polygon is its outline, lines are all that is drawn on
+/// it, mm.
 pub(crate) fn place(words: &[Line], polygon: &[Point2], lines: &[[Point2; 2]]) -> Place {
     let (lo, hi) = bounds(polygon);
     let middle = nalgebra::center(&lo, &hi);

@@ -1,7 +1,8 @@
 //! Sewing patterns as files: GarmentCode JSON, SVG, DXF and PDF.
 //!
-//! Every writer is a function of a pattern, and of options, to the bytes of a file. The same pattern gives the same bytes each time.
-//! What a file cannot hold is told in sentences; seams stand in a file beside it, by the names that the file's reader will give.
+//! Every writer is a function of a pattern, and of options, to the bytes of a file. The same
+//! pattern gives the same bytes each time. What a file cannot hold is told in sentences; seams
+//! stand in a file beside it, by the names that the file's reader will give.
 
 pub mod allowance;
 pub mod dxf;

@@ -1,7 +1,8 @@
 //! What is drawn on a piece beside its outline: grain line, seam numbers, notches.
 //!
-//! A piece without a grain line of its own gets one: y is its grain. Cost: points of the outline times some dozen. Limits: a number
-//! stands at the middle of its edge, also where that edge is one of several of its side.
+//! A piece without a grain line of its own gets one: y is its grain. Cost: points of the outline
+//! times some dozen. Limits: a number stands at the middle of its edge, also where that edge is one
+//! of several of its side.
 
 use crate::inside::{bounds, upright_parts};
 use toile_core::artifact::{EdgePath, Pattern, Piece, Point2, Vector2};

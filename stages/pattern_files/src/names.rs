@@ -8,7 +8,8 @@ use toile_core::artifact::{EdgeRef, Piece};
 pub(crate) struct PieceNames {
     /// What the piece is called.
     pub piece: String,
-    /// For each outer edge and inner line what its parts are called, from its start; none where the file does not have it.
+    /// For each outer edge and inner line what its parts are called, from its start; none where the
+    /// file does not have it.
     pub edges: BTreeMap<String, Vec<String>>,
 }
 
@@ -51,7 +52,8 @@ pub(crate) fn unique(taken: &mut BTreeSet<String>, name: &str) -> String {
     out
 }
 
-/// A name in one line: control characters and characters that XML does not know become spaces, of which none stand at its ends.
+/// A name in one line: control characters and characters that XML does not know become spaces, of
+/// which none stand at its ends.
 pub(crate) fn one_line(name: &str, most: usize) -> String {
     let plain = |c: char| {
         if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}') { ' ' } else { c }
@@ -60,7 +62,8 @@ pub(crate) fn one_line(name: &str, most: usize) -> String {
     text.trim().chars().take(most).collect::<String>().trim().to_owned()
 }
 
-/// A name of a piece that a file of seams can name: without points, not beginning with a minus, not empty.
+/// A name of a piece that a file of seams can name: without points, not beginning with a minus, not
+/// empty.
 pub(crate) fn sewable(name: &str) -> String {
     let bare = name.replace('.', "_");
     let bare = match bare.strip_prefix('-') {

@@ -1,4 +1,5 @@
-//! The edges of an outline as a file draws them: one curve each, those that end where they begin in two.
+//! The edges of an outline as a file draws them: one curve each, those that end where they begin in
+//! two.
 //!
 //! Readers take a line whose ends meet for a closed one. Cost: linear.
 
@@ -15,8 +16,8 @@ pub(crate) struct Part {
     pub curve: EdgeCurve,
 }
 
-/// The parts of a loop in its order; an edge is halved where `closes` says of its chord and its length, metres, that its ends
-/// are too near to each other.
+/// The parts of a loop in its order; an edge is halved where `closes` says of its chord and its
+/// length, metres, that its ends are too near to each other.
 pub(crate) fn parts(l: &PatternLoop, closes: impl Fn(f64, f64) -> bool) -> Vec<Part> {
     let n = l.corners.len();
     let mut out = Vec::with_capacity(n);

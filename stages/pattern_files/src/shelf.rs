@@ -1,10 +1,12 @@
 //! Places of rectangles side by side in rows, without overlap.
 //!
-//! Method: the tallest first, each in the first row that has room (first fit decreasing height, Coffman et al. 1980). Cost:
-//! rectangles times rows. Limits: at most 1.7 times the least height and one row, never the least.
+//! Method: the tallest first, each in the first row that has room (first fit decreasing height,
+//! Coffman et al. 1980). Cost: rectangles times rows. Limits: at most 1.7 times the least height
+//! and one row, never the least.
 
-/// Where rectangles lie: the lower left corner of each, and the size of all together. Each is `[width, height]`, a row is as
-/// wide as the widest at least, `gap` lies between them. Rows are stacked downwards from y = 0.
+/// Where rectangles lie: the lower left corner of each, and the size of all together. Each is
+/// `[width, height]`, a row is as wide as the widest at least, `gap` lies between them. Rows are
+/// stacked downwards from y = 0.
 pub(crate) fn pack(sizes: &[[f64; 2]], width: f64, gap: f64) -> (Vec<[f64; 2]>, [f64; 2]) {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by(|&i, &j| sizes[j][1].total_cmp(&sizes[i][1]).then(i.cmp(&j)));

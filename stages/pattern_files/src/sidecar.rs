@@ -8,9 +8,10 @@
 //!     )
 //! ```
 //!
-//! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to its start. Cost: linear.
-//! Limits: pieces are named without points and without a minus before their name, and no name begins or ends with a space; a
-//! seam that cannot be named so is left out, which is told.
+//! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to
+//! its start. Cost: linear. Limits: pieces are named without points and without a minus before
+//! their name, and no name begins or ends with a space; a seam that cannot be named so is left out,
+//! which is told.
 
 use super::names::FileNames;
 use std::fmt::Write;

@@ -5,8 +5,8 @@
 pub struct Written {
     /// The file.
     pub bytes: Vec<u8>,
-    /// The file of seams beside it, by the names that the file has; RON, as `sidecar` tells. Empty where nothing reads the file
-    /// back.
+    /// The file of seams beside it, by the names that the file has; RON, as `sidecar` tells. Empty
+    /// where nothing reads the file back.
     pub seams: String,
     /// What was decided, and what the format has no place for, a sentence each.
     pub notes: Vec<String>,

@@ -9,8 +9,8 @@ use nalgebra::{Point2, Vector2};
 const OUTLINE: Rgb<u8> = Rgb([255, 0, 170]);
 const MARK: Rgb<u8> = Rgb([0, 220, 90]);
 
-/// The photo with the outline, the corners and the marks of what was found, and an arrow of 10 cm along the
-/// object's first side. Of the photo's own size; lines of a 600th of its longer side.
+/// The photo with the outline, the corners and the marks of what was found, and an arrow of 10 cm
+/// along the object's first side. Of the photo's own size; lines of a 600th of its longer side.
 pub fn draw(photo: &RgbImage, found: &Found) -> RgbImage {
     let mut picture = photo.clone();
     let width = (f64::from(photo.width().max(photo.height())) / 600.0).max(1.0);

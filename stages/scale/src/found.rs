@@ -12,29 +12,32 @@ pub enum Kind {
     Line,
 }
 
-/// An object found in a photo. Places are photo pixels: centres at integers, x to the right, y downwards.
+/// An object found in a photo. Places are photo pixels: centres at integers, x to the right, y
+/// downwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found {
     /// What was looked for.
     pub object: Object,
     /// What it tells about the ground.
     pub kind: Kind,
-    /// Its corners, clockwise: of a card those of its sides' lines, of a chessboard the outermost inner ones, of
-    /// a ruler the ends of its marks' row and of the marks.
+    /// Its corners, clockwise: of a card those of its sides' lines, of a chessboard the outermost
+    /// inner ones, of a ruler the ends of its marks' row and of the marks.
     pub corners: [Point2<f64>; 4],
-    /// Every place that was measured inside: inner corners of a chessboard, marks of a ruler, else none.
+    /// Every place that was measured inside: inner corners of a chessboard, marks of a ruler, else
+    /// none.
     pub marks: Vec<Point2<f64>>,
-    /// From photo pixels to metres on the ground, with the origin at the object's middle, y downwards in the
-    /// photo's sense (no mirror). Of `Kind::Line` a turn and a scale.
+    /// From photo pixels to metres on the ground, with the origin at the object's middle, y
+    /// downwards in the photo's sense (no mirror). Of `Kind::Line` a turn and a scale.
     pub homography: Matrix3<f64>,
-    /// Photo pixels for a metre at the object's middle (geometric mean over the directions); above 0.
+    /// Photo pixels for a metre at the object's middle (geometric mean over the directions);
+    /// above 0.
     pub px_per_metre: f64,
     /// Root mean square of the distances between what was measured and the fitted object, pixels.
     pub residual: f64,
     /// Share of the outline or of the marks that was seen where it must be, 0 to 1.
     pub confidence: f64,
-    /// Angle between the line of sight to the object and the ground's normal, degrees, 0 to 60; `None` of
-    /// `Kind::Line`.
+    /// Angle between the line of sight to the object and the ground's normal, degrees, 0 to 60;
+    /// `None` of `Kind::Line`.
     pub tilt: Option<f64>,
 }
 
@@ -57,7 +60,8 @@ pub(crate) fn place(h: &Matrix3<f64>, p: Point2<f64>) -> Option<Point2<f64>> {
     (q.z > 0.0 && at.iter().all(|v| v.is_finite())).then_some(at)
 }
 
-/// The inverse of a homography of metres to pixels, signed so that `z` is positive at the origin's pixel.
+/// The inverse of a homography of metres to pixels, signed so that `z` is positive at the origin's
+/// pixel.
 pub(crate) fn inverse(to_pixels: &Matrix3<f64>) -> Option<Matrix3<f64>> {
     let inverse = to_pixels.try_inverse()?;
     let origin = to_pixels.column(2) / to_pixels[(2, 2)];
@@ -69,7 +73,8 @@ pub(crate) fn inverse(to_pixels: &Matrix3<f64>) -> Option<Matrix3<f64>> {
 /// Pixels a metre at a place on the ground: the root of the area's growth.
 pub(crate) fn density(to_pixels: &Matrix3<f64>, at: Point2<f64>) -> Option<f64> {
     let q = to_pixels * at.to_homogeneous();
-    // The determinant of a homography's derivative is its own over the cube of the third coordinate.
+    // The determinant of a homography's derivative is its own over the cube of the third
+    // coordinate.
     let density = (to_pixels.determinant() / q.z.powi(3)).abs().sqrt();
     (density.is_finite() && density > 0.0).then_some(density)
 }

@@ -27,7 +27,8 @@ pub(crate) struct Judged {
 /// The least share of any side that must be seen, and of all.
 const SEEN: f64 = 0.6;
 const SEEN_MEAN: f64 = 0.78;
-/// The largest distance of the fitted rectangle from the measured lines: pixels, and share of the shorter side.
+/// The largest distance of the fitted rectangle from the measured lines: pixels, and share of the
+/// shorter side.
 const OFF: f64 = 0.4;
 const OFF_SHARE: f64 = 0.003;
 /// The most unusual camera (sum of squares over standard deviations).
@@ -39,8 +40,9 @@ const SHEET_COST: f64 = 1.6;
 const CONTINUED: usize = 2;
 const SHEET_CONTINUED: usize = 1;
 
-/// Whether the aspect may be the object's, with errors of about `pixel` at each corner: by the two columns of
-/// the homography with the expected focal length, which must be alike in length and at right angles.
+/// Whether the aspect may be the object's, with errors of about `pixel` at each corner: by the two
+/// columns of the homography with the expected focal length, which must be alike in length and at
+/// right angles.
 pub(crate) fn may_be(corners: &[Point2<f64>; 4], shape: &Rectangle, camera: &Camera, pixel: f64) -> bool {
     let Some((a, b)) = columns(corners, camera) else { return false };
     let short = (corners[2] - corners[1]).norm().min((corners[3] - corners[0]).norm());
@@ -50,8 +52,8 @@ pub(crate) fn may_be(corners: &[Point2<f64>; 4], shape: &Rectangle, camera: &Cam
     aspect.ln().abs() < doubt && cosine.abs() < doubt
 }
 
-/// The pictures of the rectangle's two directions as vectors in space, for the unit square onto the corners
-/// (Heckbert, Fundamentals of texture mapping, 1989).
+/// The pictures of the rectangle's two directions as vectors in space, for the unit square onto the
+/// corners (Heckbert, Fundamentals of texture mapping, 1989).
 fn columns(c: &[Point2<f64>; 4], camera: &Camera) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let p = c.map(|p| (p - camera.middle) / camera.focal);
     let (d1, d2, d3) = (p[1] - p[2], p[3] - p[2], p[0] - p[1] + p[2] - p[3]);
@@ -176,7 +178,8 @@ fn posed(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle, camer
     pose::fit(&start, &pins(corners, sides, shape), camera)
 }
 
-/// Two pins a side, where the errors of a line that is seen evenly along its length do not depend on each other.
+/// Two pins a side, where the errors of a line that is seen evenly along its length do not depend
+/// on each other.
 fn pins(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle) -> Vec<Pin> {
     let model = shape.corners();
     let mut pins = Vec::with_capacity(8);
@@ -195,7 +198,8 @@ fn pins(corners: &[Point2<f64>; 4], sides: &[Side; 4], shape: &Rectangle) -> Vec
     pins
 }
 
-/// Error of an edge's place that more profiles do not lessen: shadows under the rim, print near it, pixels.
+/// Error of an edge's place that more profiles do not lessen: shadows under the rim, print near it,
+/// pixels.
 const BIAS: f64 = 0.08;
 /// Half the root of a third: where the two ends of a fitted line err independently.
 const APART: f64 = 0.288_675;
@@ -236,8 +240,8 @@ enum Corners {
     Seen(f64),
 }
 
-/// Whether the corners are as round or as sharp as the object's, as far as the photo shows it. Where it does
-/// not, all else must be sure.
+/// Whether the corners are as round or as sharp as the object's, as far as the photo shows it.
+/// Where it does not, all else must be sure.
 fn right_corners(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle, sure: bool) -> bool {
     match sharpness(photo, h, shape) {
         Corners::Small | Corners::Unseen => sure,
@@ -252,7 +256,8 @@ const ANOTHER: [f64; 2] = [0.25, 10.0];
 /// Steps in which the way beyond is walked.
 const WALKED: usize = 24;
 
-/// Whether another edge runs along a side just beyond it: then that side is a stripe printed on a card, and the card is larger.
+/// Whether another edge runs along a side just beyond it: then that side is a stripe printed on a
+/// card, and the card is larger.
 fn within(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
     let corners = shape.corners();
     (0..4).any(|i| {
@@ -274,10 +279,12 @@ fn within(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
     })
 }
 
-/// Sheets of fewer pixels on their shorter side are taken where all is sure alone, as tiles and prints are like them.
+/// Sheets of fewer pixels on their shorter side are taken where all is sure alone, as tiles and
+/// prints are like them.
 const FEW: f64 = 80.0;
 
-/// Whether a sheet is of one hue, as paper is whatever the ink and shadow; cards may have any print.
+/// Whether a sheet is of one hue, as paper is whatever the ink and shadow; cards may have any
+/// print.
 fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
     if shape.radius > 0.0 {
         return true;
@@ -300,8 +307,8 @@ fn even(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> bool {
 /// The least of [`one_sided`] of a sheet's outline.
 const ONE_SIDED: f64 = 0.6;
 
-/// How far a sheet is lighter all along its outline than what it lies on, or darker: 1 all along, 0 as often the
-/// one as the other, as is the outline of some tiles of a floor.
+/// How far a sheet is lighter all along its outline than what it lies on, or darker: 1 all along, 0
+/// as often the one as the other, as is the outline of some tiles of a floor.
 fn one_sided(photo: &RgbImage, h: &Matrix3<f64>, shape: &Rectangle) -> f64 {
     let corners = shape.corners();
     let (mut sum, mut sizes) = (0.0, 1e-9);

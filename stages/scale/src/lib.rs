@@ -1,5 +1,5 @@
-//! True scale from a photo: an object of known size beside a garment, the plane that both lie on, and the photo
-//! rectified.
+//! True scale from a photo: an object of known size beside a garment, the plane that both lie on,
+//! and the photo rectified.
 //!
 //! ```text
 //! photo --find--> Found (corners, homography, px_per_metre) --rectify--> the ground from straight above
@@ -7,8 +7,9 @@
 //!                   +--draw--> the photo with the object outlined
 //! ```
 //!
-//! Cards, sheets and chessboards give the ground's plane, so that lengths hold all over it under any tilt up to
-//! 35 degrees (60 for chessboards, and where the focal length is given). A ruler gives a scale along itself alone. What is not sure is refused with a [`ScaleError`].
+//! Cards, sheets and chessboards give the ground's plane, so that lengths hold all over it under
+//! any tilt up to 35 degrees (60 for chessboards, and where the focal length is given). A ruler
+//! gives a scale along itself alone. What is not sure is refused with a [`ScaleError`].
 //!
 //! ```
 //! use image::{Rgb, RgbImage};
@@ -28,11 +29,12 @@
 //!
 //! The same photo gives the same bits for any number of threads.
 //!
-//! Limits: the lens is taken for a pin-hole whose axis meets the photo's middle; distortion is not corrected, and
-//! a photo that was cropped to one side gives a wrong tilt of small objects. The object must lie flat on the
-//! garment's ground, whole in the frame. A rectangle of the object's proportions is taken for it (a postcard of
-//! the paper's proportions, a board of two tones). Without a focal length, that of a phone's main lens is assumed
-//! (26.5 mm on 35 mm film, 15 % doubt).
+//! Limits: the lens is taken for a pin-hole whose axis meets the photo's middle; distortion is not
+//! corrected, and a photo that was cropped to one side gives a wrong tilt of small objects. The
+//! object must lie flat on the garment's ground, whole in the frame. A rectangle of the object's
+//! proportions is taken for it (a postcard of the paper's proportions, a board of two tones).
+//! Without a focal length, that of a phone's main lens is assumed (26.5 mm on 35 mm film, 15 %
+//! doubt).
 
 mod chessboard;
 mod draw;

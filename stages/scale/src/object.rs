@@ -6,7 +6,8 @@ use nalgebra::Point2;
 /// An object of known size, laid flat on the garment's ground.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Object {
-    /// A bank card, ISO/IEC 7810 ID-1: 85.60 x 53.98 mm, corners of 3.18 mm radius, of any colour and print.
+    /// A bank card, ISO/IEC 7810 ID-1: 85.60 x 53.98 mm, corners of 3.18 mm radius, of any colour
+    /// and print.
     BankCard,
     /// A sheet of A4 paper (ISO 216): 210 x 297 mm.
     A4,
@@ -33,7 +34,8 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
-    /// The corners around the middle, clockwise where y grows downwards; the first side is the long one.
+    /// The corners around the middle, clockwise where y grows downwards; the first side is the long
+    /// one.
     pub(crate) fn corners(&self) -> [Point2<f64>; 4] {
         let (x, y) = (self.long / 2.0, self.short / 2.0);
         [Point2::new(-x, -y), Point2::new(x, -y), Point2::new(x, y), Point2::new(-x, y)]

@@ -1,7 +1,7 @@
 //! Reduced copies of a photo, and colours between its pixels.
 //!
-//! Pixel centres lie at integer coordinates. A reduced pixel is the mean of a square of `k` pixels, so a place
-//! p of the reduced copy is `k p + (k - 1) / 2` of the photo.
+//! Pixel centres lie at integer coordinates. A reduced pixel is the mean of a square of `k` pixels,
+//! so a place p of the reduced copy is `k p + (k - 1) / 2` of the photo.
 
 use image::RgbImage;
 use nalgebra::Point2;
@@ -20,7 +20,8 @@ pub(crate) struct Small {
 }
 
 impl Small {
-    /// The photo with `k` x `k` pixels made one; what is left over at the right and below is left out.
+    /// The photo with `k` x `k` pixels made one; what is left over at the right and below is left
+    /// out.
     pub(crate) fn of(photo: &RgbImage, k: usize) -> Self {
         let (w, h) = (photo.width() as usize / k, photo.height() as usize / k);
         let mut rgb = vec![[0.0; 3]; w * h];

@@ -1,14 +1,16 @@
 //! The pose of a flat object before a pin-hole camera.
 //!
-//! Seven to nine unknowns (rotation, place, focal length, principal point) are fitted to pins: places of the
-//! object whose picture lies on a line of the photo. Least squares by Levenberg and Marquardt (1963), with what
-//! is known of cameras as further terms: the focal length is near a phone's main lens, or near that which is
-//! stated, and the principal point near the middle. A small object fixes the tilt by both its narrowing and its
-//! foreshortening (Zhang and He, Whiteboard scanning, 2003, for the constraints); where the photo is straight-on
-//! the camera's terms decide.
+//! Seven to nine unknowns (rotation, place, focal length, principal point) are fitted to pins:
+//! places of the object whose picture lies on a line of the photo. Least squares by Levenberg and
+//! Marquardt (1963), with what is known of cameras as further terms: the focal length is near a
+//! phone's main lens, or near that which is stated, and the principal point near the middle. A
+//! small object fixes the tilt by both its narrowing and its foreshortening (Zhang and He,
+//! Whiteboard scanning, 2003, for the constraints); where the photo is straight-on the camera's
+//! terms decide.
 //!
-//! Start: the homography of four corners, split into a pose with the expected focal length, and the same with
-//! the tilt reversed (Schweighofer and Pinz, 2006: the two poses that a small object allows).
+//! Start: the homography of four corners, split into a pose with the expected focal length, and the
+//! same with the tilt reversed (Schweighofer and Pinz, 2006: the two poses that a small object
+//! allows).
 
 use nalgebra::{DMatrix, DVector, Matrix3, Point2, Rotation3, SMatrix, SVector, Vector2, Vector3};
 
@@ -129,8 +131,8 @@ pub(crate) fn through(h: &Matrix3<f64>, p: Point2<f64>) -> Point2<f64> {
     Point2::new(q.x / q.z, q.y / q.z)
 }
 
-/// The homography that takes four or more places to others, by the direct linear transform with scaled places
-/// (Hartley and Zisserman, Multiple View Geometry, 2004, alg. 4.2).
+/// The homography that takes four or more places to others, by the direct linear transform with
+/// scaled places (Hartley and Zisserman, Multiple View Geometry, 2004, alg. 4.2).
 pub(crate) fn homography(from: &[Point2<f64>], to: &[Point2<f64>]) -> Option<Matrix3<f64>> {
     let (s, t) = (scaling(from)?, scaling(to)?);
     let mut rows = DMatrix::zeros((2 * from.len()).max(9), 9);

@@ -1,8 +1,9 @@
 //! Quadrilaterals around segments.
 //!
-//! A side and the two that meet its ends are segments; the fourth is looked for between those two, where a line
-//! lies on ridges along most of its length. Each quadrilateral is given its support: how much of its outline
-//! lies on ridges, less how much its sides run on beyond the corners, as those of boards, tiles and checks do.
+//! A side and the two that meet its ends are segments; the fourth is looked for between those two,
+//! where a line lies on ridges along most of its length. Each quadrilateral is given its support:
+//! how much of its outline lies on ridges, less how much its sides run on beyond the corners, as
+//! those of boards, tiles and checks do.
 //!
 //! Cost: the meetings of each segment squared; they are bounded (`MEETINGS`).
 
@@ -47,8 +48,9 @@ struct Meeting {
     gap: f64,
 }
 
-/// Quadrilaterals of sides of at least `least` pixels whose sides are about in the proportion `aspect` (the long
-/// one over the short one, in the picture up to twice as much or half as much), the best supported first.
+/// Quadrilaterals of sides of at least `least` pixels whose sides are about in the proportion
+/// `aspect` (the long one over the short one, in the picture up to twice as much or half as much),
+/// the best supported first.
 pub(crate) fn quads(segments: &[Segment], ridges: &Ridges, least: f64, aspect: f64) -> Vec<Quad> {
     let of = |i: usize| around(segments, ridges, i, least, aspect);
     let lists: Vec<Vec<Quad>> = (0..segments.len()).into_par_iter().map(of).collect();
@@ -225,7 +227,8 @@ fn meeting(one: &Segment, end: usize, two: &Segment, e: usize) -> Option<Meeting
     Some(Meeting { at, away: -outward(v, e), reach, gap: gaps[0] + gaps[1] - 0.3 * l2.min(l1) })
 }
 
-/// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a quarter.
+/// How far a crossing lies from an end: outside of the segment by nine tenths of it, inside by a
+/// quarter.
 fn gap(at: Point2<f64>, end: Point2<f64>, outward: Vector2<f64>, length: f64) -> Option<f64> {
     let t = outward.dot(&(at - end));
     let allowed = if t > 0.0 { 0.9 * length + 4.0 } else { 0.25 * length + 2.0 };

@@ -1,10 +1,10 @@
 //! Cards and sheets: candidates from segments, each judged in the photo.
 //!
-//! Candidates come from the photo reduced to two sizes, so that the texture of the ground is gone at one of
-//! them. Each is measured in the photo (`side`), its pose fitted (`pose`), and refused where a side is not
-//! distinct along its length, where the aspect is not that of the object under any plausible camera, where the
-//! sides run on beyond the corners (boards, tiles, checks), or where the corners are round or sharp against the
-//! object's kind (`judge`).
+//! Candidates come from the photo reduced to two sizes, so that the texture of the ground is gone
+//! at one of them. Each is measured in the photo (`side`), its pose fitted (`pose`), and refused
+//! where a side is not distinct along its length, where the aspect is not that of the object under
+//! any plausible camera, where the sides run on beyond the corners (boards, tiles, checks), or
+//! where the corners are round or sharp against the object's kind (`judge`).
 
 use crate::found::{Found, Kind, density, inverse, middle};
 use crate::judge::{self, Judged};

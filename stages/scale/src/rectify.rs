@@ -1,11 +1,12 @@
 //! The ground seen from straight above, at a known number of pixels a metre.
 //!
-//! The photo's frame is taken through the homography to the ground; the picture holds all of it. Each of its
-//! pixels is looked up in the photo, bicubic (Catmull and Rom, 1974), or bilinear, from a copy of the photo that
-//! is halved until the picture's pixels are no larger than the copy's (Williams, Pyramidal parametrics, 1983).
+//! The photo's frame is taken through the homography to the ground; the picture holds all of it.
+//! Each of its pixels is looked up in the photo, bicubic (Catmull and Rom, 1974), or bilinear, from
+//! a copy of the photo that is halved until the picture's pixels are no larger than the copy's
+//! (Williams, Pyramidal parametrics, 1983).
 //!
-//! Cost: about 60 ns a pixel and core, bicubic. Limits: ground that is seen at less than a tenth of the densest
-//! resolution (towards the horizon) is left out, and lens distortion stays.
+//! Cost: about 60 ns a pixel and core, bicubic. Limits: ground that is seen at less than a tenth of
+//! the densest resolution (towards the horizon) is left out, and lens distortion stays.
 
 use crate::found::{Found, density, place};
 use crate::pose::through;
@@ -27,8 +28,9 @@ pub enum Sampling {
 /// How a photo is rectified.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RectifyOptions {
-    /// Pixels a metre, 10 to 100 000; `None` for those of the photo where it is densest. It is never more than
-    /// those, and less where the picture would be larger than 30 000 px a side or 200 megapixels.
+    /// Pixels a metre, 10 to 100 000; `None` for those of the photo where it is densest. It is
+    /// never more than those, and less where the picture would be larger than 30 000 px a side or
+    /// 200 megapixels.
     pub px_per_metre: Option<f64>,
     /// How colours between pixels are taken.
     pub sampling: Sampling,
@@ -51,11 +53,12 @@ const MOST_PIXELS: f64 = 2e8;
 /// Ground of less than this share of the densest resolution is left out.
 const SPARSE: f64 = 0.1;
 
-/// Rectifies the photo in which an object was found. The photo's x direction stays the picture's, at its middle.
+/// Rectifies the photo in which an object was found. The photo's x direction stays the picture's,
+/// at its middle.
 ///
 /// # Errors
-/// [`ScaleError::Size`], [`ScaleError::Resolution`], and [`ScaleError::NotFinite`] for a homography that was not
-/// made by [`crate::find`].
+/// [`ScaleError::Size`], [`ScaleError::Resolution`], and [`ScaleError::NotFinite`] for a homography
+/// that was not made by [`crate::find`].
 pub fn rectify(photo: &RgbImage, found: &Found, options: &RectifyOptions) -> Result<Rectified, ScaleError> {
     find::check_size(photo)?;
     if let Some(px_per_metre) = options.px_per_metre.filter(|p| !(10.0..=100_000.0).contains(p)) {

@@ -1,8 +1,9 @@
 //! Ridges of the colour gradient, without its sign.
 //!
-//! The structure tensor of the three channels (Di Zenzo, A note on the gradient of a multi-image, CVGIP 33,
-//! 1986) gives at each pixel the direction of the strongest change and its size; a pixel is on a ridge where
-//! the size is largest across the edge (Canny, 1986). An edge whose contrast changes sign along it stays one.
+//! The structure tensor of the three channels (Di Zenzo, A note on the gradient of a multi-image,
+//! CVGIP 33, 1986) gives at each pixel the direction of the strongest change and its size; a pixel
+//! is on a ridge where the size is largest across the edge (Canny, 1986). An edge whose contrast
+//! changes sign along it stays one.
 //!
 //! Cost: about 40 ns a pixel.
 
@@ -47,7 +48,8 @@ impl Ridges {
         Ridges { w, h, slopes, on }
     }
 
-    /// Whether the nearest pixel is on a ridge whose direction across, as `Slope::twice`, is like `twice`.
+    /// Whether the nearest pixel is on a ridge whose direction across, as `Slope::twice`, is like
+    /// `twice`.
     pub(crate) fn along(&self, p: Point2<f64>, twice: [f32; 2]) -> bool {
         let (x, y) = (p.x.round(), p.y.round());
         if !(x >= 0.0 && y >= 0.0 && x < self.w as f64 && y < self.h as f64) {

@@ -1,10 +1,11 @@
 //! Straight segments of ridges.
 //!
-//! Ridge pixels of like direction are grown into regions (after Grompone von Gioi, Jakubowicz, Morel and
-//! Randall, LSD, IEEE PAMI 32(4), 2010), each is fitted by a line, and is cut where it bends. Then segments that
-//! follow each other on one line are joined.
+//! Ridge pixels of like direction are grown into regions (after Grompone von Gioi, Jakubowicz,
+//! Morel and Randall, LSD, IEEE PAMI 32(4), 2010), each is fitted by a line, and is cut where it
+//! bends. Then segments that follow each other on one line are joined.
 //!
-//! Cost: linear in the ridge pixels; the joining is quadratic in the segments, of which at most `MOST` are kept.
+//! Cost: linear in the ridge pixels; the joining is quadratic in the segments, of which at most
+//! `MOST` are kept.
 
 use crate::ridges::Ridges;
 use nalgebra::{Point2, Vector2};
@@ -64,7 +65,8 @@ fn keep_longest(found: &mut Vec<Segment>) {
     found.truncate(MOST);
 }
 
-/// Ridge pixels, the steepest first; in steps of size, so that the order is that of the rows within one.
+/// Ridge pixels, the steepest first; in steps of size, so that the order is that of the rows within
+/// one.
 fn seeds(ridges: &Ridges) -> Vec<usize> {
     let mut bins: Vec<Vec<usize>> = vec![Vec::new(); 64];
     for i in (0..ridges.on.len()).filter(|i| ridges.on[*i]) {
@@ -101,7 +103,8 @@ fn grow(ridges: &Ridges, taken: &mut [bool], start: usize, region: &mut Vec<usiz
     }
 }
 
-/// Pixels further from the line of a region are not of it: other edges that meet it at a small angle.
+/// Pixels further from the line of a region are not of it: other edges that meet it at a small
+/// angle.
 const BESIDE: f64 = 1.7;
 /// Pixels from which on a region has a line.
 const LINE: f64 = 16.0;
@@ -190,7 +193,8 @@ fn axis(ridges: &Ridges, region: &[usize]) -> Option<(Vector2<f64>, Vector2<f64>
     (total > 0.0).then(|| (middle, Vector2::new(angle.cos(), angle.sin())))
 }
 
-/// Where to cut a bent region: at the pixel that is furthest from the line between its ends, or at its half.
+/// Where to cut a bent region: at the pixel that is furthest from the line between its ends, or at
+/// its half.
 fn bend(region: &[usize], ends: [f64; 2], at: impl Fn(usize) -> (f64, f64)) -> usize {
     let (first, last) = (at(region[0]).1, at(region[region.len() - 1]).1);
     let chord = |t: f64| first + (last - first) * (t - ends[0]) / (ends[1] - ends[0]).max(1e-9);
@@ -223,7 +227,8 @@ fn join(parts: &[Segment]) -> Vec<Segment> {
     joined
 }
 
-/// Whether `other` lies on the line of `whole`, with a gap that is shorter than the shorter of them.
+/// Whether `other` lies on the line of `whole`, with a gap that is shorter than the shorter of
+/// them.
 fn follows(whole: &Segment, other: &Segment) -> bool {
     let along = whole.along();
     if along.perp(&other.along()).abs() > 0.08 + 1.2 / other.length() {

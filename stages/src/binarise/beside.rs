@@ -37,7 +37,8 @@ impl Thing {
         };
         let ((left, right), (top, bottom)) = (span(&|p| p.0), span(&|p| p.1));
         let area = on().count();
-        // The middle of the longest stretch at the height of its middle: a place that is on it, whatever its form.
+        // The middle of the longest stretch at the height of its middle: a place that is on it,
+        // whatever its form.
         let row = on().map(|p| p.1).sum::<usize>() / area.max(1);
         let mut best = (0, 0);
         let mut from = None;
@@ -64,7 +65,8 @@ impl Thing {
         self.mask.get(y.min(h - 1) * w + x.min(w - 1)).copied().unwrap_or(false)
     }
 
-    /// The rectangle in which it is looked at alone: with ground around, but nothing of the `others`. `ratio` is the photo's width over its height.
+    /// The rectangle in which it is looked at alone: with ground around, but nothing of the
+    /// `others`. `ratio` is the photo's width over its height.
     pub(super) fn alone(&self, others: &[Thing], ratio: f64) -> [[f64; 2]; 2] {
         let [[left, top], [right, bottom]] = self.bounds;
         let around = AROUND * ((right - left) * ratio).max(bottom - top);
@@ -96,8 +98,8 @@ impl Thing {
     }
 }
 
-/// Tells of a thing that lies beside the garment which was taken, and how to take it instead: the `second` piece of the mask, or one of
-/// the `things` that the mask leaves out.
+/// Tells of a thing that lies beside the garment which was taken, and how to take it instead: the
+/// `second` piece of the mask, or one of the `things` that the mask leaves out.
 pub(super) fn tell_beside(
     photo: &Photo,
     mask: &Mask,

@@ -2,11 +2,11 @@
 //!
 //! Two search trees grow from the terminals and are repaired after each augmentation (Boykov and
 //! Kolmogorov, An experimental comparison of min-cut/max-flow algorithms for energy minimization in
-//! vision, IEEE PAMI 26(9), 2004), with their distance and time-stamp heuristic. Whole-number capacities,
-//! so that it ends and gives the same cut everywhere.
+//! vision, IEEE PAMI 26(9), 2004), with their distance and time-stamp heuristic. Whole-number
+//! capacities, so that it ends and gives the same cut everywhere.
 //!
-//! Cost: 0.1 to 0.3 s a million pixels and 8 neighbours in usual pictures. Limits: the worst case is
-//! far slower; `check` lets the caller stop it.
+//! Cost: 0.1 to 0.3 s a million pixels and 8 neighbours in usual pictures. Limits: the worst case
+//! is far slower; `check` lets the caller stop it.
 
 use std::collections::VecDeque;
 
@@ -52,8 +52,8 @@ impl Grid {
         Grid { w, nodes: vec![node; w * h], active: VecDeque::new(), orphans: VecDeque::new(), time: 0 }
     }
 
-    /// Sets what it costs to cut pixel `i` off the source (to be ground) less what it costs to cut it
-    /// off the sink (to be garment).
+    /// Sets what it costs to cut pixel `i` off the source (to be ground) less what it costs to cut
+    /// it off the sink (to be garment).
     pub(super) fn set_terminal(&mut self, i: usize, capacity: i32) {
         self.nodes[i].terminal = capacity;
     }
@@ -127,7 +127,8 @@ impl Grid {
         if outward { self.nodes[i].to[d] } else { self.nodes[j].to[7 - d] }
     }
 
-    /// Grows the tree at `i`; returns the link from the source's tree to the sink's where they meet.
+    /// Grows the tree at `i`; returns the link from the source's tree to the sink's where they
+    /// meet.
     fn grow(&mut self, i: usize) -> Option<(usize, usize)> {
         let node = self.nodes[i];
         for d in 0..8 {

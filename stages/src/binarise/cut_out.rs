@@ -1,11 +1,13 @@
 //! Pictures whose ground has been cut away already: their opacity is the mask.
 //!
-//! Programs that remove the ground write such pictures, with a margin or cropped to the garment, and then the garment touches
-//! the frame and is not cut by it. But a photo may be transparent along its frame for other reasons: rounded corners, a round
-//! crop, the wedges that a turn leaves. What is opaque in those is convex and the same turned by half; a garment is not both.
+//! Programs that remove the ground write such pictures, with a margin or cropped to the garment,
+//! and then the garment touches the frame and is not cut by it. But a photo may be transparent
+//! along its frame for other reasons: rounded corners, a round crop, the wedges that a turn leaves.
+//! What is opaque in those is convex and the same turned by half; a garment is not both.
 //!
-//! Cost: two looks at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone chain, 1979). Limits: a photo whose
-//! perspective was set right may be convex alone, as a skirt is; what is taken for a skirt is told.
+//! Cost: two looks at every pixel's opacity, and the hull of the rows' ends (Andrew's monotone
+//! chain, 1979). Limits: a photo whose perspective was set right may be convex alone, as a skirt
+//! is; what is taken for a skirt is told.
 
 use super::tone::{OPAQUE, mark, rim_share};
 use image::GrayImage;

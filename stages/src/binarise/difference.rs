@@ -1,13 +1,15 @@
 //! Colour difference to a photo of the same ground without the garment.
 //!
-//! Both pictures are compared at a reduced size in CIE Lab. The camera's exposure may have changed between them: the median difference along the
-//! frame, where both show ground, is taken off. What is darker by no more than `shadow` of the ground's lightness and has its colour is the
-//! garment's shadow (Horprasert, Harwood, Davis 1999). The threshold is the larger of a just visible difference and so many times the
-//! noise, which is the median deviation along the frame. Then closing, opening, the largest piece, its holes, and the boundary set anew at
-//! the photo's own size (`refine`).
+//! Both pictures are compared at a reduced size in CIE Lab. The camera's exposure may have changed
+//! between them: the median difference along the frame, where both show ground, is taken off. What
+//! is darker by no more than `shadow` of the ground's lightness and has its colour is the garment's
+//! shadow (Horprasert, Harwood, Davis 1999). The threshold is the larger of a just visible
+//! difference and so many times the noise, which is the median deviation along the frame. Then
+//! closing, opening, the largest piece, its holes, and the boundary set anew at the photo's own
+//! size (`refine`).
 //!
-//! Cost: as `Background`, and reading the second photo. Limits: the camera and the ground must not move between the photos; what has the very
-//! colours of the ground behind it is not seen.
+//! Cost: as `Background`, and reading the second photo. Limits: the camera and the ground must not
+//! move between the photos; what has the very colours of the ground behind it is not seen.
 
 use super::background::{SHADOW, clean};
 use super::finish::{Finish, mask_of, no_garment};
@@ -30,8 +32,8 @@ const SAME_FORM: f64 = 0.01;
 
 /// Takes for garment what differs from a photo of the ground without it.
 ///
-/// For a camera on a stand: photograph the empty ground, then the garments. Any ground will do, and any garment that is not camouflaged on it.
-/// Transparent pixels are ground.
+/// For a camera on a stand: photograph the empty ground, then the garments. Any ground will do, and
+/// any garment that is not camouflaged on it. Transparent pixels are ground.
 #[stage(
     role = Binariser,
     source = "Horprasert, Harwood, Davis 1999; CIE Lab, 1976",
@@ -133,7 +135,8 @@ mod tests {
     use image::Rgb;
     use toile_core::testkit::shapes;
 
-    /// Boards of two browns; the garment is a rectangle of brown and white stripes, with a shadow to its right.
+    /// Boards of two browns; the garment is a rectangle of brown and white stripes, with a shadow
+    /// to its right.
     fn scene(garment: bool, brighter: i32) -> RgbImage {
         RgbImage::from_fn(300, 200, |x, y| {
             let board = if x / 37 % 2 == 0 { [150, 110, 70] } else { [128, 92, 60] };

@@ -20,8 +20,8 @@ pub struct Finish {
     pub close: u32,
     /// Holes up to this share of the garment's area are filled.
     pub holes: f64,
-    /// The garment may touch the frame over this share of the photo's shorter side; where it touches
-    /// more, it is cut.
+    /// The garment may touch the frame over this share of the photo's shorter side; where it
+    /// touches more, it is cut.
     pub touch: f64,
     /// The binariser to try where this one is wrong, as it is written in a pipeline.
     pub next: &'static str,
@@ -29,17 +29,21 @@ pub struct Finish {
 
 /// The least share of the photo that a garment covers: anything smaller is a speck.
 const LEAST_AREA: f64 = 0.005;
-/// From this share of the largest piece on, a second piece is no stain: another part of the garment, or another garment.
+/// From this share of the largest piece on, a second piece is no stain: another part of the
+/// garment, or another garment.
 const SECOND: f64 = 0.5;
-/// Parts of a garment lie no farther apart than this share of its size (the root of its area): a stripe in the ground's tone.
+/// Parts of a garment lie no farther apart than this share of its size (the root of its area): a
+/// stripe in the ground's tone.
 const GAP: f64 = 0.08;
 /// What is smaller than this share of the largest piece is no part.
 const PART: f64 = 0.02;
 
-/// The mask of a photo: its opacity where that is a mask already, else what `method` finds, finished.
+/// The mask of a photo: its opacity where that is a mask already, else what `method` finds,
+/// finished.
 ///
 /// # Errors
-/// Those of [`finish`] and of the method; a garment whose ground was cut away is not cut by the frame.
+/// Those of [`finish`] and of the method; a garment whose ground was cut away is not cut by the
+/// frame.
 pub fn mask_of(
     photo: &Photo,
     settings: Finish,
@@ -61,8 +65,8 @@ pub fn mask_of(
 
 /// Cleans a raw mask and checks that it shows one whole garment.
 ///
-/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes. Where a second piece is nearly as large, pieces that lie near each
-/// other are joined, which is told.
+/// Transparent pixels are ground. Then opening, closing, the largest piece, its holes. Where a
+/// second piece is nearly as large, pieces that lie near each other are joined, which is told.
 ///
 /// # Errors
 /// [`ErrorCode::InvalidInput`] for no garment, and a garment cut by the frame.

@@ -1,7 +1,7 @@
 //! A fixed threshold: `F = 255 if f > T else 0`.
 //!
-//! Cost: two looks at every pixel, about 10 ms for 12 megapixels on two cores. Limits: the threshold
-//! holds for one light and one ground; `Otsu` finds it by itself.
+//! Cost: two looks at every pixel, about 10 ms for 12 megapixels on two cores. Limits: the
+//! threshold holds for one light and one ground; `Otsu` finds it by itself.
 
 use super::finish::{Finish, mask_of};
 use super::tone::{Polarity, by_polarity, luma, mark};

@@ -1,19 +1,20 @@
 //! The cheapest boundary between two colour models.
 //!
 //! Start: the mask of `Background` where it holds the middle of the frame, else the middle against
-//! the rim. Then, a few times over: fit a mixture of Gaussians to the colours
-//! inside and one to those outside, and cut the grid of pixels where
-//! `sum over pixels of -ln p(colour | its side) + gamma sum over parted neighbours of exp(-beta |dI|^2) / distance`
-//! is least (Boykov and Jolly, Interactive graph cuts, ICCV 2001; Rother, Kolmogorov and Blake, GrabCut,
-//! SIGGRAPH 2004). No user need draw a box: the frame's rim is ground, and a pixel is the likelier garment the
-//! further it lies from the frame.
+//! the rim. Then, a few times over: fit a mixture of Gaussians to the colours inside and one to
+//! those outside, and cut the grid of pixels where
+//! `sum over pixels of -ln p(colour | its side) +
+//! gamma sum over parted neighbours of exp(-beta |dI|^2) / distance`
+//! is least (Boykov and Jolly, Interactive graph cuts, ICCV 2001; Rother, Kolmogorov and Blake,
+//! GrabCut, SIGGRAPH 2004). No user need draw a box: the frame's rim is ground, and a pixel is the
+//! likelier garment the further it lies from the frame.
 //!
 //! The rounds are made at half the size; a last cut at the full size may move the boundary within a
 //! band. The boundary is set again at the photo's own size (`refine`).
 //!
-//! Cost: 12 megapixels take about 0.15 s on two cores, a hard photo 0.5 s. Measured on 23 phone photos with masks drawn
-//! by hand: median IoU 0.976 (Otsu: 0.884), 22 of them at 0.95 and above. Limits: a hard cast shadow is taken
-//! for garment where its edge is sharper than the garment's.
+//! Cost: 12 megapixels take about 0.15 s on two cores, a hard photo 0.5 s. Measured on 23 phone
+//! photos with masks drawn by hand: median IoU 0.976 (Otsu: 0.884), 22 of them at 0.95 and above.
+//! Limits: a hard cast shadow is taken for garment where its edge is sharper than the garment's.
 
 use super::background::{SHADOW, background, clean, in_middle, place, rim_width};
 use super::cut::{Grid, STEPS};
@@ -29,8 +30,9 @@ use toile_core::prelude::*;
 
 /// Finds the boundary that parts two colour models at the least cost.
 ///
-/// Robust on real photos: patterned grounds, prints, soft shadows. The frame's rim must show ground, its middle the garment.
-/// Transparent pixels are ground. Where it errs, mark some places, a rectangle, or paint strokes: what is marked is kept, and its colours are learned.
+/// Robust on real photos: patterned grounds, prints, soft shadows. The frame's rim must show
+/// ground, its middle the garment. Transparent pixels are ground. Where it errs, mark some places,
+/// a rectangle, or paint strokes: what is marked is kept, and its colours are learned.
 #[stage(
     role = Binariser,
     version = 2,
@@ -45,7 +47,8 @@ pub struct GraphCut {
     /// Rounds of fitting and cutting.
     #[param(default = 4, min = 1, max = 20, trades, finer = "more")]
     pub rounds: u32,
-    /// What a step of boundary costs, against the colours of a pixel: more gives a smoother outline.
+    /// What a step of boundary costs, against the colours of a pixel: more gives a smoother
+    /// outline.
     #[param(default = 50.0, min = 0.0, max = 1000.0)]
     pub gamma: f64,
     /// Width of the rim that is taken for ground, as a share of the shorter side.
@@ -69,7 +72,8 @@ pub struct GraphCut {
     /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
     pub rect: BTreeMap<String, (Place, Place)>,
-    /// Files, by photo: copies of the photo with green strokes on the garment and red strokes on the ground.
+    /// Files, by photo: copies of the photo with green strokes on the garment and red strokes on
+    /// the ground.
     #[param(default = BTreeMap::new())]
     pub strokes: BTreeMap<String, String>,
 }
@@ -98,8 +102,8 @@ impl GraphCut {
         self.settle(small, start, cx)?.ok_or_else(|| one_colour(photo))
     }
 
-    /// Rounds of fitting and cutting from what is taken for garment and for ground at first, until nothing changes;
-    /// `None` where one side of the cut is empty.
+    /// Rounds of fitting and cutting from what is taken for garment and for ground at first, until
+    /// nothing changes; `None` where one side of the cut is empty.
     pub(super) fn settle(
         &self,
         small: Small,
@@ -173,7 +177,8 @@ impl GraphCut {
         cut(small, &coarse.models, &links, rim_width(small, self.rim), None, cx)
     }
 
-    /// The state before the last cut of a mask that another method found; `None` where one side is empty.
+    /// The state before the last cut of a mask that another method found; `None` where one side is
+    /// empty.
     pub(super) fn of_mask(&self, small: Small, mask: Vec<bool>) -> Option<Coarse> {
         let outside: Vec<bool> = mask.iter().map(|on| !on).collect();
         let models = self.models(&small, &mask, &outside)?;

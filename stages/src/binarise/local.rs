@@ -1,12 +1,13 @@
 //! A threshold of its own for every pixel, from the window around it.
 //!
-//! `Mean`: the window's mean less an offset. `Sauvola`: `T = m (1 + k (s / 128 - 1))` with the window's
-//! mean m and standard deviation s (Sauvola and Pietikainen, Adaptive document image binarization, Pattern
-//! Recognition 33, 2000), for a dark garment; a light one is looked at as its negative.
+//! `Mean`: the window's mean less an offset. `Sauvola`: `T = m (1 + k (s / 128 - 1))` with the
+//! window's mean m and standard deviation s (Sauvola and Pietikainen, Adaptive document image
+//! binarization, Pattern Recognition 33, 2000), for a dark garment; a light one is looked at as its
+//! negative.
 //!
-//! Cost: tables of running sums, 12 bytes a pixel; 12 megapixels take about 0.12 s on two cores. Limits:
-//! made for uneven light. The window must be wider than what it parts: inside a garment that is wider
-//! than the window only its edge is found, and the inside is closed as a hole.
+//! Cost: tables of running sums, 12 bytes a pixel; 12 megapixels take about 0.12 s on two cores.
+//! Limits: made for uneven light. The window must be wider than what it parts: inside a garment
+//! that is wider than the window only its edge is found, and the inside is closed as a hole.
 
 use super::finish::{Finish, mask_of};
 use super::tone::{Polarity, histogram, luma, rim_share};
@@ -106,7 +107,8 @@ fn negative(mut grey: GrayImage) -> GrayImage {
     grey
 }
 
-/// Marks what is darker than its window (radius 1 to 2,000 px) asks for; past the frame the window ends.
+/// Marks what is darker than its window (radius 1 to 2,000 px) asks for; past the frame the window
+/// ends.
 pub fn local(
     grey: &GrayImage,
     method: LocalMethod,

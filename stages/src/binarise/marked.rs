@@ -10,7 +10,8 @@ const GROUND: f64 = 0.4;
 /// Width of the line, as a share of the photo's shorter side.
 const WIDTH: f64 = 0.004;
 
-/// The photo with its ground darkened, the outline of the mask drawn, and a band where the mask meets the frame.
+/// The photo with its ground darkened, the outline of the mask drawn, and a band where the mask
+/// meets the frame.
 pub(super) fn marked(photo: &Photo, mask: &GrayImage) -> Photo {
     let (w, h) = mask.dimensions();
     let reach = (WIDTH * f64::from(w.min(h))).ceil().max(1.0) as i64;

@@ -67,7 +67,8 @@ fn stroke(strokes: &RgbImage, (x, y): Place) -> Option<bool> {
     }
 }
 
-/// What is marked for a photo; a mirror image takes the marks of its photo where only one photo has any.
+/// What is marked for a photo; a mirror image takes the marks of its photo where only one photo has
+/// any.
 pub(super) fn of_photo<'a, T>(all: &'a BTreeMap<String, T>, photo: &Photo, cx: &Context) -> Option<&'a T> {
     let only = || all.values().next().filter(|_| photo.mirrored && all.len() == 1);
     all.get(cx.entry()).or_else(only)

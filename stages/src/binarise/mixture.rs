@@ -1,8 +1,9 @@
 //! A mixture of Gaussians over Lab colours.
 //!
-//! The colours are split in two along the axis of their largest spread, again and again, the cluster
-//! with the largest spread first (Orchard and Bouman, Color quantization of images, IEEE TSP 39(12), 1991),
-//! and the clusters are then settled by a few rounds of nearest-mean. Nothing is drawn at random.
+//! The colours are split in two along the axis of their largest spread, again and again, the
+//! cluster with the largest spread first (Orchard and Bouman, Color quantization of images, IEEE
+//! TSP 39(12), 1991), and the clusters are then settled by a few rounds of nearest-mean. Nothing is
+//! drawn at random.
 
 use super::small::Lab;
 use nalgebra::Matrix3;
@@ -22,8 +23,8 @@ pub(super) struct Mixture {
     modes: Vec<Mode>,
 }
 
-/// Added to the variance of each mode, squared Lab units: camera noise and the compression's blocks,
-/// and what keeps a plain ground's mode from refusing a slight shade.
+/// Added to the variance of each mode, squared Lab units: camera noise and the compression's
+/// blocks, and what keeps a plain ground's mode from refusing a slight shade.
 const LEAST_VARIANCE: f64 = 4.0;
 /// Rounds of nearest-mean after the splits. More change little.
 const ROUNDS: usize = 4;
@@ -50,7 +51,8 @@ impl Mixture {
         (!modes.is_empty()).then_some(Mixture { modes })
     }
 
-    /// -ln of the likelihood of a colour under its best mode, up to a constant that all mixtures share.
+    /// -ln of the likelihood of a colour under its best mode, up to a constant that all mixtures
+    /// share.
     pub(super) fn cost(&self, colour: &Lab) -> f64 {
         let cost = |m: &Mode| m.offset + 0.5 * m.distance2(colour);
         self.modes.iter().map(cost).fold(f64::INFINITY, f64::min)
@@ -78,8 +80,8 @@ impl Mode {
         Some(Mode { mean: spread.mean, inverse, offset })
     }
 
-    /// A colour in this mode's light, if it may be a shadow. Less light scales all of a surface's X, Y, Z
-    /// alike, and L + 16, a and b by the cube root of that.
+    /// A colour in this mode's light, if it may be a shadow. Less light scales all of a surface's
+    /// X, Y, Z alike, and L + 16, a and b by the cube root of that.
     fn lit(&self, colour: &Lab, depth: f64) -> Lab {
         if colour.x >= self.mean.x || colour.x < (1.0 - depth) * self.mean.x {
             return *colour;

@@ -10,8 +10,9 @@
 //! | `GraphCut` | colour models and edges together | the hardest photos |
 //!
 //! All share what comes after (`finish`): clean-up, one piece, its holes, and the errors for no
-//! garment and a garment cut by the frame; of two garments the larger is kept, which is told. All take transparent pixels as ground; a
-//! picture whose ground was cut away has its mask already (`cut_out`).
+//! garment and a garment cut by the frame; of two garments the larger is kept, which is told. All
+//! take transparent pixels as ground; a picture whose ground was cut away has its mask already
+//! (`cut_out`).
 
 mod auto;
 mod background;

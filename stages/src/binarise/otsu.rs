@@ -1,13 +1,14 @@
 //! Otsu's threshold: the one that splits the grey levels into two classes furthest apart.
 //!
-//! It maximises the variance between the classes (Otsu, A threshold selection method from gray-level
-//! histograms, IEEE SMC 9(1), 1979). At the maximum the threshold lies half-way between the classes'
-//! means, where also the boundary of a blurred edge lies, so that the mask is not biased outwards or
-//! inwards. Where an empty valley gives many thresholds of the same variance, its middle is taken.
+//! It maximises the variance between the classes (Otsu, A threshold selection method from
+//! gray-level histograms, IEEE SMC 9(1), 1979). At the maximum the threshold lies half-way between
+//! the classes' means, where also the boundary of a blurred edge lies, so that the mask is not
+//! biased outwards or inwards. Where an empty valley gives many thresholds of the same variance,
+//! its middle is taken.
 //!
-//! Cost: three looks at every pixel; 12 megapixels take about 50 ms on two cores. Limits: one threshold
-//! for the whole photo, on grey levels alone: fails on patterned grounds, strong shadows and garments of
-//! the ground's tone. `Background` and `GraphCut` look at colour.
+//! Cost: three looks at every pixel; 12 megapixels take about 50 ms on two cores. Limits: one
+//! threshold for the whole photo, on grey levels alone: fails on patterned grounds, strong shadows
+//! and garments of the ground's tone. `Background` and `GraphCut` look at colour.
 
 use super::finish::{Finish, mask_of, no_garment};
 use super::global::global;
@@ -17,7 +18,8 @@ use toile_core::prelude::*;
 
 /// Splits the photo at the grey level that parts garment and ground best.
 ///
-/// For a garment on a plain ground that is clearly lighter or darker. Transparent pixels are ground.
+/// For a garment on a plain ground that is clearly lighter or darker. Transparent pixels are
+/// ground.
 #[stage(
     role = Binariser,
     version = 2,

@@ -1,12 +1,13 @@
 //! A mask found at a reduced size, brought to the photo's own size with its boundary set there.
 //!
 //! Away from the boundary the small mask is right. Within about a small pixel of it, every pixel is
-//! judged by colour: the means F of the garment and B of the ground nearby give the pixel's share of
-//! garment, a = (I - B).(F - B) / |F - B|^2, and the boundary lies where a is one half. Where both colours
-//! vary more than they differ (a print, a rug) colour says little, and the smoothed shape of the small
-//! mask decides; the Fisher ratio of the two blends from one to the other.
+//! judged by colour: the means F of the garment and B of the ground nearby give the pixel's share
+//! of garment, a = (I - B).(F - B) / |F - B|^2, and the boundary lies where a is one half. Where
+//! both colours vary more than they differ (a print, a rug) colour says little, and the smoothed
+//! shape of the small mask decides; the Fisher ratio of the two blends from one to the other.
 //!
-//! Cost: only the band along the boundary is looked at pixel by pixel; 12 megapixels take about 20 ms.
+//! Cost: only the band along the boundary is looked at pixel by pixel; 12 megapixels take about 20
+//! ms.
 
 use super::small::{Lab, Small, lab};
 use image::GrayImage;

@@ -1,8 +1,8 @@
 //! Connected pieces of a mask and of its ground, by runs.
 //!
 //! Each row is cut into runs of equal pixels; runs of neighbouring rows that touch are joined by
-//! union-find. Pieces of the garment are 4-connected, so that a piece has a simple outline; the ground
-//! is 8-connected, its counterpart.
+//! union-find. Pieces of the garment are 4-connected, so that a piece has a simple outline; the
+//! ground is 8-connected, its counterpart.
 //!
 //! Cost: one look at every pixel and a few steps a run; 12 megapixels take about 15 ms.
 

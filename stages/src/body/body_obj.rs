@@ -1,7 +1,8 @@
 //! `BodyObj`: a body from a Wavefront OBJ file.
 //!
-//! The mesh is read and mended as the engine does it for scenes, the largest piece is kept, turned outwards, upright and
-//! scaled; landmarks and girths are estimated from its slices. Cost: some hundred slices.
+//! The mesh is read and mended as the engine does it for scenes, the largest piece is kept, turned
+//! outwards, upright and scaled; landmarks and girths are estimated from its slices. Cost: some
+//! hundred slices.
 
 use super::estimate::estimate;
 use super::topology::TriMesh;
@@ -14,7 +15,8 @@ use toile_geometry::obj;
 /// Heights of people, metres.
 const HEIGHTS: (f64, f64) = (0.5, 2.5);
 
-/// A body whose feet and middle are nearer to the origin than this in every direction stays where it is, metres.
+/// A body whose feet and middle are nearer to the origin than this in every direction stays where
+/// it is, metres.
 const AT_ORIGIN: f64 = 0.05;
 
 /// The unit of a file's numbers.
@@ -61,8 +63,8 @@ pub enum Up {
 
 /// Reads the body from a Wavefront OBJ file.
 ///
-/// The body must be closed, stand upright with its feet apart and hold its arms away from the trunk.
-/// Landmarks are estimated from its shape; `turn` brings its face to the front (+Z).
+/// The body must be closed, stand upright with its feet apart and hold its arms away from the
+/// trunk. Landmarks are estimated from its shape; `turn` brings its face to the front (+Z).
 #[stage(
     role = Body,
     source = "shares of the arm: Drillis and Contini, 1966",
@@ -158,7 +160,8 @@ impl BodyObj {
         Point3::new(p.x * cos + p.z * sin, p.y, p.z * cos - p.x * sin)
     }
 
-    /// Scales to metres and puts the feet to 0 and the middle to x = 0 and z = 0, unless it stands there already; returns the height.
+    /// Scales to metres and puts the feet to 0 and the middle to x = 0 and z = 0, unless it stands
+    /// there already; returns the height.
     fn stand(&self, points: &mut [Point3]) -> Result<f64, StageError> {
         let (mut lo, mut hi) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
         for p in points.iter() {

@@ -2,7 +2,8 @@
 
 use toile_core::artifact::{Point3, Vector3};
 
-/// The share of the distance to its box that a part's value is at least: values are distances to first order only.
+/// The share of the distance to its box that a part's value is at least: values are distances to
+/// first order only.
 const SURE: f64 = 0.7;
 
 /// A box along the axes.

@@ -1,13 +1,16 @@
 //! Narrow gaps between arm and trunk, bridged.
 //!
-//! Cloth cannot rest in the crease of an armpit: in a gap narrower than its own two layers the skin nearest to a point switches between arm
-//! and trunk from step to step, and no state is at rest with both. So for cloth the skin is led over the gap, as a taut sheet would be.
+//! Cloth cannot rest in the crease of an armpit: in a gap narrower than its own two layers the skin
+//! nearest to a point switches between arm and trunk from step to step, and no state is at rest
+//! with both. So for cloth the skin is led over the gap, as a taut sheet would be.
 //!
-//! Method: a vertex is in the gap where another one near it faces it. The vertices of the gap relax to the mean of their neighbours
-//! (Gauss-Seidel on the membrane, in the order of their numbers) as far as the body lets them: the obstacle problem. Connectivity stays.
-//! Cost: up to 300 distances for each vertex of the gap, and a comparison of all pairs of vertices near an armpit: 0.4 s for a body of
-//! 24,000 vertices (docs/log/2026-11-25-patterns.md). Limits: only near the landmarks of the armpits, creases elsewhere stay; where the body
-//! still comes through the skin after the last raising, that is left to the check of the finished garment against the body.
+//! Method: a vertex is in the gap where another one near it faces it. The vertices of the gap relax
+//! to the mean of their neighbours (Gauss-Seidel on the membrane, in the order of their numbers) as
+//! far as the body lets them: the obstacle problem. Connectivity stays. Cost: up to 300 distances
+//! for each vertex of the gap, and a comparison of all pairs of vertices near an armpit: 0.4 s for
+//! a body of 24,000 vertices (docs/log/2026-11-25-patterns.md). Limits: only near the landmarks of
+//! the armpits, creases elsewhere stay; where the body still comes through the skin after the last
+//! raising, that is left to the check of the finished garment against the body.
 
 use super::topology::neighbours;
 use rayon::prelude::*;
@@ -18,10 +21,12 @@ use toile_core::prelude::*;
 /// Vertices farther from an armpit than this share of the body's height stay.
 const NEAR: f64 = 0.12;
 
-/// Cosines: of the angle between normals that face each other at most, and between normal and way to the other vertex at least.
+/// Cosines: of the angle between normals that face each other at most, and between normal and way
+/// to the other vertex at least.
 const FACING: (f64, f64) = (-0.2, 0.4);
 
-/// Rings of vertices by which the gap is widened and narrowed again, so that its bottom counts with its walls.
+/// Rings of vertices by which the gap is widened and narrowed again, so that its bottom counts with
+/// its walls.
 const RINGS: usize = 3;
 
 /// Rounds of relaxation at most; and it ends where no vertex moves farther, metres.
@@ -30,16 +35,18 @@ const RELAX: (usize, f64) = (300, 2e-5);
 /// The skin over a gap stays this far outside the body, metres.
 const CLEAR: f64 = 1e-3;
 
-/// Where the body still comes through it, it is raised by this more than that, metres, so many times.
+/// Where the body still comes through it, it is raised by this more than that, metres, so many
+/// times.
 const RAISE: (f64, usize) = (2e-4, 8);
 
-/// So far outside the skin the body is looked for, and is told apart from it, metres; and so many of the gap's vertices nearest to such a
-/// place are raised.
+/// So far outside the skin the body is looked for, and is told apart from it, metres; and so many
+/// of the gap's vertices nearest to such a place are raised.
 const SEEN: f64 = 0.01;
 const OUT: f64 = 1e-6;
 const CORNERS: usize = 3;
 
-/// The body with gaps between arm and trunk narrower than `width` (metres) bridged; nothing where it has no landmarks of armpits.
+/// The body with gaps between arm and trunk narrower than `width` (metres) bridged; nothing where
+/// it has no landmarks of armpits.
 ///
 /// # Errors
 /// When it is cancelled.

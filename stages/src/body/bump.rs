@@ -1,7 +1,8 @@
 //! Bumps and hollows: a smooth field moved outward or inward around a point or a stretch.
 //!
-//! Collarbones, shoulder blades, kneecaps, the nose and the groove of the spine are bumps. The kernel is (1 - d²)³, whose
-//! second derivative is continuous (Wyvill, 1986), so that no crease shows at a bump's rim.
+//! Collarbones, shoulder blades, kneecaps, the nose and the groove of the spine are bumps. The
+//! kernel is (1 - d²)³, whose second derivative is continuous (Wyvill, 1986), so that no crease
+//! shows at a bump's rim.
 //!
 //! Cost: six comparisons away from a bump. Limit: heights must be small beside the radii.
 

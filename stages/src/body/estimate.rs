@@ -1,9 +1,9 @@
 //! Landmarks of any standing body, from its horizontal slices.
 //!
 //! The fork is where slices stop crossing the middle; the armpits where the trunk's slice suddenly
-//! widens by the arms; neck, bust, waist and hip are the extremes of width and girth between them; the
-//! shoulder's outer point is where the ridge from the neck turns down into the arm. Elbow and wrist
-//! lie at mean shares of the arm (Drillis and Contini, 1966). Cost: some hundred slices.
+//! widens by the arms; neck, bust, waist and hip are the extremes of width and girth between them;
+//! the shoulder's outer point is where the ridge from the neck turns down into the arm. Elbow and
+//! wrist lie at mean shares of the arm (Drillis and Contini, 1966). Cost: some hundred slices.
 //! Limit: arms must leave the trunk (A- or T-pose), feet must stand apart.
 
 use super::landmarks::bisect;

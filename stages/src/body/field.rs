@@ -1,8 +1,8 @@
 //! Smooth solids as scalar fields: negative inside, zero on the skin, about the distance near it.
 //!
-//! Parts ([lofts](super::loft), ellipsoids, and [limbs](super::limb)) are joined by a smooth minimum (after Quilez, 2008), so that no
-//! crease shows where an arm leaves the trunk. Every part is symmetric about x = 0 and is asked at
-//! x >= 0 only.
+//! Parts ([lofts](super::loft), ellipsoids, and [limbs](super::limb)) are joined by a smooth
+//! minimum (after Quilez, 2008), so that no crease shows where an arm leaves the trunk. Every part
+//! is symmetric about x = 0 and is asked at x >= 0 only.
 //!
 //! Cost: some tens of nanoseconds a part and point. Limit: values are distances to first order
 //! only; whoever needs the skin itself steps onto it with [`Field::onto_skin`].
@@ -14,7 +14,8 @@ pub(crate) trait Field: Sync {
     /// Negative inside, positive outside, about the distance near the skin.
     fn value(&self, p: Point3) -> f64;
 
-    /// The value of a solid near this one without parts that are thinner than the cells of a first, coarse mesh.
+    /// The value of a solid near this one without parts that are thinner than the cells of a first,
+    /// coarse mesh.
     fn coarse(&self, p: Point3) -> f64 {
         self.value(p)
     }
@@ -40,7 +41,8 @@ pub(crate) trait Field: Sync {
 
     /// The point of the skin near `p`, by `steps` Newton steps along the gradient.
     ///
-    /// A step is never longer than `reach`, so that a flat spot of the field cannot throw a point away.
+    /// A step is never longer than `reach`, so that a flat spot of the field cannot throw a point
+    /// away.
     fn onto_skin(&self, mut p: Point3, steps: usize, reach: f64) -> Point3 {
         for _ in 0..steps {
             let (value, g) = self.gradient(p);

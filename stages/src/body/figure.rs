@@ -1,8 +1,10 @@
-//! A human figure as a smooth solid: trunk, breasts, shoulders, neck, head, arms, hands, legs, feet.
+//! A human figure as a smooth solid: trunk, breasts, shoulders, neck, head, arms, hands, legs,
+//! feet.
 //!
-//! Parts are [lofts](super::loft), [limbs](super::limb) and ellipsoids, joined by smooth minima; the [relief](super::relief) of
-//! bones and muscles moves the skin. Sections and levels follow a [`Form`]. Levels are shares of the height up to the chin, so
-//! that a child, whose head is larger, still has its waist where the trunk has one. Girths and lengths are met by [`Aims`].
+//! Parts are [lofts](super::loft), [limbs](super::limb) and ellipsoids, joined by smooth minima;
+//! the [relief](super::relief) of bones and muscles moves the skin. Sections and levels follow a
+//! [`Form`]. Levels are shares of the height up to the chin, so that a child, whose head is larger,
+//! still has its waist where the trunk has one. Girths and lengths are met by [`Aims`].
 //!
 //! Limit: a shop's dummy, not a portrait: a calm head without eyes and ears, fingers side by side.
 
@@ -29,10 +31,12 @@ mod joint {
 /// Nearer to the skin than this the relief counts, metres: it is lower everywhere.
 const RELIEF: f64 = 0.06;
 
-/// How far breasts, shoulders and seat stand out of the trunk's sections at most, metres on the adult.
+/// How far breasts, shoulders and seat stand out of the trunk's sections at most, metres on the
+/// adult.
 const OUT: f64 = 0.10;
 
-/// How much thicker hands are where the first, coarse mesh is made: fingers are thinner than its cells. Metres on the adult.
+/// How much thicker hands are where the first, coarse mesh is made: fingers are thinner than its
+/// cells. Metres on the adult.
 const THICKER: f64 = 0.005;
 
 /// Where the mesh is finer than its edge: shares of the edge at fingers, palm, head and feet.

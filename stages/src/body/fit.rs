@@ -1,7 +1,8 @@
 //! Brings a figure to its measures.
 //!
-//! Aims are corrected on the smooth solid until its measures are those that are wanted; then it is meshed once and measured by
-//! tape. Where the mesh misses by more than [`TOLERANCE`], what is wanted of the solid is corrected and it is meshed again.
+//! Aims are corrected on the smooth solid until its measures are those that are wanted; then it is
+//! meshed once and measured by tape. Where the mesh misses by more than [`TOLERANCE`], what is
+//! wanted of the solid is corrected and it is meshed again.
 
 use super::figure::Figure;
 use super::form::Form;
@@ -21,7 +22,8 @@ const SMOOTH_TOLERANCE: f64 = 4e-4;
 const MAX_FITS: usize = 30;
 /// Meshings before giving up; one suffices for ordinary figures.
 const MAX_MESHINGS: usize = 5;
-/// A mesh that is not closed, or in which fingers have grown together, is made anew with edges shorter by this factor.
+/// A mesh that is not closed, or in which fingers have grown together, is made anew with edges
+/// shorter by this factor.
 const FINER: f64 = 0.92;
 /// The finest mesh of the smallest body still has edges of this share of its height; it also keeps
 /// wrists and thumbs several cells thick for children.
@@ -56,8 +58,8 @@ pub(crate) fn fit(size: &Size, form: &Form, edge: f64, cx: &Context) -> Result<B
     Err(unfit(missed))
 }
 
-/// The smooth figure that has the measures; `aims` is where the search begins and where it ends. The name of what is missed
-/// where there is none.
+/// The smooth figure that has the measures; `aims` is where the search begins and where it ends.
+/// The name of what is missed where there is none.
 fn fitted(size: &Size, form: &Form, goal: &Six, aims: &mut Aims) -> Result<Figure, &'static str> {
     let mut missed = NAMES[0];
     for _ in 0..MAX_FITS {

@@ -1,9 +1,12 @@
-//! What sets women, men and children apart beyond their girths: sections of the trunk and a few factors.
+//! What sets women, men and children apart beyond their girths: sections of the trunk and a few
+//! factors.
 //!
-//! Mean proportions of standing adults after the tables of Gordon and others (1989), children after Snyder and others (1977),
-//! simplified. Girths follow the measures that are asked for; a form gives their share in width and depth.
+//! Mean proportions of standing adults after the tables of Gordon and others (1989), children after
+//! Snyder and others (1977), simplified. Girths follow the measures that are asked for; a form
+//! gives their share in width and depth.
 
-/// A row of the trunk: level, half width, depth in front and behind the axis, metres on the adult of [`super::shape::ADULT`].
+/// A row of the trunk: level, half width, depth in front and behind the axis, metres on the adult
+/// of [`super::shape::ADULT`].
 pub(crate) type Row = [f64; 4];
 
 /// Sections of the trunk.

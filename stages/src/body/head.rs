@@ -1,4 +1,5 @@
-//! A calm head: cranium, face, jaw and chin; the nose and the hollows of the eyes are [bumps](super::relief).
+//! A calm head: cranium, face, jaw and chin; the nose and the hollows of the eyes are
+//! [bumps](super::relief).
 
 use super::bounds::Bounds;
 use super::field::{Ellipsoid, smooth_min};

@@ -1,13 +1,14 @@
 //! The skin of a [`Field`] as an even, closed triangle mesh: surface nets (Gibson, 1998) with one
-//! vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004), [refined](super::refine) where the field asks
-//! for shorter edges, with rounds of tangential smoothing, each followed by a Newton step back onto the skin.
+//! vertex for each sheet of skin in a cell (dual marching cubes, Nielson 2004),
+//! [refined](super::refine) where the field asks for shorter edges, with rounds of tangential
+//! smoothing, each followed by a Newton step back onto the skin.
 //!
-//! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the plane,
-//! and mirrored, so that the mesh is symmetric to the last bit and costs half.
+//! The field is symmetric about x = 0: one half is meshed, with a column of cells astride the
+//! plane, and mirrored, so that the mesh is symmetric to the last bit and costs half.
 //!
-//! Cost: one look-up a grid point near the skin and about four a vertex and round; slabs and vertices in parallel.
-//! Limit: parts thinner than two cells are lost, and parts closer than two cells may share
-//! edges of four triangles, which the caller must refuse.
+//! Cost: one look-up a grid point near the skin and about four a vertex and round; slabs and
+//! vertices in parallel. Limit: parts thinner than two cells are lost, and parts closer than two
+//! cells may share edges of four triangles, which the caller must refuse.
 
 use super::field::Field;
 use super::refine::{LEVELS, flip, refined};
@@ -19,14 +20,15 @@ use toile_core::artifact::{Point3, Vector3};
 
 /// Rounds of smoothing before the mesh is refined, and after.
 const ROUNDS: [usize; 2] = [2, 3];
-/// Where the mesh is finer than this share of a cell, sheets of skin lie near each other and may cross.
+/// Where the mesh is finer than this share of a cell, sheets of skin lie near each other and may
+/// cross.
 const FINE: f64 = 0.8;
 /// Share of the way to the neighbours' centre that a vertex moves in a round.
 const RELAXATION: f64 = 0.6;
 /// Points along the side of a block whose middle is asked first.
 const BLOCK: usize = 4;
-/// A block is far from the skin where its middle's value is so many times the distance to its corners: values are distances
-/// to first order only.
+/// A block is far from the skin where its middle's value is so many times the distance to its
+/// corners: values are distances to first order only.
 const FAR: f64 = 1.7;
 
 /// The box that holds the half of the solid with x >= 0, and the size of a cell, metres.
@@ -44,7 +46,8 @@ impl Grid {
         [x1, y1 - y0, z1 - z0].map(|l| (l / self.cell).ceil() as usize + 2)
     }
 
-    /// The first column of samples lies half a cell beyond the plane, so that its cells straddle it.
+    /// The first column of samples lies half a cell beyond the plane, so that its cells straddle
+    /// it.
     fn point(&self, [i, j, k]: [usize; 3]) -> Point3 {
         let [_, y0, _, z0, _] = self.bounds;
         Point3::new(

@@ -12,8 +12,8 @@ const HALVINGS: usize = 13;
 /// Landmarks by name.
 pub(crate) type Marks = BTreeMap<String, Landmark>;
 
-/// The landmarks that [`Body`](toile_core::artifact::Body) lists; `None` where the arms or legs have
-/// grown into the trunk.
+/// The landmarks that [`Body`](toile_core::artifact::Body) lists; `None` where the arms or legs
+/// have grown into the trunk.
 pub(crate) fn landmarks(figure: &Figure, positions: &[Point3], triangles: &[[u32; 3]]) -> Option<Marks> {
     let mut marks = BTreeMap::new();
     let cut = |y: f64| slice(positions, triangles, y);
@@ -68,7 +68,8 @@ pub(crate) fn bisect(mut good: f64, mut bad: f64, holds: impl Fn(f64) -> bool) -
     Some(good)
 }
 
-/// Where the left arm leaves the trunk: midway between the two in the last slice that keeps them apart.
+/// Where the left arm leaves the trunk: midway between the two in the last slice that keeps them
+/// apart.
 fn armpit(cut: impl Fn(f64) -> Vec<SliceLoop>, [low, high]: [f64; 2]) -> Option<Point3> {
     let gap = |y: f64| {
         let loops = cut(y);

@@ -1,7 +1,7 @@
 //! Limbs: tubes of varying radius around a bent axis.
 //!
-//! Cost: a square root and a cubic for each stretch of the axis that may be the nearest, or a few comparisons where the whole limb is too far away to matter
-//! ([`Limb::joined`]).
+//! Cost: a square root and a cubic for each stretch of the axis that may be the nearest, or a few
+//! comparisons where the whole limb is too far away to matter ([`Limb::joined`]).
 
 use super::field::smooth_min;
 use super::spline::Spline;
@@ -35,7 +35,8 @@ struct Segment {
 }
 
 impl Limb {
-    /// Of an axis' points, the radius over the length along it, metres, and the stretch of its sections along x and z.
+    /// Of an axis' points, the radius over the length along it, metres, and the stretch of its
+    /// sections along x and z.
     pub(crate) fn new(axis: Vec<Point3>, radius: Spline, stretch: [f64; 2]) -> Self {
         let squeezed: Vec<Point3> = axis.iter().map(|&p| squeeze(p, stretch)).collect();
         let mut start = 0.0;
@@ -77,12 +78,14 @@ impl Limb {
         best * self.narrowing()
     }
 
-    /// The smooth minimum over a width `k` of a value and the limb's, which is not asked for where it is too far away to change the value.
+    /// The smooth minimum over a width `k` of a value and the limb's, which is not asked for where
+    /// it is too far away to change the value.
     pub(crate) fn joined(&self, value: f64, p: Point3, k: f64) -> f64 {
         if self.at_least(p) > value + k { value } else { smooth_min(value, self.value(p), k) }
     }
 
-    /// A lower bound of the value: the distance to the box around the axis minus the greatest radius.
+    /// A lower bound of the value: the distance to the box around the axis minus the greatest
+    /// radius.
     pub(crate) fn at_least(&self, p: Point3) -> f64 {
         let out = ((squeeze(p, self.stretch) - self.around.0).abs() - self.around.1).sup(&Vector3::zeros());
         (out.norm() - self.widest) * self.narrowing() - ROUNDING

@@ -1,15 +1,18 @@
 //! Lofts: stacks of sections along a straight line, the middle of each free to lie beside it.
 //!
-//! A section is half an ellipse in front and another behind, joined at the sides. Trunk, neck, arms, legs and feet are lofts.
+//! A section is half an ellipse in front and another behind, joined at the sides. Trunk, neck,
+//! arms, legs and feet are lofts.
 //!
-//! Cost: one look-up of the sections and some tens of products. Limit: the value is the distance to first order only.
+//! Cost: one look-up of the sections and some tens of products. Limit: the value is the distance to
+//! first order only.
 
 use super::bounds::Bounds;
 use super::field::smooth_max;
 use super::profile::Profile;
 use toile_core::artifact::{Point3, Vector3};
 
-/// A section: the middle's place to the side and in front of the line, half the width, depth in front and behind.
+/// A section: the middle's place to the side and in front of the line, half the width, depth in
+/// front and behind.
 pub(crate) type Section = [f64; 5];
 
 /// A stack of sections.
@@ -27,8 +30,8 @@ pub(crate) struct Loft {
 }
 
 impl Loft {
-    /// Of sections along `along` from `origin`, whose fronts look to `front` as far as that is square to the line; the ends of
-    /// `span` are rounded over `rounding`, metres.
+    /// Of sections along `along` from `origin`, whose fronts look to `front` as far as that is
+    /// square to the line; the ends of `span` are rounded over `rounding`, metres.
     pub(crate) fn new(
         [origin, end]: [Point3; 2],
         front: Vector3,
@@ -70,7 +73,8 @@ impl Loft {
     }
 }
 
-/// The root of the sum of squares. Sections are metres wide: nothing overflows, and `hypot` takes three times as long.
+/// The root of the sum of squares. Sections are metres wide: nothing overflows, and `hypot` takes
+/// three times as long.
 fn length(x: f64, z: f64) -> f64 {
     (x * x + z * z).sqrt()
 }

@@ -1,7 +1,8 @@
 //! `Mannequin`: a closed, smooth figure made to measure.
 //!
-//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](super::fit). What is not given follows from the size,
-//! the figure, the height and the bust. Cost: mostly one meshing, a tenth of a second.
+//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](super::fit). What is
+//! not given follows from the size, the figure, the height and the bust. Cost: mostly one meshing,
+//! a tenth of a second.
 
 use super::fit::fit;
 use super::form::{CHILD, Form, MAN, WOMAN};
@@ -13,19 +14,22 @@ use toile_core::prelude::*;
 /// Heights between which a figure that is not stated is half a child's, metres.
 const GROWING: [f64; 2] = [1.35, 1.55];
 
-/// Shares of the height up to the chin that make the arm's length where none is given: child and grown up.
+/// Shares of the height up to the chin that make the arm's length where none is given: child and
+/// grown up.
 const ARM: [f64; 2] = [0.366, 0.384];
 
-/// Height, bust, waist and hip of women, men and children where nothing is given, centimetres. Girths of a child follow from its height where that is
-/// given; those of the grown do not depend on it.
+/// Height, bust, waist and hip of women, men and children where nothing is given, centimetres.
+/// Girths of a child follow from its height where that is given; those of the grown do not depend
+/// on it.
 const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0], [110.0, 58.0, 54.0, 60.0]];
 
 /// A mannequin made to measure: closed and smooth, arms spread in A-pose, legs a little apart.
 ///
-/// Measures are taken as ISO 8559-1 (2017) says: girths are those of a tape around the trunk at the fullest bust, the waist and
-/// the fullest hip and around the neck; the arm's length goes from the shoulder point over the elbow to the wrist, the inseam from
-/// the fork of the legs to the sole. What is not given follows from `size`, else from the figure, the height and the bust.
-/// Sizes are those of EN 13402-3. Children from 80 cm on have larger heads and shorter limbs.
+/// Measures are taken as ISO 8559-1 (2017) says: girths are those of a tape around the trunk at the
+/// fullest bust, the waist and the fullest hip and around the neck; the arm's length goes from the
+/// shoulder point over the elbow to the wrist, the inseam from the fork of the legs to the sole.
+/// What is not given follows from `size`, else from the figure, the height and the bust. Sizes are
+/// those of EN 13402-3. Children from 80 cm on have larger heads and shorter limbs.
 #[stage(
     role = Body,
     version = 5,
@@ -34,10 +38,12 @@ const USUAL: [Table; 3] = [[172.0, 88.0, 70.0, 96.0], [180.0, 100.0, 86.0, 100.0
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Mannequin {
-    /// Crown to sole; where neither it nor a size is given, 172 cm for a woman, 180 cm for a man, 110 cm for a child.
+    /// Crown to sole; where neither it nor a size is given, 172 cm for a woman, 180 cm for a man,
+    /// 110 cm for a child.
     #[param(default = None, min = 0.8, max = 2.1)]
     height: Option<Length>,
-    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise, of a child of a given height that which is usual.
+    /// Girth at the fullest part of the chest; 88, 100 or 58 cm likewise, of a child of a given
+    /// height that which is usual.
     #[param(default = None, min = 0.4, max = 1.7)]
     bust: Option<Length>,
     /// Girth at the waist; 70, 86 or 54 cm, of a child likewise.
@@ -46,10 +52,12 @@ pub struct Mannequin {
     /// Girth at the fullest part of the seat; 96, 100 or 60 cm, of a child likewise.
     #[param(default = None, min = 0.4, max = 1.7)]
     hip: Option<Length>,
-    /// Whose proportions; a woman's where it is not given, a child's below 135 cm, between the two up to 155 cm.
+    /// Whose proportions; a woman's where it is not given, a child's below 135 cm, between the two
+    /// up to 155 cm.
     #[param(default = None)]
     figure: Option<Wearer>,
-    /// A size such as `M` or `EU 38`, for a child `EU 110`: measures that are not given follow from it.
+    /// A size such as `M` or `EU 38`, for a child `EU 110`: measures that are not given follow from
+    /// it.
     #[param(default = None)]
     size: Option<String>,
     /// Distance of the shoulders' outer points; follows from height and bust where it is not given.
@@ -87,13 +95,15 @@ impl Mannequin {
 }
 
 impl Mannequin {
-    /// A mannequin of that height with bust, waist and hip, meshed at an edge length, all in metres.
+    /// A mannequin of that height with bust, waist and hip, meshed at an edge length, all in
+    /// metres.
     #[cfg(test)]
     pub(crate) fn of(height: f64, girths: [f64; 3], edge: f64) -> Self {
         Mannequin::made(height, girths, 60.0, edge)
     }
 
-    /// A mannequin of that height with bust, waist and hip and the arms at that angle in degrees, meshed at an edge length, all in metres.
+    /// A mannequin of that height with bust, waist and hip and the arms at that angle in degrees,
+    /// meshed at an edge length, all in metres.
     pub(crate) fn made(height: f64, [bust, waist, hip]: [f64; 3], arm_angle: f64, edge: f64) -> Self {
         let [height, bust, waist, hip] = [height, bust, waist, hip].map(|l| Some(Length::m(l)));
         Mannequin { height, bust, waist, hip, arm_angle, edge: Length::m(edge), ..Mannequin::default() }
@@ -122,7 +132,8 @@ impl Mannequin {
         Ok((size, form))
     }
 
-    /// Whose figure it is, where that is known, and the measures of the size or those that are usual.
+    /// Whose figure it is, where that is known, and the measures of the size or those that are
+    /// usual.
     fn usual(&self) -> Result<(Option<Wearer>, Table), StageError> {
         let Some(size) = &self.size else {
             let usual = USUAL[self.figure.map_or(0, |w| w as usize)];
@@ -134,7 +145,8 @@ impl Mannequin {
     }
 }
 
-/// How far a figure that is not stated is grown up at a height, metres: 0 for a child, 1 for a grown person.
+/// How far a figure that is not stated is grown up at a height, metres: 0 for a child, 1 for a
+/// grown person.
 fn grown(height: f64) -> f64 {
     let [child, grown] = GROWING;
     ((height - child) / (grown - child)).clamp(0.0, 1.0)
@@ -174,7 +186,8 @@ fn no_size(size: &str, wearer: Option<Wearer>) -> StageError {
         .at("size")
 }
 
-/// Shares of a length that people have, from thin to heavy: parameter, what it is compared to, range.
+/// Shares of a length that people have, from thin to heavy: parameter, what it is compared to,
+/// range.
 fn check(size: &Size) -> Result<(), StageError> {
     let h = size.height;
     let rules = [

@@ -1,7 +1,8 @@
-//! Measures of a figure: by ISO 8559-1 (2017) on its mesh, and on the smooth solid before it is meshed.
+//! Measures of a figure: by ISO 8559-1 (2017) on its mesh, and on the smooth solid before it is
+//! meshed.
 //!
-//! Girths are those of a tape, which spans hollows. Arms are measured from the shoulder point over the elbow to the wrist, the
-//! inseam from the fork of the legs to the sole.
+//! Girths are those of a tape, which spans hollows. Arms are measured from the shoulder point over
+//! the elbow to the wrist, the inseam from the fork of the legs to the sole.
 
 use super::figure::Figure;
 use super::landmarks::Marks;
@@ -34,7 +35,8 @@ pub(crate) fn smooth(figure: &Figure) -> Six {
     [level(level::HIP), level(level::WAIST), level(level::BUST), neck, arm(figure), fork(figure)]
 }
 
-/// The length of a tape around the figure without arms: rays from `centre` to the sides and to `front` meet the skin.
+/// The length of a tape around the figure without arms: rays from `centre` to the sides and to
+/// `front` meet the skin.
 fn tape(figure: &Figure, centre: Point3, front: Vector3) -> f64 {
     let half = RAYS / 2;
     let ring = (0..half).flat_map(|i| {
@@ -140,7 +142,8 @@ pub(crate) fn limbs(figure: &Figure, mesh: &TriMesh, marks: &Marks) -> Option<[f
     Some([around(mesh, middle, along)?, thigh.girth])
 }
 
-/// The girth in the plane through a point and square to a direction: that of the loop around the point.
+/// The girth in the plane through a point and square to a direction: that of the loop around the
+/// point.
 fn around((positions, triangles): &TriMesh, centre: Point3, along: Vector3) -> Option<f64> {
     let turn = Rotation3::rotation_between(&Unit::new_normalize(along), &Vector3::y_axis())?;
     let turned: Vec<Point3> = positions.iter().map(|p| Point3::from(turn * (p - centre))).collect();

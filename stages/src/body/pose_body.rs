@@ -5,9 +5,11 @@
 use super::swing::Swing;
 use toile_core::prelude::*;
 
-/// Swings the arms of the body, such as from the pose in which a garment is sewn to one in which it is looked at.
+/// Swings the arms of the body, such as from the pose in which a garment is sewn to one in which it
+/// is looked at.
 ///
-/// The trunk and its measurements stay; the skin between arm and trunk is drawn along. `PoseGarment` brings the garment after it.
+/// The trunk and its measurements stay; the skin between arm and trunk is drawn along.
+/// `PoseGarment` brings the garment after it.
 #[stage(
     role = Body,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",
@@ -15,8 +17,9 @@ use toile_core::prelude::*;
     contracts(Deterministic, ThreadInvariant, Improves)
 )]
 pub struct PoseBody {
-    /// Angle between the upper arms and the vertical, from the middle between shoulder and armpit to the elbow; where it is not given, 28 degrees or
-    /// as near to it as the trunk lets the arms, and arms that hang lower stay.
+    /// Angle between the upper arms and the vertical, from the middle between shoulder and armpit
+    /// to the elbow; where it is not given, 28 degrees or as near to it as the trunk lets the arms,
+    /// and arms that hang lower stay.
     #[param(default = None, min = 5.0, max = 150.0, unit = "degrees")]
     arm_angle: Option<f64>,
 }

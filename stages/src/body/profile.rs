@@ -1,9 +1,11 @@
 //! Several lengths as smooth functions of one: the sections of a loft over the length of its axis.
 //!
-//! Knots are joined by monotone cubics, sampled evenly, smoothed, and read as a uniform cubic B-spline (de Boor, 1978): the
-//! second derivative is continuous, so that no band shows on the skin at a knot.
+//! Knots are joined by monotone cubics, sampled evenly, smoothed, and read as a uniform cubic
+//! B-spline (de Boor, 1978): the second derivative is continuous, so that no band shows on the skin
+//! at a knot.
 //!
-//! Cost: sixteen products a channel and look-up. Limit: a knot's value is met to the width of two samples only.
+//! Cost: sixteen products a channel and look-up. Limit: a knot's value is met to the width of two
+//! samples only.
 
 use super::spline::Spline;
 

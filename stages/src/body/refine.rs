@@ -1,8 +1,9 @@
-//! Finer triangles where they are asked for: long edges are halved, then edges are turned until no angle opposite to one is
-//! too wide (Delaunay's condition on a surface; Lawson, 1977).
+//! Finer triangles where they are asked for: long edges are halved, then edges are turned until no
+//! angle opposite to one is too wide (Delaunay's condition on a surface; Lawson, 1977).
 //!
-//! Halving is decided edge by edge, so both triangles of an edge agree and no vertex hangs. Cost: a sort of the half-edges a
-//! round. Limit: triangles between fine and coarse places have angles down to some 25 degrees.
+//! Halving is decided edge by edge, so both triangles of an edge agree and no vertex hangs. Cost: a
+//! sort of the half-edges a round. Limit: triangles between fine and coarse places have angles down
+//! to some 25 degrees.
 
 use super::topology::TriMesh;
 use std::collections::BTreeSet;

@@ -69,7 +69,8 @@ pub(crate) fn chin(height: f64) -> f64 {
     height - head_height(height)
 }
 
-/// What is aimed at so that the skin has the measures that are asked for: factors of the adult's sections and lengths.
+/// What is aimed at so that the skin has the measures that are asked for: factors of the adult's
+/// sections and lengths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Aims {
     /// Factors of the trunk's sections at hip, waist and bust.
@@ -118,7 +119,8 @@ impl Shape {
         Shape { size: *size, form: *form, aims: *aims, chin, stature: chin / ADULT_CHIN, head }
     }
 
-    /// The height of a level: shares of the height up to the chin, shifted so that the fork of the legs is where it is aimed at.
+    /// The height of a level: shares of the height up to the chin, shifted so that the fork of the
+    /// legs is where it is aimed at.
     pub(crate) fn y(&self, level: f64) -> f64 {
         let (fork, neck) = (level::CROTCH, level::NECK);
         match level {

@@ -1,9 +1,10 @@
 //! Sizes of the trade: the measures that go with a letter or an EU number.
 //!
-//! Girths by EN 13402-3 (2017), middles of the ranges; that standard gives no hip for men, which is taken as the chest's and 3 cm,
-//! and letters stand for its ranges of 8 cm up to L, 12 cm above. Heights are the means of EN 13402-3: women 168 cm, men 178 cm.
-//! Children's sizes are their heights; girths by EN 13402-3 and ISO 3637 (1977), interpolated. EU numbers as the trade uses them:
-//! women's 38 is a bust of 88 cm, men's is half the chest.
+//! Girths by EN 13402-3 (2017), middles of the ranges; that standard gives no hip for men, which is
+//! taken as the chest's and 3 cm, and letters stand for its ranges of 8 cm up to L, 12 cm above.
+//! Heights are the means of EN 13402-3: women 168 cm, men 178 cm. Children's sizes are their
+//! heights; girths by EN 13402-3 and ISO 3637 (1977), interpolated. EU numbers as the trade uses
+//! them: women's 38 is a bust of 88 cm, men's is half the chest.
 
 use super::wearer::Wearer;
 
@@ -64,8 +65,8 @@ const LETTERS: [(&str, u32, u32); 6] =
 /// Mean heights of women and men, centimetres.
 const HEIGHTS: [f64; 2] = [168.0, 178.0];
 
-/// The measures of a size such as `M` or `EU 38`; of a child where no figure is stated and the number is a child's.
-/// `None` where there is no such size.
+/// The measures of a size such as `M` or `EU 38`; of a child where no figure is stated and the
+/// number is a child's. `None` where there is no such size.
 pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, Table)> {
     let text = size.trim().to_uppercase();
     let number = |women: bool| {
@@ -88,7 +89,8 @@ pub(crate) fn measures(size: &str, wearer: Option<Wearer>) -> Option<(Wearer, Ta
     }
 }
 
-/// Height, bust, waist and hip of a child of that height, centimetres; beyond the table its ends go on as they run.
+/// Height, bust, waist and hip of a child of that height, centimetres; beyond the table its ends go
+/// on as they run.
 pub(crate) fn of_child(height: f64) -> Table {
     let last = CHILDREN.len() - 2;
     let k = CHILDREN.iter().filter(|row| f64::from(row.0) <= height).count().saturating_sub(1).min(last);

@@ -78,7 +78,8 @@ pub(crate) fn slice(positions: &[Point3], triangles: &[[u32; 3]], y: f64) -> Vec
     let mut next = BTreeMap::new();
     for t in triangles {
         let sides = [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
-        // A closed, consistently turned mesh leaves each slice edge once downwards and once upwards.
+        // A closed, consistently turned mesh leaves each slice edge once downwards and once
+        // upwards.
         let down = sides.iter().find(|&&(a, b)| above(a) && crosses(a, b));
         let up = sides.iter().find(|&&(a, b)| !above(a) && crosses(a, b));
         if let (Some(&(a, b)), Some(&(c, d))) = (down, up) {
@@ -100,7 +101,8 @@ pub(crate) fn slice(positions: &[Point3], triangles: &[[u32; 3]], y: f64) -> Vec
     loops
 }
 
-/// The loop around the trunk: the one with the greatest girth among those that the middle plane cuts.
+/// The loop around the trunk: the one with the greatest girth among those that the middle plane
+/// cuts.
 pub(crate) fn trunk(loops: &[SliceLoop], middle: f64) -> Option<&SliceLoop> {
     let cut = |l: &&SliceLoop| l.bounds[0] < middle && l.bounds[1] > middle;
     loops.iter().filter(cut).max_by(|a, b| a.girth.total_cmp(&b.girth))

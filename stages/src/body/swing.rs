@@ -1,9 +1,10 @@
 //! Arms swung about the shoulders, and the space around them with them.
 //!
-//! Each point keeps its distance from the axis, which goes from the back to the front through the shoulder's middle; its angle about it is
-//! changed by a rising function of the angle alone: fixed on the trunk, the whole swing on the arm, between both a monotone cubic (Fritsch and
-//! Carlson 1980). So no two points come to lie in one place: what does not cross before does not cross afterwards, but for the error of
-//! straight edges between moved vertices.
+//! Each point keeps its distance from the axis, which goes from the back to the front through the
+//! shoulder's middle; its angle about it is changed by a rising function of the angle alone: fixed
+//! on the trunk, the whole swing on the arm, between both a monotone cubic (Fritsch and Carlson
+//! 1980). So no two points come to lie in one place: what does not cross before does not cross
+//! afterwards, but for the error of straight edges between moved vertices.
 
 use super::slice::{slice, trunk};
 use std::f64::consts::{PI, TAU};
@@ -12,7 +13,8 @@ use toile_core::prelude::*;
 
 /// Half the angle in which the arm turns as one piece.
 const ARM: f64 = PI / 15.0;
-/// Above the shoulder space stays where it is from this angle on, from the downward vertical outwards.
+/// Above the shoulder space stays where it is from this angle on, from the downward vertical
+/// outwards.
 const NECK: f64 = 190.0 * PI / 180.0;
 /// The angle at which arms hang where the trunk lets them.
 const HANGING: f64 = 28.0 * PI / 180.0;
@@ -44,13 +46,15 @@ struct Side {
 impl Swing {
     /// From the arms of a body to an angle between the upper arms and the vertical, radians.
     ///
-    /// Errors: a landmark of an arm is missing; there is no room between arm and trunk, or not so much of it.
+    /// Errors: a landmark of an arm is missing; there is no room between arm and trunk, or not so
+    /// much of it.
     pub(crate) fn to(body: &Body, angle: f64) -> Result<Swing, StageError> {
         let side = |name| Side::new(name, Arm::of(body, name)?, angle).map(Some);
         Ok(Swing([side("left")?, side("right")?]))
     }
 
-    /// From the arms of a body to [`HANGING`], or as near to it as the trunk lets them; arms that hang lower stay.
+    /// From the arms of a body to [`HANGING`], or as near to it as the trunk lets them; arms that
+    /// hang lower stay.
     ///
     /// Errors: a landmark of an arm is missing.
     pub(crate) fn hanging(body: &Body) -> Result<Swing, StageError> {
@@ -97,7 +101,8 @@ impl Joint {
         Ok(Joint { at, outward: if side == "left" { 1.0 } else { -1.0 } })
     }
 
-    /// Distance from the axis, and the angle from the downward vertical outwards, from -90 to 270 degrees.
+    /// Distance from the axis, and the angle from the downward vertical outwards, from -90 to 270
+    /// degrees.
     fn polar(&self, p: &Point3) -> [f64; 2] {
         let (out, down) = (self.outward * (p.x - self.at.x), self.at.y - p.y);
         let angle = out.atan2(down);
@@ -122,7 +127,8 @@ impl Arm {
         Ok(Arm { joint, from, trunk })
     }
 
-    /// The least angle that the arm can be brought to; its own where there is no room between it and the trunk.
+    /// The least angle that the arm can be brought to; its own where there is no room between it
+    /// and the trunk.
     fn least(&self) -> f64 {
         let room = self.from - ARM - self.trunk;
         if room > 0.0 { self.trunk + ARM + LEAST * room } else { self.from }
@@ -164,7 +170,8 @@ impl Side {
         Point3::new(self.joint.x + self.outward * r * sin, self.joint.y - r * cos, p.z)
     }
 
-    /// Where an angle between the outer knots comes to lie: the arm as one piece, beside it by a cubic (Hermite).
+    /// Where an angle between the outer knots comes to lie: the arm as one piece, beside it by a
+    /// cubic (Hermite).
     fn turned(&self, angle: f64) -> f64 {
         let k = self.knots[1..3].iter().filter(|k| angle >= k[0]).count();
         if k == 1 {
@@ -181,7 +188,8 @@ impl Side {
     }
 }
 
-/// Slopes with which a cubic rises everywhere: 1 where it may, else twice the secant beside it (Fritsch and Carlson 1980 allow three times).
+/// Slopes with which a cubic rises everywhere: 1 where it may, else twice the secant beside it
+/// (Fritsch and Carlson 1980 allow three times).
 fn slopes(knots: &[[f64; 2]; 4]) -> [f64; 4] {
     let secant = |k: usize| (knots[k + 1][1] - knots[k][1]) / (knots[k + 1][0] - knots[k][0]);
     [0, 1, 2, 3].map(|k: usize| {

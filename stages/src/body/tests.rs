@@ -320,7 +320,8 @@ fn a_body_as_exporters_leave_it_is_the_clean_one_and_what_was_mended_is_told() {
     let clean = read("clean", z_up_millimetres(&made), ", up: Z").unwrap();
     let mut text = b"\xEF\xBB\xBF# K\xF6rper\n".to_vec();
     text.extend(z_up_millimetres(&made).replace("/1 ", "/1 \\\n").bytes());
-    // One corner of the last face has a vertex of its own, the first face stands there twice, one has no area.
+    // One corner of the last face has a vertex of its own, the first face stands there twice, one
+    // has no area.
     let text = String::from_utf8_lossy(&text).into_owned();
     let (head, last) = text.trim_end().rsplit_once("f ").unwrap();
     let corner: usize = last.split('/').next().unwrap().parse().unwrap();

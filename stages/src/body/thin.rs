@@ -1,25 +1,31 @@
-//! What a garment is sewn on: its body, drawn in towards its own middle, which then grows to its full size.
+//! What a garment is sewn on: its body, drawn in towards its own middle, which then grows to its
+//! full size.
 //!
-//! Pieces of a pattern stand flat before and behind a body: arms and shoulders are between edges that a seam is to bring together. Around a
-//! thin figure of the same height and pose nothing is in the way; what is sewn there goes round the limbs that it shall go round, and the figure
-//! grows into it.
+//! Pieces of a pattern stand flat before and behind a body: arms and shoulders are between edges
+//! that a seam is to bring together. Around a thin figure of the same height and pose nothing is in
+//! the way; what is sewn there goes round the limbs that it shall go round, and the figure grows
+//! into it.
 //!
-//! Method: each vertex moves along its normal by a share of the radius of the largest ball inside the body that touches it there (the medial
-//! axis, Blum 1967), and down by as much, so that shoulders and arms stand lower, inside their own shape; the ways are smoothed over the
-//! mesh. Cost: seven distances a vertex. Limit: the thin figure may cross itself between fingers.
+//! Method: each vertex moves along its normal by a share of the radius of the largest ball inside
+//! the body that touches it there (the medial axis, Blum 1967), and down by as much, so that
+//! shoulders and arms stand lower, inside their own shape; the ways are smoothed over the mesh.
+//! Cost: seven distances a vertex. Limit: the thin figure may cross itself between fingers.
 
 use super::topology::neighbours;
 use rayon::prelude::*;
 use toile_cloth::contact::body::Body as Solid;
 use toile_core::prelude::*;
 
-/// The least and the largest ball that is looked for, metres, and how often the stretch between is halved.
+/// The least and the largest ball that is looked for, metres, and how often the stretch between is
+/// halved.
 const BALL: (f64, f64, usize) = (0.0, 0.12, 6);
 
-/// The share of its radius that the middle of a ball must be inside the body: bumps count as nothing.
+/// The share of its radius that the middle of a ball must be inside the body: bumps count as
+/// nothing.
 const FITS: f64 = 0.8;
 
-/// The farthest that a vertex moves down, as a radius, metres: a head would go down into a hood's neck.
+/// The farthest that a vertex moves down, as a radius, metres: a head would go down into a hood's
+/// neck.
 const LOWEST: f64 = 0.06;
 
 /// Rounds in which ways are smoothed over the mesh.
@@ -28,7 +34,8 @@ const SMOOTHING: usize = 40;
 /// The share of the radius by which the figure is thinner at first, and in how many steps it grows.
 const THINNER: (f64, usize) = (0.6, 8);
 
-/// What the garment is sewn on, one after the other, before the body itself comes: points, of the same triangles as the body's.
+/// What the garment is sewn on, one after the other, before the body itself comes: points, of the
+/// same triangles as the body's.
 pub(crate) fn grown(positions: &[Point3], triangles: &[[u32; 3]]) -> Vec<Vec<Point3>> {
     let ways = inwards(positions, triangles);
     let (share, steps) = THINNER;
@@ -64,7 +71,8 @@ fn way(radius: f64, n: &Vector3) -> Vector3 {
     -n * radius - Vector3::y() * radius.min(LOWEST)
 }
 
-/// The radius of the largest ball inside the body that touches it about at `p`, where its normal is `n`.
+/// The radius of the largest ball inside the body that touches it about at `p`, where its normal is
+/// `n`.
 fn ball(solid: &Solid, p: &Point3, n: &Vector3) -> f64 {
     let (mut least, mut most, halvings) = BALL;
     let fits = |radius: f64| {

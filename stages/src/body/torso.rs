@@ -109,8 +109,9 @@ fn seat(shape: &Shape) -> Ellipsoid {
     }
 }
 
-/// The shoulder line: from the neck down to the shoulder joint. The skin over it slopes by some 24 degrees from the neck to the shoulder point, as
-/// is usual (Taniyama and others 1970: 22 to 24; mean body of GarmentCode: 22).
+/// The shoulder line: from the neck down to the shoulder joint. The skin over it slopes by some 24
+/// degrees from the neck to the shoulder point, as is usual (Taniyama and others 1970: 22 to 24;
+/// mean body of GarmentCode: 22).
 pub(crate) fn girdle(shape: &Shape) -> Limb {
     let s = shape.stature;
     let [inner, outer] = [0.047 * s, 0.046 * shape.arm_build()];

@@ -1,8 +1,9 @@
 //! Skin that crosses itself, as between the ends of fingers that lie side by side, and its repair.
 //!
-//! Crossings are edges that pierce a triangle near them, looked up in a grid of boxes. Where there are some, the vertices around them go
-//! to the middle of their neighbours, until there are none. Cost: one look at every triangle of the fine parts; a few rounds over those
-//! that cross. Limit: a crossing that so many rounds do not undo stays.
+//! Crossings are edges that pierce a triangle near them, looked up in a grid of boxes. Where there
+//! are some, the vertices around them go to the middle of their neighbours, until there are none.
+//! Cost: one look at every triangle of the fine parts; a few rounds over those that cross. Limit: a
+//! crossing that so many rounds do not undo stays.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{Point3, Vector3};
@@ -13,7 +14,8 @@ const CELL: f64 = 0.012;
 /// Rounds of smoothing at most.
 const ROUNDS: usize = 12;
 
-/// Smooths the skin where it crosses itself. `fine` tells of a place whether parts thinner than a cell may lie there.
+/// Smooths the skin where it crosses itself. `fine` tells of a place whether parts thinner than a
+/// cell may lie there.
 pub(crate) fn untangle(
     positions: &mut [Point3],
     triangles: &[[u32; 3]],

@@ -1,9 +1,10 @@
 //! Rule `asked-distances`: distances to the body only where cloth comes.
 //!
-//! Fact: a body is there, of so many triangles. What sorts vertices out before the skin is looked at, a lattice of distances
-//! around the whole body, is filled cell by cell where a vertex asks, not ahead: feet, head and hands of a wearer, and the
-//! corners of the body's box, are never asked for. Tolerance: the same bits, since the lattice bounds and never decides.
-//! Source: lazy evaluation (Henderson and Morris 1976).
+//! Fact: a body is there, of so many triangles. What sorts vertices out before the skin is looked
+//! at, a lattice of distances around the whole body, is filled cell by cell where a vertex asks,
+//! not ahead: feet, head and hands of a wearer, and the corners of the body's box, are never asked
+//! for. Tolerance: the same bits, since the lattice bounds and never decides. Source: lazy
+//! evaluation (Henderson and Morris 1976).
 
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
@@ -19,7 +20,8 @@ pub enum Distances {
     Ahead,
 }
 
-/// The decision of a stage that sets up a collider for a body of so many triangles, `share` of whose time it saves.
+/// The decision of a stage that sets up a collider for a body of so many triangles, `share` of
+/// whose time it saves.
 pub(crate) fn rule(distances: Distances, size: &Size, share: f64) -> Option<Decision> {
     let triangles = size.get(Quantity::BodyTriangles).filter(|n| *n > 0.0)?;
     (distances == Distances::Asked).then(|| Decision {

@@ -1,7 +1,8 @@
 //! The body's skin as a collider answers for it: contacts of many vertices, and paths that enter.
 //!
-//! Distances and paths are those of [`SignedDistance`]; most vertices never reach its tree: a lattice of distances sorts them out.
-//! O(log n) a query. The mesh must have passed [`check_body`](super::check_body).
+//! Distances and paths are those of [`SignedDistance`]; most vertices never reach its tree: a
+//! lattice of distances sorts them out. O(log n) a query. The mesh must have passed
+//! [`check_body`](super::check_body).
 
 use super::asked_distances::Distances;
 use super::points::{self, coords};

@@ -32,7 +32,8 @@ pub enum Volume {
 /// Friction and restitution are applied by the solver when it resolves a contact: the speed along
 /// the skin falls by `friction` times the speed into it, the speed into it is thrown back
 /// `restitution` times. With `penalty`, cloth nearer than `thickness` is pushed off by a spring of
-/// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers refuse them.
+/// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers
+/// refuse them.
 #[stage(
     role = Collider,
     source = "Gottschalk et al. 1996; Klosowski et al. 1998; Baerentzen & Aanaes 2005",
@@ -49,16 +50,19 @@ pub struct BvhCollider {
     /// Coulomb friction coefficient.
     #[param(default = 0.3, min = 0, max = 2)]
     friction: f64,
-    /// Share of the speed that is thrown back, 0 for cloth that stays where it lands: for springs alone.
+    /// Share of the speed that is thrown back, 0 for cloth that stays where it lands: for springs
+    /// alone.
     #[param(default = 0.0, min = 0, max = 1)]
     restitution: f64,
     /// True where cloth is kept out of itself.
     #[param(default = true, trades)]
     self_collision: bool,
-    /// Stiffness of the penalty response, for springs alone; without it contacts are resolved by impulses.
+    /// Stiffness of the penalty response, for springs alone; without it contacts are resolved by
+    /// impulses.
     #[param(default = None, min = 0, max = 1e6, unit = "N/m")]
     penalty: Option<f64>,
-    /// Gaps between arm and trunk narrower than this are bridged for the cloth, which cannot rest in them; none at 0.
+    /// Gaps between arm and trunk narrower than this are bridged for the cloth, which cannot rest
+    /// in them; none at 0.
     #[param(default = Length::mm(0.0), min = 0.0, max = 0.3)]
     bridge: Length,
     /// When distances to the body are worked out; the results are the same.

@@ -51,7 +51,8 @@ fn longest(t: &[Vec3; 3]) -> Vec3 {
     sides[1..].iter().fold(sides[0], |a, b| if b.norm_squared() > a.norm_squared() { *b } else { a })
 }
 
-/// The unit vector of `gap`, of `fallback()` where that is nothing, of anything square to `along` else.
+/// The unit vector of `gap`, of `fallback()` where that is nothing, of anything square to `along`
+/// else.
 fn direction(gap: &Vec3, size: f64, fallback: impl Fn() -> Vec3, along: &Vec3) -> Vec3 {
     gap.try_normalize(TOUCHING * size)
         .or_else(|| fallback().try_normalize(TOUCHING * along.norm_squared()))

@@ -46,7 +46,8 @@ impl<V: BoundingVolume> BvhScheme<V> {
         Ok(BvhScheme { card, body, landmarks, pool: Mutex::default() })
     }
 
-    /// What `f` makes of the cloth, with a tree that was kept for the same triangles or is made for it.
+    /// What `f` makes of the cloth, with a tree that was kept for the same triangles or is made for
+    /// it.
     fn with_cloth<T>(
         &self,
         positions: &[Point3],

@@ -1,6 +1,7 @@
 //! Cloth against itself: contacts, and how far vertices may move.
 //!
-//! Pairs come from the cloth's tree ([`ClothTree`]), about six a triangle for its neighbours alone; cost O(n + pairs).
+//! Pairs come from the cloth's tree ([`ClothTree`]), about six a triangle for its neighbours alone;
+//! cost O(n + pairs).
 //!
 //! The bounds are those of offset geometric contact (Chen, Hsu, Yuksel et al. 2025) and, before
 //! it, of Wu et al. 2020: two pieces at distance d cannot meet while all their vertices move by
@@ -13,7 +14,8 @@ use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::{Kind, Pair};
 use toile_geometry::volume::BoundingVolume;
 
-/// A cloth as it is asked about: places, which may be no finite numbers, and triangles, which may name vertices that there are not.
+/// A cloth as it is asked about: places, which may be no finite numbers, and triangles, which may
+/// name vertices that there are not.
 pub(super) struct Cloth<'a, V> {
     /// Places, m.
     pub(super) x: &'a [Vec3],
@@ -61,7 +63,8 @@ fn is_finite(p: &Vec3) -> bool {
 }
 
 impl<V: BoundingVolume> Cloth<'_, V> {
-    /// Vertex-triangle and edge-edge contacts nearer than `reach`, each pair of closest features once.
+    /// Vertex-triangle and edge-edge contacts nearer than `reach`, each pair of closest features
+    /// once.
     pub(super) fn contacts(&self, reach: f64, out: &mut Vec<SelfContact>) {
         let pairs = self.near(reach);
         let mut keyed: Vec<([u32; 4], &Near)> = pairs.iter().filter_map(|p| key(p).map(|k| (k, p))).collect();
@@ -80,7 +83,8 @@ impl<V: BoundingVolume> Cloth<'_, V> {
         }));
     }
 
-    /// For each vertex the least distance of what it belongs to from anything else, at most `reach`.
+    /// For each vertex the least distance of what it belongs to from anything else, at most
+    /// `reach`.
     pub(super) fn conservative_bounds(&self, reach: f64) -> Vec<f64> {
         let mut bounds = vec![reach; self.x.len()];
         for pair in self.near(reach) {

@@ -1,8 +1,9 @@
 //! The bilateral filter: a Gaussian that stops at edges.
 //!
-//! Each neighbour is weighted by its distance and by how far its colour is from the centre's (Tomasi
-//! and Manduchi, Bilateral filtering for gray and color images, ICCV 1998). The colour's distance is the
-//! mean absolute difference of the channels, so that one table of 766 weights serves.
+//! Each neighbour is weighted by its distance and by how far its colour is from the centre's
+//! (Tomasi and Manduchi, Bilateral filtering for gray and color images, ICCV 1998). The colour's
+//! distance is the mean absolute difference of the channels, so that one table of 766 weights
+//! serves.
 //!
 //! Cost: (2 radius + 1)^2 weights a pixel; 12 megapixels take about 0.7 s at radius 3 on two cores.
 //! Limits: slow at large radii; leaves a speck that differs strongly from all around it.

@@ -1,7 +1,7 @@
 //! The Gaussian blur, by rows and columns.
 //!
-//! Weights exp(-k^2 / 2 sigma^2) out to three sigma, normalised to one. Vertical, then horizontal pass
-//! in single precision; rounded once, at the end.
+//! Weights exp(-k^2 / 2 sigma^2) out to three sigma, normalised to one. Vertical, then horizontal
+//! pass in single precision; rounded once, at the end.
 //!
 //! Cost: 2 (6 sigma + 1) multiplications a sample; 12 megapixels take about 60 ms at sigma 1
 //! on two cores. Limits: blurs edges; a corner of the outline moves inwards by about sigma / 2.

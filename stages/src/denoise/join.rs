@@ -1,8 +1,9 @@
 //! Whole pixels joined into larger ones.
 //!
-//! Method: each square of n x n pixels becomes their mean (sRGB levels, rounded to nearest, as the neighbourhood mean rounds);
-//! what is left over at the right and lower border, less than n pixels, is cut off. Whole factors keep every pixel's weight
-//! equal, so that the joined photo has no pattern of its own. Cost: one pass over the pixels.
+//! Method: each square of n x n pixels becomes their mean (sRGB levels, rounded to nearest, as the
+//! neighbourhood mean rounds); what is left over at the right and lower border, less than n pixels,
+//! is cut off. Whole factors keep every pixel's weight equal, so that the joined photo has no
+//! pattern of its own. Cost: one pass over the pixels.
 
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
@@ -11,8 +12,8 @@ use toile_core::prelude::*;
 /// Pixels that stay along the shorter side.
 const LEAST_SIDE: u32 = 1000;
 
-/// How many pixels of a photo, to a side, may be joined so that one is at most `pixel` wide, metres, in a photo whose garment
-/// is as wide as its frame; 1 where the scale is not known.
+/// How many pixels of a photo, to a side, may be joined so that one is at most `pixel` wide,
+/// metres, in a photo whose garment is as wide as its frame; 1 where the scale is not known.
 pub(super) fn joint(photo: &Photo, pixel: f64) -> u32 {
     let (w, h) = photo.pixels.dimensions();
     let by_scale = photo.px_per_metre.map(|s| f64::from(w) / s);

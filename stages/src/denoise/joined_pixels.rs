@@ -1,9 +1,11 @@
 //! Rule `joined-pixels`: image work at no more resolution than the garment's mesh can hold.
 //!
-//! Fact: the photos' pixels are so fine that several of them, joined, are still no wider than `pixel` (half a millimetre: a
-//! thirtieth of the usual edge length). Then the photos are joined for all that looks for the outline; textures are taken from
-//! the photos as they were read. Tolerance: an edge is found within a fraction of a pixel of its place (Canny 1986), so 95 %
-//! of the outline stay within [`MOST_MOVED`]. Source: sampling at what is to be resolved (Nyquist 1928; Shannon 1949).
+//! Fact: the photos' pixels are so fine that several of them, joined, are still no wider than
+//! `pixel` (half a millimetre: a thirtieth of the usual edge length). Then the photos are joined
+//! for all that looks for the outline; textures are taken from the photos as they were read.
+//! Tolerance: an edge is found within a fraction of a pixel of its place (Canny 1986), so 95 % of
+//! the outline stay within [`MOST_MOVED`]. Source: sampling at what is to be resolved (Nyquist
+//! 1928; Shannon 1949).
 
 use super::join::joint_of;
 use crate::photo::frames;

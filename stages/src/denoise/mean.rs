@@ -1,13 +1,13 @@
 //! The neighbourhood mean: every pixel becomes the mean of its neighbours and itself.
 //!
-//! `g(i, j) = sum of w_uv f(i+u, j+v)` with equal weights that sum to one. The neighbourhood holds the
-//! pixels that can be reached in `radius` steps over the mask's neighbours: with `Eight` the square of
-//! (2 radius + 1)^2 pixels, with `Four` the diamond |u| + |v| <= radius (5 pixels of weight 0.2 at
-//! radius 1).
+//! `g(i, j) = sum of w_uv f(i+u, j+v)` with equal weights that sum to one. The neighbourhood holds
+//! the pixels that can be reached in `radius` steps over the mask's neighbours: with `Eight` the
+//! square of (2 radius + 1)^2 pixels, with `Four` the diamond |u| + |v| <= radius (5 pixels of
+//! weight 0.2 at radius 1).
 //!
-//! Cost: the square's sums slide down and along the rows, so the radius costs nothing; 12 megapixels
-//! take about 20 ms on two cores at radius 1 and 30 ms above. The diamond costs 2 radius + 1
-//! additions a sample. Integer sums: the result is the mean rounded to nearest, exactly.
+//! Cost: the square's sums slide down and along the rows, so the radius costs nothing; 12
+//! megapixels take about 20 ms on two cores at radius 1 and 30 ms above. The diamond costs 2
+//! radius + 1 additions a sample. Integer sums: the result is the mean rounded to nearest, exactly.
 //!
 //! Limits: blurs edges by its radius; the edge detector finds them again at their middle.
 
@@ -35,8 +35,9 @@ pub enum Neighbours {
 /// Takes sensor noise and weave out of the photo before it is binarised. The larger the radius, the
 /// more detail is lost. `Eight` averages a square of (2 radius + 1)^2 pixels, `Four` a diamond.
 ///
-/// Large photos are brought down first, whole pixels joined, as far as `pixel` allows: what follows them takes that much
-/// less time, and their grain goes as well. Textures are still taken from the photo as it was read.
+/// Large photos are brought down first, whole pixels joined, as far as `pixel` allows: what follows
+/// them takes that much less time, and their grain goes as well. Textures are still taken from the
+/// photo as it was read.
 #[stage(
     role = Denoiser,
     version = 2,
@@ -51,8 +52,8 @@ pub struct NeighbourhoodMean {
     /// How many steps over neighbours the mean reaches.
     #[param(default = 1, min = 1, max = 50, unit = "px")]
     pub radius: u32,
-    /// Pixels are joined until they are this wide, at the most, where the garment is as wide as the frame; 1000 of them stay
-    /// along the shorter side. `"0 mm"` joins none.
+    /// Pixels are joined until they are this wide, at the most, where the garment is as wide as the
+    /// frame; 1000 of them stay along the shorter side. `"0 mm"` joins none.
     #[param(default = Length::mm(0.5), min = 0.0, max = 0.01, trades)]
     pub pixel: Length,
 }
@@ -149,7 +150,8 @@ fn slide(columns: &mut [u16], enters: &[u8], leaves: &[u8]) {
 
 /// Nine pixels from three column sums, in 16-bit arithmetic that the compiler vectorises.
 fn mean_of_nine(padded: &[u16], row: &mut [u8]) {
-    // ceil(2^16 / 9); exact for sums to 2,299, as the error stays below 2,299 * 0.23 / 2^16 < 1 / 9.
+    // ceil(2^16 / 9); exact for sums to 2,299, as the error stays below 2,299 * 0.23 / 2^16 < 1
+    // / 9.
     const NINTH: u32 = 7282;
     let (left, middle, right) = (padded, &padded[CHANNELS..], &padded[2 * CHANNELS..]);
     for (((out, &a), &b), &c) in row.iter_mut().zip(left).zip(middle).zip(right) {

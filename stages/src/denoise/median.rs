@@ -1,10 +1,10 @@
 //! The median of a square, channel by channel.
 //!
 //! Radius 1 sorts nine values by a network of 19 exchanges (Smith, 1996), which the compiler
-//! vectorises. Larger radii keep one histogram a column and one for the window, each in two levels of
-//! 16 x 16 bins; moving the window by a pixel adds one column and takes one off, and the fine level is
-//! brought up to date only where the median lies (Perreault and Hebert, Median filtering in constant
-//! time, IEEE TIP 16(9), 2007).
+//! vectorises. Larger radii keep one histogram a column and one for the window, each in two levels
+//! of 16 x 16 bins; moving the window by a pixel adds one column and takes one off, and the fine
+//! level is brought up to date only where the median lies (Perreault and Hebert, Median filtering
+//! in constant time, IEEE TIP 16(9), 2007).
 //!
 //! Cost: 12 megapixels take 70 ms at radius 1 and about 0.5 s at any other on two cores.
 //!
@@ -174,7 +174,8 @@ impl<'a> Tile<'a> {
         (-r..=r).for_each(|dy| self.each_column(self.rows.at(band.start, dy), Histogram::insert));
         for (y, row) in band.clone().zip(out.chunks_exact_mut(self.rows.stride())) {
             if y > band.start {
-                // The row above the last window, counted from the last row so that clamping is the same.
+                // The row above the last window, counted from the last row so that clamping is the
+                // same.
                 self.each_column(self.rows.at(y - 1, -r), Histogram::remove);
                 self.each_column(self.rows.at(y, r), Histogram::insert);
             }

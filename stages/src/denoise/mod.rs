@@ -1,7 +1,7 @@
 //! Denoisers: photo to photo.
 //!
-//! All work on the three sRGB channels alike, treat what lies past the frame as the nearest pixel of
-//! the frame (clamped), and give the same bits for any number of threads: the image is cut into
+//! All work on the three sRGB channels alike, treat what lies past the frame as the nearest pixel
+//! of the frame (clamped), and give the same bits for any number of threads: the image is cut into
 //! bands of rows, every output pixel is computed by one thread.
 //!
 //! | stage | keeps edges | 12 megapixels on 2 cores |

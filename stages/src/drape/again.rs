@@ -1,4 +1,5 @@
-//! Whether a garment that was sewn through itself is sewn once more, around a thin figure, and which of the two results is better.
+//! Whether a garment that was sewn through itself is sewn once more, around a thin figure, and
+//! which of the two results is better.
 
 use crate::body::grown;
 use toile_cloth::contact::body::Body as Solid;
@@ -6,10 +7,12 @@ use toile_cloth::contact::past::Start;
 use toile_cloth::statics::solve::{Equilibrium, StaticsError};
 use toile_core::prelude::*;
 
-/// Triangles may dip this deep into the body before it is said, m: the limit that vertices are judged by.
+/// Triangles may dip this deep into the body before it is said, m: the limit that vertices are
+/// judged by.
 pub(super) const MOST_DIP: f64 = 1e-4;
 
-/// Why a garment is sewn once more around a thin figure, in words; nothing where it came out well, or where that would not help.
+/// Why a garment is sewn once more around a thin figure, in words; nothing where it came out well,
+/// or where that would not help.
 pub(super) fn why_again(result: &Result<Equilibrium, StaticsError>) -> Option<&'static str> {
     match result {
         Err(StaticsError::SeamNotClosed { .. }) => Some("the body keeps seams open"),
@@ -28,7 +31,8 @@ pub(super) fn why_again(result: &Result<Equilibrium, StaticsError>) -> Option<&'
     }
 }
 
-/// Whether the second result of a garment is to be taken for its first. An error of the first tells more than one of the second.
+/// Whether the second result of a garment is to be taken for its first. An error of the first tells
+/// more than one of the second.
 pub(super) fn is_better(
     second: &Result<Equilibrium, StaticsError>,
     first: &Result<Equilibrium, StaticsError>,
@@ -42,7 +46,8 @@ pub(super) fn is_better(
     faults(second) < faults(first)
 }
 
-/// What a garment is sewn on where the body keeps its seams open: the body drawn in, which grows; nothing where the collider shows no mesh.
+/// What a garment is sewn on where the body keeps its seams open: the body drawn in, which grows;
+/// nothing where the collider shows no mesh.
 pub(super) fn thin_of(collider: &Collider) -> Vec<Solid> {
     let Some(surface) = collider.scheme.surface() else { return Vec::new() };
     let solid =

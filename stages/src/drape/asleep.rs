@@ -1,15 +1,17 @@
 //! Rule `regions-at-rest`: what has come to rest sleeps while few vertices still move.
 //!
-//! Fact: where a step moved few vertices (at most 15 % of all, those within two rings around them counted) these are a system of their
-//! own until they rest, and all else is held. Tolerance: the whole looks again afterwards, and rest is proved with all, so
-//! the state keeps the same speed of rest; which of its neighbours a hair picks may differ, as between starts that are moved by a
+//! Fact: where a step moved few vertices (at most 15 % of all, those within two rings around them
+//! counted) these are a system of their own until they rest, and all else is held. Tolerance: the
+//! whole looks again afterwards, and rest is proved with all, so the state keeps the same speed of
+//! rest; which of its neighbours a hair picks may differ, as between starts that are moved by a
 //! millimetre. Source: Lanzkron, Rose, Wilkes 1996.
 
 use super::mixed_precision::APART;
 use toile_core::cost::{Quantity, Size};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
-/// Share of the stage's time that it saves, on garments of some thousand triangles: continued, straight.
+/// Share of the stage's time that it saves, on garments of some thousand triangles: continued,
+/// straight.
 const SHARE: (f64, f64) = (0.05, 0.25);
 
 /// The decision of a drape of so many triangles.

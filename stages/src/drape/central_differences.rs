@@ -1,7 +1,7 @@
 //! `CentralDifferences`: sews and drapes in time by explicit steps on finite elements.
 //!
-//! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops a vertex and step, but some
-//! thousand steps a second. Limit: stiff or fine cloth makes steps tiny.
+//! Method: leapfrog with a step below the limit 2/omega_max, which is computed. Cost: a few flops a
+//! vertex and step, but some thousand steps a second. Limit: stiff or fine cloth makes steps tiny.
 
 use super::models::{Bending, Membrane, models};
 use super::motion::{InTime, drape};
@@ -10,12 +10,12 @@ use toile_core::prelude::*;
 
 /// Sews the garment and lets it fall and settle, by central differences with an adaptive step.
 ///
-/// Promises motion of second order without damping of its own; the step stays below the stable limit
-/// 2/omega_max, which is computed from the stiffness and again as cloth stiffens. `SpringStitcher` and
-/// `SpringDraper` do the same with springs.
-/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
-/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
-/// the body is an error.
+/// Promises motion of second order without damping of its own; the step stays below the stable
+/// limit 2/omega_max, which is computed from the stiffness and again as cloth stiffens.
+/// `SpringStitcher` and `SpringDraper` do the same with springs. Seams are sewn first, without
+/// weight, for as long as they take. In a scene it then follows the scene's phases for their
+/// seconds, those before the first with weight less by the time of sewing; else it drapes until
+/// rest. Cloth that falls past the body is an error.
 #[stage(
     role = Draper,
     version = 6,

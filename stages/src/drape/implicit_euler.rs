@@ -1,7 +1,8 @@
 //! `ImplicitEuler`: sews and drapes in time by implicit steps.
 //!
-//! Method: each step minimises inertia and energy by Newton's method with line search. Cost: a few factorizations a step.
-//! Limit: contacts act after the step, so `dt` above 8 ms lets tight garments slip.
+//! Method: each step minimises inertia and energy by Newton's method with line search. Cost: a few
+//! factorizations a step. Limit: contacts act after the step, so `dt` above 8 ms lets tight
+//! garments slip.
 
 use super::models::{Bending, Membrane, models};
 use super::motion::{InTime, drape};
@@ -11,11 +12,11 @@ use toile_core::prelude::*;
 /// Sews the garment and lets it fall and settle, by implicit Euler steps.
 ///
 /// Promises: stable at any step, never gains energy, free fall exact, each step solved to
-/// `tolerance` newtons. Damps what the step does not resolve: a mode of frequency w loses the factor
-/// 1/sqrt(1 + (w dt)^2) a step.
-/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
-/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
-/// the body is an error.
+/// `tolerance` newtons. Damps what the step does not resolve: a mode of frequency w loses the
+/// factor 1/sqrt(1 + (w dt)^2) a step. Seams are sewn first, without weight, for as long as they
+/// take. In a scene it then follows the scene's phases for their seconds, those before the first
+/// with weight less by the time of sewing; else it drapes until rest. Cloth that falls past the
+/// body is an error.
 #[stage(
     role = Draper,
     version = 6,

@@ -1,9 +1,11 @@
-//! Rule `mixed-precision`: the factor of each step's matrix in single precision, where that solves the step.
+//! Rule `mixed-precision`: the factor of each step's matrix in single precision, where that solves
+//! the step.
 //!
-//! Fact: every step's solution is held against its matrix in double precision, and refined; where more than a ten-thousandth
-//! of the right side is left, the matrix is too ill conditioned, and is factored anew in double precision. Forces, energies and
-//! the proof of rest are of double precision always. Tolerance: the state keeps the same speed of rest; which of its
-//! neighbours a hair picks may differ, as between starts that are moved by a millimetre. Source: Wilkinson 1963,
+//! Fact: every step's solution is held against its matrix in double precision, and refined; where
+//! more than a ten-thousandth of the right side is left, the matrix is too ill conditioned, and is
+//! factored anew in double precision. Forces, energies and the proof of rest are of double
+//! precision always. Tolerance: the state keeps the same speed of rest; which of its neighbours a
+//! hair picks may differ, as between starts that are moved by a millimetre. Source: Wilkinson 1963,
 //! Carson and Higham 2018.
 
 use toile_core::cost::{Quantity, Size};
@@ -32,8 +34,8 @@ impl From<Precision> for toile_cloth::statics::solve::Precision {
 /// Share of the stage's time that it saves, on garments of some thousand triangles.
 const SHARE: f64 = 0.08;
 
-/// How far the surface may lie from that of double precision (95 %), m: continued, as far as states that chance picks from; straight,
-/// as far as the folds of two moved starts.
+/// How far the surface may lie from that of double precision (95 %), m: continued, as far as states
+/// that chance picks from; straight, as far as the folds of two moved starts.
 pub(super) const APART: (f64, f64) = (0.008, 0.02);
 
 /// The decision of a drape of so many triangles.

@@ -11,7 +11,8 @@ pub enum Membrane {
     Woven,
     /// Isotropic triangles (St Venant-Kirchhoff) of the warp's first slope and Poisson's ratio.
     StVenantKirchhoff,
-    /// Springs along the edges of the mesh, by family (van Gelder 1998; Fan et al. 1999): right along the mesh lines only.
+    /// Springs along the edges of the mesh, by family (van Gelder 1998; Fan et al. 1999): right
+    /// along the mesh lines only.
     Springs,
 }
 
@@ -23,10 +24,11 @@ pub enum Bending {
     Quadratic,
     /// Coupled hinges by their angles (Grinspun et al. 2003, 2006): right at any fold.
     Hinge,
-    /// Hinges each by itself, by `2 tan(theta / 2)` of their angle (Grinspun et al. 2003; Tamstorf, Grinspun 2013): cloth never
-    /// folds through itself.
+    /// Hinges each by itself, by `2 tan(theta / 2)` of their angle (Grinspun et al. 2003; Tamstorf,
+    /// Grinspun 2013): cloth never folds through itself.
     DiscreteShell,
-    /// Springs over every second vertex, as the classic systems have them: nothing against a small fold.
+    /// Springs over every second vertex, as the classic systems have them: nothing against a small
+    /// fold.
     SkipOne,
 }
 

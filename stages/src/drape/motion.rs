@@ -1,4 +1,5 @@
-//! What the stages that drape in time have in common: from garment to scene, through the motion, and back.
+//! What the stages that drape in time have in common: from garment to scene, through the motion,
+//! and back.
 
 use crate::engine::{
     self, Motions, SchemeSurface, Setting, Words, check_garment, only_joins, scene_of, weld_seams,
@@ -26,7 +27,8 @@ pub struct InTime {
     /// Drag in proportion to mass, so that swinging dies out; 0 for a true fall.
     #[param(default = 4.0, min = 0.0, max = 1000.0, unit = "1/s")]
     pub drag: f64,
-    /// Density of the air, which slows every triangle and carries the wind: 1.2 at 20 degrees; a scene's phases may have their own.
+    /// Density of the air, which slows every triangle and carries the wind: 1.2 at 20 degrees; a
+    /// scene's phases may have their own.
     #[param(default = 0.0, min = 0.0, max = 2000.0, unit = "kg/m3")]
     pub air: f64,
     /// Drag coefficient of the air across the cloth.
@@ -65,7 +67,8 @@ pub(crate) struct Course<'a> {
     pub(crate) can: Motions,
 }
 
-/// Sews the garment and lets it come to rest, or follows the phases of a scene; `soft` is the garment as the solver takes it.
+/// Sews the garment and lets it come to rest, or follows the phases of a scene; `soft` is the
+/// garment as the solver takes it.
 pub(super) fn drape(
     course: &Course<'_>,
     soft: &Garment,

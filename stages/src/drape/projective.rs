@@ -1,7 +1,7 @@
 //! `Projective`: sews and drapes in time by local and global turns.
 //!
-//! Method: implicit Euler with a matrix that never changes. Cost: one factor for all, two triangular solves a turn.
-//! Limit: isotropic, converges slowly for stiff cloth and long steps.
+//! Method: implicit Euler with a matrix that never changes. Cost: one factor for all, two
+//! triangular solves a turn. Limit: isotropic, converges slowly for stiff cloth and long steps.
 
 use super::motion::{InTime, drape};
 use toile_cloth::energy::Models;
@@ -11,10 +11,10 @@ use toile_core::prelude::*;
 /// Sews the garment and lets it fall and settle, by projective dynamics.
 ///
 /// Promises that every turn lowers the energy of the step and that a step costs the same always;
-/// what `iterations` leave undone shows as cloth too stiff against turning and slow to fall into folds.
-/// Warp and weft count as one stiffness.
-/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
-/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
+/// what `iterations` leave undone shows as cloth too stiff against turning and slow to fall into
+/// folds. Warp and weft count as one stiffness. Seams are sewn first, without weight, for as long
+/// as they take. In a scene it then follows the scene's phases for their seconds, those before the
+/// first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
 /// the body is an error.
 #[stage(
     role = Draper,

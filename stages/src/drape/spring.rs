@@ -1,9 +1,10 @@
 //! `SpringDraper`: lets the sewn garment hang.
 //!
-//! Method: the engine's motion by central differences with springs along the mesh edges [improved spring-mass model 2003]: gravity,
-//! springs, contacts with body and cloth, and Provot's correction of over-stretched edges.
-//! Cost: steps times triangles. Limits: explicit steps, so stiff fabrics are softened to `stiffest`; the error in
-//! strain is the weight below a point over that stiffness, under 1 % for a garment.
+//! Method: the engine's motion by central differences with springs along the mesh edges [improved
+//! spring-mass model 2003]: gravity, springs, contacts with body and cloth, and Provot's correction
+//! of over-stretched edges. Cost: steps times triangles. Limits: explicit steps, so stiff fabrics
+//! are softened to `stiffest`; the error in strain is the weight below a point over that stiffness,
+//! under 1 % for a garment.
 
 use super::motion::{Course, InTime, drape};
 use super::soften::{damping, easy_strain, softened, springs};
@@ -14,10 +15,10 @@ use toile_core::prelude::*;
 /// Lets the sewn garment hang and fold under its weight until it is at rest.
 ///
 /// Gravity, the cloth's springs and contacts act, edges longer than `max_strain` allows are
-/// shortened after every step, and cloth is kept off itself. Damping grows with time, so that
-/// folds form freely first and swinging dies out then. The stage ends when the energy no longer
-/// changes and every vertex is slow, or at its time limit with a warning. Cloth that falls past the body
-/// is an error.
+/// shortened after every step, and cloth is kept off itself. Damping grows with time, so that folds
+/// form freely first and swinging dies out then. The stage ends when the energy no longer changes
+/// and every vertex is slow, or at its time limit with a warning. Cloth that falls past the body is
+/// an error.
 #[stage(
     role = Draper,
     version = 4,

@@ -1,9 +1,10 @@
 //! `StaticEquilibrium`: sews and drapes at once, straight to static equilibrium.
 //!
-//! Method: the engine's `StaticEquilibrium` (coarse to fine, Newton's method on the potential of sheet, seams, weight, contacts and
-//! friction). Cost: some 35 to 150 factorizations of the finest mesh, O(triangles^1.5) each with a small factor. Limits:
-//! the way there is no motion: nothing of it may be shown as an animation; folds and friction have many states of rest, of
-//! which one is found.
+//! Method: the engine's `StaticEquilibrium` (coarse to fine, Newton's method on the potential of
+//! sheet, seams, weight, contacts and friction). Cost: some 35 to 150 factorizations of the finest
+//! mesh, O(triangles^1.5) each with a small factor. Limits: the way there is no motion: nothing of
+//! it may be shown as an animation; folds and friction have many states of rest, of which one is
+//! found.
 
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
@@ -25,29 +26,33 @@ use toile_cloth::stopper::Stopper;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;
 
-/// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds gains speed in it.
+/// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds
+/// gains speed in it.
 #[choice]
 #[derive(Copy, Eq)]
 pub enum Proof {
     /// A sixtieth of a second: the least force left over shows.
     Short,
-    /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in garments of many gathers by some centimetres
-    /// in the end; the way there is what takes longest.
+    /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in
+    /// garments of many gathers by some centimetres in the end; the way there is what takes
+    /// longest.
     Long,
 }
 
 /// Sews the garment and brings it to rest, without the way there.
 ///
 /// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
-/// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static` would gain `speed` if it
-/// were let go for a short while (see `proof`), with friction within its limit. Seams are joined
-/// exactly, cloth is kept out of the body and out of itself. Where it does not come to rest in
-/// `steps`, the last state goes on with a warning. Where the coarsest mesh turns out too coarse (a seam stays open, layers
-/// tangle, a limb comes through), it begins again on a finer one: the figure `restarts` tells how often, and a larger
-/// `coarsest` saves it. Cloth that misses the body or slides off it is an error, as
-/// soon as nothing is left that could catch it, mostly on the coarsest mesh. A scene without a body that no pin holds has no
-/// rest: its fall is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state of rest; a scene
-/// with wind in its last phase is refused, for wind has no potential: take `ImplicitEuler`.
+/// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static`
+/// would gain `speed` if it were let go for a short while (see `proof`), with friction within its
+/// limit. Seams are joined exactly, cloth is kept out of the body and out of itself. Where it does
+/// not come to rest in `steps`, the last state goes on with a warning. Where the coarsest mesh
+/// turns out too coarse (a seam stays open, layers tangle, a limb comes through), it begins again
+/// on a finer one: the figure `restarts` tells how often, and a larger `coarsest` saves it. Cloth
+/// that misses the body or slides off it is an error, as soon as nothing is left that could catch
+/// it, mostly on the coarsest mesh. A scene without a body that no pin holds has no rest: its fall
+/// is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state
+/// of rest; a scene with wind in its last phase is refused, for wind has no potential: take
+/// `ImplicitEuler`.
 #[stage(
     role = Draper,
     version = 21,
@@ -65,17 +70,20 @@ pub struct StaticEquilibrium {
     /// What cloth resists when it is folded.
     #[param(default = Bending::Quadratic, trades)]
     pub bending: Bending,
-    /// At rest, no vertex but the share `non_static` gains more than this in a step that proves rest (see `proof`).
+    /// At rest, no vertex but the share `non_static` gains more than this in a step that proves
+    /// rest (see `proof`).
     #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
-    /// The share of the vertices that may gain more, for garments that lie where the skin of a body folds, as in an armpit: some
-    /// vertices there never come to rest. The figure `non_static` tells the share that still moves.
+    /// The share of the vertices that may gain more, for garments that lie where the skin of a body
+    /// folds, as in an armpit: some vertices there never come to rest. The figure `non_static`
+    /// tells the share that still moves.
     #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
     /// Which steps prove rest.
     #[param(default = Proof::Short, trades)]
     pub proof: Proof,
-    /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at least 700.
+    /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at
+    /// least 700.
     #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
     pub coarsest: usize,
     /// Steps on every mesh but the finest; with `bending_continuation`, each of its states has 60.
@@ -90,27 +98,31 @@ pub struct StaticEquilibrium {
     /// Wall time after which it gives up, with an error. A run that meets it is not repeatable.
     #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
     pub time_limit: f64,
-    /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a millimetre then ends in the same
-    /// folds, and a finer mesh in like ones. Without, it is faster, and chance picks the folds.
+    /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a
+    /// millimetre then ends in the same folds, and a finer mesh in like ones. Without, it is
+    /// faster, and chance picks the folds.
     #[param(default = true)]
     pub bending_continuation: bool,
-    /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came to rest on a coarser mesh (see
-    /// `Subdivide`) and shall keep its folds. Bending is not continued then.
+    /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came
+    /// to rest on a coarser mesh (see `Subdivide`) and shall keep its folds. Bending is not
+    /// continued then.
     #[param(default = false, way)]
     pub from_here: bool,
-    /// Whether cloth passes through cloth while its seams close: for panels that start far apart, with others in between, or in the body.
-    /// What crosses itself then is taken out of itself along the contours where it does (Volino, Magnenat-Thalmann 2006). What
-    /// starts in the body is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh. Where the body keeps
-    /// seams open, or the cloth does not come out of itself or of the body, the garment is sewn again around a thin figure of the body's pose,
-    /// which grows to its full size in it; that is told, and the better result is taken.
+    /// Whether cloth passes through cloth while its seams close: for panels that start far apart,
+    /// with others in between, or in the body. What crosses itself then is taken out of itself
+    /// along the contours where it does (Volino, Magnenat-Thalmann 2006). What starts in the body
+    /// is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh.
+    /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
+    /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
+    /// size in it; that is told, and the better result is taken.
     #[param(default = false, way)]
     pub sew_through: bool,
-    /// How precise the factor of each step's matrix is: single where that solves the step well, which is checked, or
-    /// always double. The state that is found keeps `speed` either way.
+    /// How precise the factor of each step's matrix is: single where that solves the step well,
+    /// which is checked, or always double. The state that is found keeps `speed` either way.
     #[param(default = Precision::Mixed)]
     pub precision: Precision,
-    /// Whether what has come to rest sleeps while few vertices still move: these settle by themselves before the whole takes its next
-    /// step. Rest is proved with all either way.
+    /// Whether what has come to rest sleeps while few vertices still move: these settle by
+    /// themselves before the whole takes its next step. Rest is proved with all either way.
     #[param(default = true)]
     pub asleep: bool,
     /// Distance at which cloth is held off itself where the pipeline names no collider.

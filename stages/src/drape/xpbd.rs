@@ -1,7 +1,8 @@
 //! `Xpbd`: sews and drapes in time by position-based steps.
 //!
-//! Method: each triangle and hinge is a compliant constraint, one walk over all of them a small step. Cost: linear, no matrix.
-//! Limit: too soft where `substeps` are few, most of all in long, stiff pieces.
+//! Method: each triangle and hinge is a compliant constraint, one walk over all of them a small
+//! step. Cost: linear, no matrix. Limit: too soft where `substeps` are few, most of all in long,
+//! stiff pieces.
 
 use super::motion::{InTime, drape};
 use toile_cloth::energy::Models;
@@ -10,13 +11,13 @@ use toile_core::prelude::*;
 
 /// Sews the garment and lets it fall and settle, by extended position-based dynamics.
 ///
-/// Promises a picture in fixed time, never unstable, free fall exact; approaches the finite elements
-/// as `substeps` grow, from the soft side.
-/// For pictures and first looks: on a skirt of 2,200 triangles the default leaves 1 % of the edges strained by 5.4 %, over the limit of
-/// `Measure`; 8 substeps keep it.
-/// Seams are sewn first, without weight, for as long as they take. In a scene it then follows the scene's
-/// phases for their seconds, those before the first with weight less by the time of sewing; else it drapes until rest. Cloth that falls past
-/// the body is an error.
+/// Promises a picture in fixed time, never unstable, free fall exact; approaches the finite
+/// elements as `substeps` grow, from the soft side. For pictures and first looks: on a skirt of
+/// 2,200 triangles the default leaves 1 % of the edges strained by 5.4 %, over the limit of
+/// `Measure`; 8 substeps keep it. Seams are sewn first, without weight, for as long as they take.
+/// In a scene it then follows the scene's phases for their seconds, those before the first with
+/// weight less by the time of sewing; else it drapes until rest. Cloth that falls past the body is
+/// an error.
 #[stage(
     role = Draper,
     version = 5,

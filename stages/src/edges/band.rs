@@ -23,8 +23,8 @@ pub(crate) struct Patch {
 
 impl Patch {
     /// Correlates with `across` along rows and `down` along columns (odd lengths); the result is
-    /// smaller by the kernels' radii on each side, so nothing is made up at the rim. Both kernels have
-    /// one length.
+    /// smaller by the kernels' radii on each side, so nothing is made up at the rim. Both kernels
+    /// have one length.
     pub(crate) fn separable(&self, across: &[f32], down: &[f32]) -> Patch {
         let (n, k) = (self.side, across.len());
         let side = n + 1 - k;
@@ -168,8 +168,9 @@ impl Plane<'_> {
         }
     }
 
-    /// The value at a point (pixels, y up) by cubic convolution (R. Keys, 1981). Bilinear interpolation
-    /// would draw the top of a ridge towards the nearest pixel, by up to a quarter of one.
+    /// The value at a point (pixels, y up) by cubic convolution (R. Keys, 1981). Bilinear
+    /// interpolation would draw the top of a ridge towards the nearest pixel, by up to a quarter of
+    /// one.
     pub(crate) fn sample(&self, p: Point2) -> f64 {
         let (x, y) = (p.x.floor(), (-p.y).floor());
         let (across, down) = (cubic(p.x - x), cubic(-p.y - y));

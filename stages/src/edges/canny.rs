@@ -32,8 +32,8 @@ pub struct Canny {
     /// Standard deviation of the smoothing: more quietens weave and grain but rounds detail off.
     #[param(default = 1.4, min = 0.3, max = 10.0, unit = "pixels", trades)]
     sigma: f64,
-    /// How much smoother the outline is between its corners than the edge that was seen: 2 to 3 quietens the
-    /// ragged rim of a small photo, 1 keeps every wave.
+    /// How much smoother the outline is between its corners than the edge that was seen: 2 to 3
+    /// quietens the ragged rim of a small photo, 1 keeps every wave.
     #[param(default = 1.0, min = 0.5, max = 6.0)]
     smooth: f64,
 }

@@ -1,13 +1,13 @@
 //! Corners of a closed curve.
 //!
 //! Method: at each place two arms of the curve, one behind and one ahead, are fitted with parabolas
-//! over the arc length (least squares); the angle between their tangents at the place is the corner's
-//! turn. A smooth curve continues its own parabola, so its turn is about zero however tightly it
-//! bends, which a plain chord angle (Rosenfeld and Johnston, *Angle detection on digital curves*, 1973)
-//! would take for a corner. Places where the turn peaks are corners; the exact point is where both
-//! parabolas cross, so rounding by lens, pixels and operator does not shift it. Cost: arm length times
-//! curve length. Limits: two corners nearer than an arm are seen as one, and a corner rounder than
-//! about a third of an arm is none.
+//! over the arc length (least squares); the angle between their tangents at the place is the
+//! corner's turn. A smooth curve continues its own parabola, so its turn is about zero however
+//! tightly it bends, which a plain chord angle (Rosenfeld and Johnston, *Angle detection on digital
+//! curves*, 1973) would take for a corner. Places where the turn peaks are corners; the exact point
+//! is where both parabolas cross, so rounding by lens, pixels and operator does not shift it. Cost:
+//! arm length times curve length. Limits: two corners nearer than an arm are seen as one, and a
+//! corner rounder than about a third of an arm is none.
 
 use super::curve::{Closed, Corner};
 use toile_core::artifact::{Point2, Vector2};
@@ -90,8 +90,8 @@ fn fit(curve: &Closed, s: f64, side: f64, scale: CornerScale) -> Arm {
     Arm { p: row(0, 1.0), v: row(1, side / scale.arm), a: row(2, 1.0 / (scale.arm * scale.arm)) }
 }
 
-/// How far a corner may stand off the curve that rounds it, in gaps: farther ones are curves whose parabolas
-/// happen to cross.
+/// How far a corner may stand off the curve that rounds it, in gaps: farther ones are curves whose
+/// parabolas happen to cross.
 const MAX_OFF: f64 = 2.5;
 /// How often the arms are fitted anew about the corner they gave.
 const ROUNDS: usize = 3;

@@ -1,8 +1,8 @@
 //! Does a set of closed loops cross itself?
 //!
 //! Method: segments are put into the cells of a grid that they touch, and those that share a cell
-//! are tested with exact orientation (J. Shewchuk, 1997, by the crate `robust`). Cost: about linear for
-//! evenly spaced outlines.
+//! are tested with exact orientation (J. Shewchuk, 1997, by the crate `robust`). Cost: about linear
+//! for evenly spaced outlines.
 
 use robust::{Coord, orient2d};
 use std::collections::BTreeMap;

@@ -1,11 +1,11 @@
 //! Closed curves by arc length: even sampling, and smoothing that keeps corners.
 //!
-//! Method: between two corners the curve is smoothed by local parabolas (Savitzky and Golay, 1964, in
-//! the weighted form of Cleveland, *Robust locally weighted regression*, 1979) over the arc length,
-//! with one robust round that takes the weight off points that leave the curve. Windows never reach
-//! across a corner, and the corner's exact point is pinned. A local parabola does not shrink curves, as
-//! a moving mean does. Cost: window length times curve length. Limits: detail shorter than the window is
-//! smoothed away.
+//! Method: between two corners the curve is smoothed by local parabolas (Savitzky and Golay, 1964,
+//! in the weighted form of Cleveland, *Robust locally weighted regression*, 1979) over the arc
+//! length, with one robust round that takes the weight off points that leave the curve. Windows
+//! never reach across a corner, and the corner's exact point is pinned. A local parabola does not
+//! shrink curves, as a moving mean does. Cost: window length times curve length. Limits: detail
+//! shorter than the window is smoothed away.
 
 use super::refine::smooth_closed;
 use rayon::prelude::*;
@@ -166,8 +166,8 @@ fn robust_weights(stretch: &Stretch, window: f64) -> Vec<f64> {
     plain.iter().zip(&residuals).map(|(w, &r)| if *w > 1.0 { *w } else { w * biweight(r) + 1e-6 }).collect()
 }
 
-/// The value at `s` of the parabola fitted to the points in a window about it. The window grows at the
-/// ends of a stretch, so that it always holds about as many points.
+/// The value at `s` of the parabola fitted to the points in a window about it. The window grows at
+/// the ends of a stretch, so that it always holds about as many points.
 fn local(stretch: &Stretch, weights: &[f64], s: f64, window: f64) -> Point2 {
     let beyond = match stretch.closed {
         true => 0.0,

@@ -1,8 +1,9 @@
 //! The Laplacian of a Gaussian.
 //!
 //! Method: zero crossings of the second derivative of the smoothed picture (D. Marr and E.
-//! Hildreth, *Theory of edge detection*, 1980), by two separable kernels, which is exact. Cost: about
-//! 70 ns a pixel of the band. Limits: on curved rims zero crossings lie a little outside the edge.
+//! Hildreth, *Theory of edge detection*, 1980), by two separable kernels, which is exact. Cost:
+//! about 70 ns a pixel of the band. Limits: on curved rims zero crossings lie a little outside the
+//! edge.
 
 use super::band::{Band, Patch};
 use super::operator::{Operator, Response, gaussian};

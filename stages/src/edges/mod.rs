@@ -1,7 +1,7 @@
 //! Edge detectors: photo and mask to a closed sub-pixel outline.
 //!
-//! All of them share one way: the mask's boundary is followed ([`trace`]), an operator is evaluated in
-//! a band around it ([`band`], [`operator`]), every boundary point moves along its normal to the
+//! All of them share one way: the mask's boundary is followed ([`trace`]), an operator is evaluated
+//! in a band around it ([`band`], [`operator`]), every boundary point moves along its normal to the
 //! operator's edge ([`refine`]), corners are found ([`corners`]), and the curve between them is
 //! smoothed and spaced evenly ([`curve`]). They differ in the operator alone.
 

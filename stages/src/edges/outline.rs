@@ -1,7 +1,8 @@
 //! From a mask and an edge operator to the outline: what all edge detectors share.
 //!
 //! Lengths are shares of the garment's size (the root of its area), with a floor in pixels, so that
-//! a small photo and a large one of the same garment, and a child's vest and a man's, are treated alike.
+//! a small photo and a large one of the same garment, and a child's vest and a man's, are treated
+//! alike.
 
 use super::band::Band;
 use super::corners::{self, CornerScale};
@@ -48,7 +49,8 @@ const LEAST_TURN: f64 = 32.0 * std::f64::consts::PI / 180.0;
 const TINY_HOLE: f64 = 4e-4;
 /// A second piece above this share of the first is another garment.
 const SECOND_PIECE: f64 = 0.2;
-/// A mask that is the photo's opacity differs from it by this share at most, after clean-up: holes that were filled, specks.
+/// A mask that is the photo's opacity differs from it by this share at most, after clean-up: holes
+/// that were filled, specks.
 const MOST_BESIDE: f64 = 0.1;
 /// Fewer pixels than this have no outline to speak of.
 const LEAST_AREA: f64 = 400.0;
@@ -115,7 +117,8 @@ fn check_frame(photo: &Photo, mask: &Mask, cx: &Context) -> Result<(), StageErro
     Ok(())
 }
 
-/// Whether a mask is the photo's opacity: a garment whose ground was cut away ends where it is seen to end, at the frame too.
+/// Whether a mask is the photo's opacity: a garment whose ground was cut away ends where it is seen
+/// to end, at the frame too.
 fn is_opacity(photo: &Photo, mask: &Mask) -> bool {
     let Some(alpha) = photo.alpha.as_deref().filter(|a| a.dimensions() == mask.pixels.dimensions()) else {
         return false;
@@ -157,7 +160,8 @@ fn smooth_loop(points: &[Point2], lengths: &Lengths) -> Result<Loop, StageError>
     let mut corners = corners::find(&curve, CornerScale { arm, gap, least_turn: LEAST_TURN });
     loop {
         let smooth = curve::smooth(&curve, &corners, Smoothing { window, gap, spacing });
-        // Ragged borders can feign corners whose stretches cross each other: the one nearest to the place goes.
+        // Ragged borders can feign corners whose stretches cross each other: the one nearest to the
+        // place goes.
         let Some(p) = crossing::first(std::iter::once(&smooth)) else { return Ok(smooth) };
         let far = |c: &curve::Corner| (c.point - p).norm();
         let nearest = (0..corners.len()).min_by(|a, b| far(&corners[*a]).total_cmp(&far(&corners[*b])));

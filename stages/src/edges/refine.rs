@@ -1,10 +1,10 @@
 //! From the mask's staircase to the operator's edge, at a fraction of a pixel.
 //!
-//! Method: the boundary is smoothed by a pixel or two; from each of its points the operator's answer
-//! is sampled along the normal, the best edge within reach is taken, and its place is found by a
-//! parabola (ridges) or a straight line (zero crossings) through the samples around it. Offsets that
-//! leave the median of their neighbours are dropped. Where nothing is seen the mask's own half-way
-//! crossing stays. Cost: about 1 us a boundary point.
+//! Method: the boundary is smoothed by a pixel or two; from each of its points the operator's
+//! answer is sampled along the normal, the best edge within reach is taken, and its place is found
+//! by a parabola (ridges) or a straight line (zero crossings) through the samples around it.
+//! Offsets that leave the median of their neighbours are dropped. Where nothing is seen the mask's
+//! own half-way crossing stays. Cost: about 1 us a boundary point.
 
 use super::operator::{Accept, Response};
 use rayon::prelude::*;
@@ -93,7 +93,8 @@ fn offset(response: &Response, p: Point2, normal: Vector2, reach: f64) -> Option
     }
 }
 
-/// Nearer edges win over slightly stronger ones: the weight falls to a half at the end of the reach.
+/// Nearer edges win over slightly stronger ones: the weight falls to a half at the end of the
+/// reach.
 fn nearness(i: f64, count: usize) -> f64 {
     let middle = (count - 1) as f64 / 2.0;
     1.0 - 0.5 * ((i - middle) / middle).powi(2)

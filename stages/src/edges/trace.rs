@@ -9,7 +9,8 @@
 use image::GrayImage;
 use toile_core::artifact::{Point2, polygon_area};
 
-/// A closed loop in pixels with y up (`(x, -row)`); area positive for outer loops, negative for holes.
+/// A closed loop in pixels with y up (`(x, -row)`); area positive for outer loops, negative for
+/// holes.
 #[derive(Debug, Clone)]
 pub(crate) struct CrackLoop {
     pub(crate) points: Vec<Point2>,

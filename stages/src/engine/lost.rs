@@ -1,4 +1,5 @@
-//! What of a scene a garment cannot hold: it is named, so that nobody takes the result for the scene's.
+//! What of a scene a garment cannot hold: it is named, so that nobody takes the result for the
+//! scene's.
 
 use toile_cloth::scene::Scene;
 

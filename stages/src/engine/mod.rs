@@ -1,6 +1,8 @@
-//! Between artifacts and the cloth engine: garments become scenes, colliders become skins, errors become stage errors.
+//! Between artifacts and the cloth engine: garments become scenes, colliders become skins, errors
+//! become stage errors.
 //!
-//! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in common is here.
+//! The engine (`toile-cloth`) knows no pipelines; everything that the stages which use it have in
+//! common is here.
 
 mod arithmetic;
 mod check;

@@ -1,11 +1,14 @@
-//! How much of a garment is still in its place on the body: what slid off shows, whatever holds it up in the end.
+//! How much of a garment is still in its place on the body: what slid off shows, whatever holds it
+//! up in the end.
 //!
-//! Method: for each piece of cloth (all that hangs together) the height of its upper edge where it starts, but no higher than
-//! the body under it, against that where it ends. What starts upright is also held by the mean way of its vertices down, so that a
-//! skirt that slid on one side alone has sunk. The way that it has sunk, as a share of the piece's size (the root of its
-//! flat area), is what has left its place. So cloth that starts above a ball and comes to lie on it has sunk by nothing, a skirt that
-//! slides 5 cm onto the hips by some hundredths, a skirt that lies about the feet by all. Cost: some hundred
-//! distances a piece. Limit: a body thinner than a ninth of the piece is not seen under it; then its start alone counts.
+//! Method: for each piece of cloth (all that hangs together) the height of its upper edge where it
+//! starts, but no higher than the body under it, against that where it ends. What starts upright is
+//! also held by the mean way of its vertices down, so that a skirt that slid on one side alone has
+//! sunk. The way that it has sunk, as a share of the piece's size (the root of its flat area), is
+//! what has left its place. So cloth that starts above a ball and comes to lie on it has sunk by
+//! nothing, a skirt that slides 5 cm onto the hips by some hundredths, a skirt that lies about the
+//! feet by all. Cost: some hundred distances a piece. Limit: a body thinner than a ninth of the
+//! piece is not seen under it; then its start alone counts.
 
 use super::SchemeSurface;
 use super::pieces::pieces;
@@ -17,7 +20,8 @@ use toile_core::artifact::{Collide, Garment, Point3};
 /// Points on a side of the raster in which the body under a piece is looked for.
 const RASTER: usize = 9;
 
-/// Pieces from which on only the box of the body is looked at: a garment has few, and each costs a raster.
+/// Pieces from which on only the box of the body is looked at: a garment has few, and each costs a
+/// raster.
 const MANY: usize = 64;
 
 /// Nearer than this to the body, a way down has met it, metres; and the least step down.
@@ -26,11 +30,13 @@ const MET: f64 = 1e-3;
 /// Steps down at most.
 const STEPS: usize = 400;
 
-/// What is taller than this at its start, as a share of the piece's size, stands upright; a sheet that lies above a ball does not.
+/// What is taller than this at its start, as a share of the piece's size, stands upright; a sheet
+/// that lies above a ball does not.
 const UPRIGHT: f64 = 0.3;
 
-/// For each panel the share of it that is still in its place, of its piece that has sunk farthest; 1 for what pins hold. `garment`
-/// stands where it starts, `end` is where its vertices have come to. Empty without a body or weight.
+/// For each panel the share of it that is still in its place, of its piece that has sunk farthest;
+/// 1 for what pins hold. `garment` stands where it starts, `end` is where its vertices have come
+/// to. Empty without a body or weight.
 pub fn on_body(garment: &Garment, end: &[Point3], scheme: &dyn Collide, gravity: &Vector3<f64>) -> Vec<f64> {
     let skin = SchemeSurface::new(scheme);
     let Some(body) = BodyBox::of(&skin, gravity) else { return Vec::new() };

@@ -1,4 +1,5 @@
-//! What a collider asks of its solver beside distance and friction, and a solver for rest has no use for.
+//! What a collider asks of its solver beside distance and friction, and a solver for rest has no
+//! use for.
 
 use toile_core::prelude::*;
 

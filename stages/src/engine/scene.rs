@@ -263,7 +263,8 @@ pub fn join_pairs<'a>(weld: &mut [u32], pairs: impl IntoIterator<Item = &'a [u32
 
 fn root(weld: &mut [u32], mut v: u32) -> u32 {
     while weld[v as usize] != v {
-        // Ways to the root are halved, or a long chain would be walked again for each of its members.
+        // Ways to the root are halved, or a long chain would be walked again for each of its
+        // members.
         weld[v as usize] = weld[weld[v as usize] as usize];
         v = weld[v as usize];
     }

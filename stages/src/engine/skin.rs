@@ -21,7 +21,8 @@ pub struct SchemeSurface<'a> {
 }
 
 impl<'a> SchemeSurface<'a> {
-    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where the scheme shows a mesh.
+    /// The body that `scheme` keeps cloth out of. Its sharp edges and its triangles are known where
+    /// the scheme shows a mesh.
     #[must_use]
     pub fn new(scheme: &'a dyn Collide) -> Self {
         Self { scheme, sharp: OnceLock::new(), facets: OnceLock::new() }
@@ -36,11 +37,12 @@ impl SchemeSurface<'_> {
     }
 }
 
-/// From so far away along a direction the nearest point of a body is the one that reaches farthest along it, metres: for a body 1 m
-/// wide it is off by half a micrometre.
+/// From so far away along a direction the nearest point of a body is the one that reaches farthest
+/// along it, metres: for a body 1 m wide it is off by half a micrometre.
 const FAR: f64 = 1e6;
 
-/// Looks from far away, each from above what the last one found: a body may stand far from the origin.
+/// Looks from far away, each from above what the last one found: a body may stand far from the
+/// origin.
 const LOOKS: usize = 3;
 
 /// No garment is farther from its body, metres: stands for a reach without limit.

@@ -1,8 +1,8 @@
 //! Force-strain curves from the few figures that a tensile or shear test reports.
 //!
-//! Method: the Kawabata tensile test stretches cloth to 500 gf/cm and reports the strain there (EMT)
-//! and the linearity LT: the work done over that of a straight line. Woven cloth first straightens
-//! its crimp at a low force (LT below 1), so the curve is two straight pieces that meet
+//! Method: the Kawabata tensile test stretches cloth to 500 gf/cm and reports the strain there
+//! (EMT) and the linearity LT: the work done over that of a straight line. Woven cloth first
+//! straightens its crimp at a low force (LT below 1), so the curve is two straight pieces that meet
 //! halfway in strain and enclose the measured work. Cost: nothing. Limit: between the ends the true
 //! curve is smooth; two pieces err by some per cent of the end's force.
 
@@ -26,7 +26,8 @@ pub fn tensile_curve(strain: f64, force: f64, linearity: f64) -> Curve {
     if linearity >= 1.0 {
         return Curve(vec![(strain, force)]);
     }
-    // Work of the two pieces that meet at (strain/2, y): strain (y/2 + (y + force)/2) / 2 = LT strain force / 2.
+    // Work of the two pieces that meet at (strain/2, y): strain (y/2 + (y + force)/2) / 2 = LT
+    // strain force / 2.
     let half = (2.0 * linearity - 1.0) * force / 2.0;
     Curve(vec![(strain / 2.0, half), (strain, force)])
 }

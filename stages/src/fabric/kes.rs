@@ -36,7 +36,8 @@ pub struct Kes {
     /// Bending stiffness B, warp and weft.
     #[param(default = (0.11, 0.07), min = 0.0, max = 1000.0, unit = "gf cm2/cm")]
     b: (f64, f64),
-    /// Bending hysteresis 2HB, warp and weft; it holds folds, and only `StaticEquilibrium` knows it.
+    /// Bending hysteresis 2HB, warp and weft; it holds folds, and only `StaticEquilibrium` knows
+    /// it.
     #[param(default = (0.0, 0.0), min = 0.0, max = 1000.0, unit = "gf cm/cm")]
     hb: (f64, f64),
     /// Thickness T0 at 0.5 gf/cm2.

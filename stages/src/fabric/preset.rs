@@ -11,8 +11,8 @@ use toile_core::prelude::*;
 /// A common cloth by name, such as `Preset("cotton poplin")`.
 ///
 /// Names: cotton poplin, cotton twill, denim, linen, wool suiting, wool coating, silk charmeuse,
-/// polyester satin, polyester chiffon, ripstop nylon, cotton jersey, interlock knit. The figures are
-/// typical of their kind (KES-F orders of magnitude from textile handbooks), not of one cloth.
+/// polyester satin, polyester chiffon, ripstop nylon, cotton jersey, interlock knit. The figures
+/// are typical of their kind (KES-F orders of magnitude from textile handbooks), not of one cloth.
 #[stage(
     role = Fabric,
     source = "general textile-testing knowledge: KES-F (Kawabata 1980) and Cusick 1968 orders of magnitude",
@@ -23,8 +23,9 @@ pub struct Preset {
     /// The cloth's name.
     #[param(default = "cotton poplin".into())]
     name: String,
-    /// Whether bending has the friction that is typical of the cloth (its hysteresis 2HB): folds are held where they formed. Only
-    /// `StaticEquilibrium` knows it. How strongly is measured for cottons; for wool, filaments and knits it is assumed.
+    /// Whether bending has the friction that is typical of the cloth (its hysteresis 2HB): folds
+    /// are held where they formed. Only `StaticEquilibrium` knows it. How strongly is measured for
+    /// cottons; for wool, filaments and knits it is assumed.
     #[param(default = false)]
     hysteresis: bool,
 }
@@ -68,9 +69,10 @@ struct Typical {
     shear: f64,
     /// Bending along warp and weft, 1e-6 N m.
     bending: [f64; 2],
-    /// The frictional couple of bending (half of 2HB) over the stiffness, 1/m. Six cellulosic cloths of denim's weight measured by
-    /// KES have 23 to 54 (2HB / B of 0.46 to 1.07 per cm; Journal of Textiles 2016, 4614168). That wool and filaments have less and
-    /// knits more is assumed: no sheet was found.
+    /// The frictional couple of bending (half of 2HB) over the stiffness, 1/m. Six cellulosic
+    /// cloths of denim's weight measured by KES have 23 to 54 (2HB / B of 0.46 to 1.07 per cm;
+    /// Journal of Textiles 2016, 4614168). That wool and filaments have less and knits more is
+    /// assumed: no sheet was found.
     held: f64,
     friction: f64,
 }

@@ -6,8 +6,8 @@ use toile_core::prelude::*;
 
 /// A cloth by its mechanics, in SI units, with tensile curves point by point.
 ///
-/// A curve is a list of (strain, N/m) points that rise in both; it starts at (0, 0) and goes on with
-/// its last slope.
+/// A curve is a list of (strain, N/m) points that rise in both; it starts at (0, 0) and goes on
+/// with its last slope.
 #[stage(
     role = Fabric,
     source = "Fan, Zhou, Wang, Yuen, 1999: stiffness piecewise linear in the strain",
@@ -30,7 +30,8 @@ pub struct Cloth {
     /// Bending stiffness along warp and weft.
     #[param(default = (1.1e-5, 7e-6), min = 0.0, max = 1.0, unit = "N m")]
     bending: (f64, f64),
-    /// Friction of bending along warp and weft, half of the hysteresis 2HB; it holds folds, and only `StaticEquilibrium` knows it.
+    /// Friction of bending along warp and weft, half of the hysteresis 2HB; it holds folds, and
+    /// only `StaticEquilibrium` knows it.
     #[param(default = (0.0, 0.0), min = 0.0, max = 1.0, unit = "N m/m")]
     bending_friction: (f64, f64),
     /// Thickness.

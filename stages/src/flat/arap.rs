@@ -6,9 +6,11 @@ use toile_flatten::care::Objective;
 use toile_flatten::flatteners::arap;
 use toile_flatten::newton::NewtonOptions;
 
-/// Lays each piece flat so that every triangle keeps its shape as far as its neighbours let it: the least error of area.
+/// Lays each piece flat so that every triangle keeps its shape as far as its neighbours let it: the
+/// least error of area.
 ///
-/// A triangle's deviation is the squared distance of its map from the nearest rotation. No triangle flips, and the scale is true.
+/// A triangle's deviation is the squared distance of its map from the nearest rotation. No triangle
+/// flips, and the scale is true.
 #[stage(
     role = Flattener,
     version = 3,

@@ -13,7 +13,8 @@ use toile_flatten::flatteners::Placement;
 pub enum Darts {
     /// It strains.
     None,
-    /// Darts are drawn where the strain passes 1.5 per cent, and told with what each saves; none is cut.
+    /// Darts are drawn where the strain passes 1.5 per cent, and told with what each saves; none is
+    /// cut.
     Propose,
     /// Darts are cut until the strain falls below a limit, or none saves enough.
     Auto {
@@ -73,7 +74,8 @@ pub(super) fn dart_paths(
     Ok(found.into_iter().map(|darts| darts.into_iter().map(|d| d.path).collect()).collect())
 }
 
-/// All darts in one sentence, pieces with the same ones together: `dart 1 of "left" and "right" takes the strain from 2.1 % to 0.4 %`.
+/// All darts in one sentence, pieces with the same ones together:
+/// `dart 1 of "left" and "right" takes the strain from 2.1 % to 0.4 %`.
 fn told(names: &[String], found: &[Vec<Dart>]) -> Option<String> {
     let mut by_words: Vec<(String, Vec<&str>)> = Vec::new();
     for (name, darts) in names.iter().zip(found).filter(|(_, darts)| !darts.is_empty()) {

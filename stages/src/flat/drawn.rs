@@ -1,7 +1,9 @@
-//! Flat pieces as a sewing pattern: edges from corner to corner, seams as chains of them, grain and place on the body.
+//! Flat pieces as a sewing pattern: edges from corner to corner, seams as chains of them, grain and
+//! place on the body.
 //!
-//! Every boundary loop is cut at its corners and where seams begin and end; so each edge lies in one seam or in none. An edge of which all
-//! vertices lie on a line is a line, others keep all their vertices. Cost: linear in the boundary.
+//! Every boundary loop is cut at its corners and where seams begin and end; so each edge lies in
+//! one seam or in none. An edge of which all vertices lie on a line is a line, others keep all
+//! their vertices. Cost: linear in the boundary.
 
 use super::sheet::Sheet;
 use nalgebra::Matrix2x3;
@@ -10,7 +12,8 @@ use toile_core::prelude::*;
 use toile_flatten::care::boundary_chains;
 use toile_flatten::islands::{Chain, Piece as SurfacePiece, Seam as PieceSeam};
 
-/// A boundary vertex is a corner if its angle differs by more than this from a straight line, degrees.
+/// A boundary vertex is a corner if its angle differs by more than this from a straight line,
+/// degrees.
 pub(super) const CORNER: f64 = 30.0;
 /// Points that are nearer than this share of an edge's length to its chord are on it.
 const STRAIGHT: f64 = 1e-6;
@@ -182,7 +185,8 @@ impl Drawing<'_> {
         if taken.insert(name.clone()) { name } else { format!("{name} ({})", k + 1) }
     }
 
-    /// The legs of a dart meet in its tip; other seams are what the garment calls them, if their sides came out alike.
+    /// The legs of a dart meet in its tip; other seams are what the garment calls them, if their
+    /// sides came out alike.
     fn seam_kind(&self, seam: &PieceSeam, known: Option<usize>) -> SeamKind {
         let tip = seam.a.vertices.last() == seam.b.vertices.last()
             || seam.a.vertices.first() == seam.b.vertices.first();
@@ -202,7 +206,8 @@ fn starts(sides: &[Side]) -> BTreeMap<u32, usize> {
     outer.flat_map(|(k, s)| s.chain[..s.chain.len() - 1].iter().map(move |v| (*v, k))).collect()
 }
 
-/// The edges that a chain runs along, in its order, and whether from end to start; none for one along a hole.
+/// The edges that a chain runs along, in its order, and whether from end to start; none for one
+/// along a hole.
 fn uses(
     chain: &Chain,
     against: bool,
@@ -260,7 +265,8 @@ fn grain(flat: &[Point2]) -> Option<[Point2; 2]> {
     (half > 0.0).then(|| [Point2::new(middle.x, middle.y - half), Point2::new(middle.x, middle.y + half)])
 }
 
-/// The place of a flat piece in space that is nearest to where the piece lies on the garment (Kabsch 1976).
+/// The place of a flat piece in space that is nearest to where the piece lies on the garment
+/// (Kabsch 1976).
 fn pose(piece: &SurfacePiece, flat: &[Point2]) -> Option<Pose> {
     let places = piece.surface.positions();
     let n = places.len() as f64;

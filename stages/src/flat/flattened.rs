@@ -1,4 +1,5 @@
-//! What all flatteners have in common: pieces from the garment, each laid flat, cared for, cut at darts; pattern and garment of them.
+//! What all flatteners have in common: pieces from the garment, each laid flat, cared for, cut at
+//! darts; pattern and garment of them.
 
 use super::dart::{Darts, dart_paths};
 use super::drawn::{CORNER, Drawing};
@@ -22,7 +23,8 @@ pub(super) type Method<'a> =
 pub(super) struct Request<'a> {
     /// Lays one piece flat.
     pub(super) method: &'a Method<'a>,
-    /// The energy that pattern care minimises, and what it cares for; none for a map that none belongs to.
+    /// The energy that pattern care minimises, and what it cares for; none for a map that none
+    /// belongs to.
     pub(super) care: Option<(Objective, CareOptions)>,
     /// Darts.
     pub(super) darts: Darts,
@@ -40,10 +42,12 @@ pub struct Care {
     /// Make left and right pieces mirror images, and pieces that are their own mirror image so.
     #[param(default = true)]
     pub mirror: bool,
-    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for none.
+    /// An edge that leaves its line by at most this share of its length becomes straight; 0 for
+    /// none.
     #[param(default = 0.005, min = 0.0, max = 0.19)]
     pub straight: f64,
-    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a knit that is worn 10 % longer and 20 % wider.
+    /// Stretch of the garment along warp and weft that the pattern must not have: (0.1, 0.2) of a
+    /// knit that is worn 10 % longer and 20 % wider.
     #[param(default = (0.0, 0.0), min = -0.8, max = 9.0)]
     pub tension: (f64, f64),
     /// What becomes of cloth that cannot lie flat.

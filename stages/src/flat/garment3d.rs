@@ -64,13 +64,16 @@ const SIZES: (f64, f64) = (0.05, 6.0);
 
 /// Reads a garment from a Wavefront OBJ file or a binary glTF file (GLB), to be flattened.
 ///
-/// Of a file of this program the cloth is taken; of other files what is closed all around (a body, buttons) is left out beside open cloth, and told.
-/// The mesh is cut into pieces by its texture islands, groups, materials, marked edges or parts. Seams are where pieces meet. What is damaged is
-/// mended and counted: vertices at one place are joined, triangles without area or listed twice are removed, edges of three triangles are
-/// cut, triangles that face against their neighbours are turned. A piece without a boundary, or with tunnels, cannot be laid flat and is refused, as
-/// is cloth that was exported with its thickness.
+/// Of a file of this program the cloth is taken; of other files what is closed all around (a body,
+/// buttons) is left out beside open cloth, and told. The mesh is cut into pieces by its texture
+/// islands, groups, materials, marked edges or parts. Seams are where pieces meet. What is damaged
+/// is mended and counted: vertices at one place are joined, triangles without area or listed twice
+/// are removed, edges of three triangles are cut, triangles that face against their neighbours are
+/// turned. A piece without a boundary, or with tunnels, cannot be laid flat and is refused, as is
+/// cloth that was exported with its thickness.
 ///
-/// Its flat shape is not known, unless `flat` says that the texture is the pattern: to simulate it, flatten it first.
+/// Its flat shape is not known, unless `flat` says that the texture is the pattern: to simulate it,
+/// flatten it first.
 #[stage(
     role = Reader,
     source = "Wavefront OBJ; glTF 2.0",
@@ -263,7 +266,8 @@ impl Garment3d {
     }
 }
 
-/// How much larger or smaller something of this size must be to be about as large as a garment: `1000 times larger`.
+/// How much larger or smaller something of this size must be to be about as large as a garment:
+/// `1000 times larger`.
 fn times(size: f64) -> String {
     // Garments are about a metre; a mesh is off by a unit, which is a power of ten.
     let power = if size > 0.0 { (-size.log10()).round() as i32 } else { 0 };

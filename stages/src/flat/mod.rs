@@ -1,11 +1,13 @@
-//! Back to the flat pattern: garments from 3D files, and flatteners, which make a sewing pattern of a garment.
+//! Back to the flat pattern: garments from 3D files, and flatteners, which make a sewing pattern of
+//! a garment.
 //!
 //! ```text
 //! Garment3d (file) --> garment --sheet--> pieces --flattener--> flat pieces --care--> pattern, and the garment with its flat places
 //! ```
 //!
-//! The work is that of `toile-flatten`; here stand what goes between garments and pieces (`sheet`), what makes a pattern of flat pieces
-//! (`drawn`), and the table by which a flattening is judged (`table`).
+//! The work is that of `toile-flatten`; here stand what goes between garments and pieces (`sheet`),
+//! what makes a pattern of flat pieces (`drawn`), and the table by which a flattening is judged
+//! (`table`).
 
 mod arap;
 mod dart;

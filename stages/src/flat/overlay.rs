@@ -1,8 +1,10 @@
 //! How far two outlines are from each other, laid over each other as well as can be.
 //!
-//! Method: iterated closest points (Besl and McKay 1992): each point of the one looks for its nearest point on the other, then the best turn and shift
-//! is made, until it stays. Of four starts, each a quarter turn apart, the one is taken that is nearest after a few rounds with few points. Cost: the
-//! product of the points, some thirty times. Limit: outlines that are far from alike may end in a worse place.
+//! Method: iterated closest points (Besl and McKay 1992): each point of the one looks for its
+//! nearest point on the other, then the best turn and shift is made, until it stays. Of four
+//! starts, each a quarter turn apart, the one is taken that is nearest after a few rounds with few
+//! points. Cost: the product of the points, some thirty times. Limit: outlines that are far from
+//! alike may end in a worse place.
 
 use nalgebra::Rotation2;
 use std::f64::consts::FRAC_PI_2;
@@ -14,7 +16,8 @@ const ENDING: (usize, usize) = (60, 400);
 /// A round that improves the mean square by less than this share is the last.
 const SETTLED: f64 = 1e-6;
 
-/// Root mean square and greatest distance between two closed outlines, both ways; none of outlines without points.
+/// Root mean square and greatest distance between two closed outlines, both ways; none of outlines
+/// without points.
 pub(super) fn outline_distance(one: &[Point2], other: &[Point2]) -> Option<(f64, f64)> {
     let (a, b) = (sampled(one, CHOOSING.1)?, sampled(other, CHOOSING.1)?);
     let starts = (0..4).map(|k| Rotation2::new(f64::from(k) * FRAC_PI_2));

@@ -1,7 +1,8 @@
 //! A garment as pieces of a surface, and pieces as a garment.
 //!
-//! A garment's panels become pieces of one mesh whose vertices are the garment's nodes: cut where panels meet, and within a panel where
-//! its own sides are sewn to each other. The way back makes a garment of such pieces, each with its flat shape. Cost: two sorts of the edges.
+//! A garment's panels become pieces of one mesh whose vertices are the garment's nodes: cut where
+//! panels meet, and within a panel where its own sides are sewn to each other. The way back makes a
+//! garment of such pieces, each with its flat shape. Cost: two sorts of the edges.
 
 use super::fault::surface_fault;
 use super::file::of_corners;
@@ -90,7 +91,8 @@ impl Labelled {
 }
 
 impl Sheet {
-    /// Triangles along gathered seams get the shape in which they were cut, strained as the gathered ones are.
+    /// Triangles along gathered seams get the shape in which they were cut, strained as the
+    /// gathered ones are.
     fn let_gathers_out(&mut self, garment: &Garment) {
         let Some(gathered) = garment.gathered_corners() else { return };
         for (piece, of) in self.pieces.pieces.iter_mut().zip(&self.vertices) {
@@ -193,7 +195,8 @@ impl Known {
     }
 }
 
-/// The edges of a triangle in its plane, with the strain between its drawn corners and its places put on its cut ones.
+/// The edges of a triangle in its plane, with the strain between its drawn corners and its places
+/// put on its cut ones.
 fn let_out([p, q, r]: [Point3; 3], drawn: [Point2; 3], cut: [Point2; 3]) -> Option<[Vector2; 2]> {
     let x = (q - p).try_normalize(0.0)?;
     let y = (q - p).cross(&(r - p)).try_normalize(0.0)?.cross(&x);

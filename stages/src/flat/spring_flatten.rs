@@ -6,10 +6,12 @@ use toile_flatten::care::Objective;
 use toile_flatten::flatteners::springs;
 use toile_flatten::newton::NewtonOptions;
 
-/// Lays each piece flat by the distances between neighbours, then lets springs along the edges relax in the plane.
+/// Lays each piece flat by the distances between neighbours, then lets springs along the edges
+/// relax in the plane.
 ///
-/// The relaxation spreads the unavoidable error over the piece, until the energy that one more step would save is below `settled`. Where
-/// the layout by distances turns triangles over, the springs start from a map that turns none.
+/// The relaxation spreads the unavoidable error over the piece, until the energy that one more step
+/// would save is below `settled`. Where the layout by distances turns triangles over, the springs
+/// start from a map that turns none.
 #[stage(
     role = Flattener,
     version = 2,
@@ -21,7 +23,8 @@ pub struct SpringFlatten {
     /// Care of the pattern.
     #[param(flatten)]
     pub care: Care,
-    /// The energy by area that one more step may still save; 0.0002 is about a strain of one per cent everywhere.
+    /// The energy by area that one more step may still save; 0.0002 is about a strain of one per
+    /// cent everywhere.
     #[param(default = 1e-9, min = 1e-14, max = 1e-2, trades)]
     pub settled: f64,
     /// Most steps of Newton's method a piece.

@@ -1,6 +1,7 @@
 //! Flat pieces coloured by strain, beside the garment, as a drawing.
 //!
-//! Blue: the cloth is shorter on the garment than in the plane; red: longer; by the principal strain of larger absolute value.
+//! Blue: the cloth is shorter on the garment than in the plane; red: longer; by the principal
+//! strain of larger absolute value.
 
 use super::sheet::Sheet;
 use crate::render::{Form, Scene, View, jpeg};
@@ -130,7 +131,8 @@ fn legend(body: &mut String, height: f64, full: f64) {
     );
 }
 
-/// The garment from the front and the back in the same colours: caption, picture, and its width over its height.
+/// The garment from the front and the back in the same colours: caption, picture, and its width
+/// over its height.
 fn views(
     sheet: &Sheet,
     garment: &Garment,

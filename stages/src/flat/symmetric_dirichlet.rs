@@ -6,9 +6,11 @@ use toile_flatten::care::Objective;
 use toile_flatten::flatteners::symmetric_dirichlet;
 use toile_flatten::newton::NewtonOptions;
 
-/// Lays each piece flat so that stretching and shrinking cost alike and without limit: the worst triangles come out better than with `Arap`.
+/// Lays each piece flat so that stretching and shrinking cost alike and without limit: the worst
+/// triangles come out better than with `Arap`.
 ///
-/// A triangle's energy is the sum of the squares of its stretches and of their inverses. No triangle flips, and the scale is true.
+/// A triangle's energy is the sum of the squares of its stretches and of their inverses. No
+/// triangle flips, and the scale is true.
 #[stage(
     role = Flattener,
     version = 2,

@@ -9,11 +9,14 @@ use serde::Serialize;
 use toile_core::prelude::*;
 use toile_flatten::distortion::{Distortion, Spread, distortion};
 
-/// Writes how far the flat pieces are from the garment, in both directions, and draws them coloured by strain.
+/// Writes how far the flat pieces are from the garment, in both directions, and draws them coloured
+/// by strain.
 ///
-/// Of each piece: area and outline on the garment and in the plane, their errors from 3D to 2D and from 2D to 3D, inner angles of its corners, strain along
-/// warp and weft; of each seam the lengths of its sides. Where the garment was cut from a known pattern, area and outline are held against
-/// that, too, and the greatest distance between both outlines is told. `NAME.json` holds the table, `NAME_strain.svg` the picture.
+/// Of each piece: area and outline on the garment and in the plane, their errors from 3D to 2D and
+/// from 2D to 3D, inner angles of its corners, strain along warp and weft; of each seam the lengths
+/// of its sides. Where the garment was cut from a known pattern, area and outline are held against
+/// that, too, and the greatest distance between both outlines is told. `NAME.json` holds the table,
+/// `NAME_strain.svg` the picture.
 #[stage(
     role = Writer,
     source = "Fan, Zhou, Wang, Yuen 1999",

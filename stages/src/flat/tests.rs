@@ -64,7 +64,8 @@ fn pieces_are_told_by_groups_materials_lines_texture_or_parts() {
 
 #[test]
 fn damage_is_mended_and_counted() {
-    // The second square has vertices of its own, one triangle stands twice, one has no area, one faces the other way.
+    // The second square has vertices of its own, one triangle stands twice, one has no area, one
+    // faces the other way.
     let text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 0\nv 1 0 1\nv 1 1 1\nv 1 1 0.000001\n\
         f 1 2 3\nf 1 4 3\nf 3 1 2\nf 1 2 2\nf 5 6 7\nf 5 7 8\n";
     let (garment, told) = read(text, ", pieces: Parts").unwrap();

@@ -7,9 +7,11 @@ use toile_flatten::energy::WovenStiffness;
 use toile_flatten::flatteners::woven;
 use toile_flatten::newton::NewtonOptions;
 
-/// Lays each piece flat as its fabric would: warp and weft keep their lengths by the fabric's own curves, shear gives way.
+/// Lays each piece flat as its fabric would: warp and weft keep their lengths by the fabric's own
+/// curves, shear gives way.
 ///
-/// The stiffness of warp and weft is the force of the fabric's curve at `strain` over that strain, that of shear the same at `angle`. The grain is held upright.
+/// The stiffness of warp and weft is the force of the fabric's curve at `strain` over that strain,
+/// that of shear the same at `angle`. The grain is held upright.
 #[stage(
     role = Flattener,
     version = 2,

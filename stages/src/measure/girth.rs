@@ -1,8 +1,10 @@
 //! Ease: the cloth around the body beside the body, at bust, waist and hip.
 //!
-//! The draped garment is sliced where the body was measured, and the slice is measured on the flat panels: what a tape would read along the
-//! cloth, folds and gathers spread out. At the waist that is the narrowest place within 2 cm. Where sleeves join the trunk only below a level, it is measured below their armpits. Cost: one pass over
-//! the triangles a height. Limits: a garment that is open there has no girth; cloth that hangs askew reads a little long.
+//! The draped garment is sliced where the body was measured, and the slice is measured on the flat
+//! panels: what a tape would read along the cloth, folds and gathers spread out. At the waist that
+//! is the narrowest place within 2 cm. Where sleeves join the trunk only below a level, it is
+//! measured below their armpits. Cost: one pass over the triangles a height. Limits: a garment that
+//! is open there has no girth; cloth that hangs askew reads a little long.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{Garment, GirthFigures};
@@ -10,11 +12,14 @@ use toile_core::prelude::*;
 
 /// Levels at which the body is measured.
 const LEVELS: [&str; 3] = ["bust", "waist", "hip"];
-/// Where an armhole opens the garment at a level, or a sleeve leaves it, its girth is taken this much lower at most, in steps, metres.
+/// Where an armhole opens the garment at a level, or a sleeve leaves it, its girth is taken this
+/// much lower at most, in steps, metres.
 const LOWER: (u32, f64) = (20, 0.005);
-/// A waist seam is not always at the body's waist: the narrowest of this many steps above and below counts.
+/// A waist seam is not always at the body's waist: the narrowest of this many steps above and below
+/// counts.
 const WAIST: u32 = 4;
-/// Cloth narrower than the body by more than this share is told; a tape on a mesh of 16 mm is not truer.
+/// Cloth narrower than the body by more than this share is told; a tape on a mesh of 16 mm is not
+/// truer.
 const NARROW: f64 = 0.02;
 /// Cloth around the bust of more than this many times the body's is told: more than any coat's.
 const WIDE: f64 = 1.6;
@@ -61,7 +66,8 @@ pub(super) fn tell(girths: &BTreeMap<String, GirthFigures>, cx: &Context) {
     }
 }
 
-/// A triangle in a slice: the two mesh edges that it crosses, by their welded vertices, where, and the flat length between.
+/// A triangle in a slice: the two mesh edges that it crosses, by their welded vertices, where, and
+/// the flat length between.
 struct Cut {
     edges: [[u32; 2]; 2],
     points: [Point2; 2],
@@ -85,7 +91,8 @@ fn arms(body: &Body, y: f64) -> Vec<Point2> {
     bones.into_iter().filter_map(crossing).collect()
 }
 
-/// The flat length of the shortest closed loop of the slice at height `y` that goes around `middle` (x, z) and around none of the `arms`.
+/// The flat length of the shortest closed loop of the slice at height `y` that goes around `middle`
+/// (x, z) and around none of the `arms`.
 pub(crate) fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2]) -> Option<f64> {
     let cuts: Vec<Cut> = garment.triangles.iter().filter_map(|t| cut(garment, *t, y)).collect();
     let mut at: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
@@ -107,7 +114,8 @@ pub(crate) fn around(garment: &Garment, y: f64, middle: Point2, arms: &[Point2])
     best
 }
 
-/// Follows a loop from a cut on: its cuts, each with the end where the loop comes in; `None` where it does not close or branches.
+/// Follows a loop from a cut on: its cuts, each with the end where the loop comes in; `None` where
+/// it does not close or branches.
 fn walk(
     cuts: &[Cut],
     at: &BTreeMap<[u32; 2], Vec<usize>>,
@@ -170,7 +178,8 @@ mod tests {
 
     const COLUMNS: usize = 200;
 
-    /// A tube of 95 cm of cloth in waves around the axis, 20 cm high, its ends sewn together where told so.
+    /// A tube of 95 cm of cloth in waves around the axis, 20 cm high, its ends sewn together where
+    /// told so.
     fn tube(sewn: bool) -> Garment {
         let flat = |x: f64, y: f64| Point2::new(0.95 * x, 0.2 * y);
         let grid = Grid { columns: COLUMNS, rows: 4, flat, lift: |p| Point3::new(p.x, p.y, 0.0) };

@@ -1,8 +1,9 @@
 //! What a person would look at twice on a garment that keeps its limits.
 //!
-//! Four signs, told as warnings: a seam that stands out as a fin (both pieces lie back to back along it), a shoulder seam that stands off the body, a hem that
-//! hangs lower on one side, and a photo that is drawn out. None of them is a fault of the solver; they come from the pattern, the pose or the photo. Cost: one pass over
-//! seams, triangles and the lowest rim.
+//! Four signs, told as warnings: a seam that stands out as a fin (both pieces lie back to back
+//! along it), a shoulder seam that stands off the body, a hem that hangs lower on one side, and a
+//! photo that is drawn out. None of them is a fault of the solver; they come from the pattern, the
+//! pose or the photo. Cost: one pass over seams, triangles and the lowest rim.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{BodyContact, quantile};
@@ -12,7 +13,8 @@ use toile_core::prelude::*;
 const FOLDED: f64 = 135.0;
 /// A fin is at least so long, metres.
 const FIN: f64 = 0.08;
-/// A shoulder seam stands off where its cloth is farther from the body than this at one place in twenty, metres.
+/// A shoulder seam stands off where its cloth is farther from the body than this at one place in
+/// twenty, metres.
 const OFF: f64 = 0.035;
 /// And is not looked for farther away, metres.
 const REACH: f64 = 0.2;

@@ -21,7 +21,8 @@ pub fn register(registry: &mut Registry) {
     registry.add_implicit::<Measure>();
 }
 
-/// The garment by the pattern that it was sewn from; one from a 3D file has no pattern before it is laid flat.
+/// The garment by the pattern that it was sewn from; one from a 3D file has no pattern before it is
+/// laid flat.
 fn with_pattern<'a>(sewn: &'a Garment, flat: Option<&'a Garment>) -> &'a Garment {
     let first = sewn.rest.first();
     let is_known = sewn.rest.iter().any(|p| Some(p) != first);

@@ -1,7 +1,9 @@
-//! The parts of a garment: what seams hold together. Parts that started edge to edge and have come apart are a fault, whoever named the seams.
+//! The parts of a garment: what seams hold together. Parts that started edge to edge and have come
+//! apart are a fault, whoever named the seams.
 //!
-//! Method: panels that a seam or a joined vertex connects are one part. Of two parts, the edges that no seam takes and that started near each other
-//! must still be near. Cost: the free edges of two parts times each other.
+//! Method: panels that a seam or a joined vertex connects are one part. Of two parts, the edges
+//! that no seam takes and that started near each other must still be near. Cost: the free edges of
+//! two parts times each other.
 
 use std::collections::BTreeSet;
 use toile_core::artifact::{Garment, Shortfall, quantile};
@@ -97,7 +99,8 @@ fn free_edge(garment: &Garment, part: &[usize], k: usize) -> Vec<u32> {
     mine.flat_map(|(p, _)| &p.boundary).copied().filter(|v| !sewn.contains(v)).collect()
 }
 
-/// How far an edge has come (its median) from another one that a quarter of it started near to; none where it did not, or is still near.
+/// How far an edge has come (its median) from another one that a quarter of it started near to;
+/// none where it did not, or is still near.
 fn apart(start: &Garment, end: &Garment, edge: &[u32], other: &[u32]) -> Option<f64> {
     let distance = |g: &Garment, v: u32| {
         let p = g.positions[v as usize];

@@ -1,10 +1,12 @@
 //! Figures of the garment against its quality limits.
 //!
 //! Area and outline errors are those of Fan et al. 1999, `(S2 - S3) / S2` and `(L2 - L3) / L2`;
-//! strain is that of the mesh edges. What the body stretches is judged by itself (see `tight`). Vertices in the body and self-contact are asked of the pipeline's
-//! collider, what crosses the body between its vertices is found on the body's own triangles; without
-//! collider or body they are not measured, and `metrics.json` says so with a null.
-//! A garment that a flattener stands behind is judged by the pattern that it was sewn from; the flat pieces have figures of their own.
+//! strain is that of the mesh edges. What the body stretches is judged by itself (see `tight`).
+//! Vertices in the body and self-contact are asked of the pipeline's collider, what crosses the
+//! body between its vertices is found on the body's own triangles; without collider or body they
+//! are not measured, and `metrics.json` says so with a null. A garment that a flattener stands
+//! behind is judged by the pattern that it was sewn from; the flat pieces have figures of their
+//! own.
 
 use super::tight::Tight;
 use super::{girth, looks, on_body, parts, shortfalls, with_pattern};
@@ -22,8 +24,10 @@ const SKIN_TOLERANCE: f64 = 1e-4;
 /// Measures the garment and holds it against its quality limits.
 ///
 /// A pipeline gets this stage by itself; name it in the file to set other limits. A result that
-/// misses a limit is written all the same, with exit code 4: so does a garment that has slid off the body or has come apart. Where a flattener
-/// stands behind, the garment is judged by the pattern that it was sewn from; the flat pieces have figures of their own, `flat`. What looks odd on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
+/// misses a limit is written all the same, with exit code 4: so does a garment that has slid off
+/// the body or has come apart. Where a flattener stands behind, the garment is judged by the
+/// pattern that it was sewn from; the flat pieces have figures of their own, `flat`. What looks odd
+/// on a garment that keeps them is told in warnings: seams that stand out as fins, shoulders that
 /// stand off, an uneven hem, a photo that is drawn out.
 #[stage(
     role = Writer,
@@ -36,23 +40,28 @@ pub struct Measure {
     /// Greatest seam gap.
     #[param(default = Length::mm(1.0), min = 0.0, max = 1.0)]
     max_gap: Length,
-    /// Greatest area error of a panel, as a share; triangles that the body stretches count as they were cut.
+    /// Greatest area error of a panel, as a share; triangles that the body stretches count as they
+    /// were cut.
     #[param(default = 0.01, min = 0.0, max = 1.0)]
     max_area_error: f64,
-    /// Greatest outline error of a panel, as a share; edges that the body stretches count as they were cut.
+    /// Greatest outline error of a panel, as a share; edges that the body stretches count as they
+    /// were cut.
     #[param(default = 0.01, min = 0.0, max = 1.0)]
     max_outline_error: f64,
-    /// Greatest 99th percentile of the edge strain, as a share; edges that the body stretches count as not strained.
+    /// Greatest 99th percentile of the edge strain, as a share; edges that the body stretches count
+    /// as not strained.
     #[param(default = 0.05, min = 0.0, max = 10.0)]
     max_strain: f64,
-    /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a share: they lie on the body or hang together
-    /// with it through cloth that is stretched by 0.5 % and more, and the cloth there is longer in some direction than it was cut, by at least
-    /// as much. Beyond it the garment is too small for the body (woven cotton
-    /// tears at some 25 %); from `max_strain` on a warning names the panel.
+    /// Greatest 99th percentile of the strain of a panel's edges that the body stretches, as a
+    /// share: they lie on the body or hang together with it through cloth that is stretched by 0.5
+    /// % and more, and the cloth there is longer in some direction than it was cut, by at least as
+    /// much. Beyond it the garment is too small for the body (woven cotton tears at some 25 %);
+    /// from `max_strain` on a warning names the panel.
     #[param(default = 0.25, min = 0.0, max = 10.0)]
     max_tight: f64,
-    /// Least share of every panel that must still be in its place on the body: 1 less the way that the upper edge of all that it is sewn to has
-    /// sunk, from where it started or from the top of the body under it, as a share of the height of its tallest piece.
+    /// Least share of every panel that must still be in its place on the body: 1 less the way that
+    /// the upper edge of all that it is sewn to has sunk, from where it started or from the top of
+    /// the body under it, as a share of the height of its tallest piece.
     #[param(default = 0.5, min = 0.0, max = 1.0)]
     least_on_body: f64,
     /// Most pairs of a triangle of the garment and one of the body that cross.
@@ -109,7 +118,8 @@ fn drawn_in(garment: &Garment) -> BTreeSet<u32> {
     elastic.flat_map(|s| s.pairs.iter().flatten().copied()).collect()
 }
 
-/// Figures of each panel; what is `tight` counts as long and as large as it was cut, and so does an edge that an elastic band draws in.
+/// Figures of each panel; what is `tight` counts as long and as large as it was cut, and so does an
+/// edge that an elastic band draws in.
 fn panel_figures(
     garment: &Garment,
     tight: Option<&Tight>,

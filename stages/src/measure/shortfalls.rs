@@ -1,4 +1,5 @@
-//! Limits that a garment misses, in the words of who sews it: what is wrong, how far from good, and what to do.
+//! Limits that a garment misses, in the words of who sews it: what is wrong, how far from good, and
+//! what to do.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{GarmentFigures, PanelFigures, Shortfall};
@@ -17,7 +18,8 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// The limits that are missed, with the errors of the panels and the strain (99th percentile) but for what the body stretches.
+    /// The limits that are missed, with the errors of the panels and the strain (99th percentile)
+    /// but for what the body stretches.
     pub(super) fn missed(
         &self,
         garment: &Garment,
@@ -123,7 +125,8 @@ fn percent(share: f64) -> String {
     format!("{:.2} %", share * 1e2)
 }
 
-/// `piece "front" is 2.00 % smaller`, with what others miss the limit; none where none does. The worst stands first.
+/// `piece "front" is 2.00 % smaller`, with what others miss the limit; none where none does. The
+/// worst stands first.
 fn beyond(
     panels: &BTreeMap<String, PanelFigures>,
     limit: f64,

@@ -1,25 +1,28 @@
 //! Cloth that the body stretches.
 //!
-//! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body is there. Such cloth is told of, and not
-//! held against the solver. A triangle is taut where all of it lies on the body and it is stretched in some direction. So is cloth that
-//! spans a hollow of the body, and cloth around it in which the pull fades out: what is stretched by more than its weight could, and hangs together
-//! with a triangle on the body through cloth that is stretched so. What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch (shear,
-//! Poisson's ratio), and counts with it. Limit: cloth that friction holds stretched on the body, though the pattern is wide enough, counts
-//! too.
+//! Where cloth lies taut on a body, its strain is the pattern's: it is cut narrower than the body
+//! is there. Such cloth is told of, and not held against the solver. A triangle is taut where all
+//! of it lies on the body and it is stretched in some direction. So is cloth that spans a hollow of
+//! the body, and cloth around it in which the pull fades out: what is stretched by more than its
+//! weight could, and hangs together with a triangle on the body through cloth that is stretched so.
+//! What of a taut triangle is shorter in another direction, by no more, is drawn so by that stretch
+//! (shear, Poisson's ratio), and counts with it. Limit: cloth that friction holds stretched on the
+//! body, though the pattern is wide enough, counts too.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{BodyContact, Garment, GarmentPanel, Shortfall, quantile};
 use toile_core::prelude::*;
 
-/// How far cloth on the body may be from it, in thicknesses of the collider: contact begins at one, edges over a round body stand off
-/// farther.
+/// How far cloth on the body may be from it, in thicknesses of the collider: contact begins at one,
+/// edges over a round body stand off farther.
 const ON: f64 = 3.0;
 
-/// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin stretches by 0.03 % under its
-/// weight, of interlock knit by 0.4 % (presets, weft).
+/// Strain from which on cloth is drawn by more than what hangs from it: a metre of cotton poplin
+/// stretches by 0.03 % under its weight, of interlock knit by 0.4 % (presets, weft).
 const DRAWN: f64 = 0.02;
 
-/// Strain from which on cloth beside drawn cloth counts as drawn with it: a pull fades out over the cloth around it.
+/// Strain from which on cloth beside drawn cloth counts as drawn with it: a pull fades out over the
+/// cloth around it.
 const FADES: f64 = 0.005;
 
 /// An edge of a garment.
@@ -61,8 +64,8 @@ impl Tight {
         Self { edges: garment.flat_lengths().into_iter().map(edge).collect(), taut }
     }
 
-    /// Whether the body stretches a triangle with these vertices, as far as its area tells: it is stretched in both directions by no more than its
-    /// greatest stretch, or drawn smaller by it.
+    /// Whether the body stretches a triangle with these vertices, as far as its area tells: it is
+    /// stretched in both directions by no more than its greatest stretch, or drawn smaller by it.
     pub(super) fn stretches_triangle(&self, vertices: &[u32; 3], flat: f64, now: f64) -> bool {
         let within = |s: &f64| now / flat <= (1.0 + s).powi(2) && now / flat >= 1.0 - s;
         self.taut.get(vertices).is_some_and(within)
@@ -93,7 +96,8 @@ impl Tight {
         garment.panels.iter().map(of).reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 
-    /// What a user is told of cloth that is taut: a warning from a strain of `from` on, a limit that is missed from `limit` on.
+    /// What a user is told of cloth that is taut: a warning from a strain of `from` on, a limit
+    /// that is missed from `limit` on.
     pub(super) fn judge(&self, garment: &Garment, from: f64, limit: f64, cx: &Context) -> Option<Shortfall> {
         let (name, strain) = self.tightest(garment).filter(|(_, strain)| *strain > from.min(limit))?;
         let percent = |share: f64| format!("{:.1} %", share * 1e2);
@@ -110,7 +114,8 @@ impl Tight {
     }
 }
 
-/// Which triangles the body stretches: stretched ones that lie on it, and drawn ones that hang together with it.
+/// Which triangles the body stretches: stretched ones that lie on it, and drawn ones that hang
+/// together with it.
 fn taut_triangles(garment: &Garment, on: &[bool], strains: &[f64]) -> Vec<bool> {
     let on = |v: &u32| on[*v as usize];
     let lies = |(t, s): (&[u32; 3], &f64)| *s > 0.0 && t.iter().all(on) || *s > DRAWN && t.iter().any(on);
@@ -178,7 +183,8 @@ mod tests {
     use super::*;
     use crate::fixtures::{Capsules, Grid, garment, plain};
 
-    /// A sheet of 20 cm, stretched along x and a little narrower, so high above a round beam of 1 m radius that it lies on its top.
+    /// A sheet of 20 cm, stretched along x and a little narrower, so high above a round beam of 1 m
+    /// radius that it lies on its top.
     fn sheet(stretch: f64, height: f64) -> (Garment, Collider) {
         let flat = |x: f64, y: f64| Point2::new(0.2 * x, 0.2 * y);
         let grid = Grid { columns: 8, rows: 8, flat, lift: |p| Point3::new(p.x, 0.0, p.y) };

@@ -1,7 +1,8 @@
 //! Angles of triangles, and a quick look whether any is too small.
 //!
-//! Method: an angle t is below a bound b where sin(t - b) is negative, which takes products only. What they decide beyond
-//! any doubt of rounding is never asked again; the rest is told by angles, so that the answer is that of angles alone.
+//! Method: an angle t is below a bound b where sin(t - b) is negative, which takes products only.
+//! What they decide beyond any doubt of rounding is never asked again; the rest is told by angles,
+//! so that the answer is that of angles alone.
 
 use toile_core::artifact::Point2;
 
@@ -29,8 +30,9 @@ pub(crate) fn least_angle(a: Point2, b: Point2, c: Point2) -> f64 {
     }
 }
 
-/// The corner across from the shortest side of a counter-clockwise triangle: the least angle is there. `None`
-/// where the triangle is turned over, or two sides are so alike that rounding could decide.
+/// The corner across from the shortest side of a counter-clockwise triangle: the least angle is
+/// there. `None` where the triangle is turned over, or two sides are so alike that rounding could
+/// decide.
 fn shortest_side(t: [Point2; 3]) -> Option<usize> {
     let side = |k: usize| (t[(k + 2) % 3] - t[(k + 1) % 3]).norm_squared();
     let sides = [side(0), side(1), side(2)];
@@ -52,8 +54,8 @@ pub(crate) fn least_angle_above(
     (least > bound).then_some(least)
 }
 
-/// True where the triangle surely has an angle below the bound (0 to pi) of this sine and cosine; false where it has none, or
-/// one so near to the bound that rounding could decide.
+/// True where the triangle surely has an angle below the bound (0 to pi) of this sine and cosine;
+/// false where it has none, or one so near to the bound that rounding could decide.
 fn surely_below(sin: f64, cos: f64, [a, b, c]: [Point2; 3]) -> bool {
     let below = |p: Point2, q: Point2, r: Point2| {
         let (u, v) = (q - p, r - p);

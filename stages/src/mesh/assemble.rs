@@ -1,8 +1,8 @@
 //! The frame around both meshers: check, divide, mesh, look at the angles, put the panel together.
 //!
-//! Where a panel is thinner than the edge length (a strap, a belt), triangles on the outline are thin
-//! because their sides on it are long. Stretches without a name are then divided twice as fine, and
-//! the panel is meshed anew; counts of named edges are agreed with other panels and stay.
+//! Where a panel is thinner than the edge length (a strap, a belt), triangles on the outline are
+//! thin because their sides on it are long. Stretches without a name are then divided twice as
+//! fine, and the panel is meshed anew; counts of named edges are agreed with other panels and stay.
 
 use super::angles::least_angle;
 use super::check::{check_outline, show};
@@ -42,7 +42,8 @@ pub(crate) fn mesh_outline(
     mesh_cut(outline, &layout, cuts, h, cx, mesh)
 }
 
-/// Meshes an outline that has been checked, cut as `cuts` say; `h` is the greatest edge length, metres.
+/// Meshes an outline that has been checked, cut as `cuts` say; `h` is the greatest edge length,
+/// metres.
 pub(crate) fn mesh_cut(
     outline: &Outline,
     layout: &Layout<'_>,

@@ -57,8 +57,8 @@ impl Division {
     }
 }
 
-/// Into what parts every stretch and inner line is cut: ascending shares of its length in any unit, from 0, both ends
-/// included.
+/// Into what parts every stretch and inner line is cut: ascending shares of its length in any unit,
+/// from 0, both ends included.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Cuts {
     /// For each stretch, loop by loop.
@@ -68,8 +68,8 @@ pub(crate) struct Cuts {
 }
 
 impl Cuts {
-    /// Equal parts for a target edge length `h` (metres): as many as its gauge says on a named edge, else as many as keep
-    /// the chords true.
+    /// Equal parts for a target edge length `h` (metres): as many as its gauge says on a named
+    /// edge, else as many as keep the chords true.
     pub(crate) fn even(layout: &Layout<'_>, h: f64) -> Result<Self, StageError> {
         let own: Vec<usize> = layout
             .lines
@@ -79,7 +79,8 @@ impl Cuts {
                 None => fine_enough(&l.path, &l.marks, 1 + l.marks.len(), h),
             })
             .collect();
-        // The two legs of a dart end on one point and are sewn to each other, so they get the count of the longer.
+        // The two legs of a dart end on one point and are sewn to each other, so they get the count
+        // of the longer.
         let count = |i: usize| layout.legs(i).into_iter().map(|j| own[j]).fold(own[i], usize::max);
         Ok(Cuts {
             stretches: layout
@@ -90,7 +91,8 @@ impl Cuts {
         })
     }
 
-    /// Every part of the k-th stretch cut into `times[k]`, if it has no name; the counts of named edges are agreed upon.
+    /// Every part of the k-th stretch cut into `times[k]`, if it has no name; the counts of named
+    /// edges are agreed upon.
     pub(crate) fn finer(&self, layout: &Layout<'_>, times: &[usize]) -> Self {
         let stretches = self.stretches.iter().zip(layout.stretches()).zip(times);
         let cut = |((shares, s), &times): ((&Vec<f64>, &Stretch<'_>), &usize)| match s.name {

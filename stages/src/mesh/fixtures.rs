@@ -167,7 +167,8 @@ pub(crate) fn battlements() -> Outline {
     plain(xy.iter().map(|&(x, y)| p(x, y)).collect(), (0..xy.len()).collect())
 }
 
-/// A skirt front with a dart from its waist (two legs that meet), a closed fish-eye dart and a fold.
+/// A skirt front with a dart from its waist (two legs that meet), a closed fish-eye dart and a
+/// fold.
 pub(crate) fn darted() -> Outline {
     let mut outline = named(vec![
         ("hem", line(p(-0.3, 0.0), p(0.3, 0.0))),

@@ -1,14 +1,13 @@
 //! A regular grid laid over the panel, after a thesis on garment modelling from photos (2012).
 //!
 //! Method: the outline is divided first and never touched again. Grid lines run along warp and
-//! weft, spaced so that the panel's box is a whole number of cells. Each line is cut by the
-//! outline into inside runs, even-odd; two neighbouring runs are zipped left to right into the cells
-//! both of them hold. Crossings that crowd the outline are merged into it: of the two the outline's
+//! weft, spaced so that the panel's box is a whole number of cells. Each line is cut by the outline
+//! into inside runs, even-odd; two neighbouring runs are zipped left to right into the cells both
+//! of them hold. Crossings that crowd the outline are merged into it: of the two the outline's
 //! vertex cannot move, so the least-energy place of the merged vertex is the outline's. The band
 //! that is left between grid and outline is triangulated by constrained Delaunay and its angles
-//! mended (see `refine`).
-//! Cost: linear in the triangles, n log n in the outline's vertices.
-//! Limits: the grid is uniform; only the band follows a finely divided edge.
+//! mended (see `refine`). Cost: linear in the triangles, n log n in the outline's vertices. Limits:
+//! the grid is uniform; only the band follows a finely divided edge.
 
 use super::assemble::{Meshed, mesh_outline};
 use super::divide::Division;
@@ -23,8 +22,8 @@ use toile_core::{Context, StageError};
 /// makes needles, more makes a wide band that loses the grid's regularity.
 const LEAST_DISTANCE: f64 = 0.5;
 
-/// A cell with a segment this near to its sides (in edge lengths) belongs to the band: the point of a
-/// notch can be clear of all crossings and still sit close to the middle of a side.
+/// A cell with a segment this near to its sides (in edge lengths) belongs to the band: the point of
+/// a notch can be clear of all crossings and still sit close to the middle of a side.
 const CELL_MARGIN: f64 = 0.35;
 
 /// Angles in the band are mended up to this (degrees): well above the 15 that are promised, low

@@ -1,8 +1,8 @@
 //! The stretches of an outline and its inner lines, as they lie before anything is divided.
 //!
-//! A stretch is a named edge, or what lies between two corners where there are no names. What must become a vertex whatever the
-//! division is marked on it: corners inside it, the feet of inner lines.
-//! Cost: linear in the points of the outline, times the number of inner lines' ends.
+//! A stretch is a named edge, or what lies between two corners where there are no names. What must
+//! become a vertex whatever the division is marked on it: corners inside it, the feet of inner
+//! lines. Cost: linear in the points of the outline, times the number of inner lines' ends.
 
 use super::polyline::Polyline;
 use toile_core::prelude::*;
@@ -180,8 +180,8 @@ fn gap<'a>(lp: &Loop, start: usize, end: usize) -> Vec<Stretch<'a>> {
     stops.windows(2).map(piece).filter(|s| s.line.length() > 0.0).collect()
 }
 
-/// The inner lines with their ends laid onto what they touch, and their marks; what they touch on the outline becomes a
-/// mark there.
+/// The inner lines with their ends laid onto what they touch, and their marks; what they touch on
+/// the outline becomes a mark there.
 fn inner_lines<'a>(outline: &'a Outline, loops: &mut [Vec<Stretch<'_>>], h: f64) -> Vec<Line<'a>> {
     let mut lines: Vec<Vec<Point2>> = outline.inner.iter().map(|l| l.points.clone()).collect();
     for points in &mut lines {

@@ -73,8 +73,8 @@ impl Polyline {
     }
 }
 
-/// Arc lengths that cut `length` by `shares` (ascending, in any unit, both ends included), but that the division nearest to
-/// each mark slides onto it and its neighbours follow evenly.
+/// Arc lengths that cut `length` by `shares` (ascending, in any unit, both ends included), but that
+/// the division nearest to each mark slides onto it and its neighbours follow evenly.
 ///
 /// There must be more parts than marks, which are ascending and inside.
 pub(crate) fn place(length: f64, shares: &[f64], marks: &[f64]) -> Vec<f64> {

@@ -1,15 +1,14 @@
 //! Better angles without touching what is fixed.
 //!
-//! Method: triangles whose least angle falls short are mended one by one, worst first in each
-//! pass: a new vertex at the circumcentre (Ruppert 1995), over a side (as Üngör's off-centres, 2004) or
-//! between two sides is inserted where the
-//! constrained Delaunay cavity around it then has a better least angle than before; a free corner
-//! is moved to where the least angle around it is greatest (pattern search, Freitag and
-//! Ollivier-Gooch 1997); a free corner is drawn onto a neighbour where that is better still.
-//! Every change raises the least angle of what it touches, so passes cannot undo each other.
-//! Cost: proportional to the number of poor triangles.
-//! Limits: segments are never split (their counts are agreed with other panels), so a triangle
-//! that fixed segments force stays as it is.
+//! Method: triangles whose least angle falls short are mended one by one, worst first in each pass:
+//! a new vertex at the circumcentre (Ruppert 1995), over a side (as Üngör's off-centres, 2004) or
+//! between two sides is inserted where the constrained Delaunay cavity around it then has a better
+//! least angle than before; a free corner is moved to where the least angle around it is greatest
+//! (pattern search, Freitag and Ollivier-Gooch 1997); a free corner is drawn onto a neighbour where
+//! that is better still. Every change raises the least angle of what it touches, so passes cannot
+//! undo each other. Cost: proportional to the number of poor triangles. Limits: segments are never
+//! split (their counts are agreed with other panels), so a triangle that fixed segments force stays
+//! as it is.
 
 use super::trimesh::TriMesh;
 use nalgebra::Rotation2;
@@ -156,8 +155,8 @@ fn candidates(corners: [Point2; 3]) -> Vec<Point2> {
     out
 }
 
-/// Between the sides from `a` to `b` and `c`: the point on their bisector at their geometric mean, which
-/// bridges sides of very different lengths best.
+/// Between the sides from `a` to `b` and `c`: the point on their bisector at their geometric mean,
+/// which bridges sides of very different lengths best.
 fn between(a: Point2, b: Point2, c: Point2) -> Option<Point2> {
     let (u, v) = (b - a, c - a);
     let way = (u.try_normalize(0.0)? + v.try_normalize(0.0)?).try_normalize(0.0)?;
@@ -190,8 +189,8 @@ fn remove(mesh: &mut TriMesh, v: u32) -> bool {
     true
 }
 
-/// Moves the free vertices of `which` towards the middle of their neighbours, `rounds` times; a move
-/// that would bring an angle below both `floor` (radians) and what it was is left out.
+/// Moves the free vertices of `which` towards the middle of their neighbours, `rounds` times; a
+/// move that would bring an angle below both `floor` (radians) and what it was is left out.
 pub(crate) fn relax(
     mesh: &mut TriMesh,
     which: &[u32],
@@ -225,8 +224,8 @@ fn relax_vertex(mesh: &mut TriMesh, v: u32, floor: f64) {
     }
 }
 
-/// The area-weighted mean of the centres of the triangles round a vertex: equal areas draw it, so that
-/// spacing evens out (Chen's optimal Delaunay smoothing, 2004, with centroids).
+/// The area-weighted mean of the centres of the triangles round a vertex: equal areas draw it, so
+/// that spacing evens out (Chen's optimal Delaunay smoothing, 2004, with centroids).
 fn weighted_middle(mesh: &TriMesh, star: &[u32]) -> Point2 {
     let (mut sum, mut weight) = (Vector2::zeros(), 0.0);
     for &t in star {

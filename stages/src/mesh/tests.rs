@@ -89,7 +89,8 @@ fn to_loop(q: Point2, l: &[Point2]) -> f64 {
     (0..l.len()).map(|k| distance_to_segment(q, l[k], l[(k + 1) % l.len()]).0).fold(f64::INFINITY, f64::min)
 }
 
-/// Vertices lie exactly on the outline, the outline within 2 % of `h` of the mesh, corners are vertices.
+/// Vertices lie exactly on the outline, the outline within 2 % of `h` of the mesh, corners are
+/// vertices.
 fn check_outline_kept(truth: &Loop, panel: &Panel, chain: &[u32], h: f64) {
     let mesh: Vec<Point2> = chain.iter().map(|&v| panel.positions[v as usize]).collect();
     let off = mesh.iter().map(|&q| to_loop(q, &truth.points)).fold(0.0, f64::max);
@@ -392,7 +393,8 @@ proptest! {
             let panel = mesher(&outline, h).unwrap();
             check_sound(&panel);
             check_outline_kept(&outline.outer, &panel, &panel.boundary, h);
-            // 15 degrees held in 20,000 such panels; here a margin, so that no rare one fails the build.
+            // 15 degrees held in 20,000 such panels; here a margin, so that no rare one fails the
+            // build.
             prop_assert!(panel.least_angle() > 12.0, "{}", panel.least_angle());
             prop_assert_eq!(&mesher(&outline, h).unwrap(), &panel);
         }

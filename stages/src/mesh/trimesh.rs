@@ -204,8 +204,9 @@ impl TriMesh {
         (inside, sides)
     }
 
-    /// By how much inserting `p`, which lies in triangle `t`, raises the least angle (radians): of the triangles
-    /// that it would make over those it would replace. `None` where that is no more than `gain`, or cannot be.
+    /// By how much inserting `p`, which lies in triangle `t`, raises the least angle (radians): of
+    /// the triangles that it would make over those it would replace. `None` where that is no more
+    /// than `gain`, or cannot be.
     pub(crate) fn try_insert(&self, t: u32, p: Point2, gain: f64) -> Option<f64> {
         let (inside, sides) = self.cavity(t, p);
         let old = inside.iter().map(|&t| self.angle(t)).fold(f64::INFINITY, f64::min);
@@ -272,8 +273,8 @@ impl TriMesh {
         }
     }
 
-    /// The corners of the quadrilateral about the side opposite corner `k` of `t`, from that corner on, so that the side runs
-    /// from the second to the fourth; none for a wall or a border.
+    /// The corners of the quadrilateral about the side opposite corner `k` of `t`, from that corner
+    /// on, so that the side runs from the second to the fourth; none for a wall or a border.
     pub(crate) fn quad(&self, t: u32, k: usize) -> Option<[Point2; 4]> {
         let n = self.adj[t as usize][k];
         if n == NONE || self.wall[t as usize][k] {
@@ -334,7 +335,8 @@ impl TriMesh {
         star.iter().map(angle).fold(f64::INFINITY, f64::min)
     }
 
-    /// The least angle round `v` if it stood at `p`, where that is above `bound` (radians, 0 to pi).
+    /// The least angle round `v` if it stood at `p`, where that is above `bound` (radians, 0 to
+    /// pi).
     pub(crate) fn star_angle_above(&self, star: &[u32], v: u32, p: Point2, bound: f64) -> Option<f64> {
         let at = |w: u32| if w == v { p } else { self.points[w as usize] };
         least_angle_above(star.iter().map(|&t| self.tris[t as usize].map(at)), bound)

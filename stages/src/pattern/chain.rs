@@ -16,7 +16,8 @@ pub(super) struct Gap {
     pub wide: f64,
 }
 
-/// The lines as a loop, beginning with the first, each followed by the one that is nearest to its end.
+/// The lines as a loop, beginning with the first, each followed by the one that is nearest to its
+/// end.
 ///
 /// Errors: the first gap that is too wide to close; a gap of no width for a single open line.
 pub(super) fn chained(mut rest: Vec<Side>, piece: &str, told: &mut Remarks) -> Result<Vec<Side>, Gap> {

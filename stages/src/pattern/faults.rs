@@ -15,7 +15,8 @@ pub(super) struct Fault {
     pub remedy: Option<String>,
 }
 
-/// The faults of a file, at least one, as an error: each in a line of its own where there are several.
+/// The faults of a file, at least one, as an error: each in a line of its own where there are
+/// several.
 pub(super) fn refused(file: &str, faults: Vec<Fault>) -> StageError {
     let Some(first) = faults.first() else {
         return StageError::internal("a file without faults was refused");

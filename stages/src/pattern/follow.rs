@@ -1,9 +1,12 @@
-//! Whether the edges of a seam's side follow each other, and whether its sides run as those of pieces do that are seen from outside.
+//! Whether the edges of a seam's side follow each other, and whether its sides run as those of
+//! pieces do that are seen from outside.
 //!
-//! Method: ends of edges that seams join are one place; so are the ends of neighbours in a loop. A side whose next edge begins at another place than
-//! where the one before ends is a fault if both are of one piece, or if other directions would let them follow: pieces may meet across an
-//! opening that nothing sews. Edges run counter-clockwise around their piece, so that of two edges that are sewn one is run through
-//! backwards. Cost: two to the power of a side's edges, of up to [`TRIED`]. Limits: a place in the middle of an edge is none.
+//! Method: ends of edges that seams join are one place; so are the ends of neighbours in a loop. A
+//! side whose next edge begins at another place than where the one before ends is a fault if both
+//! are of one piece, or if other directions would let them follow: pieces may meet across an
+//! opening that nothing sews. Edges run counter-clockwise around their piece, so that of two edges
+//! that are sewn one is run through backwards. Cost: two to the power of a side's edges, of up to
+//! [`TRIED`]. Limits: a place in the middle of an edge is none.
 
 use super::faults::Fault;
 use std::collections::BTreeMap;
@@ -144,7 +147,8 @@ impl<'a> Places<'a> {
         same.chain(back).find(|side| self.chain(side))
     }
 
-    /// Whether a side runs counter-clockwise around its pieces, or clockwise; none where it does both or runs along inner lines.
+    /// Whether a side runs counter-clockwise around its pieces, or clockwise; none where it does
+    /// both or runs along inner lines.
     fn way(&self, side: &[EdgeUse]) -> Option<bool> {
         let first = side.first()?.reversed;
         let outer = |u: &EdgeUse| {

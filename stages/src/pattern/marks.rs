@@ -1,4 +1,5 @@
-//! What is drawn on a piece beside its outline: notches on the edges that they are nearest to, holes.
+//! What is drawn on a piece beside its outline: notches on the edges that they are nearest to,
+//! holes.
 
 use toile_core::prelude::*;
 

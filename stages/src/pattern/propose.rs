@@ -1,11 +1,13 @@
-//! Proposes seams for pieces that come without any, from the lengths of their edges, where they lie along the grain, notches and
-//! symmetry; never for a person to trust blindly.
+//! Proposes seams for pieces that come without any, from the lengths of their edges, where they lie
+//! along the grain, notches and symmetry; never for a person to trust blindly.
 //!
-//! Method: a candidate is a pair of edges, or an edge and a chain of two, of nearly equal lengths, which may meet start to end as
-//! pieces do that are seen from outside; the edges must run alike along the grain. Hems, necks and waists are left out: an end of a
-//! piece across the grain that covers its middle is sewn to no end on the same side of another piece, unless one of them is a
-//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of what that leaves; then [`rings`] finds what is
-//! sewn around. Cost: edges squared. Limits: lengths must agree, so that gathers and long eases are not found; a piece that is drawn upside down is
+//! Method: a candidate is a pair of edges, or an edge and a chain of two, of nearly equal lengths,
+//! which may meet start to end as pieces do that are seen from outside; the edges must run alike
+//! along the grain. Hems, necks and waists are left out: an end of a piece across the grain that
+//! covers its middle is sewn to no end on the same side of another piece, unless one of them is a
+//! band; a shoulder lies beside the middle. Of what is left the best is taken, then the best of
+//! what that leaves; then [`rings`] finds what is sewn around. Cost: edges squared. Limits: lengths
+//! must agree, so that gathers and long eases are not found; a piece that is drawn upside down is
 //! not seen.
 
 mod rings;
@@ -25,7 +27,8 @@ const END: f64 = 0.12;
 const BAND: f64 = 4.0;
 /// The legs of a dart open by no more than this, degrees.
 const NOTCH: f64 = 35.0;
-/// Two edges that both run into their pieces by more than this share of their length are openings, such as armholes.
+/// Two edges that both run into their pieces by more than this share of their length are openings,
+/// such as armholes.
 const HOLLOW: f64 = 0.1;
 /// An edge that bulges by more than this share is no seam in the middle: the cap of a sleeve.
 const BULGE: f64 = 0.2;
@@ -63,7 +66,8 @@ struct Candidate {
     /// Whether it lies over or under the middle of its piece.
     middle: bool,
     band: bool,
-    /// How far it runs into its piece, as a share of the distance of its ends; below 0 where it bulges out.
+    /// How far it runs into its piece, as a share of the distance of its ends; below 0 where it
+    /// bulges out.
     hollow: f64,
     notches: Vec<f64>,
 }
@@ -102,7 +106,8 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     }
     loop {
         pairs.retain(|&(score, i, j)| score >= LEAST && edges(i, j).iter().all(|e| !taken.contains(e)));
-        // Surest first, that which goes on where another seam ends before others; then in the order of the file.
+        // Surest first, that which goes on where another seam ends before others; then in the order
+        // of the file.
         let goes_on = |&(_, i, j): &(f64, usize, usize)| {
             [i, j].into_iter().any(|k| all[k].band && straight_on(&all[k], &taken, &pieces[all[k].piece]))
         };
@@ -119,7 +124,8 @@ pub(super) fn propose(pieces: &[Piece]) -> Vec<(PatternSeam, String)> {
     }
 }
 
-/// Pairs of edges of a piece that lie on each other, one run through backwards: a ring that is cut open to be sewn again.
+/// Pairs of edges of a piece that lie on each other, one run through backwards: a ring that is cut
+/// open to be sewn again.
 fn slits(all: &[Candidate], pieces: &[Piece]) -> Vec<(usize, usize)> {
     let single = |i: &usize| all[*i].edges.len() == 1;
     let ends = |c: &Candidate| {
@@ -193,7 +199,8 @@ fn candidate(piece: usize, p: &Piece, edges: Vec<usize>) -> Candidate {
     }
 }
 
-/// The greatest way of points to the left of a line, where a piece's inside is, or to the right, as a share of its length.
+/// The greatest way of points to the left of a line, where a piece's inside is, or to the right, as
+/// a share of its length.
 fn hollow(start: Point2, end: Point2, points: &[Point2]) -> f64 {
     let chord = end - start;
     let aside = points.iter().map(|p| chord.perp(&(p - start)) / chord.norm_squared().max(1e-12));
@@ -216,7 +223,8 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
         return None;
     }
     let image = mirror_of(&pieces[a.piece].name, &pieces[b.piece].name);
-    // A seam in the middle runs along the grain: waists, hems and caps meet their image there and are not sewn to it.
+    // A seam in the middle runs along the grain: waists, hems and caps meet their image there and
+    // are not sewn to it.
     let opening = match image {
         true => a.hollow < -BULGE || a.way.y.abs() < LEVEL,
         false => a.hollow.min(b.hollow) > HOLLOW,
@@ -261,8 +269,9 @@ fn score(a: &Candidate, b: &Candidate, pieces: &[Piece]) -> Option<f64> {
     Some(0.98 * exact * chain * notches * own * sides * end)
 }
 
-/// Whether two edges of one piece may be sewn to each other: an edge of an unfolded piece is not sewn to its image, one end of a
-/// piece not to itself, and edges that meet in a corner only as narrow a notch as a dart.
+/// Whether two edges of one piece may be sewn to each other: an edge of an unfolded piece is not
+/// sewn to its image, one end of a piece not to itself, and edges that meet in a corner only as
+/// narrow a notch as a dart.
 fn within(a: &Candidate, b: &Candidate, piece: &Piece) -> bool {
     let n = piece.outer.edges.len();
     let name = |k: usize| piece.outer.edges[k].name.as_str();
@@ -275,7 +284,8 @@ fn within(a: &Candidate, b: &Candidate, piece: &Piece) -> bool {
     !image && !end && (!corner || opening <= NOTCH.to_radians())
 }
 
-/// Whether notches lie at the same lengths, one edge run through backwards; none where neither has any.
+/// Whether notches lie at the same lengths, one edge run through backwards; none where neither has
+/// any.
 fn agree(a: &Candidate, b: &Candidate) -> Option<bool> {
     if a.notches.is_empty() && b.notches.is_empty() {
         return None;

@@ -1,4 +1,5 @@
-//! What readers of patterns without seams have in common: seams from a file or as proposals, then outlines and a sewing plan.
+//! What readers of patterns without seams have in common: seams from a file or as proposals, then
+//! outlines and a sewing plan.
 
 use super::faults::refused;
 use super::{follow, propose, sidecar};
@@ -10,9 +11,11 @@ use toile_core::prelude::*;
 /// What such a reader gives.
 pub(super) type Read = (Pattern, Set<Outline>, SewingPlan, OutputFiles);
 
-/// The pattern of these pieces with the seams of that file; where none is named, proposals as a file.
+/// The pattern of these pieces with the seams of that file; where none is named, proposals as a
+/// file.
 ///
-/// Errors: those of the file of seams, all at once; else what is wrong with the pattern and its remedy, as `unsewable` words them.
+/// Errors: those of the file of seams, all at once; else what is wrong with the pattern and its
+/// remedy, as `unsewable` words them.
 pub(super) fn sewn(
     (name, pieces): (String, Vec<Piece>),
     seams: &str,

@@ -1,8 +1,9 @@
 //! A stretch of an outline as curves, and outlines of such stretches.
 //!
-//! A [`Side`] keeps every curve as it was drawn. [`Side::curve`] makes one edge of it: itself where it is one curve, else points that are
-//! near enough for its length to be right to [`NEAR`]. Cost: microseconds a curve. Limits: sides are split by the angle at which curves
-//! meet, not within a curve.
+//! A [`Side`] keeps every curve as it was drawn. [`Side::curve`] makes one edge of it: itself where
+//! it is one curve, else points that are near enough for its length to be right to [`NEAR`]. Cost:
+//! microseconds a curve. Limits: sides are split by the angle at which curves meet, not within a
+//! curve.
 
 use toile_core::prelude::*;
 
@@ -121,7 +122,8 @@ fn finely(path: &EdgePath, [from, to]: [f64; 2], left: u32, out: &mut Vec<Point2
     finely(path, [middle, to], left - 1, out);
 }
 
-/// The direction in which a curve leaves its start: towards the first of its points that lies elsewhere.
+/// The direction in which a curve leaves its start: towards the first of its points that lies
+/// elsewhere.
 fn starts(start: Point2, curve: &EdgeCurve, end: Point2) -> Vector2 {
     let towards = |points: &[Point2]| {
         let all = points.iter().chain([&end]).map(|p| p - start);
@@ -143,7 +145,8 @@ pub(super) fn smooth(one: &Side, other: &Side, degrees: f64) -> bool {
     u.perp(&v).atan2(u.dot(&v)).abs() <= degrees.to_radians()
 }
 
-/// The curves of a closed line, of which there are two at least: one that comes back to its start is halved.
+/// The curves of a closed line, of which there are two at least: one that comes back to its start
+/// is halved.
 fn halved(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<(EdgeCurve, Point2)> {
     let [(EdgeCurve::Cubic { controls: [b, c] }, d)] = parts else { return parts.to_vec() };
     let middle = |p: &Point2, q: &Point2| nalgebra::center(p, q);
@@ -155,7 +158,8 @@ fn halved(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<(EdgeCurve, Point
     ]
 }
 
-/// A closed line split where it turns; two parts at least where it has two curves or one that can be halved.
+/// A closed line split where it turns; two parts at least where it has two curves or one that can
+/// be halved.
 pub(super) fn split(start: Point2, parts: &[(EdgeCurve, Point2)]) -> Vec<Side> {
     let parts = halved(start, parts);
     let n = parts.len();
@@ -215,7 +219,8 @@ mod tests {
         Point2::new(x, y)
     }
 
-    /// A quarter of a circle of that radius about the origin, as a cubic that misses it by no more than some micrometres.
+    /// A quarter of a circle of that radius about the origin, as a cubic that misses it by no more
+    /// than some micrometres.
     fn quarter(r: f64) -> (EdgeCurve, Point2) {
         let k = 0.552_284_75 * r;
         (EdgeCurve::Cubic { controls: [p(r, k), p(k, r)] }, p(0.0, r))

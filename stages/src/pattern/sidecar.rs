@@ -1,4 +1,5 @@
-//! Seams from a file beside the pattern, for patterns that have none: RON that a person writes or confirms.
+//! Seams from a file beside the pattern, for patterns that have none: RON that a person writes or
+//! confirms.
 //!
 //! ```text
 //!     (
@@ -9,8 +10,8 @@
 //!     )
 //! ```
 //!
-//! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to its start. All sides of a
-//! seam run the same way: their starts meet, and their ends.
+//! A side is a chain of edges, `piece.edge`; a minus before it runs along the edge from its end to
+//! its start. All sides of a seam run the same way: their starts meet, and their ends.
 
 use super::faults::Fault;
 use serde::Deserialize;
@@ -77,7 +78,8 @@ impl Kind {
 
 /// The seams of a file's bytes, along edges that the pieces have.
 ///
-/// Errors: text that is no such RON, with line and column; every edge that there is none of, with the number of its seam.
+/// Errors: text that is no such RON, with line and column; every edge that there is none of, with
+/// the number of its seam.
 pub(super) fn read(bytes: &[u8], pieces: &[Piece]) -> Result<Vec<PatternSeam>, Vec<Fault>> {
     let fault = |what: String, remedy: Option<String>| Fault {
         code: ErrorCode::PatternLoading,

@@ -89,10 +89,10 @@ impl Fold {
         (0..n).filter(first).map(|k| (k, count(k))).collect()
     }
 
-    /// The whole loop of a half that has edges on the line; an edge that runs smoothly into its image becomes one with it. `word` stands behind
-    /// the names of images. Where the half meets the line at two places the whole is a ring: it is unfolded where the fold is drawn
-    /// and cut open at the others.
-    /// None where no edge lies on the line.
+    /// The whole loop of a half that has edges on the line; an edge that runs smoothly into its
+    /// image becomes one with it. `word` stands behind the names of images. Where the half meets
+    /// the line at two places the whole is a ring: it is unfolded where the fold is drawn and cut
+    /// open at the others. None where no edge lies on the line.
     pub(super) fn unfolded(&self, sides: &[Side], word: &str) -> Option<Unfolded> {
         let n = sides.len();
         let runs = self.runs(sides);

@@ -22,7 +22,8 @@ pub enum DrawingUnit {
     Px,
 }
 
-/// The longest side of a garment's largest piece, metres; a file that says its unit is believed within these.
+/// The longest side of a garment's largest piece, metres; a file that says its unit is believed
+/// within these.
 const WORN: (f64, f64) = (0.15, 5.0);
 /// And within these where nothing says it.
 const LIKELY: (f64, f64) = (0.25, 2.5);
@@ -79,7 +80,8 @@ impl DrawingUnit {
         }
     }
 
-    /// Of these units the one by which something of that many units is nearest to the usual size of a garment.
+    /// Of these units the one by which something of that many units is nearest to the usual size of
+    /// a garment.
     pub(super) fn likeliest(size: f64, of: &[DrawingUnit]) -> Option<DrawingUnit> {
         let off = |u: &DrawingUnit| (size * u.metres().unwrap_or(1.0) / USUAL).ln().abs();
         of.iter().copied().min_by(|a, b| off(a).total_cmp(&off(b)))

@@ -1,11 +1,11 @@
 //! Bytes of a JPEG, PNG, WebP or TIFF to upright 8-bit sRGB pixels.
 //!
-//! The size is read from the header and checked first, so that a small file cannot claim more memory
-//! than the machine has. Then: decode, 16 bits down to 8, grey to RGB, turn upright by the EXIF
-//! orientation. An alpha channel that is opaque everywhere is dropped.
+//! The size is read from the header and checked first, so that a small file cannot claim more
+//! memory than the machine has. Then: decode, 16 bits down to 8, grey to RGB, turn upright by the
+//! EXIF orientation. An alpha channel that is opaque everywhere is dropped.
 //!
-//! Cost: 12 megapixels of JPEG take about 0.1 s. Limits: no colour management (the pixels are taken as
-//! sRGB); of an animation and of a file of several pictures the first counts.
+//! Cost: 12 megapixels of JPEG take about 0.1 s. Limits: no colour management (the pixels are taken
+//! as sRGB); of an animation and of a file of several pictures the first counts.
 
 use super::form::{Form, form};
 use super::header::{self, Header};
@@ -58,7 +58,8 @@ pub fn decode(bytes: &[u8], name: &str) -> Result<Decoded, StageError> {
     Ok(split(image))
 }
 
-/// Pixels across and down once it is upright, from the header alone; none for what [`decode`] would refuse.
+/// Pixels across and down once it is upright, from the header alone; none for what [`decode`] would
+/// refuse.
 pub(super) fn upright_size(bytes: &[u8]) -> Option<(u32, u32)> {
     let (kind, _) = check_header(bytes, "").ok()?;
     let bytes = header::without_extras(kind, bytes);

@@ -39,7 +39,8 @@ pub struct PhotoFile {
     /// Scale, pixels per metre, where it is known otherwise (a scanner, a ruler in the photo).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub px_per_metre: Option<f64>,
-    /// An object of known size beside the garment, which gives the scale; but for a ruler, the photo is rectified by it.
+    /// An object of known size beside the garment, which gives the scale; but for a ruler, the
+    /// photo is rectified by it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub scale: Option<ScaleObject>,
     /// True where the garment's side is the mirror image of this photo.

@@ -8,7 +8,8 @@ use std::collections::btree_map::Entry;
 use toile_core::cost::{Quantity, Size, garment_area};
 use toile_core::{Context, Length};
 
-/// Pixels of the photos and of the files, bytes of the files, and a guess at the garment's area; none where a photo cannot be read.
+/// Pixels of the photos and of the files, bytes of the files, and a guess at the garment's area;
+/// none where a photo cannot be read.
 ///
 /// Cost: the files are read, not decoded.
 pub(super) fn size(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Option<Size> {

@@ -1,8 +1,10 @@
 //! What kind of picture a file is, by its first bytes.
 //!
-//! Kinds that are not read are named all the same: who is told that a photo "is a HEIC picture" knows what to export.
+//! Kinds that are not read are named all the same: who is told that a photo "is a HEIC picture"
+//! knows what to export.
 //!
-//! Source: the signatures of each format's specification; ISO/IEC 23008-12 for the brands of HEIC, AVIF and CR3.
+//! Source: the signatures of each format's specification; ISO/IEC 23008-12 for the brands of HEIC,
+//! AVIF and CR3.
 
 use super::tiff;
 
@@ -58,7 +60,8 @@ pub(super) fn form(bytes: &[u8]) -> Option<Form> {
     OTHERS.iter().find(begins).map(|(_, _, words)| Form::Other(words))
 }
 
-/// What a file of the ISO base media format holds, by its major brand, else by those that it is compatible with.
+/// What a file of the ISO base media format holds, by its major brand, else by those that it is
+/// compatible with.
 fn brand(bytes: &[u8]) -> Option<&'static str> {
     let length = bytes.get(..4).map_or(0, |b| b.iter().fold(0, |n, b| n << 8 | usize::from(*b)));
     let list = bytes.get(8..length.clamp(12, 256).min(bytes.len()))?;

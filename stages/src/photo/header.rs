@@ -1,11 +1,12 @@
 //! Size and completeness of a picture, read from its file's structure alone.
 //!
 //! Decoders are lenient: a JPEG that was cut short comes back with its lower part grey, and a
-//! header that claims 60,000 x 60,000 px makes them reserve memory first. So the structure is walked
-//! before anything is decoded (ITU-T T.81 annex B for JPEG; ISO/IEC 15948 for PNG; RFC 9649 for WebP; `tiff`).
+//! header that claims 60,000 x 60,000 px makes them reserve memory first. So the structure is
+//! walked before anything is decoded (ITU-T T.81 annex B for JPEG; ISO/IEC 15948 for PNG; RFC 9649
+//! for WebP; `tiff`).
 //!
-//! A PNG may hold texts and a colour profile, packed. Nothing here uses them, and unpacked they may be a thousand times as large
-//! as the file, so they are left out before a decoder sees them.
+//! A PNG may hold texts and a colour profile, packed. Nothing here uses them, and unpacked they may
+//! be a thousand times as large as the file, so they are left out before a decoder sees them.
 //!
 //! Cost: one pass over the bytes, about 1 ms a megabyte. Limits: markers after a JPEG's end of
 //! image (thumbnails, videos of phones) are not looked at.
@@ -25,7 +26,8 @@ pub(super) struct Header {
     pub complete: bool,
 }
 
-/// The header of a picture of a kind that is read; `None` where the bytes are of another, or end before the size.
+/// The header of a picture of a kind that is read; `None` where the bytes are of another, or end
+/// before the size.
 pub(super) fn read(form: Form, bytes: &[u8]) -> Option<Header> {
     match form {
         Form::Jpeg => jpeg(bytes),
@@ -80,7 +82,8 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8], &[u8])> {
     })
 }
 
-/// A WebP is a RIFF file: a first chunk that tells the size, and others. All must lie in the file, which says how long it is.
+/// A WebP is a RIFF file: a first chunk that tells the size, and others. All must lie in the file,
+/// which says how long it is.
 fn webp(bytes: &[u8]) -> Option<Header> {
     let le = |at: usize, count: usize| {
         let slice = bytes.get(at..at.checked_add(count)?)?;

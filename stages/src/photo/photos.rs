@@ -15,12 +15,13 @@ use toile_core::{Node, StageMeta};
 
 /// Reads the photos of the garment's sides.
 ///
-/// JPEG, PNG, WebP and TIFF, 8 or 16 bits, grey or colour, turned upright by their EXIF orientation. HEIC, AVIF and
-/// cameras' raw files are not read: export them as JPEG. `width` is the real width of the garment's bounding box; the scale is worked out once its mask is known.
-/// Or an object of known size lies beside the garment and gives the scale (`scale`): a bank card, a sheet of paper, a chessboard, by which the photo is
-/// rectified as well, so that it need not be taken from straight above; or a ruler, which gives the scale alone.
-/// Where only one side was taken, `MirrorOf("front")` stands in: its pattern is the mirror image of
-/// that photo.
+/// JPEG, PNG, WebP and TIFF, 8 or 16 bits, grey or colour, turned upright by their EXIF
+/// orientation. HEIC, AVIF and cameras' raw files are not read: export them as JPEG. `width` is the
+/// real width of the garment's bounding box; the scale is worked out once its mask is known. Or an
+/// object of known size lies beside the garment and gives the scale (`scale`): a bank card, a sheet
+/// of paper, a chessboard, by which the photo is rectified as well, so that it need not be taken
+/// from straight above; or a ruler, which gives the scale alone. Where only one side was taken,
+/// `MirrorOf("front")` stands in: its pattern is the mirror image of that photo.
 ///
 /// An opacity channel that is not full everywhere is kept: binarisers take what is transparent as
 /// ground.
@@ -89,7 +90,8 @@ impl Photos {
     }
 }
 
-/// The names of the photos that a stage's panels are made from; none where they do not come from one `Photos`.
+/// The names of the photos that a stage's panels are made from; none where they do not come from
+/// one `Photos`.
 pub(crate) fn sides(sources: &[&Node]) -> Option<Vec<String>> {
     let mut readers = sources.iter().filter(|n| n.card.name == Photos::NAME);
     let reader = readers.next().filter(|_| readers.next().is_none())?;
@@ -100,8 +102,8 @@ pub(crate) fn sides(sources: &[&Node]) -> Option<Vec<String>> {
 /// Reads all photos in parallel; a file that is named twice is decoded once.
 ///
 /// # Errors
-/// For no photos at all, a name that no file could have, a width or scale that cannot be, a mirror of nothing or of itself, and what
-/// [`decode`] refuses.
+/// For no photos at all, a name that no file could have, a width or scale that cannot be, a mirror
+/// of nothing or of itself, and what [`decode`] refuses.
 pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Result<Set<Photo>, StageError> {
     if entries.is_empty() {
         return Err(none());
@@ -111,7 +113,8 @@ pub fn read_photos(entries: &BTreeMap<String, PhotoEntry>, cx: &Context) -> Resu
         .keys()
         .map(|name| resolve(entries, name).map(|side| (name, side)))
         .collect::<Result<Vec<_>, _>>()?;
-    // A file is decoded once for each object that is looked for in it; its faults are those of the side that names it.
+    // A file is decoded once for each object that is looked for in it; its faults are those of the
+    // side that names it.
     let last_wins = [true, false]
         .into_iter()
         .flat_map(|mirrored| sides.iter().rev().filter(move |(_, side)| side.1 == mirrored));

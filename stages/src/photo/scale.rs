@@ -1,7 +1,8 @@
 //! The scale of a photo from an object of known size that lies beside the garment.
 //!
-//! What finds and measures it stands in the crate `toile-scale`. Cards, sheets and chessboards give the plane of the ground: the photo
-//! is drawn anew as if taken from straight above, and what it does not show is transparent. A ruler gives the scale along itself alone.
+//! What finds and measures it stands in the crate `toile-scale`. Cards, sheets and chessboards give
+//! the plane of the ground: the photo is drawn anew as if taken from straight above, and what it
+//! does not show is transparent. A ruler gives the scale along itself alone.
 
 use super::Decoded;
 use image::{GrayImage, Luma, Rgb, RgbImage};

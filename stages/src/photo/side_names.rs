@@ -1,4 +1,5 @@
-//! Whether the photos have the names that the pipeline's style takes: a photo named "fornt" would be a piece that nothing is sewn to.
+//! Whether the photos have the names that the pipeline's style takes: a photo named "fornt" would
+//! be a piece that nothing is sewn to.
 
 use crate::style::{Needs, needs};
 use toile_core::prelude::*;
@@ -59,7 +60,8 @@ pub(super) fn unused(names: &[&str], placed: &Placed<'_>) -> Vec<StageError> {
     found
 }
 
-/// The built-in styles that the photos come to, with what they need; none where the file names the seams itself.
+/// The built-in styles that the photos come to, with what they need; none where the file names the
+/// seams itself.
 fn styles<'a>(placed: &Placed<'a>) -> Vec<(&'a Node, Needs)> {
     let after = placed.index + 1..placed.nodes.len();
     let reads = |k: &usize| needed_for(placed.nodes, &[*k]).get(placed.index) == Some(&true);

@@ -1,6 +1,7 @@
 //! The first directory of a TIFF: the size of its picture, and whether that is all of a photo.
 //!
-//! Cameras' raw files are TIFFs as well. Their first picture is a thumbnail, which must not pass for the photo.
+//! Cameras' raw files are TIFFs as well. Their first picture is a thumbnail, which must not pass
+//! for the photo.
 //!
 //! Source: TIFF revision 6.0, 1992, and its extension to files beyond 4 GB; DNG specification 1.6.
 

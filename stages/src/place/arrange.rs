@@ -1,12 +1,17 @@
 //! `Arrange`: the pieces of a pattern into space around the body, with their seams.
 //!
-//! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves, cuffs) are bent to cylinders around it, as the
-//! arrangement points of garment CAD do: halves before and behind the arm that are sewn to each other share one cylinder, whose girth
-//! is theirs, or the arm's where that is more. Flat halves of legs that stand beside the body's are swung before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised onto the
-//! floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by names, seams and sizes ([`region`], [`stand`]).
+//! Method: every piece stands where its pattern says. Pieces that lie around an arm (sleeves,
+//! cuffs) are bent to cylinders around it, as the arrangement points of garment CAD do: halves
+//! before and behind the arm that are sewn to each other share one cylinder, whose girth is theirs,
+//! or the arm's where that is more. Flat halves of legs that stand beside the body's are swung
+//! before them ([`legs`]). Poses that were made for a body whose origin is its middle are raised
+//! onto the floor. Pieces with pleats are folded first ([`pleats`]), and pieces that are sewn onto
+//! others are laid on them last ([`patches`]). A pattern in which no piece has a pose is placed by
+//! names, seams and sizes ([`region`], [`stand`]).
 //!
-//! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk and legs keep the flat places of
-//! the file, from which `StaticEquilibrium(sew_through: true)` sews them.
+//! Cost: some milliseconds. Limits: where some pieces have a pose, those without are refused; trunk
+//! and legs keep the flat places of the file, from which `StaticEquilibrium(sew_through: true)`
+//! sews them.
 
 mod legs;
 mod limb;
@@ -29,7 +34,8 @@ type Stood = (BTreeMap<String, Vec<Point3>>, Option<Vec<(String, f64)>>);
 /// Below the floor by more than this, poses are for a body whose origin is its middle, metres.
 const BELOW: f64 = 0.1;
 
-/// Every garment reaches higher than this on a body that stands on the floor, as a share of its height: to its waist.
+/// Every garment reaches higher than this on a body that stands on the floor, as a share of its
+/// height: to its waist.
 const WORN: f64 = 0.5;
 
 /// Nothing is worn that reaches higher above the body than this share of its height.
@@ -39,13 +45,15 @@ const LEAST_WORN: f64 = 0.3;
 /// Or whose middle lies farther from the body's than this share of its height.
 const ASIDE: f64 = 0.35;
 
-/// The height of that origin as a share of the body's: that of a standing figure whose origin lies at its waist.
+/// The height of that origin as a share of the body's: that of a standing figure whose origin lies
+/// at its waist.
 const MIDDLE: f64 = 0.65;
 
 /// Arranges the pieces of a sewing pattern around the body, ready to be sewn.
 ///
-/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the pattern says nothing, fronts, backs, sleeves, legs in
-/// one piece and waistbands are placed by their names, seams and sizes. What was decided and moved is in the log.
+/// Pieces stand where the pattern says; sleeves and cuffs are bent around the arms. Where the
+/// pattern says nothing, fronts, backs, sleeves, legs in one piece and waistbands are placed by
+/// their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
     version = 4,
@@ -54,8 +62,8 @@ const MIDDLE: f64 = 0.65;
     contracts(Deterministic, ThreadInvariant)
 )]
 pub struct Arrange {
-    /// Whether sleeves and cuffs are bent around the arms, and flat halves of legs that miss the body's are swung before them; where the pattern puts
-    /// them otherwise.
+    /// Whether sleeves and cuffs are bent around the arms, and flat halves of legs that miss the
+    /// body's are swung before them; where the pattern puts them otherwise.
     #[param(default = true)]
     bend: bool,
     /// Least distance of a bent piece from the arm.
@@ -120,7 +128,8 @@ impl Arrange {
         Ok(whole(&offsets, seams, fabric, points))
     }
 
-    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to be bent around an arm is named with its hand.
+    /// Places the pieces of a pattern that has no poses; every decision is told. What is still to
+    /// be bent around an arm is named with its hand.
     fn stood(
         &self,
         pattern: &Pattern,

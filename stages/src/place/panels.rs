@@ -2,8 +2,8 @@
 //!
 //! Each panel is anchored by a landmark, then all are raised or lowered together until the shoulder
 //! seams just clear the shoulders, then lifted off the skin. Cost: some tens of milliseconds.
-//! Limit: sleeves are not turned; they fit arms that leave the trunk at about their own angle, and a
-//! warning names the seams that start with an arm between their sides.
+//! Limit: sleeves are not turned; they fit arms that leave the trunk at about their own angle, and
+//! a warning names the seams that start with an arm between their sides.
 
 use super::depth::DepthMap;
 use super::fit::{Cut, check_girths};
@@ -24,8 +24,8 @@ const MAX_BLOCKED: f64 = 0.5;
 
 /// Places panels before and behind the body, ready to be sewn.
 ///
-/// The front panel stands before the body, the back panel behind it, turned so that both show
-/// their outside. Anchors tie pattern points to landmarks; the whole garment is then raised a little
+/// The front panel stands before the body, the back panel behind it, turned so that both show their
+/// outside. Anchors tie pattern points to landmarks; the whole garment is then raised a little
 /// where that frees its seams.
 #[stage(
     role = Placement,
@@ -142,7 +142,8 @@ impl<'a> Scene<'a> {
         Ok(f64::from(best.1) * step)
     }
 
-    /// How many pairs over the shoulders have flesh between them; `None` where there are no such pairs.
+    /// How many pairs over the shoulders have flesh between them; `None` where there are no such
+    /// pairs.
     fn blocked_shoulders(&self, raise: f64) -> Result<Option<usize>, StageError> {
         let [shoulder, armpit] = ["shoulder_left", "armpit_left"].map(|name| self.body.landmarks.get(name));
         let (Some(shoulder), Some(armpit)) = (shoulder, armpit) else { return Ok(None) };

@@ -1,7 +1,7 @@
 //! `PoseGarment`: a worn garment brought along with its wearer's arms.
 //!
-//! Method: garment and body go through the same map of space, so that neither crosses the other afterwards but for the error of straight edges.
-//! Cost: linear in vertices.
+//! Method: garment and body go through the same map of space, so that neither crosses the other
+//! afterwards but for the error of straight edges. Cost: linear in vertices.
 
 use crate::body::Swing;
 use toile_core::needed_for;
@@ -9,8 +9,8 @@ use toile_core::prelude::*;
 
 /// Brings a draped garment along with a body that `PoseBody` has given another pose.
 ///
-/// The garment is stretched and pressed where arm and trunk meet; a collider of the new body and `StaticEquilibrium(from_here: true)` after
-/// it let it settle.
+/// The garment is stretched and pressed where arm and trunk meet; a collider of the new body and
+/// `StaticEquilibrium(from_here: true)` after it let it settle.
 #[stage(
     role = Placement,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",
@@ -38,7 +38,8 @@ impl PoseGarment {
         })
     }
 
-    /// The map begins at the first body: a garment that was draped on another one would be moved too far.
+    /// The map begins at the first body: a garment that was draped on another one would be moved
+    /// too far.
     fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let index = |port: &str| {
             let maker = placed.maker(port)?;

@@ -1,9 +1,10 @@
 //! `Subdivide`: the garment as it lies, on a finer mesh.
 //!
-//! Method: every edge is cut into equal parts, every triangle into alike ones; what a vertex has is interpolated linearly.
-//! Cost: O(triangles * parts^2), and a sort of the edges. Limits: the outline stays the polygon of the coarse mesh; what was
-//! flat between the old vertices is flat still, so on a body new vertices start nearer to the skin or within it, and a draper
-//! has to push them out.
+//! Method: every edge is cut into equal parts, every triangle into alike ones; what a vertex has is
+//! interpolated linearly. Cost: O(triangles * parts^2), and a sort of the edges. Limits: the
+//! outline stays the polygon of the coarse mesh; what was flat between the old vertices is flat
+//! still, so on a body new vertices start nearer to the skin or within it, and a draper has to push
+//! them out.
 
 mod cut;
 mod edges;
@@ -20,13 +21,16 @@ use toile_core::prelude::*;
 /// A finer mesh would only run out of memory.
 const MOST_VERTICES: usize = 4_000_000;
 
-/// Cuts the garment's mesh into finer triangles where it lies, so that a draper goes on with the folds it has.
+/// Cuts the garment's mesh into finer triangles where it lies, so that a draper goes on with the
+/// folds it has.
 ///
-/// Every edge falls into `parts` equal parts and every triangle into `parts` squared ones of its own shape. No old
-/// vertex moves, and new ones lie on the flat triangles of the coarse mesh; seams, joined or still open, are sewn at
-/// every new vertex. It finds no folds and no rest by itself: put a draper behind it that goes on from where the cloth
-/// is, such as `StaticEquilibrium(from_here: true)`. The outline stays the polygon of the coarse mesh: where curves
-/// matter, mesh with shorter edges. Pins hold the old vertices alone. With one part the garment is left as it is.
+/// Every edge falls into `parts` equal parts and every triangle into `parts` squared ones of its
+/// own shape. No old vertex moves, and new ones lie on the flat triangles of the coarse mesh;
+/// seams, joined or still open, are sewn at every new vertex. It finds no folds and no rest by
+/// itself: put a draper behind it that goes on from where the cloth is, such as
+/// `StaticEquilibrium(from_here: true)`. The outline stays the polygon of the coarse mesh: where
+/// curves matter, mesh with shorter edges. Pins hold the old vertices alone. With one part the
+/// garment is left as it is.
 #[stage(
     role = Placement,
     source = "uniform subdivision of triangles, a textbook method",

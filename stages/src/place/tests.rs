@@ -314,7 +314,8 @@ fn another_mesh_of_the_same_panel_lies_where_its_flat_points_lay() {
     let panels: Set<Panel> = scene.panels.iter().map(|(name, p)| (name.to_owned(), moved(p))).collect();
     let carried = carry(&panels, &scene, &drape).unwrap();
     for (v, (p, at)) in carried.rest.iter().zip(&carried.positions).enumerate() {
-        // The drape is linear in the flat point, so its pieces carry it exactly, beyond the border as well.
+        // The drape is linear in the flat point, so its pieces carry it exactly, beyond the border
+        // as well.
         let (x, y) = (1.1 * p.x, 0.9 * p.y + 0.2 * p.x);
         assert!((at.x - x).abs() < 1e-9 && (at.y - y).abs() < 1e-9, "vertex {v}: {at}");
     }

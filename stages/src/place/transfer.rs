@@ -1,15 +1,17 @@
 //! `Transfer`: panels into space as an earlier drape of the same pattern lies.
 //!
-//! Method: each vertex takes the place of its flat point in the earlier garment, by the weights of the triangle that it lies in.
-//! Cost: linear in vertices. Limits: what was flat between the old vertices is flat still: on a body, new vertices start a
-//! little nearer to the skin than the old ones, and a solver has to push them out.
+//! Method: each vertex takes the place of its flat point in the earlier garment, by the weights of
+//! the triangle that it lies in. Cost: linear in vertices. Limits: what was flat between the old
+//! vertices is flat still: on a body, new vertices start a little nearer to the skin than the old
+//! ones, and a solver has to push them out.
 
 use super::sew::seams;
 use super::whole::{offsets, whole};
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
 
-/// A vertex beyond the earlier garment's panel by more than this belongs to another pattern, metres.
+/// A vertex beyond the earlier garment's panel by more than this belongs to another pattern,
+/// metres.
 const REACH: f64 = 0.02;
 
 /// No garment is farther away, metres.
@@ -17,9 +19,10 @@ const FARTHEST: f64 = 1e6;
 
 /// Places panels where an earlier drape of the same pattern has them.
 ///
-/// For a second, finer mesh of a garment: drape a coarse mesh, mesh again (finer, or graded to the folds that have
-/// formed), carry the drape over, and let a solver settle it. `StaticEquilibrium(from_here: true)` goes on from the carried state
-/// straight; without, it would begin anew on coarse meshes. The earlier garment must be sewn.
+/// For a second, finer mesh of a garment: drape a coarse mesh, mesh again (finer, or graded to the
+/// folds that have formed), carry the drape over, and let a solver settle it.
+/// `StaticEquilibrium(from_here: true)` goes on from the carried state straight; without, it would
+/// begin anew on coarse meshes. The earlier garment must be sewn.
 #[stage(
     role = Placement,
     source = "nested iteration, as in multigrid (Brandt 1977)",

@@ -85,7 +85,8 @@ pub(super) struct Projected {
     pub(super) y: f64,
     /// Greater is nearer; linear over the picture plane.
     pub(super) near: f64,
-    /// Weight that makes attributes linear over the picture plane: 1 / depth, or 1 in parallel projection.
+    /// Weight that makes attributes linear over the picture plane: 1 / depth, or 1 in parallel
+    /// projection.
     pub(super) inv_w: f64,
 }
 
@@ -158,7 +159,8 @@ impl Camera {
     }
 }
 
-/// Right, up and from the model to the camera, by its turn about the vertical and its height above the horizon, radians.
+/// Right, up and from the model to the camera, by its turn about the vertical and its height above
+/// the horizon, radians.
 pub(super) fn axes(azimuth: f64, elevation: f64) -> [Vector3; 3] {
     let ((se, ce), (sa, ca)) = (elevation.sin_cos(), azimuth.sin_cos());
     let (right, back) = (Vector3::new(ca, 0.0, -sa), Vector3::new(ce * sa, se, ce * ca));

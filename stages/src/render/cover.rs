@@ -63,8 +63,8 @@ impl Patch {
         [part(b, c), part(c, a), part(a, b)].map(|e| e / self.area as f64)
     }
 
-    /// Calls `hit(sample, x, y, nearness)` for every sample of every pixel in `columns` x `rows` that lies in the
-    /// triangle; `samples` are their places in a pixel, sub-pixel steps.
+    /// Calls `hit(sample, x, y, nearness)` for every sample of every pixel in `columns` x `rows`
+    /// that lies in the triangle; `samples` are their places in a pixel, sub-pixel steps.
     pub(super) fn scan<const N: usize>(
         &self,
         columns: i64,
@@ -98,7 +98,8 @@ impl Patch {
 /// Added before a number is cut off, so that it is positive: what lies within reach is smaller.
 const OFFSET: i64 = 1 << 40;
 
-/// The whole number below, to 1/4096: without the call of a library that `floor` is on old processors.
+/// The whole number below, to 1/4096: without the call of a library that `floor` is on old
+/// processors.
 pub(super) fn below(v: f64) -> i64 {
     ((v + OFFSET as f64) as i64).saturating_sub(OFFSET)
 }

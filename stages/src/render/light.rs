@@ -2,9 +2,9 @@
 //!
 //! Each light is a bundle of directions. For each direction the model is drawn into a depth map
 //! (Williams, 1978) and every vertex asks whether something stands before it; the share of free
-//! directions, weighted by the cosine, is what the light gives: ambient occlusion for a whole sphere
-//! of directions, a soft shadow for a narrow cone. So folds and the inside of a hem darken without
-//! any noise, and the ambient part serves every view.
+//! directions, weighted by the cosine, is what the light gives: ambient occlusion for a whole
+//! sphere of directions, a soft shadow for a narrow cone. So folds and the inside of a hem darken
+//! without any noise, and the ambient part serves every view.
 //!
 //! Cost: one depth-only drawing of the model a direction, one lookup a vertex and direction.
 //! Limits: light varies linearly over a triangle; details below [`MAP_PX`]'s resolution are lost.
@@ -67,8 +67,8 @@ pub(super) fn studio(d: &Vector3) -> f64 {
     NADIR + (1.0 - NADIR) * (d.y + 1.0) / 2.0
 }
 
-/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes from each direction; once it is to stop,
-/// what has been gathered.
+/// Ambient light on the front and on the back of every vertex, one list a mesh, where so much comes
+/// from each direction; once it is to stop, what has been gathered.
 pub(super) fn ambient(
     model: &Model,
     region: Region,
@@ -86,8 +86,8 @@ pub(super) fn ambient(
     each_vertex(sums, |s| [share(s[0], s[1]), share(s[2], s[3])])
 }
 
-/// The share of a soft box around the direction `towards` that every vertex sees from its lit face; once it is to stop, what has been
-/// gathered.
+/// The share of a soft box around the direction `towards` that every vertex sees from its lit face;
+/// once it is to stop, what has been gathered.
 pub(super) fn soft_box(
     model: &Model,
     region: Region,
@@ -108,7 +108,8 @@ const TASKS: usize = 8;
 /// One value for every vertex of every mesh.
 type PerVertex<T> = Vec<Vec<T>>;
 
-/// For every vertex the sum over all directions of `light(map, position, normal)`; over fewer once it is to stop.
+/// For every vertex the sum over all directions of `light(map, position, normal)`; over fewer once
+/// it is to stop.
 fn gather<const N: usize>(
     model: &Model,
     region: Region,

@@ -13,7 +13,8 @@ use toile_core::artifact::Texture;
 pub(crate) static LINEAR: LazyLock<[f32; 256]> =
     LazyLock::new(|| std::array::from_fn(|i| srgb_to_linear(i as f32 / 255.0)));
 
-/// How finely linear light is divided on its way back to sRGB: fine enough that no level is skipped.
+/// How finely linear light is divided on its way back to sRGB: fine enough that no level is
+/// skipped.
 const ENCODE_STEPS: usize = 4096;
 static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
     let level = |i: usize| (linear_to_srgb(i as f32 / ENCODE_STEPS as f32) * 255.0).round() as u8;
@@ -214,8 +215,8 @@ impl Level {
     }
 }
 
-/// The whole number below, and the rest. (`floor` is a call into the mathematics library on processors that a plain
-/// build serves.)
+/// The whole number below, and the rest. (`floor` is a call into the mathematics library on
+/// processors that a plain build serves.)
 fn split(v: f32) -> (i64, f32) {
     let towards_zero = v as i64;
     let whole = if (towards_zero as f32) > v { towards_zero - 1 } else { towards_zero };

@@ -38,7 +38,8 @@ const BODY: &str = "body";
 
 /// One picture of a model.
 ///
-/// An empty model gives the bare background; triangles that are degenerate or not finite are left out.
+/// An empty model gives the bare background; triangles that are degenerate or not finite are left
+/// out.
 pub fn render(model: &Model, view: &View) -> RgbImage {
     Scene::new(model).render(view)
 }

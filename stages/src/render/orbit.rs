@@ -1,4 +1,5 @@
-//! Cameras on a sphere around the garment: one point that all look at, one distance, one focal length.
+//! Cameras on a sphere around the garment: one point that all look at, one distance, one focal
+//! length.
 
 use super::camera::{Camera, Frame, NEAREST, PORTRAIT_ANGLE, axes, bounds, framed_points};
 use toile_core::artifact::{Model, Point3};
@@ -6,7 +7,8 @@ use toile_core::artifact::{Model, Point3};
 /// Turns about the vertical at which the garment must be in the picture.
 const TURNS: usize = 24;
 
-/// Share of the picture left free at each side: a view from another height sees a little more of the body.
+/// Share of the picture left free at each side: a view from another height sees a little more of
+/// the body.
 const MARGIN: f64 = 0.12;
 
 /// What all views of a turntable share.
@@ -25,7 +27,8 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Around a model's garment, near enough that it just fits into every view from these heights above the horizon, degrees.
+    /// Around a model's garment, near enough that it just fits into every view from these heights
+    /// above the horizon, degrees.
     pub fn around(model: &Model, width: u32, height: u32, elevations: &[f64]) -> Orbit {
         let framed: Vec<_> = framed_points(model, Frame::Garment).map(|p| p.coords).collect();
         let (lo, hi) = bounds(&framed);

@@ -45,10 +45,12 @@ const LANDMARK_COLOUR: [u8; 3] = [30, 110, 200];
 const JPEG_QUALITY: u8 = 82;
 /// A larger drawing of a file is not shown, bytes.
 const LARGEST_DRAWING: usize = 1_500_000;
-/// Triangles beyond which a panel's mesh is drawn by its outline alone: a finer mesh is a grey blot.
+/// Triangles beyond which a panel's mesh is drawn by its outline alone: a finer mesh is a grey
+/// blot.
 const MOST_TRIANGLES_DRAWN: usize = 12_000;
 
-/// Pictures of an artifact, about `height` px high; none for kinds without a look. `body` stands behind garments.
+/// Pictures of an artifact, about `height` px high; none for kinds without a look. `body` stands
+/// behind garments.
 pub fn pictures_of(artifact: &dyn Artifact, body: Option<&Body>, height: u32) -> Vec<Picture> {
     let any: &dyn Any = artifact;
     let picture = |caption: &str, form: Option<Form>| {

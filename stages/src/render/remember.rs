@@ -1,4 +1,5 @@
-//! Light that an earlier run found on the same shape: the textures of a garment may change without it.
+//! Light that an earlier run found on the same shape: the textures of a garment may change without
+//! it.
 
 use toile_core::artifact::{Digest, Digester, Model};
 use toile_core::{Context, StageError};
@@ -17,7 +18,8 @@ impl std::fmt::Debug for Remember<'_> {
 }
 
 impl<'a> Remember<'a> {
-    /// For a model, whose shape alone counts: vertices, normals, triangles, and which meshes are closed.
+    /// For a model, whose shape alone counts: vertices, normals, triangles, and which meshes are
+    /// closed.
     pub(super) fn new(model: &Model, cx: &'a Context) -> Self {
         let mut d = Digester::new();
         for mesh in &model.meshes {
@@ -34,7 +36,8 @@ impl<'a> Remember<'a> {
         Remember { cx, shape: d.finish() }
     }
 
-    /// Light at every vertex of every mesh, which `key` and the shape fix. Of a run that is stopped meanwhile nothing is kept.
+    /// Light at every vertex of every mesh, which `key` and the shape fix. Of a run that is stopped
+    /// meanwhile nothing is kept.
     ///
     /// Errors: that of a stop.
     pub(super) fn light<const N: usize>(

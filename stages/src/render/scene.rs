@@ -1,8 +1,8 @@
 //! A model prepared for pictures, and the picture itself.
 //!
-//! Visibility first (which triangle every sample sees), colour second: a pixel is coloured once for each
-//! triangle that it shows, at the middle of the samples which show it, so that the edges are smoothed at a
-//! quarter of the cost of colouring every sample.
+//! Visibility first (which triangle every sample sees), colour second: a pixel is coloured once for
+//! each triangle that it shows, at the middle of the samples which show it, so that the edges are
+//! smoothed at a quarter of the cost of colouring every sample.
 
 use super::camera::{Camera, Projected, View};
 use super::cover::{Patch, STEPS};
@@ -20,8 +20,8 @@ use toile_core::artifact::{Digester, Material, Mesh, Model, Point3, Texture, Vec
 use toile_core::{Cancel, Context, StageError};
 
 use super::BODY;
-/// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that nearly
-/// level edges are smoothed as well.
+/// Samples of a pixel on a turned grid, sub-pixel steps: no two share a row or a column, so that
+/// nearly level edges are smoothed as well.
 const SAMPLES: [[i64; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
 /// Rows that one task draws: large enough to keep the set-up small, small enough to share out.
 const BAND_ROWS: usize = 16;
@@ -49,7 +49,8 @@ impl<'a> Scene<'a> {
         Scene::prepare(model, light::FINE, None)
     }
 
-    /// Prepares a model with coarser light, almost three times as fast: on a dressed body it differs by 52 dB (PSNR).
+    /// Prepares a model with coarser light, almost three times as fast: on a dressed body it
+    /// differs by 52 dB (PSNR).
     pub fn draft(model: &'a Model) -> Scene<'a> {
         Scene::prepare(model, light::DRAFT, None)
     }
@@ -177,9 +178,11 @@ impl<'a> Scene<'a> {
         picture
     }
 
-    /// Views from an orbit, at one turn about the vertical and several heights above the horizon, radians, without a background: the
-    /// colour of a pixel is the mean of what it shows of the model, and alpha is the share that the model has in it. The lights turn with
-    /// the camera, but do not rise with it; those of a panorama stay. Unfinished where the run has been stopped meanwhile.
+    /// Views from an orbit, at one turn about the vertical and several heights above the horizon,
+    /// radians, without a background: the colour of a pixel is the mean of what it shows of the
+    /// model, and alpha is the share that the model has in it. The lights turn with the camera, but
+    /// do not rise with it; those of a panorama stay. Unfinished where the run has been stopped
+    /// meanwhile.
     pub fn cut_outs(&self, orbit: &Orbit, azimuth: f64, elevations: &[f64]) -> Vec<RgbaImage> {
         let lights = self.lights(&orbit.camera(azimuth, super::camera::EYE_ELEVATION));
         let (key, width, height) = (&self.soft_box(lights.key), orbit.width as usize, orbit.height);

@@ -1,4 +1,5 @@
-//! What colour a surface shows: soft key, fill and sky on a matt surface, with the sheen of its fibres.
+//! What colour a surface shows: soft key, fill and sky on a matt surface, with the sheen of its
+//! fibres.
 
 use super::camera::Camera;
 use super::surroundings::Surroundings;
@@ -57,8 +58,8 @@ impl Lights {
         }
     }
 
-    /// Light on a surface with unit normal `n` (turned to the viewer), where `ambient` of the sky and `key` of
-    /// the key light reach it.
+    /// Light on a surface with unit normal `n` (turned to the viewer), where `ambient` of the sky
+    /// and `key` of the key light reach it.
     pub(super) fn on(&self, n: &Vector3, ambient: f64, key: f64) -> [f32; 3] {
         let cosine = |l: &Vector3| n.dot(l).max(0.0);
         let key = (self.key_light * key * cosine(&self.key)) as f32;
@@ -66,7 +67,8 @@ impl Lights {
         [0, 1, 2].map(|c| key * self.key_tint[c] + around * self.tint[c])
     }
 
-    /// What fibres add of key and fill light, for white sheen; the sky's is left out. In the same units as [`Lights::on`].
+    /// What fibres add of key and fill light, for white sheen; the sky's is left out. In the same
+    /// units as [`Lights::on`].
     pub(super) fn sheen(&self, sheen: &Sheen, n: &Vector3, ambient: f64, key: f64) -> f64 {
         let alpha = f64::from(sheen.roughness).max(LEAST_ROUGHNESS).powi(2);
         let of = |l: &Vector3| charlie(n, l, &self.view, alpha);
@@ -77,8 +79,9 @@ impl Lights {
 /// Smoother sheen than this is a line of light too thin to be drawn.
 const LEAST_ROUGHNESS: f64 = 0.1;
 
-/// Light that fibres scatter from `l` to `v`, as a share of what a white matt surface that faces the light would: the distribution of Estevez
-/// and Kulla (2017) with the visibility of Neubelt and Pettineo (2013), as glTF's `KHR_materials_sheen` has it.
+/// Light that fibres scatter from `l` to `v`, as a share of what a white matt surface that faces
+/// the light would: the distribution of Estevez and Kulla (2017) with the visibility of Neubelt and
+/// Pettineo (2013), as glTF's `KHR_materials_sheen` has it.
 fn charlie(n: &Vector3, l: &Vector3, v: &Vector3, alpha: f64) -> f64 {
     let (light, view) = (n.dot(l), n.dot(v).max(0.0));
     let Some(half) = (l + v).try_normalize(1e-9).filter(|_| light > 0.0) else { return 0.0 };

@@ -262,7 +262,8 @@ fn corner() -> impl Strategy<Value = (f64, f64)> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
-    /// Two triangles on both sides of an edge cover, between them, every sample of the quadrangle's inside.
+    /// Two triangles on both sides of an edge cover, between them, every sample of the quadrangle's
+    /// inside.
     #[test]
     fn neighbours_leave_no_gap(a in corner(), b in corner(), c in corner(), d in corner()) {
         let at = |(x, y): (f64, f64)| Projected { x, y, near: 0.0, inv_w: 1.0 };

@@ -1,8 +1,9 @@
 //! `Scene`: a prepared scene in the form `garment-scene-1`.
 //!
-//! Method: the engine's reader checks every index and number; the body becomes a collider over boxes along the axes, as
-//! `BvhCollider` makes it. Cost: reading the file, and the body's tree. Limit: strain limits, layers and threads have no place
-//! in a garment; the stage names what it leaves out, and what was mended.
+//! Method: the engine's reader checks every index and number; the body becomes a collider over
+//! boxes along the axes, as `BvhCollider` makes it. Cost: reading the file, and the body's tree.
+//! Limit: strain limits, layers and threads have no place in a garment; the stage names what it
+//! leaves out, and what was mended.
 
 use crate::body::Units;
 use crate::collide::{BvhScheme, Distances, asked_distances, check_body};
@@ -17,11 +18,13 @@ use toile_core::prelude::*;
 use toile_geometry::obj;
 use toile_geometry::volume::Aabb;
 
-/// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on them.
+/// Reads a prepared scene: flat panels with their starts and seams, pins, a body, what acts on
+/// them.
 ///
-/// The form is described in docs/reference/scene.md; benchmarks of other programs use it as well. The
-/// garment's vertices keep the order of the file, so that a result can be held against it.
-/// A body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj` does.
+/// The form is described in docs/reference/scene.md; benchmarks of other programs use it as well.
+/// The garment's vertices keep the order of the file, so that a result can be held against it. A
+/// body that exporters left with split vertices, doubled or flat triangles is mended, as `BodyObj`
+/// does.
 #[stage(
     role = Reader,
     source = "garment-scene-1, docs/reference/scene.md",
@@ -39,7 +42,8 @@ pub struct Scene {
     /// Whether vertices of a panel that lie on each other, flat and at the start, become one.
     #[param(default = false)]
     pub weld: bool,
-    /// The unit of the body's OBJ; `Guess` takes metres, or where the body would be longer than 10 m the unit in which it fits the cloth.
+    /// The unit of the body's OBJ; `Guess` takes metres, or where the body would be longer than 10
+    /// m the unit in which it fits the cloth.
     #[param(default = Units::Guess)]
     pub units: Units,
 }
@@ -79,8 +83,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Whether the file and that of its body are there and have their forms. What they say is checked by the run, at once: scenes come
-    /// first.
+    /// Whether the file and that of its body are there and have their forms. What they say is
+    /// checked by the run, at once: scenes come first.
     pub(crate) fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let form = || {
             placed.cx.look(&self.file).map_err(Unread::File)?;
@@ -104,7 +108,8 @@ impl Scene {
         asked_distances::rule(self.distances, &size, SHARE).into_iter().collect()
     }
 
-    /// How much it will read: by counting. Reading it whole, with the repair of its body, would cost a tenth of a small skirt.
+    /// How much it will read: by counting. Reading it whole, with the repair of its body, would
+    /// cost a tenth of a small skirt.
     pub(crate) fn foresee(&self, _given: &Size, cx: &Context) -> Option<Size> {
         let bytes = cx.read(&self.file).ok()?;
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);

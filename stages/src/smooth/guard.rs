@@ -1,9 +1,9 @@
 //! What a smoother must not break: triangles, outline, lengths.
 //!
 //! Method: vertices move all at once; those of triangles that would turn over or lose their angle
-//! go back, and again, until none does. Outline vertices move along the outline's normal only, within
-//! a share of the outline's tolerance, and each stretch's moves are scaled back until its length
-//! survives.
+//! go back, and again, until none does. Outline vertices move along the outline's normal only,
+//! within a share of the outline's tolerance, and each stretch's moves are scaled back until its
+//! length survives.
 
 use super::topology::{Stretch, Topology};
 use nalgebra::Matrix2;
@@ -13,8 +13,8 @@ use toile_core::{Context, StageError};
 /// A triangle's least angle may fall, but not below this (degrees) unless it was there before.
 const ANGLE_FLOOR: f64 = 20.0;
 
-/// An outline vertex may leave its place by this share of its sides. The mesher's chords use half of the
-/// outline's tolerance; this is less than the other half.
+/// An outline vertex may leave its place by this share of its sides. The mesher's chords use half
+/// of the outline's tolerance; this is less than the other half.
 const OUTLINE_REACH: f64 = 0.4 * CHORD_TOLERANCE;
 
 /// The length of every stretch of the outline survives to this share, half of what is promised
@@ -154,7 +154,8 @@ fn moved(panel: &Panel, points: Vec<Point2>) -> Panel {
 /// A panel whose axes are those of its photo, to this share, is moved along them exactly.
 const STRAIGHT: f64 = 1e-9;
 
-/// How a way on the panel becomes one in the photo, pixels per metre: the least-squares map of all vertices, since a panel may lie turned.
+/// How a way on the panel becomes one in the photo, pixels per metre: the least-squares map of all
+/// vertices, since a panel may lie turned.
 fn photo_map(panel: &Panel) -> Matrix2<f64> {
     let mean = |points: &[Point2]| points.iter().map(|p| p.coords).sum::<Vector2>() / points.len() as f64;
     let (flat, px) = (mean(&panel.positions), mean(&panel.photo_px));

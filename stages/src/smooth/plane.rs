@@ -15,11 +15,10 @@
 //! mean plane becomes the mean line, and they move along the border's normal in the surface.
 //!
 //! In a flat panel all inner vertices lie in their mean planes, so the method moves none of them:
-//! what it mends there is the outline's burrs. On a surface in space
-//! it smooths folds: see [`smooth_to_planes`](super::smooth_to_planes).
-//! Cost: linear in the triangles, a round.
-//! Limits: `lambda` above 0.8 may oscillate. Border vertices next to a corner or a pin keep their place, since
-//! they lack neighbours on one side.
+//! what it mends there is the outline's burrs. On a surface in space it smooths folds: see
+//! [`smooth_to_planes`](super::smooth_to_planes). Cost: linear in the triangles, a round. Limits:
+//! `lambda` above 0.8 may oscillate. Border vertices next to a corner or a pin keep their place,
+//! since they lack neighbours on one side.
 
 use super::guard::{Step, smooth};
 use super::topology::{Stretch, Topology};
@@ -27,11 +26,11 @@ use nalgebra::Matrix2;
 use toile_core::prelude::*;
 use toile_core::{Context, StageError};
 
-/// Evens out burrs of the outline along its normal, by each vertex's distance to the mean line of its
-/// neighbours; even curves keep their shape.
+/// Evens out burrs of the outline along its normal, by each vertex's distance to the mean line of
+/// its neighbours; even curves keep their shape.
 ///
-/// Inner vertices of a flat panel lie in their mean plane already and stay. The outline stays within
-/// its tolerance, lengths of edges within 0.1 %, corners exactly.
+/// Inner vertices of a flat panel lie in their mean plane already and stay. The outline stays
+/// within its tolerance, lengths of edges within 0.1 %, corners exactly.
 #[stage(
     role = Smoother,
     source = "thesis on 3D garment modelling from photos, 2012",
@@ -80,8 +79,8 @@ impl Step for MeanLine {
     }
 }
 
-/// The neighbours on a border: two on either side, for with one the finest zigzag only changes its sign
-/// at lambda 0.5.
+/// The neighbours on a border: two on either side, for with one the finest zigzag only changes its
+/// sign at lambda 0.5.
 const NEAR: [isize; 4] = [-2, -1, 1, 2];
 
 /// Signed distance (outward positive) of the vertex `step` after place `k` to the mean line of its

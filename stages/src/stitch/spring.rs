@@ -1,9 +1,10 @@
 //! `SpringStitcher`: sews panels with springs.
 //!
-//! Method: the engine's motion by central differences (Fan et al. 1999) with springs along the mesh edges for cloth and bending; seams
-//! close at a set speed as if by hands, and pairs that have met become one node. Gravity does not act until every pair is joined.
-//! Cost: steps times triangles. Limits: stiff fabrics are softened to `stiffest`; a seam that does not come nearer is
-//! reported; nothing is torn or pulled through the body.
+//! Method: the engine's motion by central differences (Fan et al. 1999) with springs along the mesh
+//! edges for cloth and bending; seams close at a set speed as if by hands, and pairs that have met
+//! become one node. Gravity does not act until every pair is joined. Cost: steps times triangles.
+//! Limits: stiff fabrics are softened to `stiffest`; a seam that does not come nearer is reported;
+//! nothing is torn or pulled through the body.
 
 use crate::drape::{Course, InTime, damping, moved, softened, springs};
 use crate::engine::{Motions, check_garment};
@@ -12,10 +13,10 @@ use toile_core::prelude::*;
 
 /// Sews the panels of a garment together, cloth taken as springs.
 ///
-/// Paired points of the seams are brought together at `closing` while the cloth's own springs, damping and contacts
-/// act; gravity waits until the sewing is done, or the cloth would fall. When all are nearer than
-/// `seam_distance` they become one with their momentum kept. Gathered seams are sewn the same way. A seam that cannot
-/// close is an error that names it.
+/// Paired points of the seams are brought together at `closing` while the cloth's own springs,
+/// damping and contacts act; gravity waits until the sewing is done, or the cloth would fall. When
+/// all are nearer than `seam_distance` they become one with their momentum kept. Gathered seams are
+/// sewn the same way. A seam that cannot close is an error that names it.
 #[stage(
     role = Stitcher,
     version = 3,

@@ -1,6 +1,7 @@
 //! A front that is cut in two halves, taken as one for a while: its neckline crosses both.
 //!
-//! Both halves lie in the same coordinates, and their edges `neck_left` and `neck_right` meet in the middle.
+//! Both halves lie in the same coordinates, and their edges `neck_left` and `neck_right` meet in
+//! the middle.
 
 use super::replaced::replaced;
 use toile_core::prelude::*;

@@ -1,12 +1,14 @@
 //! The pattern of outlines: what is sewn, as a tailor draws it.
 //!
-//! A stage that changes outlines after they were cut from a pattern changes the pattern with them, so that what is written is what is sewn. Edges
-//! that stay keep their curves; those that change become the points of the outline.
+//! A stage that changes outlines after they were cut from a pattern changes the pattern with them,
+//! so that what is written is what is sewn. Edges that stay keep their curves; those that change
+//! become the points of the outline.
 
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 
-/// The pattern with the edges of its pieces as the outlines have them, where these are no more what they were `before`.
+/// The pattern with the edges of its pieces as the outlines have them, where these are no more what
+/// they were `before`.
 ///
 /// # Errors
 /// An edge that changed and is not one edge of the pattern.
@@ -40,7 +42,8 @@ pub(super) fn redrawn(
     Ok(drawn)
 }
 
-/// The pattern of outlines that were named without one: their edges as they run, and the seams of the plan.
+/// The pattern of outlines that were named without one: their edges as they run, and the seams of
+/// the plan.
 pub(super) fn of_outlines(outlines: &Set<Outline>, plan: Option<&SewingPlan>) -> Pattern {
     let pieces = outlines.iter().map(|(name, outline)| Piece {
         name: name.to_owned(),

@@ -1,8 +1,9 @@
 //! Styles: name the outline's edges and keep the seams.
 //!
-//! A style looks at the shape ([`shape`]) and not only at the corners that were found, so that a missing
-//! or an extra corner does no harm ([`naming`]); seams are checked and their edges agree on their
-//! divisions in [`sewing`]. [`neckline`] then looks at the photo for what the outline cannot show.
+//! A style looks at the shape ([`shape`]) and not only at the corners that were found, so that a
+//! missing or an extra corner does no harm ([`naming`]); seams are checked and their edges agree on
+//! their divisions in [`sewing`]. [`neckline`] then looks at the photo for what the outline cannot
+//! show.
 
 mod block;
 mod closed_front;

@@ -11,10 +11,11 @@ const TILT_WARNING: f64 = 8.0;
 const MAX_ASYMMETRY: f64 = 0.06;
 /// Narrowest neck opening, and greatest, as a share of the garment's width.
 const NECK_WIDTH: [f64; 2] = [0.08, 0.75];
-/// The lower border may rise in its middle by this share of the garment's height; trousers rise by more.
+/// The lower border may rise in its middle by this share of the garment's height; trousers rise by
+/// more.
 const MAX_NOTCH: f64 = 0.2;
-/// How far the middle of a neckline may stand above the neck points, as a share of the height: the collar of
-/// a back that shows.
+/// How far the middle of a neckline may stand above the neck points, as a share of the height: the
+/// collar of a back that shows.
 const MAX_COLLAR: f64 = 0.08;
 
 /// Landmarks of one half, from the hem upwards: each with the edge that starts there.
@@ -24,7 +25,8 @@ pub(super) type Half = Vec<(&'static str, usize)>;
 /// cannot.
 pub(super) type FindHalf = fn(&Shape, Path) -> Result<Half, String>;
 
-/// Names the edges of one panel's outline. Into how many parts they are divided is found where they are sewn.
+/// Names the edges of one panel's outline. Into how many parts they are divided is found where they
+/// are sewn.
 pub(super) fn name_edges(
     panel: &str,
     style: &str,

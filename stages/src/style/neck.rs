@@ -1,19 +1,19 @@
 //! Where the shoulders end and the neckline begins.
 //!
-//! Method: a photo of the front shows the back's collar behind the neckline, so a garment's upper border
-//! may be level, or even rise, between its neck points, and the highest point is no landmark. Instead
-//! candidates of both halves are paired: corners and extreme points near the top, and the mirror images of
-//! the other half's. The pair wins that bends most, lies symmetrically, and lies inwards. Cost: some tens of
-//! candidates, each with each. Limits: a neckline that runs into the shoulders without any bend is
-//! placed by its other half alone.
+//! Method: a photo of the front shows the back's collar behind the neckline, so a garment's upper
+//! border may be level, or even rise, between its neck points, and the highest point is no
+//! landmark. Instead candidates of both halves are paired: corners and extreme points near the top,
+//! and the mirror images of the other half's. The pair wins that bends most, lies symmetrically,
+//! and lies inwards. Cost: some tens of candidates, each with each. Limits: a neckline that runs
+//! into the shoulders without any bend is placed by its other half alone.
 
 use super::shape::Shape;
 use toile_core::artifact::{Point2, Vector2};
 
 /// How far below the garment's top the neck points may lie, as a share of its height.
 const TOP: f64 = 0.13;
-/// Least distance of a neck point from the axis, as a share of the garment's width: half of the narrowest
-/// neck opening.
+/// Least distance of a neck point from the axis, as a share of the garment's width: half of the
+/// narrowest neck opening.
 const LEAST: f64 = 0.04;
 /// Greatest such distance: half of the widest neck opening.
 const MOST: f64 = 0.375;
@@ -68,8 +68,8 @@ fn candidates(shape: &Shape) -> Vec<usize> {
     found
 }
 
-/// The candidates of one half and the points nearest to those of the other; where a candidate lies near, it
-/// stands for the point.
+/// The candidates of one half and the points nearest to those of the other; where a candidate lies
+/// near, it stands for the point.
 fn with_mirrored(shape: &Shape, own: &[usize], other: &Shape, others: &[usize]) -> Vec<usize> {
     let far = |i: usize, j: &&usize| (shape.at(i) - shape.at(**j)).norm();
     let lone = |i: &usize| own.iter().all(|j| far(*i, &j) > NEAR * shape.size);

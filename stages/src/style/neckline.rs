@@ -1,14 +1,14 @@
 //! `Neckline`: finds the front's neckline in its photo.
 //!
-//! A shirt laid flat shows the inside of its back above the front's neckline, so the outline's upper border is the
-//! back's neckline, and a front cut along it has no room for the throat. Method: a family of curves from
-//! neck point to neck point, from V to U and of all depths, is laid over the photo, and the one across which
-//! the colour changes most evenly wins (deformable templates: Yuille, Hallinan, Cohen, 1992). The
-//! median along the curve counts, so that a label or a print beneath part of it does not, and beside it the
-//! lower quartile, so that a curve which follows the neckline half of the way does not.
-//! Cost: some thousand curves of 40 points, a few milliseconds. Limits: a curve that is symmetric about
-//! the middle of the neck points; a garment photographed closed and without any seam at its neck gets the
-//! usual depth, with a warning.
+//! A shirt laid flat shows the inside of its back above the front's neckline, so the outline's
+//! upper border is the back's neckline, and a front cut along it has no room for the throat.
+//! Method: a family of curves from neck point to neck point, from V to U and of all depths, is laid
+//! over the photo, and the one across which the colour changes most evenly wins (deformable
+//! templates: Yuille, Hallinan, Cohen, 1992). The median along the curve counts, so that a label or
+//! a print beneath part of it does not, and beside it the lower quartile, so that a curve which
+//! follows the neckline half of the way does not. Cost: some thousand curves of 40 points, a few
+//! milliseconds. Limits: a curve that is symmetric about the middle of the neck points; a garment
+//! photographed closed and without any seam at its neck gets the usual depth, with a warning.
 
 use super::BlockStyle;
 use super::closed_front::ClosedFront;
@@ -23,29 +23,32 @@ use toile_core::{Feed, Node};
 const DEPTHS: (f64, f64, f64) = (0.28, 1.3, 0.01);
 /// Powers of the curves `depth (1 - |s|^p)`: from nearly V to U.
 const POWERS: [f64; 6] = [1.2, 1.6, 2.0, 2.5, 3.2, 4.0];
-/// The likeliest depth, and how far off it a curve must be to count half, as shares of the neck's width.
+/// The likeliest depth, and how far off it a curve must be to count half, as shares of the neck's
+/// width.
 const USUAL: (f64, f64) = (0.5, 0.3);
 /// A neck edge that dips by this share of its width is the front's neckline already.
 const DIPS: f64 = 0.3;
-/// Points of a curve at which colours are compared, over this share of its width: near its ends all curves
-/// meet.
+/// Points of a curve at which colours are compared, over this share of its width: near its ends all
+/// curves meet.
 const SAMPLES: usize = 40;
 const WITHIN: f64 = 0.86;
-/// Half the distance across the curve at which colours are compared, as a share of the neck's width, and
-/// the least in pixels.
+/// Half the distance across the curve at which colours are compared, as a share of the neck's
+/// width, and the least in pixels.
 const ACROSS: (f64, f64) = (0.025, 1.5);
-/// How far below the present edge a curve must lie, in such half distances, and over which part of its width:
-/// a back's collar is no neckline of the front.
+/// How far below the present edge a curve must lie, in such half distances, and over which part of
+/// its width: a back's collar is no neckline of the front.
 const MARGIN: f64 = 2.5;
 const INSIDE: f64 = 0.7;
-/// Of a front with armholes, the share of the height from armpits to neck points above which its neckline ends: what shows below is a print.
+/// Of a front with armholes, the share of the height from armpits to neck points above which its
+/// neckline ends: what shows below is a print.
 const ABOVE_ARMPITS: f64 = 0.8;
 /// A neck that is closed is no tighter than this share of the body's: a rib stretches so far.
 const TIGHTEST: f64 = 0.95;
 /// The least power of a neckline that is cut for the body, and the halvings that find its depth.
 const ROUND: f64 = 2.0;
 const HALVINGS: usize = 40;
-/// A neckline that is cut deeper than its photo shows it by more than this is to be looked at, metres.
+/// A neckline that is cut deeper than its photo shows it by more than this is to be looked at,
+/// metres.
 const MUCH: f64 = 0.04;
 /// What is proposed beyond a depth, metres.
 const MORE: f64 = 0.02;
@@ -53,8 +56,8 @@ const MORE: f64 = 0.02;
 const DEEPEST: f64 = 0.7;
 /// Least change of colour across the curve, in levels of 0 to 255.
 const LEAST_CHANGE: f64 = 3.0;
-/// Depths that are tried to either side of the curve that was found, and how far they reach, in half
-/// distances of comparison.
+/// Depths that are tried to either side of the curve that was found, and how far they reach, in
+/// half distances of comparison.
 const REFINE: i32 = 40;
 const REFINE_REACH: f64 = 4.0;
 /// Distance of the points of the new edge, metres.
@@ -62,10 +65,11 @@ const SPACING: f64 = 1e-3;
 
 /// Cuts the front along the neckline that its photo shows.
 ///
-/// Use it where the photo of the front shows the inside of the back above the neckline, as with most shirts laid flat.
-/// The back keeps its outline. A front whose outline dips at the neck already is left as it is. Where front and back together would not reach around
-/// the body's neck, the front is cut deeper than its photo shows it, with a warning. The pattern is cut with the outlines, so that what is written is
-/// what is sewn; of outlines without a pattern it is drawn.
+/// Use it where the photo of the front shows the inside of the back above the neckline, as with
+/// most shirts laid flat. The back keeps its outline. A front whose outline dips at the neck
+/// already is left as it is. Where front and back together would not reach around the body's neck,
+/// the front is cut deeper than its photo shows it, with a warning. The pattern is cut with the
+/// outlines, so that what is written is what is sewn; of outlines without a pattern it is drawn.
 #[stage(
     role = Style,
     version = 4,
@@ -101,7 +105,8 @@ impl Neckline {
         Ok((cut, pattern))
     }
 
-    /// A pattern that is drawn from outlines says nothing of the body, and is not arranged around it.
+    /// A pattern that is drawn from outlines says nothing of the body, and is not arranged around
+    /// it.
     fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let Some(style) = placed.maker("plan").filter(|_| placed.maker("pattern").is_none()) else {
             return Vec::new();
@@ -217,7 +222,8 @@ impl Neckline {
     }
 }
 
-/// Around the neck of a body, where a neckline lies: an ellipse through its sides, its front and its back, metres.
+/// Around the neck of a body, where a neckline lies: an ellipse through its sides, its front and
+/// its back, metres.
 fn throat(body: &Body) -> Option<f64> {
     let at = |name: &str| body.landmarks.get(name).copied();
     let (left, right) = (at("neck_left")?, at("neck_right")?);
@@ -263,8 +269,8 @@ impl Chord {
         Some(Chord { middle: nalgebra::center(&a, &b), half, down, width: 2.0 * half.norm() })
     }
 
-    /// The depth of the present edge at each place where colours are compared: its lowest point near
-    /// there.
+    /// The depth of the present edge at each place where colours are compared: its lowest point
+    /// near there.
     fn profile(&self, edge: &[Point2]) -> Vec<f64> {
         let across = |p: &Point2| (p - self.middle).dot(&self.half) / self.half.norm_squared();
         let near = |s: f64| {
@@ -283,7 +289,8 @@ impl Chord {
         polyline_length(&points)
     }
 
-    /// The curve made round and so deep that it is as long as `least`; as deep as `most` where that is not enough.
+    /// The curve made round and so deep that it is as long as `least`; as deep as `most` where that
+    /// is not enough.
     fn long_enough(&self, curve: Curve, least: f64, most: f64) -> Curve {
         let at = |depth: f64| Curve { depth, power: curve.power.max(ROUND) };
         let (mut low, mut high) = (curve.depth, most.max(curve.depth));
@@ -316,7 +323,8 @@ impl Chord {
         (ACROSS.0 * self.width).max(ACROSS.1 / frame.px_per_metre)
     }
 
-    /// How deep a neckline may be at most: it ends above the armpits, where the outline has armholes.
+    /// How deep a neckline may be at most: it ends above the armpits, where the outline has
+    /// armholes.
     fn deepest(&self, outline: &Outline) -> f64 {
         let holes = outline.edges.iter().filter(|e| e.name.starts_with("armhole"));
         let points = &outline.outer.points;
@@ -338,7 +346,8 @@ impl Chord {
             .at("depth"))
     }
 
-    /// The curve of the most even change of colour below the present edge, and no deeper than `most`.
+    /// The curve of the most even change of colour below the present edge, and no deeper than
+    /// `most`.
     fn find(&self, photo: &Photo, frame: PhotoFrame, collar: &[f64], most: f64) -> Option<Curve> {
         let steps = ((DEPTHS.1 - DEPTHS.0) / DEPTHS.2) as usize;
         let depths =
@@ -452,7 +461,8 @@ mod tests {
     use image::{Rgb, RgbImage};
     use std::sync::Arc;
 
-    /// A plain square shirt, 40 cm wide and 50 cm high, at 500 pixels a metre; its neck is 16 cm wide.
+    /// A plain square shirt, 40 cm wide and 50 cm high, at 500 pixels a metre; its neck is 16 cm
+    /// wide.
     fn shirt() -> Outline {
         let corners = [(0.2, 0.0), (0.2, 0.48), (0.08, 0.5), (-0.08, 0.5), (-0.2, 0.48), (-0.2, 0.0)];
         let points = corners.map(|(x, y)| Point2::new(x, y)).to_vec();

@@ -8,7 +8,8 @@ use toile_core::prelude::*;
 /// One entry of a pipeline's `seams`.
 #[choice]
 pub enum SeamEntry {
-    /// Equal lengths, the start of one edge with the end of the other, as pieces laid face to face meet.
+    /// Equal lengths, the start of one edge with the end of the other, as pieces laid face to face
+    /// meet.
     Match(EdgeRef, EdgeRef),
     /// The longer edge is gathered evenly onto the shorter.
     Gather(EdgeRef, EdgeRef),
@@ -29,8 +30,8 @@ impl SeamEntry {
 
 /// Sews the edges that the file names, in place of the style's own seams.
 ///
-/// Edges are written `"panel.edge"`, such as `"front.side_left"`. Unknown names, edges of very different
-/// length that are not declared gathered, and reversed pairings are refused.
+/// Edges are written `"panel.edge"`, such as `"front.side_left"`. Unknown names, edges of very
+/// different length that are not declared gathered, and reversed pairings are refused.
 #[stage(
     role = Style,
     source = "3D garment modelling based on image-based rendering, about 2012",

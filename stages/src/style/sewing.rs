@@ -1,7 +1,9 @@
 //! Seams: which edges meet, whether they can, and into how many parts both are divided.
 //!
-//! Method: both edges of a seam get one [`Gauge`] that suits either, so that meshers divide them alike. A seam's direction is checked by laying both panels face to face and
-//! one edge on the other: its threads must not be longer than those of the opposite pairing. Cost: linear in the edges.
+//! Method: both edges of a seam get one [`Gauge`] that suits either, so that meshers divide them
+//! alike. A seam's direction is checked by laying both panels face to face and one edge on the
+//! other: its threads must not be longer than those of the opposite pairing. Cost: linear in the
+//! edges.
 
 use super::naming::is_back;
 use rayon::prelude::*;
@@ -14,8 +16,8 @@ use toile_core::prelude::*;
 const MAX_EASE: f64 = 0.03;
 /// Lengths that differ by more than this share are eased with a warning.
 const EASE_WARNING: f64 = 0.01;
-/// Threads of a reversed seam are at least this much longer than those of the right one; edges that run at
-/// right angles to each other may be sewn either way.
+/// Threads of a reversed seam are at least this much longer than those of the right one; edges that
+/// run at right angles to each other may be sewn either way.
 const REVERSED: f64 = 1.25;
 /// Points on an edge at which its threads are measured.
 const THREADS: usize = 9;
@@ -100,7 +102,8 @@ fn twice(side: &EdgeRef) -> StageError {
     StageError::invalid(format!("the edge {side} stands in more than one seam")).hint("sew every edge once")
 }
 
-/// What is wrong with seams by the names of panels and edges alone, as far as these are known before the outlines are.
+/// What is wrong with seams by the names of panels and edges alone, as far as these are known
+/// before the outlines are.
 pub(super) fn misnamed(
     seams: &[Seam],
     panels: Option<&[String]>,

@@ -1,10 +1,11 @@
 //! A garment's outline stood upright, for styles to look at.
 //!
-//! Method: the axis of symmetry is sought by reflecting the outline in lines through its centroid, up
-//! to [`MAX_TILT`] from upright; in the frame of that axis (u across, v up) landmarks are extreme points
-//! in tell-tale directions, or the points farthest from a chord. A landmark then snaps to a detected
-//! corner near it. So a missing corner is made up for by shape, and one too many does no harm. Cost: a few
-//! milliseconds. Limits: the garment must be roughly symmetric and not upside down.
+//! Method: the axis of symmetry is sought by reflecting the outline in lines through its centroid,
+//! up to [`MAX_TILT`] from upright; in the frame of that axis (u across, v up) landmarks are
+//! extreme points in tell-tale directions, or the points farthest from a chord. A landmark then
+//! snaps to a detected corner near it. So a missing corner is made up for by shape, and one too
+//! many does no harm. Cost: a few milliseconds. Limits: the garment must be roughly symmetric and
+//! not upside down.
 
 use nalgebra::Rotation2;
 use std::ops::RangeInclusive;
@@ -166,8 +167,8 @@ impl Shape {
         }
     }
 
-    /// The path's point farthest to the right (positive) or left (negative) of the chord through its ends,
-    /// looking from its start, snapped to a corner; and how far that is.
+    /// The path's point farthest to the right (positive) or left (negative) of the chord through
+    /// its ends, looking from its start, snapped to a corner; and how far that is.
     pub(super) fn farthest(&self, path: Path, side: f64, bend: Bend) -> Option<(usize, f64)> {
         let (a, b) = (self.at(path.from), self.at(path.to));
         let chord = (b - a).try_normalize(1e-12)?;
@@ -213,8 +214,8 @@ impl Shape {
         self.turn_over(i, TURN_ARM)
     }
 
-    /// The turn of the loop at a point between chords of a length (a share of the size), radians, positive
-    /// to the left.
+    /// The turn of the loop at a point between chords of a length (a share of the size), radians,
+    /// positive to the left.
     pub(super) fn turn_over(&self, i: usize, arm: f64) -> f64 {
         let n = self.points.len();
         let walk = |step: usize| {

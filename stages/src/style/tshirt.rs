@@ -7,10 +7,11 @@ use toile_core::prelude::*;
 
 /// Names the edges of a T-shirt and sews its shoulders, underarms and sides.
 ///
-/// The sleeves are part of the front and the back, as the photos show them. Edges, counter-clockwise
-/// on each panel: `side`, `underarm` (armpit to cuff), `cuff`, `shoulder` (neck to cuff, along the top of
-/// the sleeve) with `_left` or `_right` (the wearer's), `neck` and `hem`. Panels: `front` and `back`. A
-/// shirt may lie up to 15 degrees askew; corners that the edge detector missed are found from the shape.
+/// The sleeves are part of the front and the back, as the photos show them. Edges,
+/// counter-clockwise on each panel: `side`, `underarm` (armpit to cuff), `cuff`, `shoulder` (neck
+/// to cuff, along the top of the sleeve) with `_left` or `_right` (the wearer's), `neck` and `hem`.
+/// Panels: `front` and `back`. A shirt may lie up to 15 degrees askew; corners that the edge
+/// detector missed are found from the shape.
 #[stage(
     role = Style,
     source = "3D garment modelling based on image-based rendering, about 2012",

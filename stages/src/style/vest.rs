@@ -7,9 +7,9 @@ use toile_core::prelude::*;
 
 /// Names the edges of a sleeveless vest and sews its shoulders and sides.
 ///
-/// Edges, counter-clockwise on each panel: `side`, `armhole`, `shoulder` with `_left` or `_right` (the
-/// wearer's), `neck` and `hem`. Panels: `front` and `back`. A vest may lie up to 15 degrees askew;
-/// corners that the edge detector missed are found from the shape.
+/// Edges, counter-clockwise on each panel: `side`, `armhole`, `shoulder` with `_left` or `_right`
+/// (the wearer's), `neck` and `hem`. Panels: `front` and `back`. A vest may lie up to 15 degrees
+/// askew; corners that the edge detector missed are found from the shape.
 #[stage(
     role = Style,
     source = "3D garment modelling based on image-based rendering, about 2012",

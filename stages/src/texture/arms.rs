@@ -1,7 +1,9 @@
-//! The body without its arms, as a dress form stands in a shop: what hangs beside the trunk is then seen from the side.
+//! The body without its arms, as a dress form stands in a shop: what hangs beside the trunk is then
+//! seen from the side.
 //!
-//! Each arm is cut across the upper arm by a plane upright on it, and the cut is closed by a fan. Cost: linear in triangles.
-//! Limit: the cut must be one loop, as it is on bodies whose arms hang clear of the trunk.
+//! Each arm is cut across the upper arm by a plane upright on it, and the cut is closed by a fan.
+//! Cost: linear in triangles. Limit: the cut must be one loop, as it is on bodies whose arms hang
+//! clear of the trunk.
 
 use std::collections::{BTreeMap, VecDeque};
 use toile_core::artifact::{Body, Point3, Vector3};
@@ -113,7 +115,8 @@ impl Ends<'_> {
     }
 }
 
-/// Closes a loop by a fan around its middle; its corners are made anew, so that light turns sharply there.
+/// Closes a loop by a fan around its middle; its corners are made anew, so that light turns sharply
+/// there.
 fn close(body: &mut Body, rim: &[[u32; 2]]) {
     let mut own: BTreeMap<u32, u32> = BTreeMap::new();
     for i in rim.iter().flatten() {

@@ -1,13 +1,15 @@
 //! Colour bled past the outline.
 //!
-//! Every pixel that the panel does not surely cover takes the colour of the nearest one that it does, found
-//! exactly by the separable distance transform (Felzenszwalb and Huttenlocher, *Distance transforms of sampled
-//! functions*, 2012) which also keeps where the nearest was. So neither a seam nor a reduced texture shows the
-//! ground on which the garment lay.
+//! Every pixel that the panel does not surely cover takes the colour of the nearest one that it
+//! does, found exactly by the separable distance transform (Felzenszwalb and Huttenlocher,
+//! *Distance transforms of sampled functions*, 2012) which also keeps where the nearest was. So
+//! neither a seam nor a reduced texture shows the ground on which the garment lay.
 //!
-//! One colour a ray would run out as a streak; so the picture beyond the outline is the rim inside of it, mirrored there and back.
+//! One colour a ray would run out as a streak; so the picture beyond the outline is the rim inside
+//! of it, mirrored there and back.
 //!
-//! Cost: linear in the number of pixels. Limit: across a print that ends at the outline the mirror shows.
+//! Cost: linear in the number of pixels. Limit: across a print that ends at the outline the mirror
+//! shows.
 
 use image::{GrayImage, RgbImage};
 use rayon::prelude::*;
@@ -15,7 +17,8 @@ use rayon::prelude::*;
 /// Where a column has no marked pixel.
 const NONE: u32 = u32::MAX;
 
-/// For every pixel the nearest marked one (as an index), by exact Euclidean distance. `None` where none is marked.
+/// For every pixel the nearest marked one (as an index), by exact Euclidean distance. `None` where
+/// none is marked.
 pub(super) fn nearest(
     marked: impl Fn(usize, usize) -> bool + Sync,
     width: usize,
@@ -61,8 +64,8 @@ struct Apex {
     from: f64,
 }
 
-/// The parabolas that are lowest somewhere in row `y`, from left to right: each has its apex at its own x, as high
-/// as the square of the way to the nearest marked pixel of its column.
+/// The parabolas that are lowest somewhere in row `y`, from left to right: each has its apex at its
+/// own x, as high as the square of the way to the nearest marked pixel of its column.
 fn lower_envelope(nearest: impl Fn(usize) -> u32, y: usize, width: usize, hull: &mut Vec<Apex>) {
     hull.clear();
     for x in 0..width {
@@ -126,8 +129,9 @@ pub(super) fn eroded(inside: &GrayImage, depth: f64) -> GrayImage {
     kept
 }
 
-/// Gives every pixel off `sure` a colour from the rim of `depth` pixels inside of the nearest pixel on it: there and back again with growing
-/// distance, as in a mirror. False where there is no pixel to take it from.
+/// Gives every pixel off `sure` a colour from the rim of `depth` pixels inside of the nearest pixel
+/// on it: there and back again with growing distance, as in a mirror. False where there is no pixel
+/// to take it from.
 pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage, depth: f64) -> bool {
     let (w, h) = (sure.width() as usize, sure.height() as usize);
     let raw = sure.as_raw();
@@ -145,7 +149,8 @@ pub(super) fn bleed(pixels: &mut RgbImage, sure: &GrayImage, depth: f64) -> bool
     true
 }
 
-/// The pixel inside of `at`, which is the nearest sure one to `from`, as deep as `from` lies outside, folded at `depth`.
+/// The pixel inside of `at`, which is the nearest sure one to `from`, as deep as `from` lies
+/// outside, folded at `depth`.
 fn mirrored(from: [usize; 2], at: usize, [w, h]: [usize; 2], depth: f64) -> Option<usize> {
     let (x, y) = ((at % w) as f64, (at / w) as f64);
     let (dx, dy) = (x - from[0] as f64, y - from[1] as f64);

@@ -1,7 +1,8 @@
 //! The panel's part of its photo, scaled down.
 //!
-//! Area average in linear light over the pixels **inside the panel only**, so that no background is mixed in
-//! at the outline. Cost: every source pixel once or twice. At scale 1 pixels are copied unchanged.
+//! Area average in linear light over the pixels **inside the panel only**, so that no background is
+//! mixed in at the outline. Cost: every source pixel once or twice. At scale 1 pixels are copied
+//! unchanged.
 
 use super::inside::PixelBox;
 use crate::render::{LINEAR, encode};
@@ -15,7 +16,8 @@ pub(super) struct Crop {
     pub(super) inside: GrayImage,
 }
 
-/// The size of the crop: the box, or what is left of it when its longer side is brought down to `size` px.
+/// The size of the crop: the box, or what is left of it when its longer side is brought down to
+/// `size` px.
 pub(super) fn scaled_size(area: PixelBox, size: u32) -> [u32; 2] {
     let longer = area.width.max(area.height);
     let fit = |side: u32| match longer > size {

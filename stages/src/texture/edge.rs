@@ -1,8 +1,9 @@
 //! The open edges of a garment: hems, necklines and cuffs as thick as the cloth turned under.
 //!
-//! Along every edge that no seam closes runs a rounded strip: from the right side around the edge to the wrong side. Its profile has
-//! five points: two on the cloth, one over, one beyond and one under the edge.
-//! Cost: eight triangles a mesh edge. Limit: one look at the strip is one colour of the edge beside it; no stitch is drawn.
+//! Along every edge that no seam closes runs a rounded strip: from the right side around the edge
+//! to the wrong side. Its profile has five points: two on the cloth, one over, one beyond and one
+//! under the edge. Cost: eight triangles a mesh edge. Limit: one look at the strip is one colour of
+//! the edge beside it; no stitch is drawn.
 
 use std::collections::BTreeMap;
 use toile_core::artifact::{Garment, Material, Mesh, Model, Point3, Vector3};
@@ -15,8 +16,8 @@ pub(crate) fn is_edge(mesh: &Mesh, model: &Model) -> bool {
     mesh.name.strip_suffix(EDGE).is_some_and(|panel| model.meshes.iter().any(|m| m.name == panel))
 }
 
-/// Adds a strip of this thickness, metres, to every panel with open edges. The first meshes and materials of the model are those of the
-/// panels; `normals` are the garment's.
+/// Adds a strip of this thickness, metres, to every panel with open edges. The first meshes and
+/// materials of the model are those of the panels; `normals` are the garment's.
 pub(super) fn add_edges(model: &mut Model, garment: &Garment, normals: &[Vector3], thickness: f64) {
     if thickness <= 0.0 {
         return;
@@ -69,7 +70,8 @@ impl OpenEdges {
         for [a, b] in edges.iter().flatten() {
             let along = garment.positions[*b as usize] - garment.positions[*a as usize];
             for i in [a, b] {
-                // A triangle runs against the clock around its normal, so the cloth lies to the left of its edge.
+                // A triangle runs against the clock around its normal, so the cloth lies to the
+                // left of its edge.
                 let away = along.cross(&normals[*i as usize]);
                 *sums.entry(welded(*i)).or_insert_with(Vector3::zeros) += away;
             }
@@ -79,8 +81,8 @@ impl OpenEdges {
         OpenEdges { beyond, edges, normals: normals.to_vec() }
     }
 
-    /// The strip along a panel's open edges, `thickness` metres thick, in the panel's texture coordinates `uv`; none where all its edges are
-    /// sewn.
+    /// The strip along a panel's open edges, `thickness` metres thick, in the panel's texture
+    /// coordinates `uv`; none where all its edges are sewn.
     pub(super) fn strip(
         &self,
         garment: &Garment,

@@ -1,10 +1,12 @@
-//! Finished edges in the picture of a panel: ribs that bind an edge, and hems that are turned under and stitched.
+//! Finished edges in the picture of a panel: ribs that bind an edge, and hems that are turned under
+//! and stitched.
 //!
-//! A panel with such edges has a picture of its own: its cloth, and near an edge what the distance to it and the place along it say. A rib has
-//! columns of stitches upright on the edge and a seam where it meets the cloth; a hem has a row of lock stitches in a shallow groove (ISO 4915,
-//! stitch type 301). Nothing of it is in the mesh.
-//! Cost: one look a texel, and one a texel and mesh edge near the edge. Limits: texels of 0.4 mm at least, so single yarns are not told
-//! apart; where two finished edges meet, each texel belongs to the nearer one.
+//! A panel with such edges has a picture of its own: its cloth, and near an edge what the distance
+//! to it and the place along it say. A rib has columns of stitches upright on the edge and a seam
+//! where it meets the cloth; a hem has a row of lock stitches in a shallow groove (ISO 4915, stitch
+//! type 301). Nothing of it is in the mesh. Cost: one look a texel, and one a texel and mesh edge
+//! near the edge. Limits: texels of 0.4 mm at least, so single yarns are not told apart; where two
+//! finished edges meet, each texel belongs to the nearer one.
 
 use super::relief::Relief;
 use super::weave::{Colour, Swatch};
@@ -37,7 +39,8 @@ pub(super) struct Finish {
 pub(super) const MOST_PX: f64 = 4096.0;
 /// Columns of a rib: one that stands out and one that lies back, metres.
 const RIB_PITCH: f64 = 2.6e-3;
-/// Light on the columns that lie back, where those that stand out have 1, and how far they do, metres.
+/// Light on the columns that lie back, where those that stand out have 1, and how far they do,
+/// metres.
 const RIB_BACK: f64 = 0.62;
 const RIB_HEIGHT: f64 = 0.6e-3;
 /// Half the width of the seam between rib and cloth, metres, and its light.
@@ -46,7 +49,8 @@ const SEAM_LIGHT: f64 = 0.6;
 /// A stitch with the gap to the next, and its thread's length and half width, metres.
 const STITCH: f64 = 3.0e-3;
 const THREAD: [f64; 2] = [2.2e-3, 0.3e-3];
-/// Light on the thread, and in the groove beside it, where cloth has 1; the groove's half width and depth, metres.
+/// Light on the thread, and in the groove beside it, where cloth has 1; the groove's half width and
+/// depth, metres.
 const THREAD_LIGHT: f64 = 1.35;
 const GROOVE_LIGHT: f64 = 0.72;
 const GROOVE: [f64; 2] = [1.1e-3, 0.4e-3];
@@ -148,7 +152,8 @@ impl Sheet {
     }
 }
 
-/// For every texel the nearest finished edge in reach: which one, its distance and the place along it, metres.
+/// For every texel the nearest finished edge in reach: which one, its distance and the place along
+/// it, metres.
 struct Near(Vec<Option<(u32, f32, f32)>>);
 
 impl Near {

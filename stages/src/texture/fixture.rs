@@ -196,7 +196,8 @@ fn fabric() -> Fabric {
     }
 }
 
-/// Parameters of a texturer, with cloth alike on both sides and edges without thickness: a mesh a panel, and no others.
+/// Parameters of a texturer, with cloth alike on both sides and edges without thickness: a mesh a
+/// panel, and no others.
 pub(crate) fn one_sheet(params: &str) -> String {
     let rest = params.strip_prefix('(').unwrap_or(params);
     format!("(edge: \"0 mm\", wrong_side: Same, {rest}")

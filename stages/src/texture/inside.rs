@@ -1,7 +1,7 @@
 //! Which photo pixels a panel covers.
 //!
-//! Every triangle is scanned by rows of pixel centres; a pixel belongs to the panel when its centre lies in
-//! or on a triangle of either winding, so that a mirrored photo needs no special case.
+//! Every triangle is scanned by rows of pixel centres; a pixel belongs to the panel when its centre
+//! lies in or on a triangle of either winding, so that a mirrored photo needs no special case.
 //! Cost: the panel's area in pixels. Exact up to rounding at the outline.
 
 use image::GrayImage;
@@ -17,7 +17,8 @@ pub(super) struct PixelBox {
 }
 
 impl PixelBox {
-    /// Around points with a margin, as far as the photo with its own margin reaches; `None` beside the photo.
+    /// Around points with a margin, as far as the photo with its own margin reaches; `None` beside
+    /// the photo.
     pub(super) fn around(points: &[Point2], margin: u32, photo: (u32, u32)) -> Option<PixelBox> {
         let first = *points.first()?;
         let (lo, hi) = points.iter().fold((first, first), |(lo, hi), p| (lo.inf(p), hi.sup(p)));
@@ -32,8 +33,8 @@ impl PixelBox {
         Some(PixelBox { left, top, width, height })
     }
 
-    /// Texture coordinates of a photo pixel: (0, 0) and (1, 1) are the box's outer corners, half a pixel
-    /// beyond its first and last pixel centres.
+    /// Texture coordinates of a photo pixel: (0, 0) and (1, 1) are the box's outer corners, half a
+    /// pixel beyond its first and last pixel centres.
     pub(super) fn uv(&self, px: &Point2) -> [f32; 2] {
         let share = |v: f64, from: i64, size: u32| ((v - from as f64 + 0.5) / f64::from(size)) as f32;
         [share(px.x, self.left, self.width), share(px.y, self.top, self.height)]
@@ -52,7 +53,8 @@ pub(super) fn cover(picture: &mut GrayImage, points: &[Point2], triangles: &[[u3
 /// A panel of which the mask shows less than this share is not the one that it was made from.
 const LEAST_SHOWN: f64 = 0.5;
 
-/// Takes out what the mask of the photo does not show as garment. A mask of a photo that was brought down has larger pixels.
+/// Takes out what the mask of the photo does not show as garment. A mask of a photo that was
+/// brought down has larger pixels.
 pub(super) fn keep_shown(inside: &mut GrayImage, mask: &GrayImage, photo_width: u32, area: PixelBox) {
     let join = (f64::from(photo_width) / f64::from(mask.width().max(1))).round().max(1.0) as i64;
     let shown = |x: u32, y: u32| {

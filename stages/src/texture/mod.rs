@@ -34,7 +34,8 @@ pub fn register(registry: &mut Registry) {
     registry.add::<FabricTexturer>();
 }
 
-/// The photo that shows a panel, or its mask: that of its name, or of the last word of its name, such as `front` for `left_sleeve_front`.
+/// The photo that shows a panel, or its mask: that of its name, or of the last word of its name,
+/// such as `front` for `left_sleeve_front`.
 pub(crate) fn of_panel<'a, T>(photos: &'a Set<T>, panel: &str) -> Option<&'a T> {
     photos.get(panel).or_else(|| photos.get(panel.rsplit('_').next()?))
 }

@@ -10,7 +10,8 @@ const MANNEQUIN: [f32; 3] = [0.42, 0.41, 0.40];
 pub(crate) const UNDYED: [f32; 3] = [0.66, 0.60, 0.49];
 /// Cloth is matt.
 const CLOTH_ROUGHNESS: f32 = 0.95;
-/// The sheen of cloth where a texturer is not told: its share of white, and its roughness, that of short fibres on every side.
+/// The sheen of cloth where a texturer is not told: its share of white, and its roughness, that of
+/// short fibres on every side.
 pub(crate) const SHEEN: f64 = 0.1;
 const SHEEN_ROUGHNESS: f32 = 0.5;
 
@@ -65,7 +66,8 @@ pub(crate) fn plain_cloth(name: &str, colour: [f32; 3]) -> Material {
     }
 }
 
-/// The cloth of a panel, of one colour; `sheen` is the share of white that its fibres shine with, 0 to 1.
+/// The cloth of a panel, of one colour; `sheen` is the share of white that its fibres shine with, 0
+/// to 1.
 pub(crate) fn panel_cloth(panel: &GarmentPanel, colour: [f32; 3], sheen: f64) -> Material {
     let shine = Sheen { colour: [sheen as f32; 3], roughness: SHEEN_ROUGHNESS };
     Material {

@@ -1,8 +1,9 @@
 //! A normal map from the fine detail of a photo.
 //!
-//! The luminance less its blurred self, over some threads, is taken for height, as is usual for bump maps (Blinn, 1978). Shape from
-//! shading is not attempted: a dark thread counts as a low one. Cost: a blur of the picture and [`Relief::normal_map`].
-//! Limit: the edges of a print rise or fall a little, as threads do.
+//! The luminance less its blurred self, over some threads, is taken for height, as is usual for
+//! bump maps (Blinn, 1978). Shape from shading is not attempted: a dark thread counts as a low one.
+//! Cost: a blur of the picture and [`Relief::normal_map`]. Limit: the edges of a print rise or fall
+//! a little, as threads do.
 
 use super::relief::Relief;
 use crate::denoise::gaussian;

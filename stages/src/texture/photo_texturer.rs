@@ -1,8 +1,9 @@
 //! `PhotoTexturer`: the photo of every panel becomes its texture.
 //!
-//! The photo's pixels are cropped to the panel, scaled down by area average and bled past the outline; texture
-//! coordinates are the photo coordinates that the mesher kept for every vertex.
-//! Cost: a few passes over the photo's pixels. Limit: without `shading: Remove` light and shadow in the photo stay in the texture.
+//! The photo's pixels are cropped to the panel, scaled down by area average and bled past the
+//! outline; texture coordinates are the photo coordinates that the mesher kept for every vertex.
+//! Cost: a few passes over the photo's pixels. Limit: without `shading: Remove` light and shadow in
+//! the photo stay in the texture.
 
 use super::arms::without_arms;
 use super::edge::add_edges;
@@ -32,7 +33,8 @@ pub enum Light {
 pub enum BodyShown {
     /// As the last mesh.
     Show,
-    /// The same without arms, as a dress form stands in a shop: nothing hides the garment's side. The garment was draped with them.
+    /// The same without arms, as a dress form stands in a shop: nothing hides the garment's side.
+    /// The garment was draped with them.
     WithoutArms,
     /// Left out.
     Hide,
@@ -59,8 +61,8 @@ impl BodyShown {
 pub enum Unseen {
     /// That mirror image.
     Mirrored,
-    /// The cloth alone, in its light and weave: without print, label, fly, zip, pocket or seam. Where a pattern is all over the garment, the mirror
-    /// image stays, which is told.
+    /// The cloth alone, in its light and weave: without print, label, fly, zip, pocket or seam.
+    /// Where a pattern is all over the garment, the mirror image stays, which is told.
     Plain,
 }
 
@@ -80,7 +82,8 @@ pub enum PhotoDetail {
 pub enum PhotoLight {
     /// It stays: creases and uneven light are part of the cloth's colour.
     Keep,
-    /// It is taken out, as far as it is told from print: folds of the flat garment are not lit a second time.
+    /// It is taken out, as far as it is told from print: folds of the flat garment are not lit a
+    /// second time.
     Remove,
 }
 
@@ -96,10 +99,12 @@ pub enum WrongSide {
 
 /// Dresses each panel in its own photo.
 ///
-/// Front and back photos become the textures of front and back. Colours are taken a little inside of the outline
-/// and carried past it, so that no background shows at a seam or when the texture is seen from afar. A panel
-/// takes the photo of its own name, or of the last word of its name: `left_sleeve_front` that of `front`. One without a photo gets a plain
-/// cloth. Where a piece reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours beside that place go on.
+/// Front and back photos become the textures of front and back. Colours are taken a little inside
+/// of the outline and carried past it, so that no background shows at a seam or when the texture is
+/// seen from afar. A panel takes the photo of its own name, or of the last word of its name:
+/// `left_sleeve_front` that of `front`. One without a photo gets a plain cloth. Where a piece
+/// reaches beyond the garment that its photo shows, as legs do inside of the fork, the colours
+/// beside that place go on.
 #[stage(
     role = Texturer,
     version = 8,
@@ -144,13 +149,15 @@ pub struct PhotoTexturer {
     /// The soft shine of fibres at grazing angles, as a share of white; 0.1 where it is not given.
     #[param(default = None, min = 0.0, max = 1.0)]
     sheen: Option<f64>,
-    /// Further looks of the model by name, each with the photos that differ: `{"red": {"front": "red.jpg"}}`. They show the garment where the
-    /// first ones do. The look without them is then named `original`.
+    /// Further looks of the model by name, each with the photos that differ:
+    /// `{"red": {"front": "red.jpg"}}`. They show the garment where the first ones do. The look
+    /// without them is then named `original`.
     #[param(default = BTreeMap::new())]
     variants: BTreeMap<String, BTreeMap<String, String>>,
 }
 
-/// A panel with its photo, that photo's mask, whether its print is to be taken off, and the panel's part of the photo.
+/// A panel with its photo, that photo's mask, whether its print is to be taken off, and the panel's
+/// part of the photo.
 type Pictured<'a> = (&'a GarmentPanel, &'a Photo, Option<&'a Mask>, bool, PixelBox);
 
 /// Width of the rim inside of the outline whose picture goes on beyond it, metres: some threads.
@@ -320,7 +327,8 @@ impl PhotoTexturer {
         self.unseen == Unseen::Plain && photo.mirrored && photos.is_some_and(|all| all.iter().any(other))
     }
 
-    /// The light of every photo, where it is to be taken out: one for all panels that it shows, so that no step of light comes between them.
+    /// The light of every photo, where it is to be taken out: one for all panels that it shows, so
+    /// that no step of light comes between them.
     fn lights<'a>(
         &self,
         garment: &Garment,
@@ -345,7 +353,8 @@ impl PhotoTexturer {
         Ok(lights)
     }
 
-    /// A panel's texture, and whether it was made plain. `beside` are all panels that the photo shows, this one as well: where two of them meet is no rim of the garment.
+    /// A panel's texture, and whether it was made plain. `beside` are all panels that the photo
+    /// shows, this one as well: where two of them meet is no rim of the garment.
     fn texture(
         &self,
         garment: &Garment,
@@ -376,7 +385,8 @@ impl PhotoTexturer {
     }
 }
 
-/// The colour of every texture's wrong side: that of the cloth in the largest texture of the same photo, so that panels of one cloth agree.
+/// The colour of every texture's wrong side: that of the cloth in the largest texture of the same
+/// photo, so that panels of one cloth agree.
 fn wrong_sides(textures: &[Texture], pictures: &[Pictured<'_>]) -> Vec<Option<[f32; 3]>> {
     let area = |i: &usize| textures[*i].pixels.as_raw().len();
     let largest = |of: &Photo| {

@@ -1,11 +1,15 @@
-//! A side that no photo shows: the other side's cloth, without print, label, fly, zip, pocket or seam.
+//! A side that no photo shows: the other side's cloth, without print, label, fly, zip, pocket or
+//! seam.
 //!
-//! The cloth's colour is the commonest one along the outline, where prints are rare. What differs from it in hue, or in lightness
-//! from the cloth around it, is print. Without it the cloth's light and colour are averaged over wide squares (a pyramid of averages: Gortler,
-//! Grzeszczuk, Szeliski and Cohen, The lumigraph, 1996), and take the weave of the evenest square of plain cloth. A pattern all over the
-//! garment is the cloth's own: then the picture stays as it is, with all that it shows.
+//! The cloth's colour is the commonest one along the outline, where prints are rare. What differs
+//! from it in hue, or in lightness from the cloth around it, is print. Without it the cloth's light
+//! and colour are averaged over wide squares (a pyramid of averages: Gortler, Grzeszczuk, Szeliski
+//! and Cohen, The lumigraph, 1996), and take the weave of the evenest square of plain cloth. A
+//! pattern all over the garment is the cloth's own: then the picture stays as it is, with all that
+//! it shows.
 //!
-//! Cost: a few looks at every pixel. Limits: a garment of two colours keeps both only where each has much of the outline.
+//! Cost: a few looks at every pixel. Limits: a garment of two colours keeps both only where each
+//! has much of the outline.
 
 use super::bleed::eroded;
 use crate::binarise::{Regions, close, dilate, lab};
@@ -26,16 +30,19 @@ const HUE: f64 = 12.0;
 const LIGHT: [f64; 2] = [30.0, 10.0];
 /// Beyond this share of the band, or of all, what differs is a pattern of the cloth.
 const PATTERN: [f64; 2] = [0.2, 0.6];
-/// Squares along the longer side in which marks are looked for, and the share of them with marks from which these are a pattern.
+/// Squares along the longer side in which marks are looked for, and the share of them with marks
+/// from which these are a pattern.
 const SQUARES: usize = 12;
 const MOST_SPREAD: f64 = 0.9;
 /// Pieces of fewer small pixels are no print.
 const SPECK: u64 = 5;
 /// How far print reaches beyond what is surely print, small pixels.
 const AROUND: u32 = 3;
-/// Light is averaged over squares of this share of the picture's shorter side: wider than a fly or a zip.
+/// Light is averaged over squares of this share of the picture's shorter side: wider than a fly or
+/// a zip.
 const WIDE: f64 = 0.12;
-/// Side of the square of weave: its share of the picture's shorter side, and its least and greatest, px.
+/// Side of the square of weave: its share of the picture's shorter side, and its least and
+/// greatest, px.
 const SQUARE: f64 = 0.12;
 const SIDES: (usize, usize) = (8, 128);
 
@@ -47,7 +54,8 @@ enum Shown {
     Cloth(GrayImage),
 }
 
-/// Makes a picture of cloth plain; false where a pattern covers all of it, or where there is no cloth: then it stays. `sure` marks the cloth.
+/// Makes a picture of cloth plain; false where a pattern covers all of it, or where there is no
+/// cloth: then it stays. `sure` marks the cloth.
 pub(super) fn plain(pixels: &mut RgbImage, sure: &GrayImage) -> bool {
     let Shown::Cloth(print) = shown(pixels, sure) else { return false };
     let keep = |x: u32, y: u32| sure.get_pixel(x, y).0[0] != 0 && print.get_pixel(x, y).0[0] == 0;
@@ -135,7 +143,8 @@ fn shown_in(small: &RgbImage, inside: &GrayImage) -> Option<Shown> {
     })
 }
 
-/// In which share of the squares that cloth fills there is something marked: a print stands somewhere, a pattern everywhere.
+/// In which share of the squares that cloth fills there is something marked: a print stands
+/// somewhere, a pattern everywhere.
 fn spread(found: &GrayImage, on: &[bool]) -> f64 {
     let (w, h) = (found.width() as usize, found.height() as usize);
     let side = (w.max(h) / SQUARES).max(1);
@@ -186,7 +195,8 @@ impl Light {
         Self::from_level(pixels, known, 4)
     }
 
-    /// The same, as averages of squares of 2 to the power of `finest`; `None` where no pixel is known.
+    /// The same, as averages of squares of 2 to the power of `finest`; `None` where no pixel is
+    /// known.
     fn from_level(pixels: &RgbImage, known: &GrayImage, finest: usize) -> Option<Light> {
         let (w, h) = (pixels.width() as usize, pixels.height() as usize);
         let first = pixels.pixels().zip(known.as_raw()).map(|(p, on)| match on {
@@ -306,7 +316,8 @@ impl Weave {
         sums.iter().map(|(sum, n)| sum / f64::max(*n, 1.0)).fold(0.0, f64::max)
     }
 
-    /// Threads at any place: the square is laid out again and again, each time seen in a mirror, so that its borders meet.
+    /// Threads at any place: the square is laid out again and again, each time seen in a mirror, so
+    /// that its borders meet.
     fn at(&self, x: usize, y: usize) -> [f64; 3] {
         let fold = |v: usize| match v % (2 * self.side) {
             v if v < self.side => v,
@@ -344,7 +355,8 @@ mod tests {
         assert!(plain(&mut pixels, &sure));
         for (x, y, p) in pixels.enumerate_pixels() {
             let off = [0, 1, 2].map(|c| p.0[c].abs_diff(cloth(x, y)[c]));
-            // Light is averaged over wide squares: at the rim it lags behind the steep light of this picture.
+            // Light is averaged over wide squares: at the rim it lags behind the steep light of
+            // this picture.
             assert!(off.iter().all(|d| *d <= 10), "{x} {y}: {:?} for {:?}", p.0, cloth(x, y));
         }
     }

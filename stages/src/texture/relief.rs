@@ -1,8 +1,9 @@
 //! Normal maps of a relief (Blinn, *Simulation of wrinkled surfaces*, 1978).
 //!
-//! Heights in metres over a grid of texels become unit normals in the tangent frame: x along growing u, y up the picture, z out of the
-//! surface, each stored as 0 to 255 for -1 to 1. Slopes are taken with the operator of Sobel (1968), which smooths across its direction.
-//! Cost: nine looks at every height.
+//! Heights in metres over a grid of texels become unit normals in the tangent frame: x along
+//! growing u, y up the picture, z out of the surface, each stored as 0 to 255 for -1 to 1. Slopes
+//! are taken with the operator of Sobel (1968), which smooths across its direction. Cost: nine
+//! looks at every height.
 
 use image::RgbImage;
 use rayon::prelude::*;

@@ -1,13 +1,15 @@
 //! The light of a photo, apart from the cloth's own colour.
 //!
-//! A photo is taken as colour times light (the intrinsic images of Barrow and Tenenbaum, 1978). Light changes the lightness of
-//! neighbours a little and their hue not at all; print changes hue, or lightness by much. So every step of the logarithm of
-//! luminance between neighbours is given to the one or the other (Retinex: Land and McCann, 1971; by hue: Grosse, Johnson, Adelson
-//! and Freeman, 2009), and the steps of the light are summed to a picture by Poisson's equation.
+//! A photo is taken as colour times light (the intrinsic images of Barrow and Tenenbaum, 1978).
+//! Light changes the lightness of neighbours a little and their hue not at all; print changes hue,
+//! or lightness by much. So every step of the logarithm of luminance between neighbours is given to
+//! the one or the other (Retinex: Land and McCann, 1971; by hue: Grosse, Johnson, Adelson and
+//! Freeman, 2009), and the steps of the light are summed to a picture by Poisson's equation.
 //!
-//! Light is found on cells of [`CELL`], so what is finer (threads, stitches, ribs) stays in the colour. Its mean over the garment is
-//! one: a photo keeps its brightness. Cost: an average over the photo and some hundred rounds on the cells.
-//! Limits: a pattern in soft shades of one hue, such as worn denim, counts as light; a fold as steep as print counts as print.
+//! Light is found on cells of [`CELL`], so what is finer (threads, stitches, ribs) stays in the
+//! colour. Its mean over the garment is one: a photo keeps its brightness. Cost: an average over
+//! the photo and some hundred rounds on the cells. Limits: a pattern in soft shades of one hue,
+//! such as worn denim, counts as light; a fold as steep as print counts as print.
 
 use super::bleed::nearest;
 use crate::grid::{End, Grid, Steps};
@@ -22,8 +24,8 @@ const CELL: f64 = 3e-3;
 const MOST_CELLS: f64 = 480.0;
 /// A step between neighbours is print from this change of chromaticity.
 const HUE: f64 = 0.012;
-/// Or from this change of the logarithm of luminance, if it is as large between places [`BESIDE`] cells before and behind: across a
-/// crease luminance comes back.
+/// Or from this change of the logarithm of luminance, if it is as large between places [`BESIDE`]
+/// cells before and behind: across a crease luminance comes back.
 const LIGHT: f64 = 0.22;
 const BESIDE: usize = 3;
 /// From this change on it is print in any case.
@@ -87,8 +89,8 @@ impl Shading {
         Ok(Shading { cell, width, height, light: light.iter().map(|l| (l - mean) as f32).collect() })
     }
 
-    /// Takes the light out of a picture that is a part of the photo: `origin` is the photo's place of its top left corner and `scale` photo
-    /// pixels a pixel of it.
+    /// Takes the light out of a picture that is a part of the photo: `origin` is the photo's place
+    /// of its top left corner and `scale` photo pixels a pixel of it.
     pub(super) fn take_out(&self, part: &mut RgbImage, origin: [f64; 2], scale: [f64; 2]) {
         let width = part.width() as usize;
         part.par_chunks_mut(3 * width.max(1)).enumerate().for_each(|(y, row)| {
@@ -158,8 +160,9 @@ fn cells(photo: &RgbImage, inside: &GrayImage, cell: f64, [width, height]: [usiz
     (0..width * height).into_par_iter().map(mean).collect()
 }
 
-/// The step of light from every cell to the one `next` to it: that of luminance, or none where it is print. The feet of a step of print
-/// are print as well, for a cell may show both sides of its edge.
+/// The step of light from every cell to the one `next` to it: that of luminance, or none where it
+/// is print. The feet of a step of print are print as well, for a cell may show both sides of its
+/// edge.
 fn pairs(cells: &[Cell], width: usize, next: usize) -> Vec<f64> {
     let n = cells.len();
     let last = |i: usize| i + next >= n || next == 1 && i % width + 1 == width;

@@ -1,9 +1,10 @@
 //! The tangent frame in which a normal map is read.
 //!
-//! Every triangle has a direction along which its texture coordinate u grows and one along which v falls (up the picture). At a vertex the
-//! first is averaged over its triangles by area and made orthogonal to the normal (Lengyel, *Computing tangent space basis vectors*,
-//! 2001); the second is the cross product of normal and tangent, times a sign that is -1 where the picture lies mirrored, as glTF 2.0
-//! has it. Cost: one pass over the triangles.
+//! Every triangle has a direction along which its texture coordinate u grows and one along which v
+//! falls (up the picture). At a vertex the first is averaged over its triangles by area and made
+//! orthogonal to the normal (Lengyel, *Computing tangent space basis vectors*, 2001); the second is
+//! the cross product of normal and tangent, times a sign that is -1 where the picture lies
+//! mirrored, as glTF 2.0 has it. Cost: one pass over the triangles.
 
 use toile_core::artifact::{Mesh, Vector3};
 
@@ -42,7 +43,8 @@ pub(crate) fn tangents(mesh: &Mesh) -> Vec<Tangent> {
     mesh.normals.iter().zip(&sums).map(|(n, (along, up))| tangent(n, along, up)).collect()
 }
 
-/// Where u grows and where v falls on a triangle, each weighted with its area; zero where the texture has none there.
+/// Where u grows and where v falls on a triangle, each weighted with its area; zero where the
+/// texture has none there.
 fn directions(mesh: &Mesh, [a, b, c]: [usize; 3]) -> (Vector3, Vector3) {
     let (p, q) = (mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]);
     let difference = |i: usize| {

@@ -290,7 +290,8 @@ fn one_and_two_threads_give_the_same_bits() {
 
 #[test]
 fn what_the_mask_does_not_show_has_no_colour_of_its_own() {
-    // A box of 8 by 4 pixels that begins one pixel left of the photo; the mask has pixels of two, of which the middle column is ground.
+    // A box of 8 by 4 pixels that begins one pixel left of the photo; the mask has pixels of two,
+    // of which the middle column is ground.
     let area = PixelBox { left: -1, top: 0, width: 8, height: 4 };
     let mask = |ground: u32| GrayImage::from_fn(3, 2, |x, _| Luma([if x == ground { 0 } else { 255 }]));
     let mut inside = GrayImage::from_pixel(8, 4, Luma([255]));
@@ -390,7 +391,8 @@ fn uneven_light_goes_only_where_it_is_asked_to() {
     assert!(spread("()") > 30 && spread("(shading: Remove)") < 8, "{}", spread("(shading: Remove)"));
 }
 
-/// A folder with the fixture's front in other colours: in its place, from farther away, and cut off.
+/// A folder with the fixture's front in other colours: in its place, from farther away, and cut
+/// off.
 fn other_fronts() -> (tempfile::TempDir, Context) {
     let folder = tempfile::tempdir().unwrap();
     let first = fixture::photos();

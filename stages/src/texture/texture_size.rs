@@ -1,9 +1,10 @@
 //! Rule `texture-size`: textures of no more pixels than are asked for.
 //!
-//! Fact: the photos' longer side has more pixels than `size`, by more than what the room around the garment may account for.
-//! Then the panel's part of its photo is scaled down, and everything behind it (bleeding, light, files) works on so many
-//! pixels. Tolerance: the root mean square difference of the texture in grey levels; the scaled texture lacks the grain of
-//! camera and weave below its own pixels. Source: area average (Williams 1983).
+//! Fact: the photos' longer side has more pixels than `size`, by more than what the room around the
+//! garment may account for. Then the panel's part of its photo is scaled down, and everything
+//! behind it (bleeding, light, files) works on so many pixels. Tolerance: the root mean square
+//! difference of the texture in grey levels; the scaled texture lacks the grain of camera and weave
+//! below its own pixels. Source: area average (Williams 1983).
 
 use crate::photo::frames;
 use toile_core::cost::{Quantity, Size};

@@ -1,7 +1,8 @@
 //! The same garment in other colours: photos that show it where the first ones do.
 //!
-//! A shop photographs each colour in the same place. So a variant needs no outline of its own: its pixels stand for those of the first photo.
-//! Whether the garment lies where the first one did is looked up in a mask of the variant's photo. Cost: that of `Auto` a file.
+//! A shop photographs each colour in the same place. So a variant needs no outline of its own: its
+//! pixels stand for those of the first photo. Whether the garment lies where the first one did is
+//! looked up in a mask of the variant's photo. Cost: that of `Auto` a file.
 
 use super::of_panel;
 use crate::binarise::Auto;
@@ -11,7 +12,8 @@ use toile_core::prelude::*;
 
 /// The look of the photos of the pipeline, beside variants.
 pub(super) const ORIGINAL: &str = "original";
-/// So many of a panel's triangles lie on the variant's garment at least; the rest may be lost at the outline.
+/// So many of a panel's triangles lie on the variant's garment at least; the rest may be lost at
+/// the outline.
 const COVERED: f64 = 0.9;
 
 /// What photos of variants must be like.
@@ -37,9 +39,11 @@ pub(super) fn bad_variant((name, files): (&String, &BTreeMap<String, String>)) -
     }
 }
 
-/// The photos with those of a variant in their places; one that stood in for the mirror image of a replaced one does so again.
+/// The photos with those of a variant in their places; one that stood in for the mirror image of a
+/// replaced one does so again.
 ///
-/// Errors: no photo has the name, a file cannot be read or is of another size, the garment lies elsewhere in it.
+/// Errors: no photo has the name, a file cannot be read or is of another size, the garment lies
+/// elsewhere in it.
 pub(super) fn replaced(
     photos: &Set<Photo>,
     files: &BTreeMap<String, String>,
@@ -105,7 +109,8 @@ fn lies_alike(photo: &Photo, name: &str, garment: &Garment, cx: &Context) -> Res
         if panel.photo_px.len() != panel.vertices.len() || of_panel(&names, &panel.name).is_none() {
             continue;
         }
-        // Vertices lie on the outline, where a mask may end a pixel earlier; middles of triangles lie within.
+        // Vertices lie on the outline, where a mask may end a pixel earlier; middles of triangles
+        // lie within.
         let first = panel.vertices.start;
         let triangles = &garment.triangles[panel.triangles.clone()];
         let is_on_it = |t: &&[u32; 3]| {

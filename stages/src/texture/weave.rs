@@ -1,8 +1,10 @@
 //! Pictures of cloth that repeat: woven yarns and knitted stitches.
 //!
-//! A woven cloth is a grid of warp and weft yarns, of which the upper one shows (Adanur, *Handbook of Weaving*, 2001); a yarn is a round
-//! thread that dives under its neighbour. The face of a knit is columns (wales) of V-shaped stitches. Each yarn differs a little from the
-//! next, by numbers that follow from its place alone. Colours are linear light; the mean of a cloth of one colour is that colour.
+//! A woven cloth is a grid of warp and weft yarns, of which the upper one shows (Adanur, *Handbook
+//! of Weaving*, 2001); a yarn is a round thread that dives under its neighbour. The face of a knit
+//! is columns (wales) of V-shaped stitches. Each yarn differs a little from the next, by numbers
+//! that follow from its place alone. Colours are linear light; the mean of a cloth of one colour is
+//! that colour.
 
 use super::relief::Relief;
 use crate::render::{LINEAR, encode};
@@ -79,8 +81,8 @@ pub(super) struct Swatch {
 const SWATCH_TEXEL: f64 = 0.4e-3;
 
 impl Tile {
-    /// The mean of the threads over texels as near to 0.4 mm as a whole number in a repeat allows, or as near to `least`, metres, where that is
-    /// more.
+    /// The mean of the threads over texels as near to 0.4 mm as a whole number in a repeat allows,
+    /// or as near to `least`, metres, where that is more.
     pub(super) fn swatch(&self, least: f64) -> Swatch {
         let n = self.pixels.width() as usize;
         let count = ((self.side / SWATCH_TEXEL.max(least)).floor() as usize).clamp(1, n);
@@ -134,7 +136,8 @@ const SIDE_LIGHT: f64 = 0.55;
 /// Light on the columns of a rib that lie back.
 const BACK_LIGHT: f64 = 0.72;
 
-/// Height of a thread where its light is 1, as a share of the distance of yarns: they are pressed flat by each other.
+/// Height of a thread where its light is 1, as a share of the distance of yarns: they are pressed
+/// flat by each other.
 const THICKNESS: f64 = 0.5;
 
 /// A tile of `size` by `size` pixels; `repeat` is that of checks and stripes, metres.
@@ -177,7 +180,8 @@ pub(super) fn tile(cloth: Cloth, repeat: f64, size: u32) -> Tile {
     Tile { pixels, side, heights: texels.iter().map(|t| t.0 as f32).collect(), pitch }
 }
 
-/// A weave: which yarn is up where warp `i` meets weft `j`, and the colours of yarns by their place, 0 to 1.
+/// A weave: which yarn is up where warp `i` meets weft `j`, and the colours of yarns by their
+/// place, 0 to 1.
 fn woven(
     side: f64,
     yarn: f64,
@@ -317,7 +321,8 @@ mod tests {
             let map = tile(cloth, 0.02, 512).normal_map(1.0);
             let mean = |c: usize| map.pixels().map(|p| f64::from(p.0[c])).sum::<f64>() / (512.0 * 512.0);
             assert!((mean(0) - 127.5).abs() < 2.0 && (mean(1) - 127.5).abs() < 4.0, "{cloth:?}");
-            // Some 10 degrees on average, and nowhere beyond 60; this tile has but four texels a yarn.
+            // Some 10 degrees on average, and nowhere beyond 60; this tile has but four texels a
+            // yarn.
             assert!((230.0..253.0).contains(&mean(2)), "{cloth:?}: {}", mean(2));
             assert!(map.pixels().all(|p| p.0[2] > 191), "{cloth:?}");
         }
@@ -331,7 +336,8 @@ mod tests {
                 let difference = |y: u32| pixels.get_pixel(a, y).0[2].abs_diff(pixels.get_pixel(b, y).0[2]);
                 (0..1024).map(|y| f64::from(difference(y))).sum::<f64>() / 1024.0
             };
-            // Over its edge it changes by no more than from one yarn to the next, in half of a repeat.
+            // Over its edge it changes by no more than from one yarn to the next, in half of a
+            // repeat.
             let most = (512..512 + 32).map(|x| step(x, x + 1)).fold(0.0, f64::max);
             assert!(step(1023, 0) <= 1.5 * most + 1.0, "{cloth:?}: {} {most}", step(1023, 0));
         }

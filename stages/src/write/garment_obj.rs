@@ -21,7 +21,8 @@ pub struct GarmentObj {
     /// Name the panels as groups.
     #[param(default = false)]
     pub groups: bool,
-    /// Write the flat places as texture points, metres; each panel's lie where they are in its own plane.
+    /// Write the flat places as texture points, metres; each panel's lie where they are in its own
+    /// plane.
     #[param(default = false)]
     pub flat: bool,
 }

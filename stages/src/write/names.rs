@@ -25,7 +25,8 @@ pub(crate) fn check_name(name: &str) -> Result<(), StageError> {
         .hint("give a plain name without folder or extension, like \"garment\""))
 }
 
-/// Names for a format that knows no quoting: letters, digits, `-` and `_`; no two alike, none empty.
+/// Names for a format that knows no quoting: letters, digits, `-` and `_`; no two alike, none
+/// empty.
 pub(super) fn plain_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let mut taken: Vec<String> = Vec::new();
     for name in names {

@@ -1,8 +1,9 @@
 //! `Obj`: the model as Wavefront OBJ with MTL and texture files.
 //!
-//! A group a panel. Vertices that stand in the very same place (joined seams) are written once, so that the garment
-//! is one connected surface, while texture coordinates stay each panel's own.
-//! Cost: the encoding of the textures. Limit: MTL knows no unlit material; *replace* becomes plain ambient colour.
+//! A group a panel. Vertices that stand in the very same place (joined seams) are written once, so
+//! that the garment is one connected surface, while texture coordinates stay each panel's own.
+//! Cost: the encoding of the textures. Limit: MTL knows no unlit material; *replace* becomes plain
+//! ambient colour.
 
 use super::check::check_model;
 use super::names::{check_name, plain_names};
@@ -14,8 +15,8 @@ use toile_core::prelude::*;
 
 /// Writes the model as OBJ, its materials as MTL and its textures as pictures beside it.
 ///
-/// Metres, Y up. Panels are groups; joined seams share their vertices. Every panel is one sheet: the thickness of open edges is left out,
-/// and both sides look alike.
+/// Metres, Y up. Panels are groups; joined seams share their vertices. Every panel is one sheet:
+/// the thickness of open edges is left out, and both sides look alike.
 #[stage(
     role = Writer,
     source = "Wavefront Technologies, Object Files, 1992",

@@ -15,7 +15,8 @@ pub enum DxfStandard {
     Astm,
 }
 
-/// Writes the pieces as DXF-AAMA or ASTM D6673, with the line of cut and that of the seam, notches, grain and texts, in millimetres.
+/// Writes the pieces as DXF-AAMA or ASTM D6673, with the line of cut and that of the seam, notches,
+/// grain and texts, in millimetres.
 ///
 /// `DxfPattern()` reads it, with the `.seams.ron` that is written beside it.
 #[stage(

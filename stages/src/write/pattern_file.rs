@@ -51,7 +51,8 @@ pub(super) fn files(
     Ok(OutputFiles(files))
 }
 
-/// Sentences that differ in names and numbers alone, as one: the first, and how many more there are.
+/// Sentences that differ in names and numbers alone, as one: the first, and how many more there
+/// are.
 fn folded(notes: Vec<String>) -> Vec<String> {
     let mut kinds: Vec<(String, String, Vec<String>)> = Vec::new();
     for note in notes {
@@ -75,7 +76,8 @@ fn folded(notes: Vec<String>) -> Vec<String> {
 /// Names that a folded sentence lists.
 const NAMED: usize = 3;
 
-/// A sentence without its quoted names and its numbers, and the names joined by dots, the last first (`front.hem`).
+/// A sentence without its quoted names and its numbers, and the names joined by dots, the last
+/// first (`front.hem`).
 fn without_names(note: &str) -> (String, Option<String>) {
     let parts: Vec<&str> = note.split('"').collect();
     let plain: Vec<String> = parts

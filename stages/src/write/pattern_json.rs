@@ -7,7 +7,8 @@ use toile_pattern_files::garment_code;
 
 /// Writes the pattern as a `_specification.json`, which GarmentCode and `GarmentCode()` read.
 ///
-/// What the format cannot hold (inner lines, notches, seams of more than two sides and kinds of seams) is told; all seams stand in a `.seams.ron` beside it.
+/// What the format cannot hold (inner lines, notches, seams of more than two sides and kinds of
+/// seams) is told; all seams stand in a `.seams.ron` beside it.
 #[stage(
     role = Writer,
     source = "pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023)",

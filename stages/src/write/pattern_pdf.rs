@@ -17,8 +17,9 @@ pub enum PatternPaper {
     OneSheet,
 }
 
-/// Draws the pieces at true scale on pages to print and join, or on one sheet: cut line, sew line, notches, grain, names, the numbers of seams on both
-/// sides, a test square, and a page with the order of cutting and sewing.
+/// Draws the pieces at true scale on pages to print and join, or on one sheet: cut line, sew line,
+/// notches, grain, names, the numbers of seams on both sides, a test square, and a page with the
+/// order of cutting and sewing.
 #[stage(
     role = Writer,
     source = "PDF 1.7",

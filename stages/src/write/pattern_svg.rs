@@ -5,7 +5,8 @@ use super::pattern_file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::svg;
 
-/// Draws the pieces of the pattern at true scale, with grain, notches, inner lines and the numbers of seams on both sides.
+/// Draws the pieces of the pattern at true scale, with grain, notches, inner lines and the numbers
+/// of seams on both sides.
 ///
 /// `SvgPattern()` reads it, with the `.seams.ron` that is written beside it.
 #[stage(

@@ -11,7 +11,8 @@ use toile_core::prelude::*;
 
 /// Writes the model as one PLY file with vertex colours, for tools that know no textures.
 ///
-/// Binary, little endian, metres, Y up. Every panel is one sheet: the thickness of open edges is left out.
+/// Binary, little endian, metres, Y up. Every panel is one sheet: the thickness of open edges is
+/// left out.
 #[stage(
     role = Writer,
     source = "Turk, The PLY Polygon File Format, 1994",

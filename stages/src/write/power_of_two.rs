@@ -1,7 +1,8 @@
 //! Textures whose sides are powers of two.
 //!
-//! Sides are scaled by linear interpolation, by a tent filter where they shrink, in linear light (normal maps as they stand); texture
-//! coordinates count in shares of the picture and stay. Cost: a pass over each texture that changes, row by row.
+//! Sides are scaled by linear interpolation, by a tent filter where they shrink, in linear light
+//! (normal maps as they stand); texture coordinates count in shares of the picture and stay. Cost:
+//! a pass over each texture that changes, row by row.
 
 use crate::render::Coding;
 use image::RgbImage;

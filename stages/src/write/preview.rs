@@ -1,4 +1,5 @@
-//! `Preview`: pictures of the model from front, back and side, and a sheet of them beside the photo.
+//! `Preview`: pictures of the model from front, back and side, and a sheet of them beside the
+//! photo.
 //!
 //! See the renderer for method, cost and limits.
 
@@ -20,7 +21,8 @@ pub enum Framing {
 
 /// Draws the model from the front, from behind and from the wearer's left.
 ///
-/// Writes `front.png`, `back.png` and `side.png`, and on request `sheet.jpg`: the photo, front, back, left side and three-quarter view in one row.
+/// Writes `front.png`, `back.png` and `side.png`, and on request `sheet.jpg`: the photo, front,
+/// back, left side and three-quarter view in one row.
 #[stage(
     role = Writer,
     version = 2,

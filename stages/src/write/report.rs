@@ -1,8 +1,8 @@
 //! `Report`: one self-contained page on the run.
 //!
-//! Views of the result, key figures, then every stage with its pictures, parameters, time and measures.
-//! Cost: two small drawings for every garment on the way. Limit: pictures beyond `PICTURE_BUDGET` are left out,
-//! and the page says so.
+//! Views of the result, key figures, then every stage with its pictures, parameters, time and
+//! measures. Cost: two small drawings for every garment on the way. Limit: pictures beyond
+//! `PICTURE_BUDGET` are left out, and the page says so.
 
 use super::report_data::{Page, VIEW_HEIGHT, page};
 use super::report_views::{self, Views};
@@ -21,8 +21,8 @@ const SCRIPT: &str = include_str!("report.js");
 ///
 /// One file with no links to others; opens in any browser, light or dark.
 ///
-/// Its times are those of the run that made the page: where all that it reports on comes from the cache, the page
-/// does as well.
+/// Its times are those of the run that made the page: where all that it reports on comes from the
+/// cache, the page does as well.
 #[stage(
     role = Writer,
     version = 3,

@@ -233,7 +233,8 @@ impl Draw<'_> {
         }
     }
 
-    /// Pictures of an artifact that an earlier page may have shown: then they need not be drawn again.
+    /// Pictures of an artifact that an earlier page may have shown: then they need not be drawn
+    /// again.
     fn known(&self, artifact: &dyn Artifact, body: Option<&Body>) -> Vec<Shown> {
         let draw = || shown(pictures_of(artifact, body, self.height));
         let Some(bytes) = stored::encode(artifact) else { return draw() };
@@ -260,7 +261,8 @@ impl Draw<'_> {
     }
 }
 
-/// The outlines over their photos: those that the last stage that names outlines left, on the photos as they were read.
+/// The outlines over their photos: those that the last stage that names outlines left, on the
+/// photos as they were read.
 fn outlines(run: &RunLog, height: u32) -> Vec<Picture> {
     let photos = run.stages.iter().find(|s| entries(s).any(|(_, a)| is::<Photo>(a).is_some()));
     let found = run.stages.iter().rev().find(|s| entries(s).any(|(_, a)| is::<Outline>(a).is_some()));
@@ -370,7 +372,8 @@ fn output(name: &str, artifact: &dyn Artifact) -> Output {
 /// What a tailor asks of the result first: cloth, seams, strain, rest.
 fn key_figures(run: &RunLog) -> Vec<Vec<Figure>> {
     let Some(garment) = last::<Garment>(run, run.stages.len()) else { return Vec::new() };
-    // What was judged is the garment by the pattern that it was sewn from, whatever flattener stands behind.
+    // What was judged is the garment by the pattern that it was sewn from, whatever flattener
+    // stands behind.
     let figures = last::<Figures>(run, run.stages.len());
     let strain = figures.map_or_else(|| strain(garment), |f| f.garment.edge_strain);
     let open = garment.seams.iter().filter(|s| s.state == SeamState::Open).count();

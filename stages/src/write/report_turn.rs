@@ -1,6 +1,7 @@
 //! The turntable in the report, and where a place on the garment comes from.
 //!
-//! A `Turntable` that ran before the report has made the views: the report shows them and draws none itself.
+//! A `Turntable` that ran before the report has made the views: the report shows them and draws
+//! none itself.
 
 use super::origin::{self, Origins, PanelOrigin};
 use super::turntable::{STYLE, data_of, script};

@@ -1,9 +1,10 @@
 //! Rule `report-views`: the report's head shows pictures that another stage has drawn.
 //!
-//! Fact: a `Preview` of the garment, at least as large, runs before the report and draws the same model: no other model is
-//! made between them. Then the three views at the head are its pictures, brought down, and the report draws none of the model
-//! itself. Tolerance: the same bits of everything but the report's own page, whose views are in the finer light of `Preview`.
-//! Source: a result is worked out once (common subexpressions, Cocke 1970).
+//! Fact: a `Preview` of the garment, at least as large, runs before the report and draws the same
+//! model: no other model is made between them. Then the three views at the head are its pictures,
+//! brought down, and the report draws none of the model itself. Tolerance: the same bits of
+//! everything but the report's own page, whose views are in the finer light of `Preview`. Source: a
+//! result is worked out once (common subexpressions, Cocke 1970).
 
 use super::preview::Preview;
 use image::RgbImage;
@@ -54,7 +55,8 @@ pub(super) fn taken(run: &RunLog, height: u32) -> Option<[RgbImage; 3]> {
     Some([picture("front.png")?, picture("back.png")?, picture("side.png")?])
 }
 
-/// The last of the stages, by name, parameters and whether it makes a model, that draws the last model as large.
+/// The last of the stages, by name, parameters and whether it makes a model, that draws the last
+/// model as large.
 fn drawing<'a>(stages: impl Iterator<Item = (&'a str, String, bool)>, height: u32) -> Option<usize> {
     let draws = |name: &str, params: &str| {
         let preview = (name == Preview::NAME).then(|| ron_options().from_str::<Preview>(params).ok());

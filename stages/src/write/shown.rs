@@ -5,8 +5,9 @@ use crate::texture::parts::BODY;
 use toile_core::StageError;
 use toile_core::artifact::{Material, Mesh, Model};
 
-/// The model without what a file must not hold: meshes without triangles, materials and textures that no mesh uses, texture coordinates
-/// that no material reads, sheen and normal maps of materials on which light does not act; and without the body unless it is asked for.
+/// The model without what a file must not hold: meshes without triangles, materials and textures
+/// that no mesh uses, texture coordinates that no material reads, sheen and normal maps of
+/// materials on which light does not act; and without the body unless it is asked for.
 ///
 /// Errors: nothing is left.
 pub(super) fn shown(model: &Model, body: bool) -> Result<Model, StageError> {
@@ -30,7 +31,8 @@ pub(super) fn shown(model: &Model, body: bool) -> Result<Model, StageError> {
     Ok(part)
 }
 
-/// The model without the strips along its open edges: every panel is one sheet, as programs want it that work on cloth.
+/// The model without the strips along its open edges: every panel is one sheet, as programs want it
+/// that work on cloth.
 pub(super) fn sheets(model: &Model) -> Model {
     let kept: Vec<usize> = (0..model.meshes.len()).filter(|i| !is_edge(&model.meshes[*i], model)).collect();
     let mut part = Model { meshes: kept.iter().map(|i| model.meshes[*i].clone()).collect(), ..model.clone() };

@@ -1,7 +1,7 @@
 //! Right and wrong side of cloth as two meshes, for formats whose materials know one look alone.
 //!
-//! The wrong side has the same places, turned about. Both are seen from their own side only, so neither shows through the other and no
-//! room is needed between them. Cost: one copy of the mesh.
+//! The wrong side has the same places, turned about. Both are seen from their own side only, so
+//! neither shows through the other and no room is needed between them. Cost: one copy of the mesh.
 
 use super::shown::{drop_unread_uv, keep_used_materials};
 use toile_core::artifact::{Material, Mesh, Model};

@@ -30,7 +30,8 @@ impl TrapCollider {
     }
 }
 
-/// Moves every vertex out of the body: a solver of a plugin, which calls whatever collider it is given.
+/// Moves every vertex out of the body: a solver of a plugin, which calls whatever collider it is
+/// given.
 #[stage(role = Draper)]
 pub struct PushesOut;
 

@@ -1,5 +1,5 @@
-//! Stages that do what plugins must not do, and a few that do what they must: the tests of the plugin
-//! border load them, and the program must live on with a clear word.
+//! Stages that do what plugins must not do, and a few that do what they must: the tests of the
+//! plugin border load them, and the program must live on with a clear word.
 #![allow(clippy::panic)]
 
 mod collider;

@@ -1,7 +1,9 @@
-//! The scoreboard as one call: every test, model, mesh and resolution asked for, with what is wrong beside what it costs.
+//! The scoreboard as one call: every test, model, mesh and resolution asked for, with what is wrong
+//! beside what it costs.
 //!
-//! A row is one run. A verdict is a row's error against the limit of its test, and only where the limit binds: the default models on a
-//! mesh fit for garments, at the resolution the test binds from. All other rows are there to be compared.
+//! A row is one run. A verdict is a row's error against the limit of its test, and only where the
+//! limit binds: the default models on a mesh fit for garments, at the resolution the test binds
+//! from. All other rows are there to be compared.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -87,7 +89,8 @@ pub struct Verdict {
     pub runs: usize,
     /// The worst of them; infinite if one was refused.
     pub worst: f64,
-    /// `(max - min) / mean` of the measured quantity over the meshes of the finest binding resolution: E3 only.
+    /// `(max - min) / mean` of the measured quantity over the meshes of the finest binding
+    /// resolution: E3 only.
     pub spread: Option<f64>,
     /// For error and spread.
     pub limit: f64,

@@ -16,7 +16,8 @@ const RIGIDITY: f64 = 1e-6;
 pub(super) fn errors(models: Models, layout: Layout, along: usize) -> Result<Vec<(String, f64)>, ClothError> {
     let mesh = Rectangle::new(layout, WIDTH, 1.0, along);
     let mut parts = Vec::new();
-    // The quadratic law of St Venant-Kirchhoff equals the linear one of the reference only for small beta.
+    // The quadratic law of St Venant-Kirchhoff equals the linear one of the reference only for
+    // small beta.
     let betas = if models.membrane == Membrane::StVenantKirchhoff { &BETAS[..1] } else { &BETAS[..] };
     for &beta in betas {
         for span in SPANS {

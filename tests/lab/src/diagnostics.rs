@@ -1,7 +1,9 @@
-//! Diagnostics: what the models do where no score is agreed on, each beside the figure that theory or custom knows.
+//! Diagnostics: what the models do where no score is agreed on, each beside the figure that theory
+//! or custom knows.
 //!
-//! Lateral buckling (the implied Poisson's ratio of bending), the foot of a pressed strip (stick or slip), the heart loop, the picture
-//! frame, a swinging plate, and Cusick's drape test. No limits: they show where a difference comes from.
+//! Lateral buckling (the implied Poisson's ratio of bending), the foot of a pressed strip (stick or
+//! slip), the heart loop, the picture frame, a swinging plate, and Cusick's drape test. No limits:
+//! they show where a difference comes from.
 
 use std::f64::consts::{FRAC_PI_3, PI};
 use std::fmt;
@@ -266,7 +268,8 @@ fn pendulums() -> Vec<Task> {
     periods.chain(heights).collect()
 }
 
-/// Period (from three zero crossings) and share of the height kept, of a stiff plate let go at 60 degrees.
+/// Period (from three zero crossings) and share of the height kept, of a stiff plate let go at 60
+/// degrees.
 fn swing(solver: usize) -> Result<[f64; 2], ClothError> {
     let mesh = Rectangle::new(Layout::Equilateral, 0.3, 1.0, 10);
     let sheet = mesh.sheet(1.0)?;

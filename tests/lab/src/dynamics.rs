@@ -1,4 +1,5 @@
-//! E6: the swing of a hanging sheet and the tone of a drumhead, from steps in time; and the damping that backward Euler adds.
+//! E6: the swing of a hanging sheet and the tone of a drumhead, from steps in time; and the damping
+//! that backward Euler adds.
 
 use super::reference;
 use toile_cloth::energy::{Cloth, Models, Vec3};

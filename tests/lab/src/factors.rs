@@ -1,4 +1,5 @@
-//! The own sparse factorization of the static solver beside faer's supernodal one, on matrices of cloth.
+//! The own sparse factorization of the static solver beside faer's supernodal one, on matrices of
+//! cloth.
 
 use crate::Progress;
 use serde::Serialize;
@@ -89,7 +90,8 @@ fn row(side: usize) -> Result<Row, ClothError> {
     })
 }
 
-/// The solution by the own factor in the precision `T`, and the time of the second of two factorizations, whose memory is there.
+/// The solution by the own factor in the precision `T`, and the time of the second of two
+/// factorizations, whose memory is there.
 fn own<T: Real + Default>(
     symbolic: &Symbolic,
     matrix: &BlockMatrix,

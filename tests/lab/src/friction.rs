@@ -1,4 +1,5 @@
-//! E5: when a belt slips round a drum, when a sheet slips on an incline, and how far it creeps before.
+//! E5: when a belt slips round a drum, when a sheet slips on an incline, and how far it creeps
+//! before.
 
 use toile_cloth::constraint::{Cylinder, Plane};
 use toile_cloth::energy::{Cloth, DeadLoad, Models, Vec3};
@@ -103,7 +104,8 @@ fn settle(
     Ok(())
 }
 
-/// Tangent of the slope at which a sheet begins to slide, by bisection, and its speed of creep one degree below.
+/// Tangent of the slope at which a sheet begins to slide, by bisection, and its speed of creep one
+/// degree below.
 fn slipping_slope(models: Models, layout: Layout, mu: f64) -> Result<(f64, f64), ClothError> {
     let mut failure = None;
     let mut slides = |degrees: f64| match slide(models, layout, mu, degrees.to_radians(), 0.2) {

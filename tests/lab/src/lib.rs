@@ -1,9 +1,11 @@
 //! How right the models are: six tests against exact references, on several meshes.
 //!
-//! The references are ordinary differential equations and series solved here, to far more digits than any mesh reaches
-//! ([`mod@reference`]); nothing in them knows the engine. Each test gives one error, so that models can be compared; see [`Score`].
+//! The references are ordinary differential equations and series solved here, to far more digits
+//! than any mesh reaches ([`mod@reference`]); nothing in them knows the engine. Each test gives one
+//! error, so that models can be compared; see [`Score`].
 //!
-//! [`accuracy()`], [`solvers()`], [`diagnostics()`] and [`stability()`] run it all and give reports that print as tables and turn into JSON.
+//! [`accuracy()`], [`solvers()`], [`diagnostics()`] and [`stability()`] run it all and give reports
+//! that print as tables and turn into JSON.
 
 pub mod accuracy;
 mod cantilever;

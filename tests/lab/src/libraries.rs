@@ -1,4 +1,5 @@
-//! Own kernels beside those of the libraries that could stand in for them: times and differences on the same input.
+//! Own kernels beside those of the libraries that could stand in for them: times and differences on
+//! the same input.
 
 use crate::Progress;
 use image::{GrayImage, Luma, RgbImage};

@@ -1,4 +1,5 @@
-//! E3: square plates under a small uniform load; their centre does not depend on the Poisson's ratio of bending.
+//! E3: square plates under a small uniform load; their centre does not depend on the Poisson's
+//! ratio of bending.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -36,7 +37,8 @@ fn deflection(models: Models, mesh: &Rectangle, clamped: bool, coefficient: f64)
     Ok(centre(mesh, &state.x) / DEFLECTION)
 }
 
-/// Any direction in the plane away from the plate, with a part across each border that the vertex may belong to.
+/// Any direction in the plane away from the plate, with a part across each border that the vertex
+/// may belong to.
 fn outward(mesh: &Rectangle, v: usize) -> Vec3 {
     let p = mesh.uv[v] - 0.5 * mesh.size;
     Vec3::new(p.x, p.y, 0.0).normalize()

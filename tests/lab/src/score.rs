@@ -51,7 +51,8 @@ impl Test {
         }
     }
 
-    /// The least resolution at which the limit binds, and the one that a table shows if it shows one.
+    /// The least resolution at which the limit binds, and the one that a table shows if it shows
+    /// one.
     #[must_use]
     pub fn binding_resolution(self) -> usize {
         self.resolutions()[1]

@@ -1,8 +1,10 @@
 //! Every solver on the same four problems of rest, so that its error stands beside its time.
 //!
-//! The sheet, its mesh and its models are the same for all; solvers that step are damped about critically and run until the slowest motion has
-//! died out by twelve powers of e. Solvers with constraints of their own (XPBD, projective dynamics) have lone hinges, whose Poisson's ratio
-//! of -1/3 makes a narrow strip 11 % too soft: that is theirs, as is what their last steps leave unsolved.
+//! The sheet, its mesh and its models are the same for all; solvers that step are damped about
+//! critically and run until the slowest motion has died out by twelve powers of e. Solvers with
+//! constraints of their own (XPBD, projective dynamics) have lone hinges, whose Poisson's ratio of
+//! -1/3 makes a narrow strip 11 % too soft: that is theirs, as is what their last steps leave
+//! unsolved.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -104,7 +106,8 @@ pub struct Report {
     pub stopped: bool,
 }
 
-/// Runs all solvers on all problems; `progress` hears of each run before it begins and may stop there.
+/// Runs all solvers on all problems; `progress` hears of each run before it begins and may stop
+/// there.
 ///
 /// # Errors
 /// When a problem's mesh is refused, which does not happen.
@@ -215,7 +218,8 @@ impl Problem {
     }
 }
 
-/// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level there, whatever the solver.
+/// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level
+/// there, whatever the solver.
 fn cantilever(gamma: f64) -> Problem {
     let half = Rectangle::new(Layout::Equilateral, 0.3, 1.0, ALONG);
     let mut rest = half.uv.clone();

@@ -46,7 +46,8 @@ fn stacks_of_sheets_end_without_a_fault() {
     let options = Options { axes: vec!["contact_stack".into()], ..Options::default() };
     let report = stability(&options, &mut |_, _| ControlFlow::Continue(()));
     assert!(report.rows.len() == 2 && report.pass(), "{report}");
-    // Of five nothing crosses and nothing is in the body; whether they prove their rest in 500 steps is chance.
+    // Of five nothing crosses and nothing is in the body; whether they prove their rest in 500
+    // steps is chance.
     assert!(matches!(report.rows[0].verdict, Verdict::Converged(_)), "{report}");
     if let Verdict::Refused(text) = &report.rows[1].verdict {
         assert!(text.contains("still moving"), "{report}");

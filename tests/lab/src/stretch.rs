@@ -60,7 +60,8 @@ fn steadied(model: Model, sheet: &Sheet) -> Model {
     model.with(Hinge::new(&Cloth::of(sheet, &[&trace])))
 }
 
-/// Force per width over mean strain of a strip whose length runs at `angle` to the warp, its ends free to shear.
+/// Force per width over mean strain of a strip whose length runs at `angle` to the warp, its ends
+/// free to shear.
 fn off_axis(
     models: Models,
     layout: Layout,

@@ -20,7 +20,8 @@ fn e1_cantilever() {
     worst(Test::Cantilever, 40);
 }
 
-/// E1 holds every model of bending to account. Hinges each by itself err by up to 0.009 on a coarse mesh, and by less on a finer one.
+/// E1 holds every model of bending to account. Hinges each by itself err by up to 0.009 on a coarse
+/// mesh, and by less on a finer one.
 #[test]
 fn e1_with_every_model_of_bending() {
     for bending in [Bending::Quadratic, Bending::DiscreteShell] {
@@ -33,8 +34,9 @@ fn e1_with_every_model_of_bending() {
     }
 }
 
-/// Under a thousand times its stiffness a strip turns down within a thirtieth of its length. What it errs there on a coarse mesh is what
-/// rigid links of that length must err, which falls with their square, and what its weight stretches it: half a two-thousandth.
+/// Under a thousand times its stiffness a strip turns down within a thirtieth of its length. What
+/// it errs there on a coarse mesh is what rigid links of that length must err, which falls with
+/// their square, and what its weight stretches it: half a two-thousandth.
 #[test]
 fn e1_on_a_coarse_mesh_errs_as_rigid_links_do() {
     let exact = reference::cantilever(1000.0).drop;
@@ -48,7 +50,8 @@ fn e1_on_a_coarse_mesh_errs_as_rigid_links_do() {
     }
 }
 
-/// Chance must not decide: the limits hold for ten irregular meshes, the spread of the plates with them.
+/// Chance must not decide: the limits hold for ten irregular meshes, the spread of the plates with
+/// them.
 #[test]
 fn bending_is_right_on_ten_irregular_meshes() {
     let options = accuracy::Options {

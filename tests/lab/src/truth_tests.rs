@@ -9,7 +9,8 @@ use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::scene::Scene;
 use toile_cloth::statics::solve::{Precision, StaticEquilibrium};
 
-/// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level there.
+/// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level
+/// there.
 fn over_a_bar(layout: Layout, along: usize, gamma: f64) -> (Scene, Vec<usize>) {
     let half = Rectangle::new(layout, 0.3, 1.0, along);
     let stretch = 2e4_f64.max(2e3 * gamma);
@@ -40,7 +41,8 @@ fn over_a_bar(layout: Layout, along: usize, gamma: f64) -> (Scene, Vec<usize>) {
 /// How far the tips hang below the bar.
 fn tip_drop(layout: Layout, along: usize, gamma: f64, precision: Precision) -> f64 {
     let (scene, tips) = over_a_bar(layout, along, gamma);
-    // A mesh coarser than the bend folds to a crease on the bar, which holds on finer ones: heavy cloth starts on the finest.
+    // A mesh coarser than the bend folds to a crease on the bar, which holds on finer ones: heavy
+    // cloth starts on the finest.
     let coarsest = if gamma > 100.0 { usize::MAX } else { StaticEquilibrium::default().coarsest };
     let rest =
         StaticEquilibrium { speed: 1e-6 * gamma.sqrt(), coarsest, precision, ..StaticEquilibrium::default() };

@@ -1,8 +1,9 @@
-//! Every built-in stage, given what no one would give it on purpose: it answers or refuses, and never panics,
-//! and what it gives is sound.
+//! Every built-in stage, given what no one would give it on purpose: it answers or refuses, and
+//! never panics, and what it gives is sound.
 //!
-//! Artifacts of a small, real run of the vest are edited at random. What fails the artifact's own check never
-//! reaches a stage in a real run, because the runner names it where it was made; so it does not here.
+//! Artifacts of a small, real run of the vest are edited at random. What fails the artifact's own
+//! check never reaches a stage in a real run, because the runner names it where it was made; so it
+//! does not here.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
 mod pool;
@@ -73,8 +74,8 @@ fn sound(value: &PortValue) -> bool {
     value.entries().iter().all(|(_, a)| a.check().is_ok())
 }
 
-/// Runs a stage on edited inputs, unless they are unsound; says whether it ran, or what is wrong with its
-/// answer.
+/// Runs a stage on edited inputs, unless they are unsound; says whether it ran, or what is wrong
+/// with its answer.
 fn trial(card: &Card, stage: &dyn Stage, edits: &[Edit]) -> Result<bool, String> {
     let inputs: Vec<Option<PortValue>> = card.inputs.iter().map(|port| value(port, edits)).collect();
     let missing = inputs.iter().zip(&card.inputs).any(|(v, port)| v.is_none() && !port.optional);

@@ -34,8 +34,8 @@ fn result(pipeline: &Pipeline, folder: &Path) -> Result<Vec<(String, Option<Dige
     Ok(run.results)
 }
 
-/// A manifest is believed by its first line: the digest of the rest. Spoilt within, it gets the right one, so that
-/// what is behind is read.
+/// A manifest is believed by its first line: the digest of the rest. Spoilt within, it gets the
+/// right one, so that what is behind is read.
 fn sealed(body: &[u8]) -> Vec<u8> {
     [Digest::of(body).hex().as_bytes(), b"\n", body].concat()
 }
@@ -50,7 +50,8 @@ fn spoilt(kept: &[Kept], dice: &mut Dice) -> Vec<u8> {
         Some(line) => sealed(&spoil::text(&[bytes[line + 1..].to_vec()], dice)),
         None => spoil::binary(own, dice),
     };
-    // A blob is believed by its name: where it is to be read, it gets a new one, here told by a one.
+    // A blob is believed by its name: where it is to be read, it gets a new one, here told by a
+    // one.
     let renamed = u8::from(deep && is_blob(path));
     [&(at as u32).to_le_bytes()[..], &[renamed], &content].concat()
 }

@@ -1,4 +1,5 @@
-//! Random numbers that come back: a case is made from the seed, the target's name and the case's number alone.
+//! Random numbers that come back: a case is made from the seed, the target's name and the case's
+//! number alone.
 
 /// SplitMix64 (Steele, Lea, Flood, 2014).
 pub(crate) struct Dice(u64);

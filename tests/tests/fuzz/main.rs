@@ -1,12 +1,13 @@
-//! Files that are spoilt at random: whatever a user hands in or a disk gives back is answered or refused. No panic, no
-//! signal, no more than 2 GiB, no more than 20 s.
+//! Files that are spoilt at random: whatever a user hands in or a disk gives back is answered or
+//! refused. No panic, no signal, no more than 2 GiB, no more than 20 s.
 //!
 //! A short run is among the tests. `.ci/wide` runs 100,000 cases a target with another seed:
 //!
 //!     FUZZ_CASES=100000 FUZZ_SEED=7 cargo test --release -p toile-tests --test fuzz
 //!
-//! A failure names the case and keeps its file in `out/fuzz`; `FUZZ_FROM=CASE FUZZ_CASES=1` with the same seed makes it again.
-//! Where a signal ended the process, the case is the one in `out/fuzz/TARGET.case`.
+//! A failure names the case and keeps its file in `out/fuzz`; `FUZZ_FROM=CASE FUZZ_CASES=1` with
+//! the same seed makes it again. Where a signal ended the process, the case is the one in
+//! `out/fuzz/TARGET.case`.
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr)]
 
 mod cache;
@@ -37,8 +38,9 @@ fn asked(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|n| n.parse().ok())
 }
 
-/// Runs the cases of a target, one target after another, so that time and memory are the case's own. `usual` is how many
-/// are run where nobody asks; `spoilt` makes a case; `hold` must come back from it, whatever it says.
+/// Runs the cases of a target, one target after another, so that time and memory are the case's
+/// own. `usual` is how many are run where nobody asks; `spoilt` makes a case; `hold` must come back
+/// from it, whatever it says.
 fn fuzz(
     target: &str,
     usual: u64,

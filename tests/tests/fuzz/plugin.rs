@@ -1,7 +1,8 @@
-//! Plugin files: a library that was cut short, or whose headers are spoilt, is refused with a reason.
+//! Plugin files: a library that was cut short, or whose headers are spoilt, is refused with a
+//! reason.
 //!
-//! Each case is a process of its own, since the system's loader may end it. What lies in a library's code is not touched: a
-//! plugin is code that its user trusts.
+//! Each case is a process of its own, since the system's loader may end it. What lies in a
+//! library's code is not touched: a plugin is code that its user trusts.
 
 use crate::dice::Dice;
 use crate::{HEAP, MAX_BYTES, fuzz, spoil};
@@ -13,8 +14,8 @@ use toile_tests::plugins::compiled;
 /// Names the library for the process that opens it.
 const FILE: &str = "FUZZ_PLUGIN_FILE";
 
-/// A library as an interrupted link or copy leaves it, or with a spoilt header: its first bytes say what kind of file it is
-/// and where its tables lie.
+/// A library as an interrupted link or copy leaves it, or with a spoilt header: its first bytes say
+/// what kind of file it is and where its tables lie.
 fn spoilt(library: &[u8], dice: &mut Dice) -> Vec<u8> {
     const HEADER: usize = 64;
     match dice.below(4) {

@@ -47,7 +47,8 @@ fn pipelines() {
     );
 }
 
-/// Runs a stage that reads `file` beside it; what it gives is sound, what it refuses has words. True where it answers.
+/// Runs a stage that reads `file` beside it; what it gives is sound, what it refuses has words.
+/// True where it answers.
 fn reads(stage: &str, file: &str, folder: &Path) -> Result<bool, String> {
     let options = format!("(file: \"{file}\")");
     answers(stage, &options, Inputs::default(), folder).map(|made| made.is_some())
@@ -77,7 +78,8 @@ fn answers(
     }
 }
 
-/// Reads a garment and lays what it is flat, with the flattener of this number. True where the garment was read.
+/// Reads a garment and lays what it is flat, with the flattener of this number. True where the
+/// garment was read.
 fn flattens(file: &str, number: usize, folder: &Path) -> Result<bool, String> {
     const FLATTENERS: [(&str, &str); 5] = [
         ("Arap", "(iterations: 20, darts: Auto(max_strain: 5))"),

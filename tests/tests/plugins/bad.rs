@@ -121,7 +121,8 @@ fn a_library_that_a_plugin_needs_and_the_system_does_not_find_is_named() {
     assert_eq!(gone.hint.as_deref(), Some(hint));
 }
 
-/// An interrupted link or copy leaves a part of a library, which the system would map as if it were whole.
+/// An interrupted link or copy leaves a part of a library, which the system would map as if it were
+/// whole.
 #[test]
 fn a_library_that_was_cut_short_is_refused_wherever_it_ends() {
     let dir = tempfile::tempdir().unwrap();

@@ -103,7 +103,8 @@ fn a_collider_tells_settings_and_signature() {
 fn a_collider_that_panics_ends_the_solve_with_its_message() {
     let loaded = registry_with(&["toile_faulty"]);
     let trap = collider(&loaded, "TrapCollider");
-    // A solver of a plugin that meets it hands the error on; the program's own ends by the runner's guard.
+    // A solver of a plugin that meets it hands the error on; the program's own ends by the runner's
+    // guard.
     let solver = make(&loaded, "PushesOut", "()");
     let e = run(solver.as_ref(), vec![Arc::new(garment()), trap.clone()]).unwrap_err();
     assert!(e.message.contains("its collider panicked in body_contacts: snap"), "{}", e.message);

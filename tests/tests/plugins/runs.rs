@@ -104,7 +104,8 @@ fn what_cannot_be_is_not_taken() {
     );
 }
 
-/// A garment as a stage that drapes gives it on: the stage is named, not the one that solves it next.
+/// A garment as a stage that drapes gives it on: the stage is named, not the one that solves it
+/// next.
 #[test]
 fn a_garment_with_a_triangle_turned_over_is_not_taken() {
     let mut two = crate::plugins::colliders::garment();

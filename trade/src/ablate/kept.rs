@@ -33,7 +33,8 @@ pub(super) enum Done {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub(super) enum Came {
-    /// It ran: processor time, what the decision saved against the run beside it, and, once a decision, what it changed.
+    /// It ran: processor time, what the decision saved against the run beside it, and, once a
+    /// decision, what it changed.
     Ran { cpu_s: f64, saved_s: f64, change: Option<Change> },
     /// A stage refused or failed.
     Failed { message: String },

@@ -1,7 +1,7 @@
 //! How far the outlines of two garments' flat panels are from each other.
 //!
-//! From the vertices and the middles of the segments of either boundary to the nearest point of the other's, both ways, panel by
-//! panel. Cost: vertices squared, a few milliseconds.
+//! From the vertices and the middles of the segments of either boundary to the nearest point of the
+//! other's, both ways, panel by panel. Cost: vertices squared, a few milliseconds.
 
 use crate::surface::Spread;
 use toile_core::artifact::{Garment, GarmentPanel, Point2};

@@ -23,7 +23,8 @@ pub struct Ablation {
     pub pipeline: String,
     /// Its file.
     pub file: String,
-    /// Digest of its stages, versions and parameters: by it an old measurement is told from one of the pipeline as it is.
+    /// Digest of its stages, versions and parameters: by it an old measurement is told from one of
+    /// the pipeline as it is.
     #[serde(default)]
     pub base: String,
     /// Day of the last run.
@@ -66,7 +67,8 @@ pub struct Unmeasured {
 }
 
 impl Ablation {
-    /// Whether it is of that very pipeline: the same stages, versions and parameters, and the same files.
+    /// Whether it is of that very pipeline: the same stages, versions and parameters, and the same
+    /// files.
     pub fn is_of(&self, pipeline: &Pipeline) -> bool {
         self.scheme == SCHEME && self.base == digest(pipeline, &[]) && changed(&self.reads).is_none()
     }
@@ -93,7 +95,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// What was saved in the mean, seconds, and how far chance may have moved that; none where the run failed.
+    /// What was saved in the mean, seconds, and how far chance may have moved that; none where the
+    /// run failed.
     pub fn saved(&self) -> Option<Saved> {
         Saved::of(&self.saved_s)
     }
@@ -104,7 +107,8 @@ impl Row {
 pub struct Saved {
     /// Mean over the rounds.
     pub mean: f64,
-    /// Twice the standard error of the mean: 95 of 100 cases lie within. Infinite for a single round.
+    /// Twice the standard error of the mean: 95 of 100 cases lie within. Infinite for a single
+    /// round.
     pub noise: f64,
 }
 

@@ -16,8 +16,9 @@ use toile_pipeline::Pipeline;
 
 /// Runs the pipeline as decided and with each decision turned round, or goes on with what was run.
 ///
-/// Errors: no decision there is to turn round; the pipeline fails as it is, or does not end within the budget; an override
-/// that does not load; the folder cannot be written; stopped by the user (what was measured is kept).
+/// Errors: no decision there is to turn round; the pipeline fails as it is, or does not end within
+/// the budget; an override that does not load; the folder cannot be written; stopped by the user
+/// (what was measured is kept).
 pub fn ablate(
     source: &Source<'_>,
     pipeline: &Pipeline,
@@ -62,7 +63,8 @@ impl Session<'_> {
         (0..self.options.repeats).try_for_each(|round| self.round(round, tell))
     }
 
-    /// What is missing of a round, beside a run as decided of this session: garments and times of one hour are compared.
+    /// What is missing of a round, beside a run as decided of this session: garments and times of
+    /// one hour are compared.
     fn round(&mut self, round: usize, tell: &mut dyn FnMut(Progress)) -> Result<(), Stop> {
         let missing: Vec<usize> = self.missing(round).collect();
         let is_new = !self.kept.own().contains_key(&round);

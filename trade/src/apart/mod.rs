@@ -1,13 +1,16 @@
-//! Runs in processes of their own: memory is each run's own, and a run that the system ends takes nothing else with it.
+//! Runs in processes of their own: memory is each run's own, and a run that the system ends takes
+//! nothing else with it.
 //!
-//! The program starts itself once a run ([`Apart`]). The run's task goes in as one line of JSON; what it made comes out as one
-//! line of JSON, followed by the artifacts as the cache stores them, bit by bit. Clocks stand in the child, around the run
-//! alone, so that starting a program and handing results over cost no run time. The child ends as soon as its input is
-//! closed, so that none is left behind by a parent that is gone.
+//! The program starts itself once a run ([`Apart`]). The run's task goes in as one line of JSON;
+//! what it made comes out as one line of JSON, followed by the artifacts as the cache stores them,
+//! bit by bit. Clocks stand in the child, around the run alone, so that starting a program and
+//! handing results over cost no run time. The child ends as soon as its input is closed, so that
+//! none is left behind by a parent that is gone.
 //!
 //! - `wire`: task and answer; `parent`: starts, waits, ends; `child`: runs.
 //!
-//! Limit: a run may not be cut short by a stage's own clock better than by the end of its process; nothing of it is kept then.
+//! Limit: a run may not be cut short by a stage's own clock better than by the end of its process;
+//! nothing of it is kept then.
 
 mod child;
 mod parent;

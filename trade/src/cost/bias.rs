@@ -1,8 +1,9 @@
 //! How far the rules of sizes lie beside the facts, learnt from runs.
 //!
-//! A T-shirt fills its photo's frame less than a vest does, and its outline takes fewer triangles: the rules know neither.
-//! Of each stage and quantity the middle of fact / rule is kept, by kind of garment and for all kinds together, and the
-//! same of all stages together: what a T-shirt's mesh has in one stage it has in the next as well.
+//! A T-shirt fills its photo's frame less than a vest does, and its outline takes fewer triangles:
+//! the rules know neither. Of each stage and quantity the middle of fact / rule is kept, by kind of
+//! garment and for all kinds together, and the same of all stages together: what a T-shirt's mesh
+//! has in one stage it has in the next as well.
 
 use super::record::CostRecord;
 use super::seen::median;

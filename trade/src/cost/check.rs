@@ -70,8 +70,8 @@ pub struct Check {
     pub met: Tally,
 }
 
-/// Leaves out each of the pipelines in turn, fits to the others and predicts it from its photos' headers and its
-/// settings alone. Without names all are left out in turn.
+/// Leaves out each of the pipelines in turn, fits to the others and predicts it from its photos'
+/// headers and its settings alone. Without names all are left out in turn.
 pub fn check(records: &[CostRecord], names: &[String], figure: Figure) -> Check {
     let known: BTreeSet<&str> = records.iter().map(|r| r.pipeline.as_str()).collect();
     let chosen = known.into_iter().filter(|k| names.is_empty() || names.iter().any(|n| n == k));

@@ -20,7 +20,8 @@ const TELLING_S: f64 = 1e-3;
 /// Runs of stages by which a machine's speed is known.
 const TELLING_RUNS: usize = 5;
 
-/// Laws of stages, each fitted when it is first asked for: a run asks for those of the stages that it had to run.
+/// Laws of stages, each fitted when it is first asked for: a run asks for those of the stages that
+/// it had to run.
 #[derive(Debug, Default)]
 pub struct Costs {
     /// This machine's records of so many threads.
@@ -72,8 +73,8 @@ pub struct Place<'a> {
 }
 
 impl Costs {
-    /// Laws fitted to this machine's records of so many threads, and to those of another machine, which are brought to
-    /// this one's speed where that is known.
+    /// Laws fitted to this machine's records of so many threads, and to those of another machine,
+    /// which are brought to this one's speed where that is known.
     pub fn fit(own: &[CostRecord], shipped: &[CostRecord], threads: usize) -> Self {
         let made = own.iter().map(|r| (r.key.clone(), r.made.clone())).collect();
         let own: Vec<CostRecord> = own.iter().filter(|r| r.threads == threads).cloned().collect();
@@ -91,7 +92,8 @@ impl Costs {
         self.made.get(key)
     }
 
-    /// What the rules foresee at a stage, corrected by how far they were off in earlier runs; `style` as in the records.
+    /// What the rules foresee at a stage, corrected by how far they were off in earlier runs;
+    /// `style` as in the records.
     pub fn corrected(&self, stage: &str, style: &str, foreseen: &Size) -> Size {
         let bias = self.bias.get_or_init(|| Bias::learn(self.own.iter().chain(&self.shipped)));
         bias.corrected(stage, style, foreseen)
@@ -173,7 +175,8 @@ impl Costs {
         Law::fit(terms(role), &seen, figure.floor())
     }
 
-    /// How much longer this machine takes than the one of the shipped records; none while that is not known.
+    /// How much longer this machine takes than the one of the shipped records; none while that is
+    /// not known.
     fn speed(&self, figure: Figure) -> Option<f64> {
         if let Some(speed) = self.speeds.lock().unwrap_or_else(PoisonError::into_inner).get(&figure) {
             return *speed;

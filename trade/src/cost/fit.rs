@@ -1,11 +1,12 @@
 //! Least squares with factors that are not negative, of relative errors, little swayed by outliers.
 //!
-//! Method: all subsets of the few terms are tried; on each, weighted least squares of prediction / fact - 1 with weights
-//! that fall off for what lies far out (Huber 1964, iteratively reweighted). How far is measured by the logarithm of
-//! prediction / fact: three times too much is as far out as a third, and one odd run bends a law no more from above than
-//! from below. Of the subsets whose factors are all positive, the one with the least generalised cross-validation counts (Golub, Heath, Wahba 1979). Non-negative factors
-//! keep a law rising, so that it can be used beyond the sizes that were measured.
-//! Cost: 2^terms small systems. Limit: five terms.
+//! Method: all subsets of the few terms are tried; on each, weighted least squares of prediction /
+//! fact - 1 with weights that fall off for what lies far out (Huber 1964, iteratively reweighted).
+//! How far is measured by the logarithm of prediction / fact: three times too much is as far out as
+//! a third, and one odd run bends a law no more from above than from below. Of the subsets whose
+//! factors are all positive, the one with the least generalised cross-validation counts (Golub,
+//! Heath, Wahba 1979). Non-negative factors keep a law rising, so that it can be used beyond the
+//! sizes that were measured. Cost: 2^terms small systems. Limit: five terms.
 
 /// One observation: the terms' values, the fact (greater than 0) and its weight.
 #[derive(Debug, Clone)]
@@ -19,8 +20,8 @@ pub(super) struct Row {
 const FAR: f64 = 0.25;
 /// The greatest error, as a logarithm; a row that is predicted to be nothing has it.
 const FARTHEST: f64 = 10.0;
-/// Later subsets must be better by this: terms stand in the order of what is likely, and runs of one pipeline cannot tell
-/// some of them apart.
+/// Later subsets must be better by this: terms stand in the order of what is likely, and runs of
+/// one pipeline cannot tell some of them apart.
 const BETTER: f64 = 0.97;
 /// Rounds of reweighting.
 const ROUNDS: usize = 6;
@@ -114,7 +115,8 @@ fn solve(mut m: Vec<Vec<f64>>) -> Option<Vec<f64>> {
     Some(x)
 }
 
-/// Generalised cross-validation of the capped errors; none where there are no more rows than factors, save one of each.
+/// Generalised cross-validation of the capped errors; none where there are no more rows than
+/// factors, save one of each.
 fn validation(rows: &[&Row], columns: &[usize], factors: &[f64]) -> Option<f64> {
     let total: f64 = rows.iter().map(|r| r.weight).sum();
     let loss = |r: &&Row| {

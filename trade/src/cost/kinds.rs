@@ -1,15 +1,15 @@
 //! What a kind of garment adds to a law of sizes.
 //!
-//! A vest's outline is curved at neck and armholes where a T-shirt's runs straight: at the same sizes its mesh takes more
-//! mending. No size says so, but other garments of the kind do. Of each kind the middle of fact / prediction is kept, by
-//! pipelines and drawn towards 1 while these are few (the mean of a random effect: Robinson, That BLUP is a good thing,
-//! 1991).
+//! A vest's outline is curved at neck and armholes where a T-shirt's runs straight: at the same
+//! sizes its mesh takes more mending. No size says so, but other garments of the kind do. Of each
+//! kind the middle of fact / prediction is kept, by pipelines and drawn towards 1 while these are
+//! few (the mean of a random effect: Robinson, That BLUP is a good thing, 1991).
 
 use super::seen::{Seen, median};
 use std::collections::BTreeMap;
 
-/// Pipelines of a kind that are needed for half of its own factor, as a logarithm, to count: kinds differ by about as much as
-/// pipelines of a kind do.
+/// Pipelines of a kind that are needed for half of its own factor, as a logarithm, to count: kinds
+/// differ by about as much as pipelines of a kind do.
 const HALF: f64 = 0.6;
 
 /// Logarithms of factors, by the kind of garment.

@@ -13,8 +13,8 @@ const NORMAL_90: f64 = 1.2816;
 const LEAST_SPREAD: f64 = 0.05;
 /// Growth of the spread for each power of e beyond what was measured.
 const BEYOND: f64 = 0.25;
-/// How far the same stage differs from pipeline to pipeline before anything is known of that, as a logarithm, and for
-/// how many pipelines that counts.
+/// How far the same stage differs from pipeline to pipeline before anything is known of that, as a
+/// logarithm, and for how many pipelines that counts.
 const BETWEEN: (f64, f64) = (0.15, 3.0);
 /// A single outlier among the errors counts as no more than this.
 const CAP: f64 = 1.5;
@@ -76,8 +76,8 @@ impl Law {
         (sum * self.kinds.factor(style)).max(self.floor)
     }
 
-    /// The middle with the range that 80 of 100 runs lie in; `met` where this machine has run the pipeline before, `more`
-    /// is spread from elsewhere, as a logarithm.
+    /// The middle with the range that 80 of 100 runs lie in; `met` where this machine has run the
+    /// pipeline before, `more` is spread from elsewhere, as a logarithm.
     pub(super) fn estimate(&self, size: &Size, style: &str, met: bool, more: f64) -> Estimate {
         let value = self.value(size, style);
         let beyond = (value / self.range.1).ln().max((self.range.0 / value).ln()).max(0.0);
@@ -94,7 +94,8 @@ fn student(free: f64) -> f64 {
     NORMAL_90 * (1.0 + 0.9 / free + 0.5 / (free * free))
 }
 
-/// How far pipelines lie from the law, each by the mean of its runs, drawn towards [`BETWEEN`] while they are few.
+/// How far pipelines lie from the law, each by the mean of its runs, drawn towards [`BETWEEN`]
+/// while they are few.
 fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
     let mut means: BTreeMap<&str, (f64, f64)> = BTreeMap::new();
     for (s, v) in seen.iter().zip(values) {
@@ -104,7 +105,8 @@ fn between_pipelines(seen: &[Seen<'_>], values: &[f64]) -> (f64, f64) {
     }
     let count = means.len() as f64;
     let squares: f64 = means.values().map(|(sum, n)| (sum / n).powi(2)).sum();
-    // The law was fitted to them: of two pipelines each lies half as far off as it would when left out.
+    // The law was fitted to them: of two pipelines each lies half as far off as it would when left
+    // out.
     let own = if count > 1.0 { squares * (count / (count - 1.0)).powi(2) } else { 0.0 };
     let free = count - 1.0 + BETWEEN.1;
     (((own + BETWEEN.0 * BETWEEN.0 * BETWEEN.1) / free).sqrt(), free)

@@ -17,7 +17,8 @@ pub struct MemoryCount {
     pub forget: fn(),
 }
 
-/// Measures stages. Processor time and memory are the process's: nothing else of it may work meanwhile.
+/// Measures stages. Processor time and memory are the process's: nothing else of it may work
+/// meanwhile.
 #[derive(Debug)]
 pub struct Stopwatch {
     memory: MemoryCount,

@@ -17,7 +17,8 @@ pub(super) fn key(node: &Node, foreseen: &Size) -> String {
     d.finish().short()
 }
 
-/// The kind of garment that a pipeline makes: the name of its first style, which names the edges; empty without one.
+/// The kind of garment that a pipeline makes: the name of its first style, which names the edges;
+/// empty without one.
 pub(super) fn style(pipeline: &Pipeline) -> String {
     let style = pipeline.nodes.iter().find(|n| n.card.role == Role::Style);
     style.map_or_else(String::new, |n| n.card.name.to_owned())

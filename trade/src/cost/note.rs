@@ -10,8 +10,8 @@ use toile_core::cost::Size;
 use toile_pipeline::Pipeline;
 use toile_pipeline::cost::{Foreseen, StageCost, foresee};
 
-/// What the stages of a run took, with the sizes that they had; what came from the cache has none and is taken from
-/// earlier runs.
+/// What the stages of a run took, with the sizes that they had; what came from the cache has none
+/// and is taken from earlier runs.
 pub fn note(pipeline: &Pipeline, costs: &[StageCost], earlier: &Costs, threads: usize) -> Vec<CostRecord> {
     let facts: BTreeMap<&str, &StageCost> = costs.iter().map(|c| (c.stage.as_str(), c)).collect();
     let keys: RefCell<Vec<String>> = RefCell::default();

@@ -61,8 +61,8 @@ fn best(corrected: &Size, rules: &Size, facts: &Size) -> Size {
     told.fold(corrected.clone(), |all, (q, a)| all.with(q, a))
 }
 
-/// All stages together: times add up, with errors that do not depend on each other; memory is the peak of one stage on
-/// top of what those before it keep.
+/// All stages together: times add up, with errors that do not depend on each other; memory is the
+/// peak of one stage on top of what those before it keep.
 pub fn total(stages: &[&Predicted]) -> Predicted {
     let of = |p: &Predicted, f: Figure| f.predicted(p);
     let sum = |figure| sum(stages.iter().filter_map(|p| of(p, figure)));

@@ -99,7 +99,8 @@ pub struct CostRecord {
     pub stage: String,
     /// Its role.
     pub role: String,
-    /// Digest of the stage, its parameters and what it was to be given: by it a later run knows what it will make.
+    /// Digest of the stage, its parameters and what it was to be given: by it a later run knows
+    /// what it will make.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub key: String,
     /// Threads that it could use.

@@ -1,7 +1,7 @@
 //! Collections of records as text, and the one that is shipped.
 //!
-//! The first line says where and with which program the records were made, each further line is one of them. A damaged
-//! line loses itself alone.
+//! The first line says where and with which program the records were made, each further line is one
+//! of them. A damaged line loses itself alone.
 
 use super::record::{CostRecord, Host};
 use crate::digits::to_digits;
@@ -76,7 +76,8 @@ fn rounded(size: &Size) -> Size {
 
 /// Reads a collection.
 ///
-/// Errors: `is damaged`, `is longer than 8 MB` or `was kept by another version` - words that follow the text's name.
+/// Errors: `is damaged`, `is longer than 8 MB` or `was kept by another version` - words that follow
+/// the text's name.
 pub fn parse(text: &str) -> Result<Collection, &'static str> {
     if text.len() > LONGEST {
         return Err("is longer than 8 MB");

@@ -1,7 +1,8 @@
 //! What runs on this machine took, kept from run to run beside the cache's results.
 //!
-//! `costs.jsonl` in the cache's folder, bounded: of each stage the latest runs are kept. It is written whole beside its
-//! place and renamed. Two runs that end at once may lose the records of one of them.
+//! `costs.jsonl` in the cache's folder, bounded: of each stage the latest runs are kept. It is
+//! written whole beside its place and renamed. Two runs that end at once may lose the records of
+//! one of them.
 
 use super::record::{CostRecord, Host};
 use super::shipped::{Collection, LONGEST, parse};
@@ -39,7 +40,8 @@ impl CostStore {
         CostStore { folder: folder.to_owned() }
     }
 
-    /// Reads it; nothing where there is no file yet, and nothing with a warning where it is of no use.
+    /// Reads it; nothing where there is no file yet, and nothing with a warning where it is of no
+    /// use.
     pub fn open(&self, host: &Host) -> Opened {
         let path = self.folder.join(FILE);
         let refused = |why: &str| Opened {

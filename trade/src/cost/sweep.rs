@@ -1,4 +1,5 @@
-//! The settings over which stages are measured: a pipeline with other edge lengths and other sizes of its photos.
+//! The settings over which stages are measured: a pipeline with other edge lengths and other sizes
+//! of its photos.
 
 use image::{GenericImageView, ImageFormat, imageops::FilterType};
 use std::io::Cursor;
@@ -20,8 +21,8 @@ pub struct Variation {
     pub overrides: Vec<Override>,
 }
 
-/// The settings of a pipeline; one without mesher and photos has its own alone. Photos of other sizes are written
-/// below `folder`.
+/// The settings of a pipeline; one without mesher and photos has its own alone. Photos of other
+/// sizes are written below `folder`.
 ///
 /// Errors: a photo cannot be read, or the folder not be written.
 pub fn variations(pipeline: &Pipeline, folder: &Path) -> Result<Vec<Variation>, StageError> {

@@ -13,11 +13,11 @@ pub(super) enum Term {
     Constant,
     /// Proportional to an amount.
     Of(Quantity),
-    /// An amount to the power 3/2: steps or levels that grow with the side's length, sparse factors of a plane mesh
-    /// (George, Nested dissection, 1973).
+    /// An amount to the power 3/2: steps or levels that grow with the side's length, sparse factors
+    /// of a plane mesh (George, Nested dissection, 1973).
     Solve(Quantity),
-    /// An amount over the edge length, by the garment's area: stable time steps shrink with the edge length (Courant,
-    /// Friedrichs, Lewy 1928).
+    /// An amount over the edge length, by the garment's area: stable time steps shrink with the
+    /// edge length (Courant, Friedrichs, Lewy 1928).
     Steps(Quantity),
     /// The root of an amount: a picture's side.
     Side(Quantity),

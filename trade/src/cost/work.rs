@@ -3,7 +3,8 @@
 use toile_core::Node;
 use toile_pipeline::fields_of;
 
-/// The stage's name, and what of its parameters makes it do other work than by default: `StaticEquilibrium(from_here: true)`.
+/// The stage's name, and what of its parameters makes it do other work than by default:
+/// `StaticEquilibrium(from_here: true)`.
 pub(super) fn work(node: &Node) -> String {
     let fields = fields_of(&node.stage.params());
     let other = node.card.params.iter().filter(|p| p.way).filter_map(|p| {

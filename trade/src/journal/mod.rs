@@ -1,9 +1,10 @@
 //! What was measured so far, on disk after every step, so that a later session goes on from it.
 //!
-//! `DIR/NAME.jsonl`: the first line says what was measured (program, pipeline, the files that it reads with their
-//! digests, what else the measurement rests on), each further line is one step. It is written whole beside its place and
-//! renamed, so that a stop leaves no half line; a line that is damaged all the same is left out, and said to be. A file of
-//! another program, pipeline or photo is not gone on from: it is put aside as `NAME.old.jsonl`.
+//! `DIR/NAME.jsonl`: the first line says what was measured (program, pipeline, the files that it
+//! reads with their digests, what else the measurement rests on), each further line is one step. It
+//! is written whole beside its place and renamed, so that a stop leaves no half line; a line that
+//! is damaged all the same is left out, and said to be. A file of another program, pipeline or
+//! photo is not gone on from: it is put aside as `NAME.old.jsonl`.
 
 mod damaged;
 #[cfg(test)]
@@ -96,8 +97,8 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
         Journal { folder: folder.to_owned(), kind, head, lines: Vec::new(), damaged: Vec::new() }
     }
 
-    /// The record of an earlier session of the same pipeline; none where there is none, or the reason why what is there is
-    /// not gone on from.
+    /// The record of an earlier session of the same pipeline; none where there is none, or the
+    /// reason why what is there is not gone on from.
     pub(crate) fn open(folder: &Path, kind: Kind, base: &str) -> Result<Option<Self>, String> {
         let path = folder.join(kind.file());
         let bytes = match read_file(&path) {
@@ -127,7 +128,8 @@ impl<H: Serialize + DeserializeOwned, L: Serialize + DeserializeOwned> Journal<H
         let _ = std::fs::rename(folder.join(kind.file()), folder.join(format!("{}.old.jsonl", kind.name)));
     }
 
-    /// The record of an earlier session, as [`Journal::open`]; what is put aside and what is left out of it is told.
+    /// The record of an earlier session, as [`Journal::open`]; what is put aside and what is left
+    /// out of it is told.
     pub(crate) fn taken_up(
         folder: &Path,
         kind: Kind,

@@ -1,15 +1,20 @@
 //! The reference: the pipeline refined level by level until its garment stops moving.
 //!
-//! Level k divides every knob whose card says that less is finer (edge length, time step, tolerance) by sqrt(2)^k and multiplies
-//! those of which more is finer (counts of iterations) by it, from the pipeline's own values and with the pipeline's own stages. A power at which rounding
-//! leaves every resolution in space where it was is no level. What is no knob is part of the problem and stays. Levels end once the estimate of what is missing (`richardson`, on the distance that 95 % of the
-//! surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than any setting to be judged by it; or with the
-//! share of the budget that is theirs, which is then said, with the estimate, or that there is none.
+//! Level k divides every knob whose card says that less is finer (edge length, time step,
+//! tolerance) by sqrt(2)^k and multiplies those of which more is finer (counts of iterations) by
+//! it, from the pipeline's own values and with the pipeline's own stages. A power at which rounding
+//! leaves every resolution in space where it was is no level. What is no knob is part of the
+//! problem and stays. Levels end once the estimate of what is missing (`richardson`, on the
+//! distance that 95 % of the surface keep) is below [`CLOSE_ENOUGH`] and the level is finer than
+//! any setting to be judged by it; or with the share of the budget that is theirs, which is then
+//! said, with the estimate, or that there is none.
 //!
-//! The garment has many states of rest, so a reference has a spread of its own: the level before the last is started again
-//! from moved starts (`jitter`, `spread`), and made a little finer and coarser (`neighbours`).
+//! The garment has many states of rest, so a reference has a spread of its own: the level before
+//! the last is started again from moved starts (`jitter`, `spread`), and made a little finer and
+//! coarser (`neighbours`).
 //!
-//! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels are needed for an order.
+//! Cost: with sqrt(2), each level has twice the triangles of the one before. Limit: three levels
+//! are needed for an order.
 
 mod neighbours;
 mod spread;
@@ -28,15 +33,18 @@ use std::time::{Duration, Instant};
 use toile_core::{Length, StageError};
 use toile_pipeline::cache::Cache;
 
-/// Factor between levels: twice the triangles, so that a further level is never far out of the budget.
+/// Factor between levels: twice the triangles, so that a further level is never far out of the
+/// budget.
 pub const RATIO: f64 = std::f64::consts::SQRT_2;
-/// Missing distance at which the reference counts as found, mm: a quarter of what a tape measure resolves.
+/// Missing distance at which the reference counts as found, mm: a quarter of what a tape measure
+/// resolves.
 pub const CLOSE_ENOUGH: f64 = 0.25;
 /// How much finer than the finest setting to be judged the reference must be.
 pub const FINER: f64 = 1.3;
 /// Levels at most: 2^9 times the triangles.
 const MOST_LEVELS: usize = 10;
-/// Powers of the ratio among which levels are looked for: a single part of an edge takes two to become another number.
+/// Powers of the ratio among which levels are looked for: a single part of an edge takes two to
+/// become another number.
 const MOST_POWERS: i32 = 2 * MOST_LEVELS as i32;
 /// Said where a finer level there is not.
 const NO_FINER: &str = "no knob can be refined further";
@@ -74,7 +82,8 @@ pub struct Found {
 impl Search<'_> {
     /// Refines until the garment stops moving or the budget is used.
     ///
-    /// Errors: the pipeline's own setting fails; the budget is too short to say anything; stopped by the user.
+    /// Errors: the pipeline's own setting fails; the budget is too short to say anything; stopped
+    /// by the user.
     pub fn run(&self, tell: &mut dyn FnMut(String)) -> Result<Found, StageError> {
         let started = Instant::now();
         let (mut levels, mut last, mut before) = (Vec::<Level>::new(), None::<Ran>, None::<Ran>);
@@ -84,7 +93,8 @@ impl Search<'_> {
                 break why;
             }
             let Some(setting) = self.setting(k) else { break NO_FINER.into() };
-            // Without the pipeline's own setting there is nothing to say: it may take the whole budget.
+            // Without the pipeline's own setting there is nothing to say: it may take the whole
+            // budget.
             let left = match k {
                 0 => self.allowed.budget,
                 _ => self.budget.saturating_sub(started.elapsed()),
@@ -116,7 +126,8 @@ impl Search<'_> {
         Ok(Found { reference: self.with_orders(reference), ran })
     }
 
-    /// The reference of an earlier session: its finest level again, from the cache where it is still there.
+    /// The reference of an earlier session: its finest level again, from the cache where it is
+    /// still there.
     ///
     /// Errors: it does not run any more.
     pub fn again(&self, reference: Reference) -> Result<Found, StageError> {

@@ -1,7 +1,8 @@
 //! How far levels that are a little finer or coarser end from each other.
 //!
-//! What a fiftieth of a resolution adds to the error of a mesh is a twenty-fifth of that error at second order, so what lies farther apart are states of
-//! rest that the mesh picks by chance. Moved starts of one mesh do not tell of those.
+//! What a fiftieth of a resolution adds to the error of a mesh is a twenty-fifth of that error at
+//! second order, so what lies farther apart are states of rest that the mesh picks by chance. Moved
+//! starts of one mesh do not tell of those.
 
 use super::{RATIO, Search};
 use crate::errors::compare;
@@ -14,7 +15,8 @@ use toile_core::StageError;
 const NEAR: [f64; 2] = [1.02, 1.0 / 1.02];
 
 impl Search<'_> {
-    /// Runs the level before the last with resolutions near its own, where it has any; `unmoved` is its garment.
+    /// Runs the level before the last with resolutions near its own, where it has any; `unmoved` is
+    /// its garment.
     pub(super) fn neighbours(
         &self,
         levels: &[Level],

@@ -1,6 +1,7 @@
 //! The most memory that this process has held.
 
-/// Puts the high-water mark of memory back to what is held now; of no effect where the kernel does not do that.
+/// Puts the high-water mark of memory back to what is held now; of no effect where the kernel does
+/// not do that.
 pub(super) fn forget_peak() {
     let _ = std::fs::write("/proc/self/clear_refs", "5");
 }

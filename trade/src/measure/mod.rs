@@ -1,10 +1,12 @@
 //! One run of a pipeline with its clocks, cut short where it takes too long.
 //!
-//! Wall and processor time are those of the whole run, every stage of it, without the writing of files: what
-//! `toile run --no-cache` takes. No cache takes part where times count, since finding, digesting and keeping results is
-//! work of its own. Each run has a process of its own where the program can start itself (`apart`); memory is then the
-//! greatest resident memory of that process, program and all. Elsewhere the process is the clock's: nothing else of it may work
-//! meanwhile, and memory is its high-water mark, put back before the run where the kernel lets a process do so (Linux).
+//! Wall and processor time are those of the whole run, every stage of it, without the writing of
+//! files: what `toile run --no-cache` takes. No cache takes part where times count, since finding,
+//! digesting and keeping results is work of its own. Each run has a process of its own where the
+//! program can start itself (`apart`); memory is then the greatest resident memory of that process,
+//! program and all. Elsewhere the process is the clock's: nothing else of it may work meanwhile,
+//! and memory is its high-water mark, put back before the run where the kernel lets a process do so
+//! (Linux).
 
 mod memory;
 mod ran;

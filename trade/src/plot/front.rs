@@ -11,7 +11,8 @@ const FRAME: [f64; 4] = [84.0, 56.0, 936.0, 574.0];
 /// Settings beyond which only those of the front are numbered: more numbers hide each other.
 const MOST_NUMBERS: usize = 12;
 
-/// Errors below it are drawn there, mm: a setting that is the reference's own has none but rounding.
+/// Errors below it are drawn there, mm: a setting that is the reference's own has none but
+/// rounding.
 const LEAST: f64 = 1e-3;
 
 fn drawn(m: &Measured, trade: &Trade) -> Cost {

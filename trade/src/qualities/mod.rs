@@ -1,7 +1,8 @@
-//! Named qualities of a pipeline, measured: for each error the quickest setting of the front that is proved to keep it.
+//! Named qualities of a pipeline, measured: for each error the quickest setting of the front that
+//! is proved to keep it.
 //!
-//! One measurement serves all of them. A quality says what its proof found: the worst of a fresh run and of moved starts, the
-//! processor time of the fresh run, and the day.
+//! One measurement serves all of them. A quality says what its proof found: the worst of a fresh
+//! run and of moved starts, the processor time of the fresh run, and the day.
 
 #[cfg(test)]
 mod tests;
@@ -90,8 +91,8 @@ pub fn prove(
     Ok(proved)
 }
 
-/// The pipeline file with the proved qualities in its field, comments and order kept. Qualities that are there already stay,
-/// but where `--set` changes the file that they were measured on.
+/// The pipeline file with the proved qualities in its field, comments and order kept. Qualities
+/// that are there already stay, but where `--set` changes the file that they were measured on.
 ///
 /// Errors: the settings do not fit the file any more.
 pub fn written(prover: &Prover<'_>, kept: &[(Asked, Proof)], date: &str) -> Result<String, StageError> {

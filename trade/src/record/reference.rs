@@ -22,7 +22,8 @@ pub struct Reference {
     pub stopped: String,
     /// Its own spread; none where no start was tried.
     pub spread: Option<OwnSpread>,
-    /// How far it ends from neighbouring resolutions; none where none was tried, or by an earlier version.
+    /// How far it ends from neighbouring resolutions; none where none was tried, or by an earlier
+    /// version.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub neighbours: Option<Neighbours>,
     /// Of the reference garment.
@@ -42,7 +43,8 @@ pub struct Level {
     pub wall_s: f64,
     /// Seconds.
     pub cpu_s: f64,
-    /// By which factor it is finer than the level before; none in the first, and in records of earlier versions.
+    /// By which factor it is finer than the level before; none in the first, and in records of
+    /// earlier versions.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finer: Option<f64>,
     /// Distance from the level before.

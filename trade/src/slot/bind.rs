@@ -10,7 +10,8 @@ use toile_pipeline::Pipeline;
 impl Board {
     /// Holds knobs against a pipeline.
     ///
-    /// Errors: a name that is not there, a range or value that the parameter does not take; with the nearest name.
+    /// Errors: a name that is not there, a range or value that the parameter does not take; with
+    /// the nearest name.
     pub fn new(source: &Source<'_>, pipeline: &Pipeline, specs: &[KnobSpec]) -> Result<Board, StageError> {
         let cards = source.registry.cards().cloned().collect();
         let mut board = Board { knobs: Vec::new(), slots: Vec::new(), cards, reference: Setting::new() };
@@ -149,7 +150,8 @@ impl Board {
 }
 
 impl Knob {
-    /// Whether it turns what another does: the choice of one slot's stage, or one parameter of one stage.
+    /// Whether it turns what another does: the choice of one slot's stage, or one parameter of one
+    /// stage.
     fn turns_what(&self, other: &Knob) -> bool {
         let is_of =
             |only: &Option<String>, name: &Option<String>| only.is_none() || name.is_none() || only == name;

@@ -5,8 +5,8 @@ use crate::dial::{Form, is_finer, is_spatial, numeric, rounded, way};
 use toile_core::ParamDoc;
 
 impl Board {
-    /// The reference's setting, the pipeline's own where it was given none, with every resolution refined by a factor, as
-    /// far as its parameters go.
+    /// The reference's setting, the pipeline's own where it was given none, with every resolution
+    /// refined by a factor, as far as its parameters go.
     pub fn refined(&self, factor: f64) -> Setting {
         let mut setting = self.unrefined();
         for knob in &self.knobs {
@@ -21,7 +21,8 @@ impl Board {
         setting
     }
 
-    /// True where every resolution of a setting is finer by a factor than all that its knob may be set to.
+    /// True where every resolution of a setting is finer by a factor than all that its knob may be
+    /// set to.
     pub fn is_finer(&self, setting: &Setting, factor: f64) -> bool {
         self.resolutions(setting).all(|(way, finest, value)| is_finer(way, value, finest, factor))
     }
@@ -36,8 +37,8 @@ impl Board {
         self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(pair).any(|too_fine| too_fine)
     }
 
-    /// By which factor a setting is finer than another: by the resolution in space that is refined the least of those that are, or
-    /// by any where none is; 1 where nothing is finer.
+    /// By which factor a setting is finer than another: by the resolution in space that is refined
+    /// the least of those that are, or by any where none is; 1 where nothing is finer.
     pub fn ratio(&self, fine: &Setting, coarse: &Setting) -> f64 {
         let finer = |k: &Knob| {
             let (way, _) = self.resolution(k)?;
@@ -55,7 +56,8 @@ impl Board {
         spatial.peek().is_none() || spatial.any(|k| a.get(&k.key) != b.get(&k.key))
     }
 
-    /// Direction, finest value of the dial and value in a setting, of every knob that is a resolution in space.
+    /// Direction, finest value of the dial and value in a setting, of every knob that is a
+    /// resolution in space.
     fn resolutions<'b>(&'b self, setting: &'b Setting) -> impl Iterator<Item = (f64, f64, f64)> + 'b {
         self.knobs.iter().filter(|k| self.is_spatial(k)).filter_map(|k| {
             let (way, _) = self.resolution(k)?;
@@ -63,7 +65,8 @@ impl Board {
         })
     }
 
-    /// Which way a knob is refined, with its parameter; none where it is no resolution of the pipeline's own stage.
+    /// Which way a knob is refined, with its parameter; none where it is no resolution of the
+    /// pipeline's own stage.
     fn resolution(&self, knob: &Knob) -> Option<(f64, &ParamDoc)> {
         let param = knob.param.as_deref()?;
         let doc = self.slots[knob.slot].own.params.iter().find(|p| p.name == param)?;

@@ -1,7 +1,8 @@
 //! Whether a budget is long enough to say anything, and the least that is.
 //!
-//! A setting may take a tenth of the budget, so a budget of less than ten runs of the pipeline as it is stops every setting. The reference
-//! is refined once at least, which takes some three times as long as the pipeline as it is: without that, errors mean nothing.
+//! A setting may take a tenth of the budget, so a budget of less than ten runs of the pipeline as
+//! it is stops every setting. The reference is refined once at least, which takes some three times
+//! as long as the pipeline as it is: without that, errors mean nothing.
 
 use super::{LIMIT_SHARE, REFERENCE_SHARE};
 use crate::cost::time;
@@ -37,7 +38,8 @@ impl Allowed {
         if limit.as_secs_f64() >= own_s {
             return Ok(());
         }
-        // Whether a run that is longer than the budget is stopped or still ends is up to the machine; the words are the same.
+        // Whether a run that is longer than the budget is stopped or still ends is up to the
+        // machine; the words are the same.
         if self.limit.is_none() && own_s > self.budget.as_secs_f64() {
             return Err(self.ended_first());
         }

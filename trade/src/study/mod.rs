@@ -1,10 +1,13 @@
-//! The whole measurement: reference, settings, what is kept on disk; bounded by a budget, gone on with by the next session.
+//! The whole measurement: reference, settings, what is kept on disk; bounded by a budget, gone on
+//! with by the next session.
 //!
-//! Half of the budget is the reference's. Then the pipeline's own setting, a space-filling start, and the gaps of the
-//! front. A setting that takes longer than the limit is stopped, which is a result as well. A choice of stage whose first
-//! two settings gave nothing is not tried further, nor is a setting whose nearest neighbour took longer than what is left.
+//! Half of the budget is the reference's. Then the pipeline's own setting, a space-filling start,
+//! and the gaps of the front. A setting that takes longer than the limit is stopped, which is a
+//! result as well. A choice of stage whose first two settings gave nothing is not tried further,
+//! nor is a setting whose nearest neighbour took longer than what is left.
 //!
-//! - `budget`: whether the budget is long enough; `next`: which setting is measured next; `setting`: its runs and figures; `store`: what is kept.
+//! - `budget`: whether the budget is long enough; `next`: which setting is measured next;
+//!   `setting`: its runs and figures; `store`: what is kept.
 
 mod budget;
 mod next;
@@ -83,8 +86,8 @@ struct Study<'a> {
 
 /// Measures, or goes on with what was measured.
 ///
-/// Errors: a knob that does not fit, the pipeline's own setting fails, the budget is too short to say anything, the folder cannot be
-/// written, stopped by the user (what was measured is kept).
+/// Errors: a knob that does not fit, the pipeline's own setting fails, the budget is too short to
+/// say anything, the folder cannot be written, stopped by the user (what was measured is kept).
 pub fn study(
     source: &Source<'_>,
     pipeline: &Pipeline,
@@ -122,7 +125,8 @@ impl<'a> Study<'a> {
         self.options.budget.saturating_sub(self.started.elapsed())
     }
 
-    /// Measures settings until the budget or the number of settings is used up, or nothing new is left.
+    /// Measures settings until the budget or the number of settings is used up, or nothing new is
+    /// left.
     fn settings(&mut self, tell: &mut dyn FnMut(String)) -> Result<(), StageError> {
         let most = self.options.points.unwrap_or(usize::MAX);
         while self.store.lines.len() < most && !self.left().is_zero() {
@@ -182,7 +186,8 @@ fn search<'a>(source: &'a Source<'a>, board: &'a Board, options: &'a Options) ->
     }
 }
 
-/// The reference and the record: those of an earlier session where they are of this pipeline, else new ones.
+/// The reference and the record: those of an earlier session where they are of this pipeline, else
+/// new ones.
 fn found(
     search: &Search<'_>,
     pipeline: &Pipeline,
@@ -210,8 +215,8 @@ fn found(
     Ok((found, store))
 }
 
-/// What must be the same for a later session: the pipeline, what is refined, the stage that ends runs, the number of threads. Knobs that are not
-/// refined may change.
+/// What must be the same for a later session: the pipeline, what is refined, the stage that ends
+/// runs, the number of threads. Knobs that are not refined may change.
 fn base(pipeline: &Pipeline, board: &Board, options: &Options) -> String {
     let own = board.own();
     let finer = board.refined(RATIO).into_iter().filter(|(key, value)| own.get(key) != Some(value)).collect();

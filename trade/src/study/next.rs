@@ -9,11 +9,13 @@ use crate::slot::{Knob, Setting};
 
 /// Space-filling settings a knob, before the front is refined.
 const START: usize = 4;
-/// Every so many-th setting after the start is space-filling again, so that nothing is left out for good.
+/// Every so many-th setting after the start is space-filling again, so that nothing is left out for
+/// good.
 const LOOK_AROUND: usize = 5;
 /// Settings without result after which a choice of stage is given up.
 const HOPELESS: usize = 2;
-/// Settings nearer than this to a measured one with the same choices, as a share of the knobs' ranges, tell nothing new.
+/// Settings nearer than this to a measured one with the same choices, as a share of the knobs'
+/// ranges, tell nothing new.
 const LEAST_STEP: f64 = 0.03;
 /// Proposals that are looked at before there is said to be nothing new.
 const PROPOSALS: usize = 4000;

@@ -12,7 +12,8 @@ use toile_core::artifact::Digester;
 use toile_pipeline::{Pipeline, write_files};
 
 impl Study<'_> {
-    /// Measures a setting; none where it makes a pipeline that was measured already, which is then noted as known.
+    /// Measures a setting; none where it makes a pipeline that was measured already, which is then
+    /// noted as known.
     pub(super) fn measure(&mut self, setting: Setting) -> Result<Option<Point>, StageError> {
         let pipeline = match self.source.load(&self.board.overrides(&setting)) {
             Ok(pipeline) => pipeline,
@@ -38,7 +39,8 @@ impl Study<'_> {
         Point { key, setting, overrides, outcome }
     }
 
-    /// What comes of a setting, whose pictures are written; none where the budget ends, which says nothing of it.
+    /// What comes of a setting, whose pictures are written; none where the budget ends, which says
+    /// nothing of it.
     fn outcome(&self, pipeline: &Pipeline, key: &str) -> Result<Option<Outcome>, StageError> {
         Ok(Some(match self.runs(pipeline) {
             Ok((ran, measured)) => {

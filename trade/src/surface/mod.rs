@@ -2,15 +2,17 @@
 //!
 //! Two measures, both over points spread evenly over the cloth:
 //!
-//! - *distance*: from each point of either surface to the nearest point of the other (both ways, all points together):
-//!   what an eye sees; cloth that slides in itself costs nothing;
-//! - *displacement*: between the two places of the same point of the flat pattern: what the solver did.
+//! - *distance*: from each point of either surface to the nearest point of the other (both ways,
+//!   all points together): what an eye sees; cloth that slides in itself costs nothing;
+//! - *displacement*: between the two places of the same point of the flat pattern: what the solver
+//!   did.
 //!
-//! Points are stratified by area (the i-th of n at share (i + 1/2) / n of the area) with a golden-ratio sequence inside the
-//! triangles, so the same surface gives the same points on every machine. Closest points come from parry3d.
+//! Points are stratified by area (the i-th of n at share (i + 1/2) / n of the area) with a
+//! golden-ratio sequence inside the triangles, so the same surface gives the same points on every
+//! machine. Closest points come from parry3d.
 //!
-//! Cost: O(n log t). Limits: a flat point outside the other mesh (its boundary is made of other chords) takes the nearest
-//! point of that mesh; shares of the surface are known to 1/n.
+//! Cost: O(n log t). Limits: a flat point outside the other mesh (its boundary is made of other
+//! chords) takes the nearest point of that mesh; shares of the surface are known to 1/n.
 
 #[cfg(test)]
 pub(crate) mod testing;
@@ -24,7 +26,8 @@ use rayon::prelude::*;
 use toile_core::StageError;
 use toile_core::artifact::{Garment, GarmentPanel, Point2, Point3, quantile};
 
-/// Points on each surface: shares are good to 0.02 %, and the whole takes some tens of milliseconds.
+/// Points on each surface: shares are good to 0.02 %, and the whole takes some tens of
+/// milliseconds.
 pub const POINTS: usize = 6000;
 
 /// Distances over a surface, metres.
@@ -172,7 +175,8 @@ fn flat(p: &Point2) -> Vector {
     Vector::new(p.x, p.y, 0.0)
 }
 
-/// Weights of the i-th point in its triangle: the golden-ratio sequence of the unit square (Roberts 2018), folded.
+/// Weights of the i-th point in its triangle: the golden-ratio sequence of the unit square (Roberts
+/// 2018), folded.
 fn inside(i: usize) -> [f64; 3] {
     /// Inverse powers of the plastic number.
     const STEP: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];

@@ -1,15 +1,16 @@
 //! Picks a setting from a measurement and proves it by fresh runs.
 //!
-//! For an error: the quickest setting that keeps it, for a time: the most accurate of the front that keeps that. The choice
-//! is run afresh, and again from moved starts, each held against the reference; where a run misses what was asked, the
-//! next one is tried. Ten of ten starts within the error mean, with 95 % confidence, that fewer than 26 % of
-//! all such starts miss it (1 - 0.05^(1/10)); three of three would mean 63 %.
+//! For an error: the quickest setting that keeps it, for a time: the most accurate of the front
+//! that keeps that. The choice is run afresh, and again from moved starts, each held against the
+//! reference; where a run misses what was asked, the next one is tried. Ten of ten starts within
+//! the error mean, with 95 % confidence, that fewer than 26 % of all such starts miss it (1 -
+//! 0.05^(1/10)); three of three would mean 63 %.
 //!
-//! An error below what the reference itself is known to (`floor`) is refused before anything runs: a fresh run may well lie
-//! that near to the reference, and both that far from the garment.
+//! An error below what the reference itself is known to (`floor`) is refused before anything runs:
+//! a fresh run may well lie that near to the reference, and both that far from the garment.
 //!
-//! - `wish`: what is asked; `pick`: the settings that may keep it, and the refusal; `prover`, `proof`: fresh runs and what
-//!   they showed; `written`: the file.
+//! - `wish`: what is asked; `pick`: the settings that may keep it, and the refusal; `prover`,
+//!   `proof`: fresh runs and what they showed; `written`: the file.
 
 mod pick;
 mod proof;
@@ -30,8 +31,8 @@ use toile_pipeline::{Override, Pipeline};
 
 /// Holds a record against the pipeline that it is to be used for.
 ///
-/// Errors: it holds no setting; it was measured by another version or on another pipeline, or before a stage, a parameter or a file
-/// changed.
+/// Errors: it holds no setting; it was measured by another version or on another pipeline, or
+/// before a stage, a parameter or a file changed.
 pub fn check(trade: &Trade, pipeline: &Pipeline) -> Result<(), StageError> {
     let refused = |why: String, hint: &str| Err(StageError::invalid(why).hint(hint));
     let Some(first) = trade.points.first() else {

@@ -7,9 +7,9 @@ use toile_core::{ErrorCode, StageError};
 
 const NEVER: Cost = Cost { time: f64::INFINITY, error: f64::INFINITY };
 
-/// Points that keep a wish, the best first. Where an error is asked: the quickest, of all that miss no quality limit, for what beats
-/// another may do so from its own start alone, and that shows only when it is proved. Where a time is asked: the most accurate
-/// of the front.
+/// Points that keep a wish, the best first. Where an error is asked: the quickest, of all that miss
+/// no quality limit, for what beats another may do so from its own start alone, and that shows only
+/// when it is proved. Where a time is asked: the most accurate of the front.
 pub fn picks(trade: &Trade, wish: &Wish) -> Vec<usize> {
     if wish.max_error_mm.is_some() { quickest(trade, wish) } else { most_accurate(trade, wish) }
 }

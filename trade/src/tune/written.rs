@@ -1,4 +1,5 @@
-//! The tuned pipeline file: the proved setting in its place, and what was measured in lines of comment on top.
+//! The tuned pipeline file: the proved setting in its place, and what was measured in lines of
+//! comment on top.
 
 use super::{Proof, Prover, Wish, overrides};
 use crate::record::{Clock, Machine, Point};
@@ -10,8 +11,8 @@ use toile_pipeline::without_qualities;
 pub const MARK: &str = "// toile tune:";
 
 impl Prover<'_> {
-    /// The pipeline file with the proved setting in its place, comments and order kept, and the figures on top. Its named
-    /// qualities are left out: they were measured on the file as it was.
+    /// The pipeline file with the proved setting in its place, comments and order kept, and the
+    /// figures on top. Its named qualities are left out: they were measured on the file as it was.
     ///
     /// Errors: the setting does not fit the file any more.
     pub fn tuned(&self, wish: &Wish, proof: &Proof, date: &str) -> Result<String, StageError> {

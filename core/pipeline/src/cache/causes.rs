@@ -1,8 +1,8 @@
-//! Why a stage would run again: what it was last made from beside what it would be made from now, field by
-//! field.
+//! Why a stage would run again: what it was last made from beside what it would be made from now,
+//! field by field.
 //!
-//! For every pipeline file, stage and entry the cache keeps the ingredients of the last run. They are for
-//! people alone: no result depends on them.
+//! For every pipeline file, stage and entry the cache keeps the ingredients of the last run. They
+//! are for people alone: no result depends on them.
 
 use super::manifest::{sealed, unsealed};
 use super::{Cache, Fed, Ingredients, Kept, Manifest};
@@ -142,8 +142,8 @@ impl Cache {
 }
 
 impl Last {
-    /// The differences to what the stage would be made from now; `base` is the folder that files are relative
-    /// to. Inputs that are as before stand last.
+    /// The differences to what the stage would be made from now; `base` is the folder that files
+    /// are relative to. Inputs that are as before stand last.
     pub(crate) fn compare(&self, now: &Ingredients, base: &Path) -> Vec<Cause> {
         let was = &self.ingredients;
         let mut causes = Vec::new();

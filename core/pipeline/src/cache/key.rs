@@ -1,12 +1,12 @@
 //! What the result of a stage depends on, and the key made from it.
 //!
 //! Scheme: the key is the BLAKE3 digest of [`SCHEME`], the stage's name, role, version and plugin,
-//! its canonical parameters, the entry of the named set at work, and the digests of its inputs in the
-//! order of its ports. The contents of files that it reads come in by a second step, since which they are
-//! is known only after a run.
+//! its canonical parameters, the entry of the named set at work, and the digests of its inputs in
+//! the order of its ports. The contents of files that it reads come in by a second step, since
+//! which they are is known only after a run.
 //!
-//! Ids of stages and places in the file are no part of it: white space, comments and another order of the file
-//! make no stage run again.
+//! Ids of stages and places in the file are no part of it: white space, comments and another order
+//! of the file make no stage run again.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -54,7 +54,8 @@ pub(crate) enum Fed {
 }
 
 impl Ingredients {
-    /// Of the stage `node` for an entry of its sets; `inputs` has a value for each of the card's ports.
+    /// Of the stage `node` for an entry of its sets; `inputs` has a value for each of the card's
+    /// ports.
     pub(crate) fn of(node: &Node, entry: &str, inputs: Vec<(String, Fed)>) -> Self {
         let ports = node.card.inputs.iter().zip(inputs);
         Ingredients {

@@ -1,17 +1,18 @@
 //! A cache of what stages made, addressed by content.
 //!
-//! A stage that promises to be deterministic is run once for the same parameters, inputs, version and files;
-//! after that its result comes from a folder. The unit is one run: a stage that is mapped over a named set
-//! has one entry a panel, so that a changed front leaves the back alone. Nothing is decoded before something needs
-//! it: the digests that keys are made of stand in small manifests.
+//! A stage that promises to be deterministic is run once for the same parameters, inputs, version
+//! and files; after that its result comes from a folder. The unit is one run: a stage that is
+//! mapped over a named set has one entry a panel, so that a changed front leaves the back alone.
+//! Nothing is decoded before something needs it: the digests that keys are made of stand in small
+//! manifests.
 //!
-//! Method: content addressing as in Nix (Dolstra 2004) and Bazel's action cache, with "constructive traces"
-//! in the words of Mokhov, Mitchell and Peyton Jones, Build Systems à la Carte, 2018: equal outputs of a stage that was
-//! run again stop the run right there, since keys are made of contents and not of histories.
-//! Cost: a run that keeps its results encodes, hashes and writes each of them once; a run that finds all of them
-//! reads one small file a stage and panel, and the files that it gives.
-//! Limits: errors are not kept; a stage that does not declare `Deterministic`, and what takes an output of it
-//! that cannot be stored, is always run.
+//! Method: content addressing as in Nix (Dolstra 2004) and Bazel's action cache, with "constructive
+//! traces" in the words of Mokhov, Mitchell and Peyton Jones, Build Systems à la Carte, 2018: equal
+//! outputs of a stage that was run again stop the run right there, since keys are made of contents
+//! and not of histories. Cost: a run that keeps its results encodes, hashes and writes each of them
+//! once; a run that finds all of them reads one small file a stage and panel, and the files that it
+//! gives. Limits: errors are not kept; a stage that does not declare `Deterministic`, and what
+//! takes an output of it that cannot be stored, is always run.
 
 mod causes;
 mod file_hash;
@@ -39,8 +40,8 @@ use store::{Shelf, Store};
 use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
 use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
-/// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with photos
-/// of 12 megapixels.
+/// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with
+/// photos of 12 megapixels.
 pub const DEFAULT_LIMIT: u64 = 2_000_000_000;
 
 /// A folder of results. Several runs, and several programs, may use it at once.
@@ -229,8 +230,8 @@ impl Cache {
         }
     }
 
-    /// The names under which a manifest lies: the key, and for a stage that reads files the key with them,
-    /// so that going back to a file's older content finds the older result.
+    /// The names under which a manifest lies: the key, and for a stage that reads files the key
+    /// with them, so that going back to a file's older content finds the older result.
     fn names(&self, key: &Digest, manifest: &Manifest) -> Vec<Digest> {
         let full = (!manifest.reads.is_empty()).then(|| key::with_reads(key, &manifest.reads));
         std::iter::once(*key).chain(full).collect()
@@ -307,7 +308,8 @@ impl Memo for Parts {
     }
 }
 
-/// The folder of the cache where nothing else is said: `XDG_CACHE_HOME`, else `.cache` in the home folder.
+/// The folder of the cache where nothing else is said: `XDG_CACHE_HOME`, else `.cache` in the home
+/// folder.
 ///
 /// The caller reads the environment; this crate does not.
 pub fn default_folder(

@@ -1,7 +1,7 @@
 //! How much room the cache takes, and making room.
 //!
-//! What was used longest ago goes first; a file's modification time is its last use. A run at work that
-//! loses a file to pruning makes its content anew.
+//! What was used longest ago goes first; a file's modification time is its last use. A run at work
+//! that loses a file to pruning makes its content anew.
 
 use super::Cache;
 use crate::beside;
@@ -36,8 +36,8 @@ impl Cache {
         Ok(Usage { runs: count("runs")?, artifacts: count("blobs")?, bytes })
     }
 
-    /// Deletes what was used longest ago until at most `limit` bytes are left, and what programs that were killed have left;
-    /// returns the bytes freed.
+    /// Deletes what was used longest ago until at most `limit` bytes are left, and what programs
+    /// that were killed have left; returns the bytes freed.
     pub fn prune(&self, limit: u64) -> io::Result<u64> {
         let mut entries = files(self.folder())?;
         let left = |e: &&Entry| e.path.file_name().and_then(|n| n.to_str()).is_some_and(is_left);
@@ -78,7 +78,8 @@ impl Cache {
     }
 }
 
-/// Whether a file was on its way; versions before the first release named them `.tmp` and six letters.
+/// Whether a file was on its way; versions before the first release named them `.tmp` and six
+/// letters.
 fn is_left(name: &str) -> bool {
     beside::is_on_its_way(name) || name.starts_with(".tmp")
 }

@@ -1,9 +1,11 @@
-//! The cache's files: written whole or not at all, believed only where their content has their name.
+//! The cache's files: written whole or not at all, believed only where their content has their
+//! name.
 //!
-//! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>` manifests, `parts/ab/<key>` parts of stages' work,
-//! `last/<pipeline>/<stage>` what a pipeline's stages were last made from. A file is written beside
-//! its place and renamed, so that two runs at once can share the folder. The time of a file's last
-//! use is its modification time. Only ordinary files are opened: a pipe in the place of one would be waited for.
+//! Below the cache's folder: `blobs/ab/<digest>` holds encoded artifacts, `runs/ab/<key>`
+//! manifests, `parts/ab/<key>` parts of stages' work, `last/<pipeline>/<stage>` what a pipeline's
+//! stages were last made from. A file is written beside its place and renamed, so that two runs at
+//! once can share the folder. The time of a file's last use is its modification time. Only ordinary
+//! files are opened: a pipe in the place of one would be waited for.
 
 use crate::beside;
 use std::fs::{self, File};

@@ -15,8 +15,8 @@ pub struct Foreseen {
     pub made: Size,
 }
 
-/// Walks the pipeline and says the sizes at every stage. `known` may know better what a stage makes of such an input,
-/// from an earlier run; it is given the stage's index.
+/// Walks the pipeline and says the sizes at every stage. `known` may know better what a stage makes
+/// of such an input, from an earlier run; it is given the stage's index.
 ///
 /// It reads what stages say that they must look at: the headers of photos.
 pub fn foresee(pipeline: &Pipeline, known: &dyn Fn(usize, &Size) -> Option<Size>) -> Vec<Foreseen> {

@@ -11,7 +11,8 @@ pub trait Meter: std::fmt::Debug + Send + Sync {
     fn stop(&self) -> Used;
 }
 
-/// Says what stages will take. A run asks it for those stages alone that it had to run whole, and not before they have.
+/// Says what stages will take. A run asks it for those stages alone that it had to run whole, and
+/// not before they have.
 pub trait Expect: std::fmt::Debug + Send + Sync {
     /// What the stage of that index is expected to take; none where nothing is known of it.
     fn expected(&self, pipeline: &Pipeline, node: usize) -> Option<Predicted>;

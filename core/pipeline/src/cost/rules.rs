@@ -1,14 +1,14 @@
 //! How sizes go through a stage that does not say so itself: by its role and its edge length.
 //!
-//! The factors are those of the shipped samples (docs/reference/costs.md); they stand in until the sizes of an earlier run of the
-//! same stage on the same input are known.
+//! The factors are those of the shipped samples (docs/reference/costs.md); they stand in until the
+//! sizes of an earlier run of the same stage on the same input are known.
 
 use super::{Quantity, Size};
 use crate::load::fields_of;
 use toile_core::{Length, Node, Role};
 
-/// Triangles on an area A with edges of length h: 2 A / h² on a grid, and this times the root of A / h in the band along
-/// the outline.
+/// Triangles on an area A with edges of length h: 2 A / h² on a grid, and this times the root of A
+/// / h in the band along the outline.
 const BAND: f64 = 12.0;
 /// Points of an outline, which edge detectors resample.
 const POINTS: f64 = 2300.0;
@@ -19,7 +19,8 @@ const BODY_TRIANGLES: f64 = 17_000.0;
 /// Edge lengths that can be meant, metres.
 pub const EDGE_LENGTHS: std::ops::RangeInclusive<f64> = 1e-4..=1.0;
 
-/// The size of what a stage makes of what it is given: what it takes goes on, and what its role makes is added.
+/// The size of what a stage makes of what it is given: what it takes goes on, and what its role
+/// makes is added.
 pub fn usual(node: &Node, given: &Size) -> Size {
     let all = given.clone();
     match node.card.role {

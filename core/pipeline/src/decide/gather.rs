@@ -21,7 +21,8 @@ pub struct Decided {
 }
 
 impl Decided {
-    /// What the user writes to turn it round, but for the option's own name: `stages.StaticEquilibrium.speed=0.01`.
+    /// What the user writes to turn it round, but for the option's own name:
+    /// `stages.StaticEquilibrium.speed=0.01`.
     ///
     /// `path` is where overrides reach the stage.
     pub fn words(&self, path: &str) -> String {
@@ -34,7 +35,8 @@ impl Decided {
 
 /// All decisions of a run of the pipeline. Nothing is run.
 ///
-/// What `until` cuts off is the user's own decision, and none of these. A stage whose rules panic has none.
+/// What `until` cuts off is the user's own decision, and none of these. A stage whose rules panic
+/// has none.
 ///
 /// Errors: `until` or one of `also` names no stage of the pipeline.
 pub fn decisions(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Decided>, RunError> {

@@ -1,5 +1,5 @@
-//! What a run leaves out, simplifies or adds because of what the scene is: the decisions of its stages
-//! ([`toile_core::decide`]) and the runner's own, `unasked`.
+//! What a run leaves out, simplifies or adds because of what the scene is: the decisions of its
+//! stages ([`toile_core::decide`]) and the runner's own, `unasked`.
 
 mod gather;
 #[cfg(test)]

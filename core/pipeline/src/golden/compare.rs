@@ -13,7 +13,8 @@ pub struct Difference {
     pub message: String,
 }
 
-/// Whether a golden was recorded by the arithmetic of this machine: equal arithmetic gives equal bits to equal code.
+/// Whether a golden was recorded by the arithmetic of this machine: equal arithmetic gives equal
+/// bits to equal code.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Arithmetic {
     /// By the same.
@@ -34,9 +35,11 @@ pub struct Comparison {
     pub differences: Vec<Difference>,
     /// Titles of the sections whose bits moved within tolerance.
     pub moved: Vec<String>,
-    /// The stage from which on bits moved, within tolerance or not: where the cause lies, if the arithmetic is the same.
+    /// The stage from which on bits moved, within tolerance or not: where the cause lies, if the
+    /// arithmetic is the same.
     pub moves_from: Option<String>,
-    /// Parameters and versions of stages that are not those of the golden, a line each: `GridMesher: edge "16 mm" -> "12 mm"`.
+    /// Parameters and versions of stages that are not those of the golden, a line each:
+    /// `GridMesher: edge "16 mm" -> "12 mm"`.
     pub changes: Vec<String>,
 }
 

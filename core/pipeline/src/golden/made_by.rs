@@ -1,4 +1,5 @@
-//! What a sheet was made by: every stage with its version and its parameters, so that a difference can be told to be the user's own.
+//! What a sheet was made by: every stage with its version and its parameters, so that a difference
+//! can be told to be the user's own.
 
 use super::Sheet;
 use crate::load::{Pipeline, differing};
@@ -70,7 +71,8 @@ impl Sheet {
     }
 }
 
-/// What is made by other parameters, or by another version of a stage, than in the golden; nothing of a golden that does not say.
+/// What is made by other parameters, or by another version of a stage, than in the golden; nothing
+/// of a golden that does not say.
 pub(super) fn changes(golden: &Sheet, now: &Sheet) -> Vec<String> {
     let change = |was: &MadeBy| {
         let is = now.stages.iter().find(|is| is.id == was.id);

@@ -20,10 +20,12 @@
 //! digest = 5e9e287eccb0cdad
 //! ```
 //!
-//! A line of a panel is a place of the flat pattern and where it lies in space, mm (see `surface`). The tolerance that counts is
-//! the one that stands in the sheet, so whoever keeps the golden may widen or narrow it there. The digest tells whether
-//! any bit moved: within tolerance that is a remark, not a failure. `stage` says what the artifacts were made by (see `made_by`). `arithmetic` stands for the processor and the C
-//! library that the golden was recorded on, so that bits that moved can be told to be another program's.
+//! A line of a panel is a place of the flat pattern and where it lies in space, mm (see `surface`).
+//! The tolerance that counts is the one that stands in the sheet, so whoever keeps the golden may
+//! widen or narrow it there. The digest tells whether any bit moved: within tolerance that is a
+//! remark, not a failure. `stage` says what the artifacts were made by (see `made_by`).
+//! `arithmetic` stands for the processor and the C library that the golden was recorded on, so that
+//! bits that moved can be told to be another program's.
 
 mod compare;
 mod made_by;
@@ -89,7 +91,8 @@ impl From<Measure> for SheetMeasure {
 pub struct Sheet {
     /// What stands for the arithmetic of the machine; empty where nothing is known of it.
     pub arithmetic: String,
-    /// What its artifacts were made by, in the order of the pipeline; empty where nothing is known of it.
+    /// What its artifacts were made by, in the order of the pipeline; empty where nothing is known
+    /// of it.
     pub stages: Vec<MadeBy>,
     /// Artifact by artifact, in the order in which they were made.
     pub sections: Vec<Section>,
@@ -117,7 +120,8 @@ impl Sheet {
         Sheet { arithmetic: arithmetic.to_owned(), stages: Vec::new(), sections: sections.collect() }
     }
 
-    /// The first measure that is no finite number, by the title of its section and its name: no tolerance holds it.
+    /// The first measure that is no finite number, by the title of its section and its name: no
+    /// tolerance holds it.
     pub fn endless(&self) -> Option<(String, &str)> {
         let mut all = self.sections.iter().flat_map(|s| s.measures.iter().map(move |m| (s, m)));
         all.find(|(_, m)| !m.value.is_finite()).map(|(s, m)| (s.title(), m.name.as_str()))

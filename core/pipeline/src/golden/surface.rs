@@ -1,12 +1,14 @@
 //! Places of a garment's surface: where points of the flat pattern lie in space.
 //!
-//! A drape may change by centimetres while its area, its box and its strains stay what they were, so a sheet keeps some
-//! hundreds of points of the surface as well. A point is named by its place in the flat pattern, which no mesh
-//! changes, and the sheet's own places are looked up in the garment that is held against it.
+//! A drape may change by centimetres while its area, its box and its strains stay what they were,
+//! so a sheet keeps some hundreds of points of the surface as well. A point is named by its place
+//! in the flat pattern, which no mesh changes, and the sheet's own places are looked up in the
+//! garment that is held against it.
 //!
-//! Method: the places of a panel are the first of the golden-ratio sequence of the plane (Roberts 2018), laid over the panel's
-//! box, that lie on it; each panel has a share of [`PLACES`] by its flat area. Cost: linear in the triangles.
-//! Limits: what lies between the places is not seen; a panel without area has none.
+//! Method: the places of a panel are the first of the golden-ratio sequence of the plane (Roberts
+//! 2018), laid over the panel's box, that lie on it; each panel has a share of [`PLACES`] by its
+//! flat area. Cost: linear in the triangles. Limits: what lies between the places is not seen; a
+//! panel without area has none.
 
 use super::Arithmetic;
 use toile_core::artifact::{Garment, GarmentPanel, Located, Locator, Point2, quantile};
@@ -15,19 +17,22 @@ use toile_core::artifact::{Garment, GarmentPanel, Located, Locator, Point2, quan
 const PLACES: f64 = 240.0;
 /// The least number of places of a panel.
 const LEAST: usize = 12;
-/// Points of the sequence that are tried for each place that is wanted: a panel may fill little of its box.
+/// Points of the sequence that are tried for each place that is wanted: a panel may fill little of
+/// its box.
 const TRIES: usize = 50;
 /// Inverse powers of the plastic number.
 const STEP: [f64; 2] = [0.754_877_666_246_693, 0.569_840_290_998_053];
-/// A place may lie this far beyond the mesh that it is looked up in (its border is made of other chords), metres.
+/// A place may lie this far beyond the mesh that it is looked up in (its border is made of other
+/// chords), metres.
 const REACH: f64 = 0.01;
 /// Places stand in a sheet in tenths of a millimetre of the pattern, metres.
 const GRAIN: f64 = 1e-4;
 
-/// On a machine of equal arithmetic. Equal code gives equal bits there, so this is only what a change may do to be a remark.
+/// On a machine of equal arithmetic. Equal code gives equal bits there, so this is only what a
+/// change may do to be a remark.
 const HERE: Tolerance = Tolerance { within_mm: 0.2, most_mm: 1.0 };
-/// On a machine of other arithmetic. Folds and friction have many states of rest: sums that are rounded otherwise moved the vest by
-/// 1.2 mm at 95 % and 9 mm at most (docs/reference/goldens.md).
+/// On a machine of other arithmetic. Folds and friction have many states of rest: sums that are
+/// rounded otherwise moved the vest by 1.2 mm at 95 % and 9 mm at most (docs/reference/goldens.md).
 const ELSEWHERE: Tolerance = Tolerance { within_mm: 3.0, most_mm: 20.0 };
 /// Half a unit of the last place that a sheet shows of each coordinate, together, mm.
 const SHEET_ROUNDING: f64 = 0.01;
@@ -105,7 +110,8 @@ impl Surface {
         self.panels.iter().map(|p| p.places.len()).sum()
     }
 
-    /// Why another surface differs, by the tolerance of this one for such arithmetic; `None` within it.
+    /// Why another surface differs, by the tolerance of this one for such arithmetic; `None` within
+    /// it.
     pub(super) fn apart(&self, now: &Surface, arithmetic: Arithmetic) -> Option<String> {
         if let Some(new) = now.panels.iter().find(|p| !self.panels.iter().any(|q| q.name == p.name)) {
             return Some(format!("its panel \"{}\" is not in the golden sheet", new.name));

@@ -14,9 +14,11 @@ pub struct SheetError {
     pub message: String,
 }
 
-/// The widest tolerance of a measure, as far as its value is smaller: one that is wider than both sees nothing.
+/// The widest tolerance of a measure, as far as its value is smaller: one that is wider than both
+/// sees nothing.
 const MOST_TOLERANCE: f64 = 100.0;
-/// The widest tolerances of a surface, at 95 % and at most, mm: a drape's claims are of a few millimetres.
+/// The widest tolerances of a surface, at 95 % and at most, mm: a drape's claims are of a few
+/// millimetres.
 const MOST_SURFACE_MM: [f64; 2] = [10.0, 30.0];
 /// The most places of one surface.
 const MOST_PLACES: usize = 10_000;
@@ -93,8 +95,9 @@ fn short(text: String) -> String {
 
 /// Reads a sheet.
 ///
-/// Errors: the first line that is neither a heading, a measure, a surface, a place of it, a digest, empty nor a comment; a value
-/// that is no finite number; a tolerance that is negative or so wide that nothing would be seen; what is given twice.
+/// Errors: the first line that is neither a heading, a measure, a surface, a place of it, a digest,
+/// empty nor a comment; a value that is no finite number; a tolerance that is negative or so wide
+/// that nothing would be seen; what is given twice.
 pub fn parse(text: &str) -> Result<Sheet, SheetError> {
     let mut reader = Reader::default();
     let mut last = 1;

@@ -28,7 +28,8 @@ pub(super) struct Draft {
     pub(super) params: BTreeMap<String, Range<usize>>,
     /// The parameters whose values are wrong.
     pub(super) wrong: Vec<&'static str>,
-    /// None where it has a fault; where only values are wrong, the stage without them, if it can be made.
+    /// None where it has a fault; where only values are wrong, the stage without them, if it can be
+    /// made.
     pub(super) stage: Option<Box<dyn Stage>>,
 }
 

@@ -1,7 +1,9 @@
-//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is a path of Windows to whoever writes it, and holds escapes to RON.
+//! Backslashes in texts: `"C:\Users\me\tee.jpg"` is a path of Windows to whoever writes it, and
+//! holds escapes to RON.
 //!
-//! `\U` and `\P` are no escapes at all, which the parser refuses; `\t` and `\n` are, and would put a tab into a path. No text of a pipeline
-//! needs a control character, so these are refused as well.
+//! `\U` and `\P` are no escapes at all, which the parser refuses; `\t` and `\n` are, and would put
+//! a tab into a path. No text of a pipeline needs a control character, so these are refused as
+//! well.
 
 use super::fault::Fault;
 use super::tree::{Shape, Tree};
@@ -13,8 +15,8 @@ const MOST_SHOWN: usize = 80;
 /// The most bytes of one character.
 const MOST_BYTES: usize = 4;
 
-/// The length of the escape with which `rest` begins, and the character that it stands for; `\xC3` and its kin are read up to the end of their
-/// character. None where it is no escape.
+/// The length of the escape with which `rest` begins, and the character that it stands for; `\xC3`
+/// and its kin are read up to the end of their character. None where it is no escape.
 pub(super) fn escape(rest: &str) -> Option<(usize, char)> {
     let after = rest.strip_prefix('\\')?;
     let simple = |c| Some((2, c));
@@ -49,7 +51,8 @@ fn bytes(rest: &str) -> Option<(usize, char)> {
     None
 }
 
-/// What is to be said of a backslash that begins no escape, at its byte; the text around it has that content.
+/// What is to be said of a backslash that begins no escape, at its byte; the text around it has
+/// that content.
 pub(super) fn no_escape(rest: &str, content: &str) -> (String, String) {
     let next = rest.chars().nth(1).filter(|c| !c.is_control() && !c.is_whitespace());
     let shown: String = std::iter::once('\\').chain(next).collect();
@@ -71,7 +74,8 @@ fn remedy(content: &str) -> String {
     }
 }
 
-/// Reports every text with a control character that is written as an escape; such a text is broken, and nothing more is said of it.
+/// Reports every text with a control character that is written as an escape; such a text is broken,
+/// and nothing more is said of it.
 pub(super) fn controls(text: &str, tree: &mut Tree, faults: &mut Vec<Fault>) {
     let before = faults.len();
     match &mut tree.shape {

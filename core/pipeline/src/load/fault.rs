@@ -34,8 +34,8 @@ pub struct Fault {
     pub hint: Option<String>,
     /// Its places; the first is the main one.
     pub labels: Vec<Label>,
-    /// The option of the command line that its places are in, as the user wrote it: `--set body.height=3`; none where they are
-    /// in the file.
+    /// The option of the command line that its places are in, as the user wrote it:
+    /// `--set body.height=3`; none where they are in the file.
     pub option: Option<String>,
 }
 
@@ -145,7 +145,8 @@ impl Faults {
 }
 
 impl Faults {
-    /// Each fault as one line: `vest.ron:12:5: message; hint`, or `--set body.height=3: message; hint`.
+    /// Each fault as one line: `vest.ron:12:5: message; hint`, or
+    /// `--set body.height=3: message; hint`.
     pub fn lines(&self) -> Vec<String> {
         let line = |(r, fault): (FaultRecord, &Fault)| {
             let hint = r.hint.map_or_else(String::new, |h| format!("; {h}"));

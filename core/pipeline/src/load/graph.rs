@@ -1,9 +1,11 @@
 //! Which stage feeds which: stages follow each other by type.
 //!
 //! A port is fed by the one *live* maker of its kind. A stage that takes a kind and gives the same
-//! kind supersedes what it took; a stage that makes a kind of something remade supersedes what was made of its
-//! former state; a port that wants the original goes back to the first maker, one that wants what was sewn goes back before the flatteners. Where
-//! two makers are live the file must say `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends underlined.
+//! kind supersedes what it took; a stage that makes a kind of something remade supersedes what was
+//! made of its former state; a port that wants the original goes back to the first maker, one that
+//! wants what was sewn goes back before the flatteners. Where two makers are live the file must say
+//! `from` (a table section, which cannot, takes the latest). Every clash is a fault with both ends
+//! underlined.
 //!
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
 //! faulty files.
@@ -245,7 +247,8 @@ impl<'a> Graph<'a> {
         self.faults.push(fault);
     }
 
-    /// The live makers of a kind that have taken something of which a stage with these feeds takes a later state.
+    /// The live makers of a kind that have taken something of which a stage with these feeds takes
+    /// a later state.
     fn stale(&self, kind: Kind, card: &Card, feeds: &[Feed]) -> Vec<Source> {
         let is_live = |kind: Kind, source: &Source| self.live.get(&kind).is_some_and(|l| l.contains(source));
         let taken: BTreeSet<Kind> =
@@ -273,7 +276,8 @@ impl<'a> Graph<'a> {
                     remade.insert(port.kind);
                     live.retain(|source| source != &(*node, *output));
                 }
-                // Several makers: that is a fault already, which the stages after this one need not repeat.
+                // Several makers: that is a fault already, which the stages after this one need not
+                // repeat.
                 _ => live.clear(),
             }
         }
@@ -290,7 +294,8 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// The source of a kind before all flatteners that passed it on; `node` gives a stage's card and feeds.
+/// The source of a kind before all flatteners that passed it on; `node` gives a stage's card and
+/// feeds.
 pub(crate) fn before_flatteners<'a>(
     source: (usize, usize),
     kind: Kind,

@@ -1,5 +1,6 @@
-//! A pipeline's RON text as a JSON value, in the form that docs/reference/pipeline.schema.json describes: RON's
-//! `Name(field: value)` is `{"Name": {"field": value}}`, a choice `Eight` is `"Eight"`, `None` is null.
+//! A pipeline's RON text as a JSON value, in the form that docs/reference/pipeline.schema.json
+//! describes: RON's `Name(field: value)` is `{"Name": {"field": value}}`, a choice `Eight` is
+//! `"Eight"`, `None` is null.
 
 use super::fault::Faults;
 use super::parse;

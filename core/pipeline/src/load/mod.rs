@@ -2,16 +2,17 @@
 //!
 //! [`load`] works in four steps, and collects the faults of all of them:
 //!
-//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value; after a syntax
-//!    fault it is read on as it was probably meant (`repair`);
+//! 1. `parser`: the text becomes a syntax tree that knows the place of every name and value; after
+//!    a syntax fault it is read on as it was probably meant (`repair`);
 //! 2. `read`: fields, sections and stages are read, every parameter is checked by its own
 //!    [`ParamDoc`](toile_core::ParamDoc), clean stages are made through typetag;
 //! 3. `order`: stages get their ids, sections their place among the stages;
 //! 4. `graph`: each input port finds the stage that feeds it.
 //!
-//! The settings of a quality that is asked for and `--set` overrides are spliced into the text before step 1, so that they
-//! pass the same checks; `qualities` are checked beside the file. `origin` shows what is wrong where the user wrote it: in the
-//! file or in the option. `warnings` says what a clean file does not use.
+//! The settings of a quality that is asked for and `--set` overrides are spliced into the text
+//! before step 1, so that they pass the same checks; `qualities` are checked beside the file.
+//! `origin` shows what is wrong where the user wrote it: in the file or in the option. `warnings`
+//! says what a clean file does not use.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!
@@ -80,11 +81,11 @@ pub struct Changes<'a> {
     pub quality: Option<&'a str>,
     /// `--set`, applied after it.
     pub set: &'a [Override],
-    /// True of the text of a [`Pipeline`] that was loaded before: settings of qualities were checked then, against the file
-    /// as it was.
+    /// True of the text of a [`Pipeline`] that was loaded before: settings of qualities were
+    /// checked then, against the file as it was.
     pub again: bool,
-    /// True where what stages find wrong comes out with the faults of the file: what [`crate::faults`] finds where it has none. Files
-    /// are then looked at.
+    /// True where what stages find wrong comes out with the faults of the file: what
+    /// [`crate::faults`] finds where it has none. Files are then looked at.
     pub asks: bool,
 }
 
@@ -188,8 +189,8 @@ impl Changes<'_> {
     }
 }
 
-/// The text with the changes, and faults of the text as it stands; a quality with a fault is not applied, since its fault
-/// says it all.
+/// The text with the changes, and faults of the text as it stands; a quality with a fault is not
+/// applied, since its fault says it all.
 fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> (overrides::Applied, Vec<Fault>) {
     let mut faults = if changes.again { Vec::new() } else { qualities::settings(text, registry) };
     let chosen =
@@ -200,7 +201,8 @@ fn applied(text: &str, registry: &Registry, changes: &Changes<'_>) -> (overrides
     (overrides::apply(text, registry, &given), faults)
 }
 
-/// Reads and connects the stages; none where the text cannot be understood. The registry may lack a plugin that is refused.
+/// Reads and connects the stages; none where the text cannot be understood. The registry may lack a
+/// plugin that is refused.
 fn check(
     text: &str,
     (registry, lacks_plugin): (&Registry, bool),
@@ -221,7 +223,8 @@ fn check(
     Some((read, drafts, feeds))
 }
 
-/// The fields of a stage's parameters, `(lambda: 0.5)`: name and value as text; none where it is no such text.
+/// The fields of a stage's parameters, `(lambda: 0.5)`: name and value as text; none where it is no
+/// such text.
 pub fn fields_of(params: &str) -> BTreeMap<String, String> {
     let Ok(tree) = parse(params) else { return BTreeMap::new() };
     let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();

@@ -31,7 +31,8 @@ fn next(waiting: &[Draft], placed: &[Draft]) -> Option<(usize, usize)> {
     places().find(patient).or_else(|| places().next())
 }
 
-/// True where another waiting stage is the source of something that this one takes, if only at will.
+/// True where another waiting stage is the source of something that this one takes, if only at
+/// will.
 fn defers(i: usize, waiting: &[Draft]) -> bool {
     let takes = |k: Kind| waiting[i].card.iter().any(|c| c.inputs.iter().any(|p| p.kind == k));
     let others = waiting.iter().enumerate().filter(|(j, _)| *j != i);

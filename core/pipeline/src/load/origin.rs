@@ -1,7 +1,8 @@
-//! Where each part of a changed text comes from: the file as it stands, a `--set` of the command line, or a quality.
+//! Where each part of a changed text comes from: the file as it stands, a `--set` of the command
+//! line, or a quality.
 //!
-//! A pipeline is checked and run with its overrides spliced in; what is wrong is shown where the user wrote it. Cost: linear in
-//! the overrides for each place.
+//! A pipeline is checked and run with its overrides spliced in; what is wrong is shown where the
+//! user wrote it. Cost: linear in the overrides for each place.
 
 use super::fault::{Fault, Label};
 use std::ops::Range;

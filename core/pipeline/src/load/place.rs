@@ -6,8 +6,8 @@ use std::ops::Range;
 use toile_core::{Node, StageError};
 
 impl Pipeline {
-    /// Puts a stage's error at its place in the file: at the element or parameter that it names, if the file
-    /// gives it, else at the stage.
+    /// Puts a stage's error at its place in the file: at the element or parameter that it names, if
+    /// the file gives it, else at the stage.
     pub fn locate(&self, node: &Node, error: &StageError) -> Faults {
         self.faults(vec![self.fault(node, error)])
     }
@@ -19,7 +19,8 @@ impl Pipeline {
         Fault::new(error.code.as_str(), message).at(&place, "").hint(error.hint.clone())
     }
 
-    /// The place of the value that an error names, as deep as the file has it; none where the file gives no such parameter.
+    /// The place of the value that an error names, as deep as the file has it; none where the file
+    /// gives no such parameter.
     pub(crate) fn given(&self, node: &Node, error: &StageError) -> Option<Range<usize>> {
         let span = node.params.get(error.param?)?;
         let value = self.text.get(span.clone())?;

@@ -75,7 +75,8 @@ fn digest(text: String, at: &Tree) -> Result<String, Wrong> {
     }
 }
 
-/// The plugins that a pipeline's text asks for, as far as it can be understood; its faults are reported by the load itself.
+/// The plugins that a pipeline's text asks for, as far as it can be understood; its faults are
+/// reported by the load itself.
 pub fn asked(text: &str) -> Vec<PluginUse> {
     let Some(tree) = super::repair::read(text).0 else { return Vec::new() };
     let named =

@@ -196,7 +196,8 @@ impl Reader<'_> {
         draft
     }
 
-    /// A stage as it is written, `Name(field: value)`; in a section it must have that section's role.
+    /// A stage as it is written, `Name(field: value)`; in a section it must have that section's
+    /// role.
     fn stage(&mut self, value: &Tree, section: Option<(&str, Role)>) -> Draft {
         let (name_span, entries) = match &value.shape {
             Shape::Group { name: Some(name), entries, .. } => (name, Some(entries)),
@@ -349,8 +350,9 @@ impl Reader<'_> {
         self.push(Fault::new("unknown_param", message).at(key, "").hint(hint));
     }
 
-    /// Checks a value by its parameter's own type; puts the fault at the innermost value that has it. Of a list or a map, an element with a
-    /// fault is left out and the others are checked as well.
+    /// Checks a value by its parameter's own type; puts the fault at the innermost value that has
+    /// it. Of a list or a map, an element with a fault is left out and the others are checked as
+    /// well.
     fn check(&mut self, doc: &ParamDoc, value: &Tree) -> bool {
         if value.is_broken {
             return false;
@@ -433,7 +435,8 @@ impl Reader<'_> {
     }
 }
 
-/// Reports every key that stands twice in a map; of two values the reader would take the last and say nothing.
+/// Reports every key that stands twice in a map; of two values the reader would take the last and
+/// say nothing.
 pub(super) fn doubled_keys(text: &str, tree: &Tree, faults: &mut Vec<Fault>) {
     if let Shape::Group { bracket: Bracket::Curly, entries, .. } = &tree.shape {
         let mut seen: BTreeMap<String, &Range<usize>> = BTreeMap::new();
@@ -455,8 +458,8 @@ pub(super) fn doubled_keys(text: &str, tree: &Tree, faults: &mut Vec<Fault>) {
     tree.entries().iter().for_each(|e| doubled_keys(text, &e.value, faults));
 }
 
-/// What may be done about a stage that there is not. A name that is no misspelling, or that has a known one in it as `MyOtsu` has
-/// `Otsu`, may be of a plugin that the file does not name.
+/// What may be done about a stage that there is not. A name that is no misspelling, or that has a
+/// known one in it as `MyOtsu` has `Otsu`, may be of a plugin that the file does not name.
 fn unknown(name: &str, near: Option<&str>, known: Option<String>) -> String {
     let known = known.unwrap_or_else(|| "`toile stages` lists those that there are".into());
     match near {

@@ -1,9 +1,10 @@
 //! Faulty texts, read as far as they can be understood.
 //!
-//! Method: the parser ends at the first fault and says what may have been meant there, a missing comma, a wrong bracket, a text
-//! without its closing quote. Each of these is tried, and the one with which the parser comes farthest is taken: it words the
-//! fault, and the text is read on with it. Cost: some passes over the text for each fault. Limits: [`MAX_SYNTAX`] faults, and
-//! texts up to [`MAX_REPAIRED`]; where nothing helps, the rest of the text is not read.
+//! Method: the parser ends at the first fault and says what may have been meant there, a missing
+//! comma, a wrong bracket, a text without its closing quote. Each of these is tried, and the one
+//! with which the parser comes farthest is taken: it words the fault, and the text is read on with
+//! it. Cost: some passes over the text for each fault. Limits: [`MAX_SYNTAX`] faults, and texts up
+//! to [`MAX_REPAIRED`]; where nothing helps, the rest of the text is not read.
 
 use super::fault::Fault;
 use super::parser::{Meant, Repairs, SyntaxFault, repaired};

@@ -9,7 +9,8 @@ pub(super) struct Tree {
     pub(super) span: Range<usize>,
     /// What it is.
     pub(super) shape: Shape,
-    /// True where something in it has a fault of syntax, which was told: nothing more is to be said of its text.
+    /// True where something in it has a fault of syntax, which was told: nothing more is to be said
+    /// of its text.
     pub(super) is_broken: bool,
 }
 

@@ -11,7 +11,8 @@ use toile_core::{Card, Kind, Node, Registry, Role};
 const MAX_NAMED: usize = 4;
 
 impl Pipeline {
-    /// Stages whose results nothing uses, what stages warn of, and a pipeline that writes no garment; none where all is well.
+    /// Stages whose results nothing uses, what stages warn of, and a pipeline that writes no
+    /// garment; none where all is well.
     pub fn warnings(&self, registry: &Registry) -> Option<Faults> {
         let mut found: Vec<Fault> = self.unused();
         found.extend(crate::run::warnings(self));

@@ -36,7 +36,8 @@ pub(super) fn required(card: &Card) -> impl Iterator<Item = Kind> {
     card.inputs.iter().filter(|p| !p.optional && p.kind != RunLog::KIND).map(|p| p.kind)
 }
 
-/// Names the stages that would make `wanted` out of what is there, or else those that make it at all.
+/// Names the stages that would make `wanted` out of what is there, or else those that make it at
+/// all.
 pub(super) fn bridge(wanted: Kind, live: &BTreeSet<Kind>, registry: &Registry) -> Option<String> {
     let makes = |c: &&Card| c.outputs.iter().any(|o| o.kind == wanted) && !required(c).any(|k| k == wanted);
     // In the order of the registry, so that the default of a role is named first.
@@ -81,7 +82,8 @@ pub(super) fn is_table(card: &Card, registry: &Registry) -> bool {
     registry.sections().iter().any(of)
 }
 
-/// A stage as the user would write it: `` `Otsu()` ``, `` `body: Mannequin()` ``, `` `photos: ...` ``.
+/// A stage as the user would write it: `` `Otsu()` ``, `` `body: Mannequin()` ``, `` `photos: ...`
+/// ``.
 fn written(card: &Card, registry: &Registry) -> String {
     match section_of(card, registry) {
         Some(Section { field, holds: SectionValue::Stage(_) }) => format!("`{field}: {}()`", card.name),

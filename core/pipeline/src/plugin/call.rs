@@ -195,8 +195,8 @@ impl Call {
         self.keep(port, name, artifact)
     }
 
-    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the border nobody writes
-    /// to what was given.
+    /// Lists that lie in memory of `alloc` are taken as they are: by the rules of the border nobody
+    /// writes to what was given.
     fn own_blocks(&self, record: &mut Record<'_>) {
         let blocks = locked(&self.blocks);
         for field in &mut record.fields {
@@ -335,8 +335,8 @@ unsafe extern "C" fn parallel_for(
     let (done, wait) = channel();
     let sent = unsafe { call(ctx) }.messages.send(Message::Loop(Loop { count, data, body, done }));
     if sent.is_err() || wait.recv().is_err() {
-        // Nobody waits for this call any more: it may run to its end, but not on the program's threads.
-        // A loop that was sent and then dropped has not been begun.
+        // Nobody waits for this call any more: it may run to its end, but not on the program's
+        // threads. A loop that was sent and then dropped has not been begun.
         (0..count).for_each(|i| unsafe { body(data, i) });
     }
 }

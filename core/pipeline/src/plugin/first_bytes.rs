@@ -1,8 +1,9 @@
-//! What a file is that is named as a plugin and is none for this machine, told by its first bytes: a library for another system or
-//! another processor, a program, an archive, a text.
+//! What a file is that is named as a plugin and is none for this machine, told by its first bytes:
+//! a library for another system or another processor, a program, an archive, a text.
 //!
-//! The system's own words for such a file are "invalid ELF header" at best. Source: System V ABI, chapter 4 (ELF); PE Format; Mach-O
-//! Programming Topics. Cost: a look at some hundred bytes. Limit: what is damaged beyond these is left to `whole` and to the system.
+//! The system's own words for such a file are "invalid ELF header" at best. Source: System V ABI,
+//! chapter 4 (ELF); PE Format; Mach-O Programming Topics. Cost: a look at some hundred bytes.
+//! Limit: what is damaged beyond these is left to `whole` and to the system.
 
 use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 
@@ -51,7 +52,8 @@ enum System {
 }
 
 impl System {
-    /// That whose libraries this machine loads; systems that are none of these load those of Linux's form.
+    /// That whose libraries this machine loads; systems that are none of these load those of
+    /// Linux's form.
     fn here() -> Self {
         match OS {
             "windows" => System::Windows,

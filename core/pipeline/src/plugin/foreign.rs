@@ -1,7 +1,8 @@
 //! A plugin's stage behind the [`Stage`] trait.
 //!
-//! Every run of it goes on a thread of its own, for which the runner's thread waits, and whose loops and
-//! words it serves: a run that does not stop when it is asked to is left behind, and the program goes on.
+//! Every run of it goes on a thread of its own, for which the runner's thread waits, and whose
+//! loops and words it serves: a run that does not stop when it is asked to is left behind, and the
+//! program goes on.
 
 use super::call::{Call, Failure, Loop, Message};
 use super::card;
@@ -35,8 +36,8 @@ const STACK: usize = 8 << 20;
 /// Runs of plugins' stages that are waited for.
 static WAITED_FOR: AtomicUsize = AtomicUsize::new(0);
 
-/// How long a program that asks everything to stop has to wait until it is told which plugin does not; nothing while no plugin
-/// is at work.
+/// How long a program that asks everything to stop has to wait until it is told which plugin does
+/// not; nothing while no plugin is at work.
 pub fn patience() -> Duration {
     if WAITED_FOR.load(Ordering::SeqCst) > 0 { GRACE } else { Duration::ZERO }
 }

@@ -25,8 +25,8 @@ const SYMBOL: &[u8] = b"toile_plugin";
 /// The most stages of one plugin.
 const MAX_STAGES: usize = 1000;
 
-/// Loads a plugin and adds its stages to the registry, all or none; `pinned` is the BLAKE3 digest that its file must
-/// have.
+/// Loads a plugin and adds its stages to the registry, all or none; `pinned` is the BLAKE3 digest
+/// that its file must have.
 ///
 /// Errors: why it is refused; a refused plugin stays listed with its reason.
 pub fn load_plugin(registry: &mut Registry, path: &Path, pinned: Option<&str>) -> Result<(), Refused> {
@@ -34,14 +34,16 @@ pub fn load_plugin(registry: &mut Registry, path: &Path, pinned: Option<&str>) -
     registry.add_plugin(path, loaded)
 }
 
-/// The files that a plugin's name may mean: the name itself, and dressed as the system names libraries.
+/// The files that a plugin's name may mean: the name itself, and dressed as the system names
+/// libraries.
 pub fn plugin_files(path: &Path) -> [PathBuf; 2] {
     let (prefix, suffix) = (std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     let stem = path.file_name().map(|n| n.to_string_lossy().replace('-', "_")).unwrap_or_default();
     [path.to_owned(), path.with_file_name(format!("{prefix}{stem}{suffix}"))]
 }
 
-/// The library of a crate that is named after its stage, as `toile new-stage` names it: `libmy_otsu.so` of `MyOtsu`.
+/// The library of a crate that is named after its stage, as `toile new-stage` names it:
+/// `libmy_otsu.so` of `MyOtsu`.
 pub fn library_of(stage: &str) -> String {
     let mut name = String::new();
     for (i, c) in stage.char_indices() {
@@ -61,9 +63,11 @@ fn found(path: &Path) -> PathBuf {
 ///
 /// Loading runs the library's own initialisation: a plugin is code that the user trusts.
 ///
-/// With `apart` a copy is loaded, so that the file may be replaced or written over while this program goes on.
+/// With `apart` a copy is loaded, so that the file may be replaced or written over while this
+/// program goes on.
 ///
-/// Errors: why it is refused. A file that is no whole library for this machine, or not the pinned one, is never loaded.
+/// Errors: why it is refused. A file that is no whole library for this machine, or not the pinned
+/// one, is never loaded.
 pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Refused> {
     let file = found(path);
     let refused =
@@ -94,7 +98,8 @@ pub fn load(path: &Path, pinned: Option<&str>, apart: bool) -> Result<Plugin, Re
     Ok(plugin)
 }
 
-/// Whether this program has loaded another library from the same path: the system would give it again.
+/// Whether this program has loaded another library from the same path: the system would give it
+/// again.
 fn replaced(path: &Path, digest: Digest) -> bool {
     static LOADED: Mutex<BTreeMap<PathBuf, Digest>> = Mutex::new(BTreeMap::new());
     let mut loaded = LOADED.lock().unwrap_or_else(PoisonError::into_inner);
@@ -148,8 +153,8 @@ fn check_pin(digest: &Digest, pinned: Option<&str>) -> Result<(), Why> {
     }
 }
 
-/// The names in a file that may be a plugin's declaration: each library has its own, so that several may
-/// be linked into one program, and a renamed file is still known.
+/// The names in a file that may be a plugin's declaration: each library has its own, so that
+/// several may be linked into one program, and a renamed file is still known.
 fn symbols(bytes: &[u8]) -> Vec<Vec<u8>> {
     let mut found = Vec::new();
     let mut at = 0;
@@ -178,7 +183,8 @@ fn find(bytes: &[u8], what: &[u8]) -> Option<usize> {
     }
 }
 
-/// Opens a library with all functions that it calls: one that is not there would end the program where it is called first.
+/// Opens a library with all functions that it calls: one that is not there would end the program
+/// where it is called first.
 ///
 /// # Safety
 /// The library is trusted to obey the rules of the border.

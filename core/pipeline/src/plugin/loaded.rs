@@ -6,8 +6,8 @@ use toile_core::PluginId;
 
 /// A library that is loaded.
 ///
-/// It stays so until the program ends: threads of its own may outlive its last object, and code that is
-/// taken from under a thread ends the program.
+/// It stays so until the program ends: threads of its own may outlive its last object, and code
+/// that is taken from under a thread ends the program.
 #[derive(Debug)]
 pub(super) struct Loaded {
     id: PluginId,

@@ -6,7 +6,8 @@ use std::path::Path;
 /// A library that the system looks for among those of the plugin and does not find.
 const NO_LIBRARY: &str = ": cannot open shared object file";
 
-/// The loader's words about a library that was loaded from `from` and is named `file`, and a remedy.
+/// The loader's words about a library that was loaded from `from` and is named `file`, and a
+/// remedy.
 pub(super) fn worded(e: &libloading::Error, from: &Path, file: &Path) -> (String, Option<String>) {
     let mut deepest: &dyn Error = e;
     while let Some(source) = deepest.source() {
@@ -17,7 +18,8 @@ pub(super) fn worded(e: &libloading::Error, from: &Path, file: &Path) -> (String
     (format!("the system cannot load it: {words}"), Some(hint))
 }
 
-/// The loader's words without the path that the message already has; a copy's path becomes that of the file.
+/// The loader's words without the path that the message already has; a copy's path becomes that of
+/// the file.
 fn bare(words: &str, from: &Path, file: &Path) -> String {
     let path = from.display().to_string();
     let rest = words.strip_prefix(&path).and_then(|rest| rest.strip_prefix(": ")).unwrap_or(words);

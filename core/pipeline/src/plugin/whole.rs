@@ -1,12 +1,13 @@
 //! Whether a library is whole, by its own tables, before the system maps it.
 //!
-//! The system maps a library that was cut short as if it were whole, and the first touch of a page that the file does not hold
-//! ends the program (SIGBUS). An interrupted link or copy leaves such files. So every range of the file that its headers
-//! name must lie within it, and what the loader follows without a look of its own, the tables of the dynamic section, must lie
-//! in what it maps.
+//! The system maps a library that was cut short as if it were whole, and the first touch of a page
+//! that the file does not hold ends the program (SIGBUS). An interrupted link or copy leaves such
+//! files. So every range of the file that its headers name must lie within it, and what the loader
+//! follows without a look of its own, the tables of the dynamic section, must lie in what it maps.
 //!
-//! Source: System V ABI, chapters 4 and 5 (ELF); Mach-O Programming Topics; PE Format. Cost: microseconds. Limit: what lies
-//! within the ranges is not looked at. A file of another form is left to the system, which refuses it by its first bytes.
+//! Source: System V ABI, chapters 4 and 5 (ELF); Mach-O Programming Topics; PE Format. Cost:
+//! microseconds. Limit: what lies within the ranges is not looked at. A file of another form is
+//! left to the system, which refuses it by its first bytes.
 
 /// Checks the tables of a library.
 ///
@@ -53,7 +54,8 @@ fn cut_short(needs: u64, bytes: &[u8]) -> String {
 struct Layout {
     /// Bytes of an address.
     word: u64,
-    /// Of the file header: offsets of the program and the section headers, and of the sizes and counts behind them.
+    /// Of the file header: offsets of the program and the section headers, and of the sizes and
+    /// counts behind them.
     programs: u64,
     sections: u64,
     counts: u64,
@@ -72,7 +74,8 @@ const LOADED: u64 = 1;
 const DYNAMIC: u64 = 2;
 /// A section without a place in the file.
 const NO_BITS: u64 = 8;
-/// Entries of the dynamic section that hold an address, and the entry that holds its size, where there is one.
+/// Entries of the dynamic section that hold an address, and the entry that holds its size, where
+/// there is one.
 const TABLES: [(u64, Option<u64>); 11] = [
     (STRINGS, Some(10)),
     (SYMBOLS, None),
@@ -140,7 +143,8 @@ fn field<const N: usize>(
     Ok(found)
 }
 
-/// The tables that the loader follows lie in what it maps, and those without which it cannot work are there.
+/// The tables that the loader follows lie in what it maps, and those without which it cannot work
+/// are there.
 fn tables(
     n: &Numbers<'_>,
     (offset, size): (u64, u64),
@@ -188,7 +192,8 @@ fn mach(bytes: &[u8], base: u64) -> Result<(), String> {
     Ok(())
 }
 
-/// A Mach-O file of several architectures. Java classes begin alike; their count reads as one beyond any.
+/// A Mach-O file of several architectures. Java classes begin alike; their count reads as one
+/// beyond any.
 fn fat_mach(bytes: &[u8]) -> Result<(), String> {
     let n = Numbers { bytes, big: true };
     let count = n.at(4, 4)?;

@@ -5,7 +5,8 @@ use crate::load::{Fault, Faults, Pipeline};
 use std::sync::{Arc, PoisonError};
 use toile_core::{Cancel, Context, Node, Placed, Stage, StageError, panics};
 
-/// Asks every stage of which `runs` says that it will run; all that they find wrong comes out at once, each at its place.
+/// Asks every stage of which `runs` says that it will run; all that they find wrong comes out at
+/// once, each at its place.
 ///
 /// A stage whose check panics is asked no further: its run says what is the matter.
 ///
@@ -22,7 +23,8 @@ pub fn faults(
     if found.is_empty() { Ok(()) } else { Err(pipeline.faults(found)) }
 }
 
-/// What the stages warn of before anything runs, each at its place; nothing of a stage whose check panics.
+/// What the stages warn of before anything runs, each at its place; nothing of a stage whose check
+/// panics.
 pub(crate) fn warnings(pipeline: &Pipeline) -> Vec<Fault> {
     (0..pipeline.nodes.len())
         .flat_map(|index| asked(pipeline, index, None, |stage, placed| stage.warnings(placed)))

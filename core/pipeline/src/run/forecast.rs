@@ -17,8 +17,8 @@ pub struct Outlook {
     pub stage: String,
     /// Why nothing asked for needs it, if so.
     pub skipped: Option<String>,
-    /// Every run of it: the entry (empty where it is not mapped) and, where it would run again, why. Causes
-    /// end with the inputs that are as before.
+    /// Every run of it: the entry (empty where it is not mapped) and, where it would run again,
+    /// why. Causes end with the inputs that are as before.
     pub entries: Vec<(String, Option<Vec<Cause>>)>,
 }
 

@@ -1,9 +1,12 @@
-//! Stages that only improve on a result that is good already: where one fails, that result goes on, with a warning.
+//! Stages that only improve on a result that is good already: where one fails, that result goes on,
+//! with a warning.
 //!
-//! A stage that improves (`toile_core::Stage::improves`) gives back the kinds that it takes: a garment in another pose, on a finer mesh, at rest
-//! again. The result that it improves on is the last garment at rest that a stage made which does not improve. All improving stages since then
-//! are undone together, for none of them leaves a result by itself: a garment in another pose is good once it has settled. Each of them then
-//! passes on what it was given, and the run goes on from the first of them.
+//! A stage that improves (`toile_core::Stage::improves`) gives back the kinds that it takes: a
+//! garment in another pose, on a finer mesh, at rest again. The result that it improves on is the
+//! last garment at rest that a stage made which does not improve. All improving stages since then
+//! are undone together, for none of them leaves a result by itself: a garment in another pose is
+//! good once it has settled. Each of them then passes on what it was given, and the run goes on
+//! from the first of them.
 
 use super::node::WORK;
 use super::steps::{Ran, Run, Step};
@@ -14,8 +17,8 @@ use toile_core::artifact::{ArtifactType, Garment, Kind};
 use toile_core::{ErrorCode, Event, Feed, Node, PortValue, Remarks};
 
 impl Run<'_> {
-    /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the runner then goes on behind the steps that are
-    /// left.
+    /// Undoes what failed at stage `index`, where it improves on a result that is at rest; the
+    /// runner then goes on behind the steps that are left.
     ///
     /// Errors: the failure itself, where there is no such result, or where the user asked to stop.
     pub(super) fn undo(&mut self, index: usize, failure: RunError) -> Result<(), RunError> {
@@ -36,8 +39,9 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Undoes the improving stages up to `index`, the last one to have run, where they took a garment away from rest and did not bring it back. A
-    /// later stage that improves may do so still.
+    /// Undoes the improving stages up to `index`, the last one to have run, where they took a
+    /// garment away from rest and did not bring it back. A later stage that improves may do so
+    /// still.
     pub(super) fn undo_unrest(&mut self, index: usize) -> Result<(), RunError> {
         let nodes = &self.pipeline.nodes;
         let fed_by =
@@ -58,7 +62,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// The improving stages that ran behind the last garment at rest, all of which could be undone; none where there are none.
+    /// The improving stages that ran behind the last garment at rest, all of which could be undone;
+    /// none where there are none.
     pub(super) fn improvements(&mut self) -> Result<Option<(usize, usize)>, RunError> {
         let last = (0..self.steps.len()).rev().find(|&i| {
             let node = &self.pipeline.nodes[i];
@@ -69,7 +74,8 @@ impl Run<'_> {
         Ok(self.base(last)?.map(|base| (base, last)))
     }
 
-    /// Has the improving stages between `base` and `last` pass on what they are given, and forgets all steps from the first of them.
+    /// Has the improving stages between `base` and `last` pass on what they are given, and forgets
+    /// all steps from the first of them.
     pub(super) fn turn_back(&mut self, base: usize, last: usize, why: String) {
         let between: Range<usize> = base + 1..last + 1;
         let improving: Vec<usize> =
@@ -112,7 +118,8 @@ impl Run<'_> {
         Ok(Ran { outputs, wall_s: 0.0, cached: false, figures: Vec::new(), remarks, cost: None })
     }
 
-    /// How much work the stage may take: as much as the result took that it improves on; any amount where it does not improve.
+    /// How much work the stage may take: as much as the result took that it improves on; any amount
+    /// where it does not improve.
     pub(super) fn allowance(&self, index: usize) -> Option<f64> {
         if !self.pipeline.nodes[index].stage.improves() {
             return None;

@@ -1,4 +1,5 @@
-//! Results that are known: looked for in the cache, put together with what was made, and kept there.
+//! Results that are known: looked for in the cache, put together with what was made, and kept
+//! there.
 
 use super::node::{Failure, Made};
 use super::steps::{Ran, Run, Step};

@@ -58,8 +58,8 @@ pub struct RunOptions {
     pub expect: Option<Arc<dyn Expect>>,
 }
 
-/// Files with the digest of the content that was read, none where there was no such file; a run fills it in while it
-/// goes on.
+/// Files with the digest of the content that was read, none where there was no such file; a run
+/// fills it in while it goes on.
 pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Digest>>>>;
 
 /// What a run gives. Nothing is written yet.
@@ -67,12 +67,13 @@ pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Digest>>>>;
 pub struct RunResult {
     /// Files of the writers, and of `keep`, ready for [`crate::write_files`].
     pub files: Vec<OutputFile>,
-    /// The record of every stage with its artifacts; of a run with a cache, only with those that the run itself had
-    /// to read.
+    /// The record of every stage with its artifacts; of a run with a cache, only with those that
+    /// the run itself had to read.
     pub log: RunLog,
     /// The content of `metrics.json`.
     pub metrics: Metrics,
-    /// The digest of what every stage made, by id; none without a cache, and for what has no digest.
+    /// The digest of what every stage made, by id; none without a cache, and for what has no
+    /// digest.
     pub results: Vec<(String, Option<Digest>)>,
     /// What every stage took that ran whole under a meter.
     pub costs: Vec<StageCost>,
@@ -105,8 +106,9 @@ impl std::error::Error for RunError {}
 
 /// Runs `pipeline` in the current rayon pool.
 ///
-/// With a cache, a stage whose result is known is not run, and its result is only read where something
-/// needs it. What goes wrong with the cache is a warning of [`Cache::take_warnings`], never an error.
+/// With a cache, a stage whose result is known is not run, and its result is only read where
+/// something needs it. What goes wrong with the cache is a warning of [`Cache::take_warnings`],
+/// never an error.
 ///
 /// Errors: the first stage's error in file order; nothing has been written then.
 pub fn run(
@@ -142,8 +144,8 @@ pub fn run(
     Ok(RunResult { files, log: run.log(run.steps.len()), metrics, results, costs })
 }
 
-/// Runs all stages of the plan; a garment that misses limits with the stages that only improve on it, and misses none without them, is given
-/// without them. Gives the judgement.
+/// Runs all stages of the plan; a garment that misses limits with the stages that only improve on
+/// it, and misses none without them, is given without them. Gives the judgement.
 fn unharmed(run: &mut Run<'_>, plan: &[Option<String>]) -> Result<Vec<Figures>, RunError> {
     stages(run, plan)?;
     let judged = judged(run)?;
@@ -256,8 +258,8 @@ pub fn plan(pipeline: &Pipeline, options: &RunOptions) -> Result<Vec<Option<Stri
     Ok(needed.into_iter().map(|needed| (!needed).then(reason)).collect())
 }
 
-/// Refuses a pipeline in which a stage reads from one that stands after it, which no file can say and a program's own
-/// changes might.
+/// Refuses a pipeline in which a stage reads from one that stands after it, which no file can say
+/// and a program's own changes might.
 fn sound(pipeline: &Pipeline) -> Result<(), RunError> {
     for (index, node) in pipeline.nodes.iter().enumerate() {
         for feed in &node.inputs {

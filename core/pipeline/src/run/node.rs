@@ -26,10 +26,12 @@ pub(crate) struct Made {
 /// The figure that says how much work a stage took: steps over all of its vertices.
 pub(super) const WORK: &str = "work";
 
-/// The entry that people take a photo of first; the back is often its mirror image, and fails with it.
+/// The entry that people take a photo of first; the back is often its mirror image, and fails with
+/// it.
 const FRONT: &str = "front";
 
-/// Runs a stage for some entries, in parallel; the front's failure counts, else the first in their order.
+/// Runs a stage for some entries, in parallel; the front's failure counts, else the first in their
+/// order.
 pub(super) fn run_entries(
     node: &Node,
     jobs: Vec<(String, Inputs)>,
@@ -65,8 +67,8 @@ fn run_entry(node: &Node, entry: String, inputs: &Inputs, cx: &Context) -> Resul
     }
 }
 
-/// The files that a plugin's stage is given by name: it reads them on its own side of the border, and one built
-/// for ABI 1.0 cannot tell which.
+/// The files that a plugin's stage is given by name: it reads them on its own side of the border,
+/// and one built for ABI 1.0 cannot tell which.
 fn named_files(node: &Node, cx: &Context) -> Vec<(String, Option<Digest>)> {
     if node.card.plugin.is_none() {
         return Vec::new();

@@ -1,8 +1,9 @@
 //! What a stage makes of a photo of joined pixels, in the pixels of the photo's file again.
 //!
-//! Stages work in the pixels of the photo that they are given, and need not know that it was brought down: the frame of an
-//! outline that is made from it is parted here, and a photo that a stage made anew (a filter of a plugin that knows nothing
-//! of joined pixels) is said to be joined as the one before.
+//! Stages work in the pixels of the photo that they are given, and need not know that it was
+//! brought down: the frame of an outline that is made from it is parted here, and a photo that a
+//! stage made anew (a filter of a plugin that knows nothing of joined pixels) is said to be joined
+//! as the one before.
 
 use super::typed;
 use std::sync::Arc;
@@ -17,7 +18,8 @@ pub(super) fn of_the_file(inputs: &Inputs, made: Vec<PortValue>) -> Vec<PortValu
     }
 }
 
-/// The photo of joined pixels that a stage was given; none where an outline came with it, whose frame is right already.
+/// The photo of joined pixels that a stage was given; none where an outline came with it, whose
+/// frame is right already.
 fn given(inputs: &Inputs) -> Option<&Photo> {
     let values = || inputs.0.iter().flatten();
     if values().any(|v| v.kind() == Outline::KIND) {

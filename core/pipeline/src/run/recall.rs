@@ -28,8 +28,8 @@ impl Run<'_> {
         (0..ports).try_for_each(|port| self.ensure(index, port, None))
     }
 
-    /// Brings a port's value (of some entries) into memory: from the cache, or where it is not to be had from there
-    /// by running its stage.
+    /// Brings a port's value (of some entries) into memory: from the cache, or where it is not to
+    /// be had from there by running its stage.
     pub(super) fn ensure(
         &mut self,
         index: usize,

@@ -1,4 +1,5 @@
-//! What a run says of itself: digests of what every stage made, and the records that reports are given.
+//! What a run says of itself: digests of what every stage made, and the records that reports are
+//! given.
 
 use super::steps::{Ran, Run, Step};
 use super::value::Held;
@@ -49,7 +50,8 @@ impl Run<'_> {
         Some(d.finish())
     }
 
-    /// The record that a report is given: without services, which would have to be set up to be shown.
+    /// The record that a report is given: without services, which would have to be set up to be
+    /// shown.
     pub(super) fn report(&self, index: usize) -> RunLog {
         let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {
@@ -65,7 +67,8 @@ impl Run<'_> {
         log
     }
 
-    /// The record of the stages before `index`. A stage of whose artifacts one is not in memory has none.
+    /// The record of the stages before `index`. A stage of whose artifacts one is not in memory has
+    /// none.
     pub(super) fn log(&self, index: usize) -> RunLog {
         let mut log = self.new_log();
         for (node, step) in self.pipeline.nodes.iter().zip(&self.steps).take(index) {

@@ -10,8 +10,9 @@ use toile_core::{ArtifactType, ErrorCode, Feed, Inputs, Node, PortValue, Remarks
 
 /// Takes what a run that fails has made until then.
 ///
-/// `reason.txt`; the pages of stages that report on a run, with the reason on top; and the artifacts of the stage that failed, with
-/// [`RunOptions::keep`] those of all stages. Nothing where no stage had made anything that can be shown, or the run was stopped.
+/// `reason.txt`; the pages of stages that report on a run, with the reason on top; and the
+/// artifacts of the stage that failed, with [`RunOptions::keep`] those of all stages. Nothing where
+/// no stage had made anything that can be shown, or the run was stopped.
 pub type SoFar = Arc<Mutex<Vec<OutputFile>>>;
 
 /// Fills [`RunOptions::so_far`].

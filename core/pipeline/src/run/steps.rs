@@ -1,5 +1,5 @@
-//! A run under way: stage by stage, each from the cache where its result is known (`known`), and what lies in the cache
-//! only brought into memory once something needs it (`recall`).
+//! A run under way: stage by stage, each from the cache where its result is known (`known`), and
+//! what lies in the cache only brought into memory once something needs it (`recall`).
 
 use super::node::{Failure, Made, run_entries};
 use super::value::Held;
@@ -58,7 +58,8 @@ pub(super) struct Run<'a> {
     pub(super) meter: Option<&'a dyn Meter>,
     pub(super) expect: Option<&'a dyn Expect>,
     pub(super) steps: Vec<Step>,
-    /// Improving stages that pass on what they are given; the one that failed with what to tell the user.
+    /// Improving stages that pass on what they are given; the one that failed with what to tell the
+    /// user.
     pub(super) undone: BTreeMap<usize, Option<String>>,
     /// What the stage that failed had come to.
     pub(super) so_far: Option<PortValue>,
@@ -111,8 +112,8 @@ impl Run<'_> {
         self.pipeline.nodes.iter().zip(&self.steps).filter_map(cost).collect()
     }
 
-    /// What a stage was expected to take, where it ran whole. A run that found in the cache all that a cache can hold is no
-    /// news, and asks nobody.
+    /// What a stage was expected to take, where it ran whole. A run that found in the cache all
+    /// that a cache can hold is no news, and asks nobody.
     pub(super) fn expected(&self, index: usize) -> Option<Predicted> {
         let ran_whole = |step: &Step| matches!(step, Step::Ran(Ran { cost: Some(_), .. }));
         let kept =
@@ -201,8 +202,8 @@ impl Run<'_> {
         Ingredients::of(node, entry, inputs)
     }
 
-    /// The names of the sets on the mapped ports, which must all be the same; one empty name for a stage that is not
-    /// mapped.
+    /// The names of the sets on the mapped ports, which must all be the same; one empty name for a
+    /// stage that is not mapped.
     pub(super) fn entries(&self, index: usize) -> Result<Vec<String>, Failure> {
         let node = &self.pipeline.nodes[index];
         if !node.card.is_mapped() {

@@ -96,8 +96,8 @@ impl Held {
         }
     }
 
-    /// Brings its artifacts into memory (of those entries only, where some are named); returns the names of
-    /// those that must be made, each with the damage if it is one.
+    /// Brings its artifacts into memory (of those entries only, where some are named); returns the
+    /// names of those that must be made, each with the damage if it is one.
     pub(super) fn ensure(
         &mut self,
         entries: Option<&[String]>,
@@ -139,7 +139,8 @@ impl Held {
         }
     }
 
-    /// As a port's value, of one entry where `entry` names one; none while something of it is not in memory.
+    /// As a port's value, of one entry where `entry` names one; none while something of it is not
+    /// in memory.
     pub(super) fn value(&self, entry: Option<&str>) -> Option<PortValue> {
         match (self, entry) {
             (Held::One(slot), _) => slot.value.clone().map(PortValue::One),

@@ -1,9 +1,11 @@
-//! Divides edges so that the sides of every seam have equally many links, which then meet one to one.
+//! Divides edges so that the sides of every seam have equally many links, which then meet one to
+//! one.
 //!
-//! Method: the corners within a side are its *stops*. Stops of two sides that lie at the same share of their lengths, to a
-//! hundredth or [`NEAR`], belong together; a stop that has no partner cuts the other side there, by arc length proportion
-//! between the stops that have. A cut is a stop in every other seam of its edge, so this is repeated until nothing is cut.
-//! Cost: rounds times seams times stops. Limits: [`ROUNDS`] and [`MOST_CUTS`]; seams that would go on dividing each other
+//! Method: the corners within a side are its *stops*. Stops of two sides that lie at the same share
+//! of their lengths, to a hundredth or [`NEAR`], belong together; a stop that has no partner cuts
+//! the other side there, by arc length proportion between the stops that have. A cut is a stop in
+//! every other seam of its edge, so this is repeated until nothing is cut. Cost: rounds times seams
+//! times stops. Limits: [`ROUNDS`] and [`MOST_CUTS`]; seams that would go on dividing each other
 //! are an error.
 
 use super::super::EdgeRef;
@@ -139,8 +141,9 @@ impl<'a> Cuts<'a> {
     }
 }
 
-/// The stops that two sides of a seam lack of each other: where the second lacks one of the first, and the first one of the second. Both lists are
-/// shares of a side's length, ascending; stops nearer than `near` are one, and the others are carried over in proportion between those.
+/// The stops that two sides of a seam lack of each other: where the second lacks one of the first,
+/// and the first one of the second. Both lists are shares of a side's length, ascending; stops
+/// nearer than `near` are one, and the others are carried over in proportion between those.
 pub fn lacking_stops(a: &[f64], b: &[f64], near: f64) -> (Vec<f64>, Vec<f64>) {
     let (mut i, mut j) = (0, 0);
     let (mut alone_a, mut alone_b, mut pairs) = (Vec::new(), Vec::new(), vec![(0.0, 0.0)]);

@@ -1,4 +1,5 @@
-//! What every pattern must be, whichever reader made it: numbers finite, names unique, seams along edges that there are.
+//! What every pattern must be, whichever reader made it: numbers finite, names unique, seams along
+//! edges that there are.
 
 use super::super::SeamKind;
 use super::super::sound::{Sound, ensure, finite, finite_figure};

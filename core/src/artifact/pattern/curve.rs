@@ -1,9 +1,10 @@
 //! The shape of an edge between two points.
 //!
-//! Method: lengths of Bézier curves by `kurbo`'s Gauss-Legendre quadrature with an error below [`ACCURACY`], points at a
-//! length by its bisection; arcs in closed form. An arc is kept by its *bulge*, the tangent of a quarter of its angle, as DXF
-//! does: that one number is well behaved at a half circle, where centre and radius are not, and mirrors by its sign.
-//! Cost: a few microseconds a length. Limits: an arc turns by less than a whole circle.
+//! Method: lengths of Bézier curves by `kurbo`'s Gauss-Legendre quadrature with an error below
+//! [`ACCURACY`], points at a length by its bisection; arcs in closed form. An arc is kept by its
+//! *bulge*, the tangent of a quarter of its angle, as DXF does: that one number is well behaved at
+//! a half circle, where centre and radius are not, and mirrors by its sign. Cost: a few
+//! microseconds a length. Limits: an arc turns by less than a whole circle.
 
 use super::super::{Point2, Vector2, polyline_length};
 use kurbo::{CubicBez, ParamCurve, ParamCurveArclen, QuadBez};
@@ -16,7 +17,8 @@ const STEP: f64 = 1e-3;
 /// No edge is drawn by more points than this.
 const MOST_POINTS: usize = 4000;
 
-/// How an edge runs from its start to its end. Control points are in the piece's own coordinates, metres.
+/// How an edge runs from its start to its end. Control points are in the piece's own coordinates,
+/// metres.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EdgeCurve {
     /// Straight.
@@ -33,8 +35,8 @@ pub enum EdgeCurve {
     },
     /// A part of a circle.
     Arc {
-        /// The tangent of a quarter of the angle that it turns by: 1 for a half circle, above 0 where it turns to the left
-        /// (counter-clockwise), below 0 to the right.
+        /// The tangent of a quarter of the angle that it turns by: 1 for a half circle, above 0
+        /// where it turns to the left (counter-clockwise), below 0 to the right.
         bulge: f64,
     },
     /// Straight from point to point.
@@ -82,7 +84,8 @@ impl EdgeCurve {
         }
     }
 
-    /// The bulge of an arc over a chord of that length, metres. A radius below half the chord is taken as half the chord.
+    /// The bulge of an arc over a chord of that length, metres. A radius below half the chord is
+    /// taken as half the chord.
     pub fn bulge(chord: f64, radius: f64, large: bool, left: bool) -> f64 {
         let half = (chord / (2.0 * radius.abs())).clamp(0.0, 1.0).asin();
         let angle = if large { 2.0 * std::f64::consts::PI - 2.0 * half } else { 2.0 * half };
@@ -169,7 +172,8 @@ impl EdgePath {
         self.eval(self.parameter(length))
     }
 
-    /// Points from one length to another, both included, near enough to draw it by: a millimetre apart on a curve.
+    /// Points from one length to another, both included, near enough to draw it by: a millimetre
+    /// apart on a curve.
     pub fn between(&self, from: f64, to: f64) -> Vec<Point2> {
         if let Shape::Polyline(points, along) = &self.shape {
             let inside = points.iter().zip(along).filter(|(_, s)| **s > from && **s < to).map(|(p, _)| *p);
@@ -231,7 +235,8 @@ mod tests {
     #[test]
     fn lengths_are_those_of_closed_forms() {
         assert_eq!(length(p(0.3, 0.4), &EdgeCurve::Line), 0.5);
-        // A parabola y = x^2 over [-1/2, 1/2]: sqrt(2)/2 + asinh(1)/2, its control below its vertex.
+        // A parabola y = x^2 over [-1/2, 1/2]: sqrt(2)/2 + asinh(1)/2, its control below its
+        // vertex.
         let parabola = EdgeCurve::Quadratic { control: p(0.5, -0.5) };
         let exact = 2.0_f64.sqrt() / 2.0 + 1.0_f64.asinh() / 2.0;
         assert!((length(p(1.0, 0.0), &parabola) - exact).abs() < 1e-9);

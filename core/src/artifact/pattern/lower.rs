@@ -1,9 +1,11 @@
 //! From a pattern to what meshers and placements take: outlines and a sewing plan.
 //!
-//! Method: the edges of every seam are cut until they meet one to one ([`super::chain`]); each part becomes a named edge of its
-//! piece's outline, and each pair of parts a seam. Parts that are sewn to each other, directly or through others, share one
-//! [`Gauge`], so that meshers divide all of them alike. Layers of pleats are sewn first ([`super::pleats`]). Cost: linear in the length of the edges, a few milliseconds a piece.
-//! Limits: holes keep their edges unsewn; a slit is not cut, which is told.
+//! Method: the edges of every seam are cut until they meet one to one ([`super::chain`]); each part
+//! becomes a named edge of its piece's outline, and each pair of parts a seam. Parts that are sewn
+//! to each other, directly or through others, share one [`Gauge`], so that meshers divide all of
+//! them alike. Layers of pleats are sewn first ([`super::pleats`]). Cost: linear in the length of
+//! the edges, a few milliseconds a piece. Limits: holes keep their edges unsewn; a slit is not cut,
+//! which is told.
 
 use super::super::{
     Edge, EdgeRef, Gauge, InnerKind, InnerLine, Loop, Outline, Point2, Seam, SeamKind, SewingPlan,
@@ -35,7 +37,8 @@ pub struct Lowered {
 impl Pattern {
     /// Its outlines and sewing plan.
     ///
-    /// Errors: a pattern that is not sound, an edge sewn to itself, chains that divide each other without end.
+    /// Errors: a pattern that is not sound, an edge sewn to itself, chains that divide each other
+    /// without end.
     pub fn lower(&self) -> Result<Lowered, LoweringError> {
         super::check::check(self).map_err(LoweringError::Unsound)?;
         match self.pleated() {
@@ -90,7 +93,8 @@ fn not_itself(s: &PatternSeam) -> Result<(), LoweringError> {
     }
 }
 
-/// A seam whose longer side is gathered because nothing else was said of it, with both lengths, metres.
+/// A seam whose longer side is gathered because nothing else was said of it, with both lengths,
+/// metres.
 struct Gather<'a> {
     seam: &'a str,
     long: f64,
@@ -168,7 +172,8 @@ fn seam(a: &Link<'_>, b: &Link<'_>, kind: SeamKind, names: &BTreeMap<&str, &Name
         let edge = names.get(panel).map_or_else(|| l.edge.edge.clone(), |n| n.part(&l.edge.edge, l.part));
         EdgeRef { panel: panel.to_owned(), edge }
     };
-    // Sides run alike; a plan's seam pairs the start of one edge with the end of the other unless it is reversed.
+    // Sides run alike; a plan's seam pairs the start of one edge with the end of the other unless
+    // it is reversed.
     Seam { a: of(a), b: of(b), kind, reversed: a.reversed == b.reversed }
 }
 

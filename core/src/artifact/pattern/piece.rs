@@ -12,8 +12,8 @@ pub struct PieceEdge {
     pub curve: EdgeCurve,
 }
 
-/// A closed loop: edge `k` runs from corner `k` to corner `k + 1`, the last one back to corner 0. The outer loop runs
-/// counter-clockwise, holes clockwise, y up, as seen from outside the wearer.
+/// A closed loop: edge `k` runs from corner `k` to corner `k + 1`, the last one back to corner 0.
+/// The outer loop runs counter-clockwise, holes clockwise, y up, as seen from outside the wearer.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PatternLoop {
     /// Corners, metres.
@@ -117,9 +117,11 @@ impl BodyPart {
 pub struct Pose {
     /// Where the piece's origin lies, metres.
     pub origin: Point3,
-    /// The direction of the piece's x axis: to the right as seen from outside the wearer. Of length 1.
+    /// The direction of the piece's x axis: to the right as seen from outside the wearer. Of
+    /// length 1.
     pub across: Vector3,
-    /// The direction of the piece's y axis, along the grain. Of length 1, at right angles to `across`.
+    /// The direction of the piece's y axis, along the grain. Of length 1, at right angles to
+    /// `across`.
     pub along: Vector3,
 }
 
@@ -135,7 +137,8 @@ impl Pose {
     }
 }
 
-/// One piece of a pattern, flat, metres, as seen from outside the wearer; y runs up along the grain.
+/// One piece of a pattern, flat, metres, as seen from outside the wearer; y runs up along the
+/// grain.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Piece {
     /// Its name, by which seams and panels name it.
@@ -150,7 +153,8 @@ pub struct Piece {
     pub notches: Vec<Notch>,
     /// Holes that mark a point, such as a dart's tip.
     pub drill_holes: Vec<Point2>,
-    /// The grain line as it is drawn, from its foot up along y; none where the pattern draws none and y is taken for it.
+    /// The grain line as it is drawn, from its foot up along y; none where the pattern draws none
+    /// and y is taken for it.
     pub grain: Option<[Point2; 2]>,
     /// The part of the body that it covers, where the pattern says.
     pub body_part: Option<BodyPart>,

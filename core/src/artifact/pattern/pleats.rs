@@ -1,9 +1,11 @@
 //! The layers of a pleat are sewn into the edge that its lines end on.
 //!
-//! Method: where both lines of a pleat end on one outer edge, that edge is cut at them and at the folds between them. The cloth of the
-//! pleat lies there in three layers: it is sewn to itself and to the edge beside it, and whatever else is sewn to the edge is sewn to
-//! what is seen of it alone, as a tailor lays pleats before the waistband is set on. Cost: linear in the edges. Limits: where two pleats
-//! lie so close that one covers the other, or one reaches beyond the edge, its layers are sewn to each other and not to the edge.
+//! Method: where both lines of a pleat end on one outer edge, that edge is cut at them and at the
+//! folds between them. The cloth of the pleat lies there in three layers: it is sewn to itself and
+//! to the edge beside it, and whatever else is sewn to the edge is sewn to what is seen of it
+//! alone, as a tailor lays pleats before the waistband is set on. Cost: linear in the edges.
+//! Limits: where two pleats lie so close that one covers the other, or one reaches beyond the edge,
+//! its layers are sewn to each other and not to the edge.
 
 use super::super::seam_kind::PleatFold;
 use super::super::{EdgeRef, Point2, SeamKind};
@@ -35,7 +37,8 @@ impl Laid {
         self.ends[0].max(self.ends[1])
     }
 
-    /// The layers that lie on each other, groups of stretches, each from its fold that is seen; what lies on top is the last of its group.
+    /// The layers that lie on each other, groups of stretches, each from its fold that is seen;
+    /// what lies on top is the last of its group.
     fn layers(&self) -> Vec<Vec<Stretch>> {
         let [a, c] = self.ends;
         match self.fold {
@@ -55,7 +58,8 @@ impl Laid {
 }
 
 impl Pattern {
-    /// The same with the layers of its pleats sewn into the edges that they end on; nothing where no pleat ends on an edge.
+    /// The same with the layers of its pleats sewn into the edges that they end on; nothing where
+    /// no pleat ends on an edge.
     pub(super) fn pleated(&self) -> Option<Pattern> {
         let laid: Vec<Laid> = self.seams.iter().filter_map(|s| laid(self, s)).collect();
         if laid.is_empty() {

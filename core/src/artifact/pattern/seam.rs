@@ -11,8 +11,9 @@ pub struct EdgeUse {
     pub reversed: bool,
 }
 
-/// Two or more sides that are sewn together, or the one side of an elastic band along an edge or line. Each side is a chain of edges; all sides run the same way, so that their starts
-/// meet, and their ends.
+/// Two or more sides that are sewn together, or the one side of an elastic band along an edge or
+/// line. Each side is a chain of edges; all sides run the same way, so that their starts meet, and
+/// their ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PatternSeam {
     /// Its name in reports.

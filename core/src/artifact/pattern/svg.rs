@@ -1,5 +1,5 @@
-//! A pattern as a drawing: pieces side by side, millimetres, every edge named and in the colour of its seam, an arrow in the direction in
-//! which it runs.
+//! A pattern as a drawing: pieces side by side, millimetres, every edge named and in the colour of
+//! its seam, an arrow in the direction in which it runs.
 
 use super::super::arrow::arrow;
 use super::super::{Point2, polygon_area};
@@ -37,7 +37,8 @@ pub(super) fn svg(pattern: &Pattern) -> String {
     )
 }
 
-/// A colour for every edge of every seam: hues a golden angle apart, so that neighbours in the list differ.
+/// A colour for every edge of every seam: hues a golden angle apart, so that neighbours in the list
+/// differ.
 fn colours(pattern: &Pattern) -> BTreeMap<(&str, &str), String> {
     let mut all = BTreeMap::new();
     for (i, s) in pattern.seams.iter().enumerate() {

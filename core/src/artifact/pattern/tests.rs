@@ -356,7 +356,8 @@ proptest! {
         }
     }
 
-    /// Whatever is sewn to whatever: lengths are kept, and the two sides of every seam are divided alike.
+    /// Whatever is sewn to whatever: lengths are kept, and the two sides of every seam are divided
+    /// alike.
     #[test]
     fn lowering_keeps_lengths_and_divides_seams_alike(pattern in pattern()) {
         let Ok(lowered) = pattern.lower() else { return Ok(()) };

@@ -23,7 +23,8 @@ pub struct Field<'a> {
     pub width: u32,
     /// What it holds.
     pub data: Data<'a>,
-    /// Who keeps its memory beyond the record, where somebody does: then it may be lent and not copied.
+    /// Who keeps its memory beyond the record, where somebody does: then it may be lent and not
+    /// copied.
     pub owner: Owner,
 }
 

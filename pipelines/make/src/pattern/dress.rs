@@ -1,4 +1,5 @@
-//! A dress: bodice with bust and waist darts, skirt gathered to the waist seam, short set-in sleeves.
+//! A dress: bodice with bust and waist darts, skirt gathered to the waist seam, short set-in
+//! sleeves.
 //!
 //! For the mannequin of 172 cm, bust 88 and waist 70 cm: 95 cm at the bust, 74 cm at the waist.
 
@@ -53,7 +54,8 @@ fn mirror([x, y]: P) -> P {
     [-x, y]
 }
 
-/// A bodice before the body; the bust dart takes in what the side is longer than `side`, if it is to.
+/// A bodice before the body; the bust dart takes in what the side is longer than `side`, if it is
+/// to.
 fn bodice(name: &str, b: &Bodice, side: Option<f64>) -> Panel {
     let width = b.waist[0] - b.half;
     let [inner, tip, outer] = dart([0.0, 0.0], b.waist, INNER + width / 2.0, width, b.dart);

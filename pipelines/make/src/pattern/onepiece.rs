@@ -1,7 +1,8 @@
-//! A child's one-piece with short sleeves and short legs: two fronts and two backs, each from the shoulder to the leg, sewn
-//! along the middle, the crotch and the inseams.
+//! A child's one-piece with short sleeves and short legs: two fronts and two backs, each from the
+//! shoulder to the leg, sewn along the middle, the crotch and the inseams.
 //!
-//! For the mannequin of 110 cm, bust 58, waist 54 and hip 60 cm: 66 cm at the bust, 70 cm at the hip.
+//! For the mannequin of 110 cm, bust 58, waist 54 and hip 60 cm: 66 cm at the bust, 70 cm at the
+//! hip.
 
 use super::{Garment, P, Panel, curve, line, sleeve};
 

@@ -7,7 +7,8 @@ const ARM: f64 = 60.0;
 /// The end of the sleeve on the arm's axis: x and y.
 const CUFF_END: P = [56.0, 112.0];
 
-/// A shirt: front, back, sleeves in two halves each, a stand collar in two halves, cuffs in two halves each.
+/// A shirt: front, back, sleeves in two halves each, a stand collar in two halves, cuffs in two
+/// halves each.
 pub(super) fn shirt() -> Garment {
     let (hem, armpit, shoulder, neck) = ([27.0, 0.0], [27.0, 33.5], [19.5, 57.4], [8.0, 61.6]);
     let torso = |name: &str, depth: f64, scoop: f64, z: f64| {

@@ -5,7 +5,8 @@ use super::{Edge, P, Panel, curve, line};
 /// Degrees between the mannequin's arms and the vertical.
 const ARM: f64 = 60.0;
 
-/// Measures of half a sleeve, from the under arm to the over arm seam. Halves that are sewn to each other have equal heights.
+/// Measures of half a sleeve, from the under arm to the over arm seam. Halves that are sewn to each
+/// other have equal heights.
 pub(super) struct Half {
     /// Length of the under arm seam, and height of the cap above it.
     pub(super) under: f64,

@@ -1,8 +1,9 @@
 //! Rigid obstacles with a closed form, as a filter on vertex velocities.
 //!
-//! The normal part of a velocity may at most close the gap in one step; what it must lose for that, times the friction
-//! coefficient, is what the tangential part may lose at most: Coulomb's law for one vertex in one step, exactly. A vertex whose
-//! tangential velocity is used up stands still, without creep.
+//! The normal part of a velocity may at most close the gap in one step; what it must lose for that,
+//! times the friction coefficient, is what the tangential part may lose at most: Coulomb's law for
+//! one vertex in one step, exactly. A vertex whose tangential velocity is used up stands still,
+//! without creep.
 
 use crate::energy::Vec3;
 use crate::error::{ClothError, check_parameter};

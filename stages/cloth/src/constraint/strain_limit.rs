@@ -1,9 +1,11 @@
 //! Strain limits, applied to positions after a step.
 //!
-//! [`Provot`] (1995) walks over the edges and shortens each that is too long: the free end if one is held, both by half if none
-//! is, as the classic systems do. It ignores masses and moves the centre of mass, and knows edges only. [`StrainLimit`] clamps the principal
-//! stretches of each triangle and moves its corners by their inverse masses, in a few rounds of Gauss-Seidel (Thomaszewski, Pabst,
-//! Strasser, 2009): any direction, momentum kept. Both need tens of rounds for a long chain; both report what is left.
+//! [`Provot`] (1995) walks over the edges and shortens each that is too long: the free end if one
+//! is held, both by half if none is, as the classic systems do. It ignores masses and moves the
+//! centre of mass, and knows edges only. [`StrainLimit`] clamps the principal stretches of each
+//! triangle and moves its corners by their inverse masses, in a few rounds of Gauss-Seidel
+//! (Thomaszewski, Pabst, Strasser, 2009): any direction, momentum kept. Both need tens of rounds
+//! for a long chain; both report what is left.
 
 use nalgebra::Matrix3x2;
 
@@ -96,7 +98,8 @@ impl StrainLimit {
         if sum == 0.0 {
             return;
         }
-        // The wanted shape sits where the corners, each as unwilling to move as it is heavy, move least.
+        // The wanted shape sits where the corners, each as unwilling to move as it is heavy, move
+        // least.
         let shape: [Vec3; 3] = std::array::from_fn(|k| wanted * (rest[k] - rest[0]));
         let hold = corners.map(|v| if fixed[v] { 1e9 } else { sheet.masses()[v] });
         let total: f64 = hold.iter().sum();

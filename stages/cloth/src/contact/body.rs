@@ -18,7 +18,8 @@ pub struct Body {
 }
 
 impl Body {
-    /// Builds the tree. Triangles must refer to vertices that exist; an empty body is far from everything.
+    /// Builds the tree. Triangles must refer to vertices that exist; an empty body is far from
+    /// everything.
     #[must_use]
     pub fn new(vertices: Vec<Vec3>, triangles: &[[u32; 3]]) -> Self {
         let sharp = Sharp::of(&vertices, triangles).map(Arc::new);
@@ -57,8 +58,8 @@ impl Body {
 
     /// The move from `p` by `by`, ended `gap` outside the surface where it would enter the body.
     ///
-    /// The way is walked in steps no longer than the distance from the surface, so nothing is jumped over. A point that
-    /// starts inside may move as it likes.
+    /// The way is walked in steps no longer than the distance from the surface, so nothing is
+    /// jumped over. A point that starts inside may move as it likes.
     #[must_use]
     pub fn guard(&self, p: &Vec3, by: &Vec3, gap: f64) -> Vec3 {
         let length = by.norm();

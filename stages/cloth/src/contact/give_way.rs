@@ -1,11 +1,13 @@
 //! Cloth that would meet cloth takes it along.
 //!
-//! A pair that would meet loses the way on which its closest points come together, shared among its nodes like a blow that
-//! does not bounce (Provot 1997; Bridson, Fedkiw, Anderson 2002); all else of the moves stays. Ending the moves of its nodes
-//! before they meet would hold these back while the cloth around them goes on: it stretches, pulls them harder against each
-//! other, and two layers a micrometre apart would never part again.
+//! A pair that would meet loses the way on which its closest points come together, shared among its
+//! nodes like a blow that does not bounce (Provot 1997; Bridson, Fedkiw, Anderson 2002); all else
+//! of the moves stays. Ending the moves of its nodes before they meet would hold these back while
+//! the cloth around them goes on: it stretches, pulls them harder against each other, and two
+//! layers a micrometre apart would never part again.
 //!
-//! What is left meets again, perhaps: whoever asks must still end moves before that (see [`super::limit`]).
+//! What is left meets again, perhaps: whoever asks must still end moves before that (see
+//! [`super::limit`]).
 
 use super::limit::meet;
 use nalgebra::Vector3;
@@ -16,7 +18,8 @@ type Vec3 = Vector3<f64>;
 /// Rounds in which what was pushed pushes on.
 const ROUNDS: usize = 4;
 
-/// Changes `moves` of nodes that are not `held` where the pairs that are `meeting` would meet; whose moves have changed.
+/// Changes `moves` of nodes that are not `held` where the pairs that are `meeting` would meet;
+/// whose moves have changed.
 pub fn give_way(
     x: &[Vec3],
     moves: &mut [Vec3],

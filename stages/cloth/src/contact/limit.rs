@@ -1,9 +1,10 @@
 //! How much of a step each node may make so that nothing passes through anything.
 //!
-//! Pairs that would meet hold back only their own nodes; since that changes the motion of their neighbours, all pairs of a
-//! node that was held back are tested again, until no pair meets. If that does not settle in a few rounds, the whole step
-//! is shortened. What is returned has been tested: every pair keeps a share of its distance. Pairs that were found for longer moves
-//! do not answer for shorter ones: see [`hold_apart`].
+//! Pairs that would meet hold back only their own nodes; since that changes the motion of their
+//! neighbours, all pairs of a node that was held back are tested again, until no pair meets. If
+//! that does not settle in a few rounds, the whole step is shortened. What is returned has been
+//! tested: every pair keeps a share of its distance. Pairs that were found for longer moves do not
+//! answer for shorter ones: see [`hold_apart`].
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -51,11 +52,12 @@ fn limit_or_stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64)
     (first, stop(x, moves, pairs).1)
 }
 
-/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count; the pairs found last, and to
-/// what share the whole step was shortened: below 1, cloth that touches nothing was held back as well.
+/// Shortens `moves` until none of the pairs that `seek` finds for them meets, of those that count;
+/// the pairs found last, and to what share the whole step was shortened: below 1, cloth that
+/// touches nothing was held back as well.
 ///
-/// What falls together meets nowhere until one of it is held back; so pairs are sought again for the moves that are left,
-/// unless `seek` says that those known hold for all shorter moves.
+/// What falls together meets nowhere until one of it is held back; so pairs are sought again for
+/// the moves that are left, unless `seek` says that those known hold for all shorter moves.
 pub fn hold_apart(
     x: &[Vec3],
     moves: &mut [Vec3],
@@ -80,7 +82,8 @@ pub fn hold_apart(
     (pairs, whole)
 }
 
-/// Ends the whole step before the first of `pairs` meets; how many would have, and the share that is left.
+/// Ends the whole step before the first of `pairs` meets; how many would have, and the share that
+/// is left.
 fn stop(x: &[Vec3], moves: &mut [Vec3], pairs: &[Pair]) -> (usize, f64) {
     // Scaled as a whole, a step that is safe until some time is safe when it ends there.
     let hits = hits(x, moves, pairs);

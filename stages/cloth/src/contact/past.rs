@@ -1,8 +1,9 @@
 //! Cloth that falls past the body.
 //!
-//! A piece of cloth, all that hangs together, is past the body once its highest point lies lower along gravity than the body's
-//! lowest, and lower than all cloth that a pin holds or that is not past the body itself. From then on nothing is left that
-//! could catch it: it falls for ever, and there is no need to follow it. Cost: O(n), a comparison a node while all of them are above the
+//! A piece of cloth, all that hangs together, is past the body once its highest point lies lower
+//! along gravity than the body's lowest, and lower than all cloth that a pin holds or that is not
+//! past the body itself. From then on nothing is left that could catch it: it falls for ever, and
+//! there is no need to follow it. Cost: O(n), a comparison a node while all of them are above the
 //! body's lowest point.
 
 use super::skin::CollisionSurface;
@@ -13,8 +14,8 @@ type Vec3 = Vector3<f64>;
 /// Marks a node that belongs to no piece: no triangle has it.
 pub const NO_PIECE: u32 = u32::MAX;
 
-/// Edges of a mesh in the narrower side of the body, from which on a finer mesh falls as this one does: what would catch the
-/// cloth is no finer than it is.
+/// Edges of a mesh in the narrower side of the body, from which on a finer mesh falls as this one
+/// does: what would catch the cloth is no finer than it is.
 const EDGES_ACROSS: f64 = 6.0;
 
 /// The box around a body, upright along gravity.
@@ -105,8 +106,9 @@ impl BodyBox {
         self.low[0]
     }
 
-    /// The height of the highest point of the body under cloth with its vertices at `x`, by a raster of so many ways a side
-    /// over it: `meets` says at what height a way straight down from a point above the body meets it. Nothing where none does.
+    /// The height of the highest point of the body under cloth with its vertices at `x`, by a
+    /// raster of so many ways a side over it: `meets` says at what height a way straight down from
+    /// a point above the body meets it. Nothing where none does.
     pub fn highest_under(
         &self,
         x: &[Vec3],
@@ -138,8 +140,8 @@ impl BodyBox {
         edge * EDGES_ACROSS <= across[0].min(across[1])
     }
 
-    /// Which pieces are past the body, by their numbers; empty where none is. `piece` is the piece of each node, or [`NO_PIECE`], and
-    /// `held` says which nodes a pin holds.
+    /// Which pieces are past the body, by their numbers; empty where none is. `piece` is the piece
+    /// of each node, or [`NO_PIECE`], and `held` says which nodes a pin holds.
     #[must_use]
     pub fn past(&self, x: &[Vec3], piece: &[u32], held: &[bool]) -> Vec<bool> {
         let height = |p: &Vec3| p.dot(&self.axes[0]);
@@ -191,7 +193,8 @@ impl BodyBox {
     }
 }
 
-/// The panels of cloth that has fallen, as a list for people: each with its name, vertices and how many of these have fallen.
+/// The panels of cloth that has fallen, as a list for people: each with its name, vertices and how
+/// many of these have fallen.
 #[must_use]
 pub fn list(panels: &[(&str, usize, usize)]) -> String {
     /// So many are named.

@@ -1,6 +1,7 @@
 //! The body as a solver sees it: two questions, asked for many points at once.
 //!
-//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place behind [`CollisionSurface`].
+//! [`Body`](super::body::Body) answers from its own tree; another collision scheme takes its place
+//! behind [`CollisionSurface`].
 
 use super::body::Body;
 use nalgebra::Vector3;
@@ -17,13 +18,16 @@ const CHUNK: usize = 64;
 
 /// A solid that cloth stays outside of. The answers must not depend on the number of threads.
 pub trait CollisionSurface: Send + Sync + std::fmt::Debug {
-    /// For each point the surface nearest to it, where it is nearer than the point's `within` (m), inside or outside.
+    /// For each point the surface nearest to it, where it is nearer than the point's `within` (m),
+    /// inside or outside.
     fn nearest(&self, points: &[Vec3], within: &[f64]) -> Vec<Option<Nearest>>;
 
-    /// Ends each move that would lead into the solid its `gap` (m) outside it. A point inside may move as it likes.
+    /// Ends each move that would lead into the solid its `gap` (m) outside it. A point inside may
+    /// move as it likes.
     fn guard(&self, points: &[Vec3], moves: &mut [Vec3], gaps: &[f64]);
 
-    /// How far the solid reaches along a unit direction: the greatest product of its points with it, m. Nothing where there is none.
+    /// How far the solid reaches along a unit direction: the greatest product of its points with
+    /// it, m. Nothing where there is none.
     fn reach(&self, direction: &Vec3) -> Option<f64>;
 
     /// Its sharp edges and corners, if it has any and knows of them.

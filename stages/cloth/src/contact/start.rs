@@ -5,7 +5,8 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is a guess, m.
+/// A vertex that starts deeper than this in the body is not pushed out: which side it belongs to is
+/// a guess, m.
 pub(crate) const DEEPEST: f64 = 0.05;
 
 /// Vertices that start too deep in the body.
@@ -19,7 +20,8 @@ pub(crate) struct Sunk {
     pub(crate) deepest: usize,
 }
 
-/// The start with vertices that lie a little inside the body moved out to a distance, m; besides, whether there is a body.
+/// The start with vertices that lie a little inside the body moved out to a distance, m; besides,
+/// whether there is a body.
 pub(crate) fn clear_start(
     positions: &[Vec3],
     skin: &dyn CollisionSurface,

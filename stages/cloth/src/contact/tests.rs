@@ -42,8 +42,9 @@ proptest! {
         let hit = impact(&pair, &from, &moves);
         let brute = least(kind, &from, &moves, 1.0);
         prop_assert!(least(kind, &from, &moves, hit.unwrap_or(1.0)) >= 0.09 * start);
-        // A clear miss must not be called a hit, unless the pieces start so near each other that the steps run out on the way.
-        // Fast pieces pass between two divisions, so the hit itself is looked at, too.
+        // A clear miss must not be called a hit, unless the pieces start so near each other that
+        // the steps run out on the way. Fast pieces pass between two divisions, so the hit itself
+        // is looked at, too.
         let there = hit.map(|t| kind.closest(&std::array::from_fn(|i| from[i] + moves[i] * t)).distance);
         let is_hit = there.is_none_or(|d| d.min(brute) < 0.2 * start);
         prop_assert!(start < 0.03 || is_hit, "{hit:?} {there:?} {brute} {start}");

@@ -1,14 +1,17 @@
 //! Air: drag and wind on every triangle.
 //!
-//! `F = rho A / 2 (c_n |v_n| v_n + c_t |v_t| v_t)`, v the wind less the triangle's velocity, v_n and v_t its parts across and along the
-//! triangle, A its area now; a third to each corner. That the two parts act each for itself is the cross-flow principle (Taylor, 1952;
-//! Hoerner, 1965); cloth in wind by triangles: Ling, Damodaran, Gay (1996); Keckeisen, Kimmerle, Thomaszewski, Wacker (2004).
+//! `F = rho A / 2 (c_n |v_n| v_n + c_t |v_t| v_t)`, v the wind less the triangle's velocity, v_n
+//! and v_t its parts across and along the triangle, A its area now; a third to each corner. That
+//! the two parts act each for itself is the cross-flow principle (Taylor, 1952; Hoerner, 1965);
+//! cloth in wind by triangles: Ling, Damodaran, Gay (1996); Keckeisen, Kimmerle, Thomaszewski,
+//! Wacker (2004).
 //!
-//! Solvers take one linear step of it: the triangle's velocity before the step says how firmly the air grips it ([`AirDrag::grips`]),
-//! and each corner is held by a third of that at its velocity after the step. The sum is the law, a state that lasts keeps it
-//! exactly, and so does a sheet that the wind carries off face on (Kahan, 1993: `v v'` for `v²`). The grip is never
-//! negative, so still air only takes energy, however long the step. Cost: a few flops a triangle and step.
-//! Left out: lift, the wake of other cloth, the mass of the air that moves along.
+//! Solvers take one linear step of it: the triangle's velocity before the step says how firmly the
+//! air grips it ([`AirDrag::grips`]), and each corner is held by a third of that at its velocity
+//! after the step. The sum is the law, a state that lasts keeps it exactly, and so does a sheet
+//! that the wind carries off face on (Kahan, 1993: `v v'` for `v²`). The grip is never negative, so
+//! still air only takes energy, however long the step. Cost: a few flops a triangle and step. Left
+//! out: lift, the wake of other cloth, the mass of the air that moves along.
 
 use nalgebra::Matrix3;
 use rayon::prelude::*;
@@ -31,7 +34,8 @@ pub struct Air {
     pub density: f64,
     /// Drag coefficient across the cloth: 1.17 for a square plate face on (Hoerner, 1965).
     pub normal: f64,
-    /// Drag coefficient along the cloth, both sides together: 0.008 for a smooth plate at Reynolds number 1e5 (Blasius, 1908).
+    /// Drag coefficient along the cloth, both sides together: 0.008 for a smooth plate at Reynolds
+    /// number 1e5 (Blasius, 1908).
     pub tangential: f64,
     /// Velocity of the air, m/s.
     pub wind: Vec3,
@@ -82,7 +86,8 @@ impl Air {
         check_parameter("wind speed", speed, |s| s <= STRONGEST, "at most 1000 m/s")
     }
 
-    /// What solvers of rest ask: still air does not change where cloth rests, wind does, and has no potential.
+    /// What solvers of rest ask: still air does not change where cloth rests, wind does, and has no
+    /// potential.
     ///
     /// # Errors
     /// [`ClothError::Wind`].
@@ -107,7 +112,8 @@ impl AirDrag {
         Self { air, triangles: triangles.to_vec() }
     }
 
-    /// The force of the air on each vertex, N, where vertices are at `x` (m) and move with `v` (m/s): the law itself.
+    /// The force of the air on each vertex, N, where vertices are at `x` (m) and move with `v`
+    /// (m/s): the law itself.
     #[must_use]
     pub fn forces(&self, x: &[Vec3], v: &[Vec3]) -> Vec<Vec3> {
         let mut forces = vec![Vec3::zeros(); x.len()];
@@ -119,7 +125,8 @@ impl AirDrag {
         forces
     }
 
-    /// How firmly the air holds each vertex, N s/m: the force on it is this times (wind - its velocity). Symmetric, never negative.
+    /// How firmly the air holds each vertex, N s/m: the force on it is this times (wind - its
+    /// velocity). Symmetric, never negative.
     #[must_use]
     pub fn grips(&self, x: &[Vec3], v: &[Vec3]) -> Vec<Matrix3<f64>> {
         let of = |t: &[u32; 3]| grip(&self.air, &t.map(|k| x[k as usize]), &self.slip(t, v)) / 3.0;
@@ -152,7 +159,8 @@ fn grip(air: &Air, corners: &[Vec3; 3], slip: &Vec3) -> Matrix3<f64> {
     Matrix3::identity() * b + n * n.transpose() * (a - b)
 }
 
-/// How a free vertex of mass `m` (kg) answers an impulse in a step of `h` (s) while the air grips it, 1/kg.
+/// How a free vertex of mass `m` (kg) answers an impulse in a step of `h` (s) while the air grips
+/// it, 1/kg.
 #[must_use]
 pub fn mobility(m: f64, grip: &Matrix3<f64>, h: f64) -> Matrix3<f64> {
     let heavy = Matrix3::identity() * m + grip * h;
@@ -165,7 +173,8 @@ pub fn carried(v: &Vec3, wind: &Vec3, mobility: &Matrix3<f64>, grip: &Matrix3<f6
     v + mobility * (grip * (wind - v)) * h
 }
 
-/// One step of the air's grip as an energy, for solvers that minimise: `d B d / 2h - d B w`, d the way since the start.
+/// One step of the air's grip as an energy, for solvers that minimise: `d B d / 2h - d B w`, d the
+/// way since the start.
 #[derive(Debug, Clone)]
 pub struct AirStep<'a> {
     /// Where the step starts.

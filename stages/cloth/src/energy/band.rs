@@ -1,4 +1,5 @@
-//! Elastic bands: a piece pulls its two nodes together once it is longer than at rest, `E = k l e² / 2`, e its strain. A tension, never a push.
+//! Elastic bands: a piece pulls its two nodes together once it is longer than at rest,
+//! `E = k l e² / 2`, e its strain. A tension, never a push.
 
 use super::{Assembled, Blocks, Element, Projection, Subset, Vec3, add_block_of};
 use nalgebra::Matrix3;

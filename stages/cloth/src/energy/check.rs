@@ -1,8 +1,10 @@
-//! Derivatives against central differences: the first test of every model, also of models from other crates.
+//! Derivatives against central differences: the first test of every model, also of models from
+//! other crates.
 
 use super::potential::{Energy, Projection, Vec3, matrix_of, write_matrix};
 
-/// Largest difference between the gradient and central differences of the value, relative to the largest entry.
+/// Largest difference between the gradient and central differences of the value, relative to the
+/// largest entry.
 #[must_use]
 pub fn gradient_error(energy: &dyn Energy, x: &[Vec3], step: f64) -> f64 {
     let mut gradient = vec![Vec3::zeros(); x.len()];

@@ -12,7 +12,8 @@ use std::cell::OnceCell;
 pub struct Cloth<'a> {
     /// The triangles, at rest.
     pub sheet: &'a Sheet,
-    /// The same as it was cut, where `sheet` has rest shapes that do not fit together (gathers): bending is calibrated on it.
+    /// The same as it was cut, where `sheet` has rest shapes that do not fit together (gathers):
+    /// bending is calibrated on it.
     pub cut: &'a Sheet,
     /// The fabrics.
     pub fabrics: &'a [&'a Fabric],

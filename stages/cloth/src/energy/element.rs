@@ -1,9 +1,10 @@
 //! From elements of N nodes to energies of a whole mesh.
 //!
-//! A model is a file with one [`Element`]: how many there are, their nodes, and the value, gradient and second derivative of one. All
-//! else (sums, places in the matrix, parts of a mesh) is here. Elements are evaluated in parallel, in chunks of fixed size; their
-//! results are added one after the other in the order of the elements, so the sums do not depend on the number of threads. Cost:
-//! one pass over the elements.
+//! A model is a file with one [`Element`]: how many there are, their nodes, and the value, gradient
+//! and second derivative of one. All else (sums, places in the matrix, parts of a mesh) is here.
+//! Elements are evaluated in parallel, in chunks of fixed size; their results are added one after
+//! the other in the order of the elements, so the sums do not depend on the number of threads.
+//! Cost: one pass over the elements.
 
 use super::places::{Places, Share};
 use super::potential::{Energy, Projection, Resistance, Vec3};
@@ -37,7 +38,8 @@ pub fn add_block_of<const N: usize>(blocks: &Blocks<N>, row: usize, column: usiz
 
 /// A family of equal elements with `N` nodes each.
 pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
-    /// What the blocks of one element's second derivative are made of: the [`Blocks`] themselves, or fewer numbers.
+    /// What the blocks of one element's second derivative are made of: the [`Blocks`] themselves,
+    /// or fewer numbers.
     type State: Send + Sync;
 
     /// What it is called in reports.

@@ -1,4 +1,5 @@
-//! Which membrane and which bending a sheet has: a new model is one file and one line in each place here that the compiler names.
+//! Which membrane and which bending a sheet has: a new model is one file and one line in each place
+//! here that the compiler names.
 
 use super::bending::{ClampedEdge, DiscreteShell, FreeEdge, Hinge, Hysteresis, Quadratic, SkipOne};
 use super::cloth::Cloth;
@@ -44,7 +45,8 @@ impl Models {
     /// Finite elements and coupled hinges: the most exact pair.
     pub const DEFAULT: Self = Self { membrane: Membrane::Woven, bending: Bending::Hinge };
 
-    /// Finite elements and quadratic hinges: as exact for cloth that hardly stretches, and the fastest.
+    /// Finite elements and quadratic hinges: as exact for cloth that hardly stretches, and the
+    /// fastest.
     pub const STATIC: Self = Self { membrane: Membrane::Woven, bending: Bending::Quadratic };
 
     /// What the scoreboard compares.

@@ -1,7 +1,8 @@
 //! Which elements add to which block of a matrix.
 //!
-//! Blocks are summed each by itself, in the order of its elements, so they can be summed side by side and have the same bits for
-//! any number of threads. Cost: 8 bytes a pair of an element's nodes, and one look into the pattern for each.
+//! Blocks are summed each by itself, in the order of its elements, so they can be summed side by
+//! side and have the same bits for any number of threads. Cost: 8 bytes a pair of an element's
+//! nodes, and one look into the pattern for each.
 
 use crate::linear::{Pattern, Slot};
 use std::sync::Arc;
@@ -35,8 +36,9 @@ impl Places {
         for element in 0..count {
             let n = nodes(element);
             for (a, b) in (0..N).flat_map(|a| (a..N).map(move |b| (a, b))) {
-                // A node that stands twice in an element, as the two tips of a hinge that sewing has folded flat, meets itself here
-                // once, and not in both orders: the matrix is softer there than the second derivative, which changes no state of rest.
+                // A node that stands twice in an element, as the two tips of a hinge that sewing
+                // has folded flat, meets itself here once, and not in both orders: the matrix is
+                // softer there than the second derivative, which changes no state of rest.
                 if let Some(Slot { index, flipped }) = pattern.slot(n[a], n[b]) {
                     let (row, column) = if flipped { (b, a) } else { (a, b) };
                     let share = Share { element: element as u32, row: row as u8, column: column as u8 };
@@ -69,7 +71,8 @@ impl Places {
         self.starts.is_empty()
     }
 
-    /// The same in a wider pattern of so many blocks, in which the blocks of this one are at `slots`, ascending.
+    /// The same in a wider pattern of so many blocks, in which the blocks of this one are at
+    /// `slots`, ascending.
     #[must_use]
     pub(crate) fn moved(&self, slots: &[u32], blocks: usize) -> Self {
         let single = self.slots.iter().map(|&s| slots[s as usize]).collect();

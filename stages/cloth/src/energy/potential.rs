@@ -1,4 +1,5 @@
-//! The interface between models and solvers: every solver of this engine, static or in time, takes any sum of energies.
+//! The interface between models and solvers: every solver of this engine, static or in time, takes
+//! any sum of energies.
 
 use super::places::Places;
 use super::subset::Subset;
@@ -16,7 +17,8 @@ pub enum Projection {
     Exact,
     /// A positive semi-definite matrix near it: every Newton direction goes downhill.
     PositiveSemiDefinite,
-    /// The same, but this share (0 to 1) of compressive stress counts: nearer to the exact matrix, and mostly positive near rest.
+    /// The same, but this share (0 to 1) of compressive stress counts: nearer to the exact matrix,
+    /// and mostly positive near rest.
     Compressed(f64),
 }
 
@@ -34,8 +36,8 @@ impl Projection {
 
 /// A potential energy of the nodes' positions, in joules.
 ///
-/// All results are the same bits for any number of threads. An energy without a second derivative needs its value and its
-/// gradient alone.
+/// All results are the same bits for any number of threads. An energy without a second derivative
+/// needs its value and its gradient alone.
 pub trait Energy: Send + Sync {
     /// What it is called in reports.
     fn name(&self) -> &'static str;
@@ -46,20 +48,23 @@ pub trait Energy: Send + Sync {
     /// Adds dE/dx (that is, minus the force, newtons) to `gradient`.
     fn add_gradient(&self, x: &[Vec3], gradient: &mut [Vec3]);
 
-    /// Hands each group of nodes that the second derivative couples to `visit`, so that the sparsity pattern can be built.
+    /// Hands each group of nodes that the second derivative couples to `visit`, so that the
+    /// sparsity pattern can be built.
     fn couplings(&self, _visit: &mut dyn FnMut(&[u32])) {}
 
-    /// Where its blocks are among those of a pattern that holds its couplings: looked up once a pattern.
+    /// Where its blocks are among those of a pattern that holds its couplings: looked up once a
+    /// pattern.
     fn places(&self, _pattern: &Pattern) -> Places {
         Places::default()
     }
 
-    /// Adds the 3 x 3 blocks of the second derivative (N/m) to the values of a matrix, at its places there.
+    /// Adds the 3 x 3 blocks of the second derivative (N/m) to the values of a matrix, at its
+    /// places there.
     fn add_matrix(&self, _x: &[Vec3], _form: Projection, _places: &Places, _values: &mut [Matrix3<f64>]) {}
 }
 
-/// What a sheet itself resists with, as the static solver needs it: an energy of elements that can be cut to some of its nodes,
-/// made stiffer, and that may remember.
+/// What a sheet itself resists with, as the static solver needs it: an energy of elements that can
+/// be cut to some of its nodes, made stiffer, and that may remember.
 pub trait Resistance: Energy {
     /// A copy.
     fn boxed(&self) -> Box<dyn Resistance>;
@@ -79,10 +84,12 @@ pub trait Resistance: Energy {
     /// Makes bending so many times stiffer (bending continuation); other energies stay.
     fn scale_bending(&mut self, by: f64);
 
-    /// Remembers the stress that a linear model predicts for `moves` from `x`: the next matrix has that one.
+    /// Remembers the stress that a linear model predicts for `moves` from `x`: the next matrix has
+    /// that one.
     fn predict(&mut self, x: &[Vec3], moves: &[Vec3]);
 
-    /// Whether it holds the sheet where it has been, as friction does: such an energy is not stored.
+    /// Whether it holds the sheet where it has been, as friction does: such an energy is not
+    /// stored.
     fn is_hysteretic(&self) -> bool;
 
     /// Holds every element as it is at `x`.
@@ -114,7 +121,8 @@ pub fn total_gradient(energies: &[&dyn Energy], x: &[Vec3]) -> Vec<Vec3> {
     gradient
 }
 
-/// An all-zero matrix with the pattern of these energies' second derivatives, for `n` nodes, and each energy's places in it.
+/// An all-zero matrix with the pattern of these energies' second derivatives, for `n` nodes, and
+/// each energy's places in it.
 #[must_use]
 pub fn matrix_of(n: usize, energies: &[&dyn Energy]) -> (BlockMatrix, Vec<Places>) {
     let matrix = BlockMatrix::with_couplings(n, |visit| energies.iter().for_each(|e| e.couplings(visit)));

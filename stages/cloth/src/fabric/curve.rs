@@ -1,7 +1,8 @@
 //! A piecewise-linear force-strain curve, as read off a test sheet.
 //!
-//! Through (0, 0), rising, continued by its last slope; under compression by its first slope. Evaluation is a search among a
-//! handful of points. The energy is the exact integral, so that force and energy agree to rounding.
+//! Through (0, 0), rising, continued by its last slope; under compression by its first slope.
+//! Evaluation is a search among a handful of points. The energy is the exact integral, so that
+//! force and energy agree to rounding.
 
 use crate::error::ClothError;
 
@@ -23,7 +24,8 @@ impl Curve {
     /// Through the origin and these (strain, force) points.
     ///
     /// # Errors
-    /// [`ClothError::NonFiniteInput`] for NaN; [`ClothError::InvalidParameter`] unless strains and forces rise from above 0.
+    /// [`ClothError::NonFiniteInput`] for NaN; [`ClothError::InvalidParameter`] unless strains and
+    /// forces rise from above 0.
     pub fn through(points: &[[f64; 2]]) -> Result<Self, ClothError> {
         let mut kept = vec![[0.0; 3]];
         let mut last_slope = 0.0;
@@ -46,7 +48,8 @@ impl Curve {
         Ok(Self { points: kept, last_slope })
     }
 
-    /// The (strain, force) points that it goes through after the origin; a straight line has one, at strain 1.
+    /// The (strain, force) points that it goes through after the origin; a straight line has one,
+    /// at strain 1.
     #[must_use]
     pub fn points(&self) -> Vec<[f64; 2]> {
         match self.points.len() {

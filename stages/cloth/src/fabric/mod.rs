@@ -1,4 +1,5 @@
-//! What a fabric is: mass, tensile curves, shear, bending, damping. Cloths by name and by their KES (Kawabata) sheets are stages.
+//! What a fabric is: mass, tensile curves, shear, bending, damping. Cloths by name and by their KES
+//! (Kawabata) sheets are stages.
 //!
 //! Every quantity is per unit width of the sheet, in SI units: kg/m², N/m, N/m per radian, N m.
 
@@ -33,7 +34,8 @@ pub struct Fabric {
     pub bending_warp: f64,
     /// Bending rigidity of a strip cut along the weft, N m.
     pub bending_weft: f64,
-    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per m of width. Only `StaticEquilibrium` knows it.
+    /// Friction of a strip cut along the warp while it is bent: half of the hysteresis 2HB, N m per
+    /// m of width. Only `StaticEquilibrium` knows it.
     pub bending_friction_warp: f64,
     /// The same of a strip cut along the weft, N m/m.
     pub bending_friction_weft: f64,
@@ -68,7 +70,8 @@ impl Fabric {
     /// Checks every value.
     ///
     /// # Errors
-    /// [`ClothError::InvalidParameter`] or [`ClothError::NonFiniteInput`], naming the first bad value.
+    /// [`ClothError::InvalidParameter`] or [`ClothError::NonFiniteInput`], naming the first bad
+    /// value.
     pub fn check(&self) -> Result<(), ClothError> {
         check_parameter("density", self.density, |v| v > 0.0, "above 0 kg/m^2")?;
         check_parameter("poisson", self.poisson, |v| (0.0..1.0).contains(&v), "0 to below 1")?;
@@ -103,7 +106,8 @@ impl Fabric {
         self.bending_friction_warp.max(self.bending_friction_weft) > 0.0
     }
 
-    /// Tensile stiffness in use, N/m: the greater of warp and weft, as force over strain at [`IN_USE`].
+    /// Tensile stiffness in use, N/m: the greater of warp and weft, as force over strain at
+    /// [`IN_USE`].
     #[must_use]
     pub fn stretch(&self) -> f64 {
         self.warp.force(IN_USE).max(self.weft.force(IN_USE)) / IN_USE

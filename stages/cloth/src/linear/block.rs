@@ -1,7 +1,7 @@
 //! A symmetric sparse matrix of 3 x 3 blocks: a [`Pattern`] and its values.
 //!
-//! Every diagonal block exists; of the others only those above the diagonal are kept. Products run through the rows in order, so they
-//! are the same bits every time.
+//! Every diagonal block exists; of the others only those above the diagonal are kept. Products run
+//! through the rows in order, so they are the same bits every time.
 
 use crate::linear::{Pattern, add_at};
 use nalgebra::{Matrix3, Vector3};
@@ -76,7 +76,8 @@ impl BlockMatrix {
         self.values.fill(Matrix3::zeros());
     }
 
-    /// Adds `block` at (i, j), and so its transpose at (j, i). Does nothing for a pair that the pattern lacks.
+    /// Adds `block` at (i, j), and so its transpose at (j, i). Does nothing for a pair that the
+    /// pattern lacks.
     pub fn add(&mut self, i: u32, j: u32, block: &Matrix3<f64>) {
         if let Some(slot) = self.pattern.slot(i, j) {
             add_at(&mut self.values, slot, block);

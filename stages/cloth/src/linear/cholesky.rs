@@ -1,9 +1,10 @@
 //! Sparse Cholesky factor of a block matrix: `A = L L^T`.
 //!
-//! The order of elimination is approximate minimum degree on the graph of blocks (Amestoy, Davis, Duff, 1996), a third the size
-//! of the graph of scalars; the factor is supernodal (by the `faer` library). For a sheet of n vertices the factor holds about
-//! n log n numbers and takes about n^1.5 products. The symbolic part is done once a pattern and reused. One thread, so the bits
-//! never change.
+//! The order of elimination is approximate minimum degree on the graph of blocks (Amestoy, Davis,
+//! Duff, 1996), a third the size of the graph of scalars; the factor is supernodal (by the `faer`
+//! library). For a sheet of n vertices the factor holds about n log n numbers and takes about n^1.5
+//! products. The symbolic part is done once a pattern and reused. One thread, so the bits never
+//! change.
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
@@ -37,7 +38,8 @@ impl Cholesky {
         Self::analyse_width(a, 3)
     }
 
-    /// For a matrix whose blocks are multiples of the identity: keeps one number a block, a ninth of the work.
+    /// For a matrix whose blocks are multiples of the identity: keeps one number a block, a ninth
+    /// of the work.
     ///
     /// # Errors
     /// [`ClothError::Factorization`] if memory runs out.
@@ -161,7 +163,8 @@ fn order(a: &BlockMatrix, width: usize) -> Result<(Vec<u32>, Vec<u32>), ClothErr
         rows.extend(a.row(i).map(|(j, _)| j as u32));
         starts.push(rows.len() as u32);
     }
-    // The strict lower triangle column by column is what the library calls the upper one of the transpose: symmetric, so the same.
+    // The strict lower triangle column by column is what the library calls the upper one of the
+    // transpose: symmetric, so the same.
     let graph = SymbolicSparseColMatRef::new_checked(n, n, &starts, None, &rows);
     let full = symmetric(&graph);
     let (mut forward, mut inverse) = (vec![0_u32; n], vec![0_u32; n]);

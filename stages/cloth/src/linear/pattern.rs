@@ -1,7 +1,8 @@
 //! A symmetric matrix of 3x3 blocks: which pairs of nodes it couples, and its values.
 //!
-//! Only one block of each pair is kept, that of row `i` and column `j` with `i < j`; the diagonal comes first. Elements
-//! find their slots once, so that assembly is a sum over slots in a fixed order.
+//! Only one block of each pair is kept, that of row `i` and column `j` with `i < j`; the diagonal
+//! comes first. Elements find their slots once, so that assembly is a sum over slots in a fixed
+//! order.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -27,7 +28,8 @@ pub struct Slot {
 }
 
 impl Pattern {
-    /// The pattern that couples all nodes of each group that `groups` hands out; groups may repeat each other.
+    /// The pattern that couples all nodes of each group that `groups` hands out; groups may repeat
+    /// each other.
     pub fn new(nodes: usize, groups: impl FnOnce(&mut dyn FnMut(&[u32]))) -> Self {
         Self::between_free(nodes, Vec::new(), groups)
     }
@@ -49,8 +51,8 @@ impl Pattern {
         Self { nodes, held, starts, columns: pairs.iter().map(|&p| p as u32).collect() }
     }
 
-    /// This pattern with some groups of nodes coupled besides, and where each of its slots is in that. Cost O(blocks), but for
-    /// the groups.
+    /// This pattern with some groups of nodes coupled besides, and where each of its slots is in
+    /// that. Cost O(blocks), but for the groups.
     pub fn with(&self, groups: impl FnOnce(&mut dyn FnMut(&[u32]))) -> (Self, Vec<u32>) {
         let mut more = pairs(&self.held, groups);
         more.retain(|p| self.slot((p >> 32) as u32, *p as u32).is_none());

@@ -1,5 +1,6 @@
-//! Conjugate gradients, preconditioned by the 3 x 3 diagonal blocks. Memory: five vectors. The number of iterations grows with
-//! the square root of the condition number, so it pays for soft sheets and short steps; a factor pays for stiff ones.
+//! Conjugate gradients, preconditioned by the 3 x 3 diagonal blocks. Memory: five vectors. The
+//! number of iterations grows with the square root of the condition number, so it pays for soft
+//! sheets and short steps; a factor pays for stiff ones.
 
 use nalgebra::Matrix3;
 
@@ -19,7 +20,8 @@ pub struct PcgReport {
 
 /// Solves `a x = b` to a relative residual, starting from `x`.
 ///
-/// Stops early at a direction of negative curvature with what it has: still a descent direction for an optimiser.
+/// Stops early at a direction of negative curvature with what it has: still a descent direction for
+/// an optimiser.
 ///
 /// # Errors
 /// [`ClothError::Stopped`].

@@ -1,13 +1,15 @@
 //! Results that show which arithmetic a machine has.
 //!
-//! Two things make the bits of a drape depend on the machine. The kernels of `faer` take the widest vectors that the processor
-//! has, and cut their products by the sizes of its caches, so that sums come in another order. The C library picks other
-//! versions of `exp`, `sin` and their kin where the processor has fused multiplication, and another release has other ones.
-//! Cost: some tens of milliseconds. Limit: two machines that agree here may differ where nothing was probed.
+//! Two things make the bits of a drape depend on the machine. The kernels of `faer` take the widest
+//! vectors that the processor has, and cut their products by the sizes of its caches, so that sums
+//! come in another order. The C library picks other versions of `exp`, `sin` and their kin where
+//! the processor has fused multiplication, and another release has other ones. Cost: some tens of
+//! milliseconds. Limit: two machines that agree here may differ where nothing was probed.
 
 use crate::statics::probe_factor;
 
-/// Unknowns of the factor that is probed, and its rows: as large as the fronts of a fine mesh, so that its products are cut.
+/// Unknowns of the factor that is probed, and its rows: as large as the fronts of a fine mesh, so
+/// that its products are cut.
 const COLUMNS: usize = 512;
 const ROWS: usize = 700;
 /// Arguments of each function.

@@ -14,7 +14,8 @@ fn a_block_counts_on_both_sides_of_the_diagonal() {
     assert_eq!(a.times(&x), [b.transpose() * x[1], b * x[0]]);
 }
 
-/// A chain of masses on springs of random stiffness along random directions, with its diagonal raised: positive definite.
+/// A chain of masses on springs of random stiffness along random directions, with its diagonal
+/// raised: positive definite.
 fn chain(n: usize, shift: f64) -> BlockMatrix {
     let mut a = BlockMatrix::with_couplings(n, |visit| {
         (0..n as u32 - 1).for_each(|i| visit(&[i, i + 1]));

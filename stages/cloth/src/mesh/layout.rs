@@ -1,4 +1,5 @@
-//! Meshes of a rectangle for the tests: two kinds of grid, equilateral rows, and an irregular Delaunay mesh.
+//! Meshes of a rectangle for the tests: two kinds of grid, equilateral rows, and an irregular
+//! Delaunay mesh.
 
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
@@ -50,7 +51,8 @@ impl Layout {
         }
     }
 
-    /// Whether garments are cut into such meshes: hinges cannot be right on grids, so limits bind on these only.
+    /// Whether garments are cut into such meshes: hinges cannot be right on grids, so limits bind
+    /// on these only.
     #[must_use]
     pub fn is_for_garments(self) -> bool {
         matches!(self, Self::Equilateral | Self::Irregular(_))
@@ -122,7 +124,8 @@ impl Rectangle {
     }
 }
 
-/// A disc of this radius about the origin in rings, ring k of 6 k vertices on the k-th multiple of `radius / rings`.
+/// A disc of this radius about the origin in rings, ring k of 6 k vertices on the k-th multiple of
+/// `radius / rings`.
 #[must_use]
 pub fn disc(radius: f64, rings: usize) -> (Vec<Vector2<f64>>, Vec<[u32; 3]>) {
     let mut uv = vec![Vector2::zeros()];
@@ -167,7 +170,8 @@ fn equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> Mesh {
     (uv, triangles)
 }
 
-/// About `nx` columns, a little more rather than less, and an even number of rows whose triangles are closest to equilateral.
+/// About `nx` columns, a little more rather than less, and an even number of rows whose triangles
+/// are closest to equilateral.
 fn nearly_equilateral(size: Vector2<f64>, nx: usize, ny: usize) -> (usize, usize) {
     let misfit = |n: usize| {
         let wanted = size.y / (size.x / n as f64 * 0.75_f64.sqrt());
@@ -214,7 +218,8 @@ fn irregular(size: Vector2<f64>, nx: usize, ny: usize, seed: u64) -> Mesh {
     (uv, triangles)
 }
 
-/// Delaunay triangles of points in convex position overall; flat slivers along the border are left out.
+/// Delaunay triangles of points in convex position overall; flat slivers along the border are left
+/// out.
 fn delaunay(uv: &[Vector2<f64>]) -> Vec<[u32; 3]> {
     let points: Vec<Point2<f64>> = uv.iter().map(|p| Point2::new(p.x, p.y)).collect();
     let Ok(mesh) = DelaunayTriangulation::<Point2<f64>>::bulk_load_stable(points) else { return Vec::new() };

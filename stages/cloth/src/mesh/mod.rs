@@ -1,8 +1,9 @@
 //! A sheet of cloth at rest: triangles with flat rest shapes, edges with their neighbours, masses.
 //!
-//! Every triangle carries its own rest coordinates (metres, warp along y), so panels with different frames, and vertices that
-//! two panels share after sewing, need nothing special. Masses are lumped by area: a third of each triangle to each corner.
-//! Building is linear in the triangles; everything is checked here, so that the models downstream need not check again.
+//! Every triangle carries its own rest coordinates (metres, warp along y), so panels with different
+//! frames, and vertices that two panels share after sewing, need nothing special. Masses are lumped
+//! by area: a third of each triangle to each corner. Building is linear in the triangles;
+//! everything is checked here, so that the models downstream need not check again.
 
 pub mod layout;
 mod topology;
@@ -17,8 +18,9 @@ pub use topology::{Edge, Side};
 use self::topology::Facing;
 use crate::error::{ClothError, check_parameter};
 
-/// Rest-shape quality (1 equilateral, 0 no area) below which a triangle is refused. A right triangle of aspect 1 : 1000 has
-/// 3.5e-3 and is fine; lower would let strains drown in rounding, higher would refuse honest slivers.
+/// Rest-shape quality (1 equilateral, 0 no area) below which a triangle is refused. A right
+/// triangle of aspect 1 : 1000 has 3.5e-3 and is fine; lower would let strains drown in rounding,
+/// higher would refuse honest slivers.
 pub const LEAST_QUALITY: f64 = 1e-5;
 
 /// An edge longer than this is most likely millimetres read as metres.
@@ -37,7 +39,8 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet whose panels lie in one rest plane: `rest_uv[v]` in metres, triangles counter-clockwise there, `density` in kg/m².
+    /// A sheet whose panels lie in one rest plane: `rest_uv[v]` in metres, triangles
+    /// counter-clockwise there, `density` in kg/m².
     ///
     /// # Errors
     /// See [`Sheet::new`].
@@ -50,8 +53,8 @@ impl Sheet {
     /// A sheet with a rest shape of its own for every triangle.
     ///
     /// # Errors
-    /// `EmptyScene`, `VertexOutOfRange`, `NonFiniteInput`, `InvalidParameter` (density), `ZeroLengthEdge`,
-    /// `DegenerateTriangle`, `InvertedTriangle`, `NonManifoldEdge`.
+    /// `EmptyScene`, `VertexOutOfRange`, `NonFiniteInput`, `InvalidParameter` (density),
+    /// `ZeroLengthEdge`, `DegenerateTriangle`, `InvertedTriangle`, `NonManifoldEdge`.
     pub fn new(
         vertex_count: usize,
         triangles: Vec<[u32; 3]>,
@@ -61,7 +64,8 @@ impl Sheet {
         Self::facing(vertex_count, triangles, rest, density, Facing::Alike)
     }
 
-    /// The same of sewn panels: a seam may join the right side of one to the wrong side of the other, which is then an edge like any other.
+    /// The same of sewn panels: a seam may join the right side of one to the wrong side of the
+    /// other, which is then an edge like any other.
     ///
     /// # Errors
     /// See [`Sheet::new`].
@@ -115,7 +119,8 @@ impl Sheet {
         self.masses.len()
     }
 
-    /// The ends and rest length of every edge, once each where a seam of more than two sheets has it as several.
+    /// The ends and rest length of every edge, once each where a seam of more than two sheets has
+    /// it as several.
     pub fn distinct_edges(&self) -> impl Iterator<Item = ([u32; 2], f64)> + '_ {
         let ends = |e: &Edge| [e.vertices[0].min(e.vertices[1]), e.vertices[0].max(e.vertices[1])];
         let is_new = move |k: usize| k == 0 || ends(&self.edges[k]) != ends(&self.edges[k - 1]);
@@ -135,7 +140,8 @@ impl Sheet {
         &self.rest
     }
 
-    /// Inverse of `[b - a, c - a]` of each triangle: turns edge vectors in space into the deformation gradient.
+    /// Inverse of `[b - a, c - a]` of each triangle: turns edge vectors in space into the
+    /// deformation gradient.
     #[must_use]
     pub fn inverse_rest(&self) -> &[Matrix2<f64>] {
         &self.inverse_rest
@@ -178,14 +184,16 @@ impl Sheet {
         (longest > LARGEST_PLAUSIBLE_EDGE).then_some(longest)
     }
 
-    /// Deformation gradient (3 x 2) of triangle `t` at positions `x`: columns are the images of the rest x and y axes.
+    /// Deformation gradient (3 x 2) of triangle `t` at positions `x`: columns are the images of the
+    /// rest x and y axes.
     #[must_use]
     pub fn deformation(&self, t: usize, x: &[Vector3<f64>]) -> nalgebra::Matrix3x2<f64> {
         let [a, b, c] = self.triangles[t].map(|v| x[v as usize]);
         nalgebra::Matrix3x2::from_columns(&[b - a, c - a]) * self.inverse_rest[t]
     }
 
-    /// Greatest excess of a triangle over the strain limits of weft and warp: the triangle, its strain along that yarn and the limit.
+    /// Greatest excess of a triangle over the strain limits of weft and warp: the triangle, its
+    /// strain along that yarn and the limit.
     #[must_use]
     pub fn over(&self, x: &[Vector3<f64>], limits: [f64; 2]) -> Option<(usize, f64, f64)> {
         let mut worst: Option<(usize, f64, f64)> = None;
@@ -230,7 +238,8 @@ pub fn check_finite(field: &'static str, x: &[Vector3<f64>]) -> Result<(), Cloth
     }
 }
 
-/// Shape quality of a triangle with these side lengths squared summing to `sum` and this area: 1 equilateral, 0 flat.
+/// Shape quality of a triangle with these side lengths squared summing to `sum` and this area: 1
+/// equilateral, 0 flat.
 #[must_use]
 pub fn quality(corners: &[Vector2<f64>; 3]) -> f64 {
     let sum: f64 = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).norm_squared()).sum();

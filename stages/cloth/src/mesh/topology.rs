@@ -1,4 +1,5 @@
-//! Edges of a triangle mesh and the triangles on their two sides, by sorting: O(n log n), the same order on every machine.
+//! Edges of a triangle mesh and the triangles on their two sides, by sorting: O(n log n), the same
+//! order on every machine.
 
 use nalgebra::Vector2;
 
@@ -64,7 +65,8 @@ struct Half {
 pub(super) enum Facing {
     /// Both have the same side up.
     Alike,
-    /// A seam may sew the right side of one to the wrong side of the other, as a collar that folds over is.
+    /// A seam may sew the right side of one to the wrong side of the other, as a collar that folds
+    /// over is.
     Any,
 }
 
@@ -92,9 +94,10 @@ pub(super) fn edges(
     Ok((edges, of_triangle))
 }
 
-/// The halves that meet at an edge, two and two. Where a seam joins more than two sheets, the two halves of one sheet belong together: a
-/// line inside it to which another is sewn. Of what is left, the first two are a seam like any other, and each further sheet hangs on it
-/// by its border alone, without a fold.
+/// The halves that meet at an edge, two and two. Where a seam joins more than two sheets, the two
+/// halves of one sheet belong together: a line inside it to which another is sewn. Of what is left,
+/// the first two are a seam like any other, and each further sheet hangs on it by its border alone,
+/// without a fold.
 fn parts(group: &[Half], rest: &[[Vector2<f64>; 3]], facing: Facing) -> Vec<Vec<Half>> {
     if group.len() <= 2 || facing == Facing::Alike {
         return vec![group.to_vec()];

@@ -17,7 +17,8 @@ const RELEASE: f64 = 0.2;
 pub struct Response {
     /// Share of the speed into the body that comes back, 0 to 1.
     pub restitution: f64,
-    /// Stiffness with which cloth within its distance is pushed off, N/m a node; where there is none, it is stopped at its distance.
+    /// Stiffness with which cloth within its distance is pushed off, N/m a node; where there is
+    /// none, it is stopped at its distance.
     pub penalty: Option<f64>,
 }
 
@@ -36,8 +37,8 @@ pub(super) struct Answer<'a> {
 }
 
 impl Answer<'_> {
-    /// The way along the normal, and how much of it is velocity, of a node at `gap` from its distance that would go by `approach`; none
-    /// for one that is left alone.
+    /// The way along the normal, and how much of it is velocity, of a node at `gap` from its
+    /// distance that would go by `approach`; none for one that is left alone.
     fn along_normal(&self, node: usize, gap: f64, approach: f64) -> Option<(f64, f64)> {
         if let Some(penalty) = self.response.penalty {
             let square = self.dt * self.dt * self.inverse[node];
@@ -69,7 +70,8 @@ pub(super) fn skin_near(
     wearer.skin.nearest(x, &within)
 }
 
-/// Keeps moves out of the body: what a vertex loses of its way into it, times the friction, it may lose of its way along it.
+/// Keeps moves out of the body: what a vertex loses of its way into it, times the friction, it may
+/// lose of its way along it.
 ///
 /// Returns how much of each move is a push out of the layer around the body, which is no velocity.
 pub(super) fn off_the_body(
@@ -92,7 +94,8 @@ pub(super) fn off_the_body(
     pushed
 }
 
-/// SelfContact of cloth that come nearer than `thickness` are stopped, with friction, and pushed apart a little.
+/// SelfContact of cloth that come nearer than `thickness` are stopped, with friction, and pushed
+/// apart a little.
 pub(super) fn off_itself(
     pairs: &[Pair],
     x: &[Vec3],
@@ -127,7 +130,8 @@ pub(super) fn off_itself(
     }
 }
 
-/// Cuts moves short where cloth would pass through cloth; to what share all of the cloth was, for want of a better way.
+/// Cuts moves short where cloth would pass through cloth; to what share all of the cloth was, for
+/// want of a better way.
 pub(super) fn stop_short(tree: &ClothTree, x: &[Vec3], moves: &mut [Vec3], thickness: f64) -> f64 {
     let seek = |moves: &[Vec3]| tree.pairs(x, moves, thickness);
     let pairs = seek(moves);

@@ -12,13 +12,15 @@ use crate::statics::solve::Collider;
 /// What a fall is told by.
 pub(super) struct Falls {
     body: BodyBox,
-    /// The piece of cloth of each vertex, and of each node once seams are joined, with what pins hold.
+    /// The piece of cloth of each vertex, and of each node once seams are joined, with what pins
+    /// hold.
     open: (Vec<u32>, Vec<bool>),
     joined: (Vec<u32>, Vec<bool>),
 }
 
 impl Falls {
-    /// Of a scene on a body; nothing where there is none, or no weight in the end: such a motion is followed.
+    /// Of a scene on a body; nothing where there is none, or no weight in the end: such a motion is
+    /// followed.
     pub(super) fn of(scene: &Scene, wearer: Option<Collider<'_>>, pieces: &Pieces) -> Option<Self> {
         let gravity = scene.phases.last().map(|p| p.gravity).unwrap_or_default();
         let body = wearer.and_then(|w| BodyBox::of(w.skin, &gravity))?;

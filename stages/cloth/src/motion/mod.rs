@@ -1,10 +1,11 @@
 //! `Motion`: a whole scene in time, with any of the solvers that step.
 //!
-//! Method: a step of the solver for the sheet alone, then three corrections of where it wants to go: seams close at a
-//! set speed as if by hands, cloth stays off cloth, cloth stays off the body with Coulomb's friction; at last the step is cut
-//! short wherever anything would pass through anything. Pairs that have met become one vertex, with their momentum.
-//! Cost: steps times one solver step; contacts are linear in the triangles. Limit: corrections after the step are of first
-//! order in time whatever the solver is, and a stack of many layers settles slowly.
+//! Method: a step of the solver for the sheet alone, then three corrections of where it wants to
+//! go: seams close at a set speed as if by hands, cloth stays off cloth, cloth stays off the body
+//! with Coulomb's friction; at last the step is cut short wherever anything would pass through
+//! anything. Pairs that have met become one vertex, with their momentum. Cost: steps times one
+//! solver step; contacts are linear in the triangles. Limit: corrections after the step are of
+//! first order in time whatever the solver is, and a stack of many layers settles slowly.
 
 mod contact;
 mod error;
@@ -44,13 +45,15 @@ pub enum Until {
         /// Longest time, s.
         longest: f64,
     },
-    /// After the phases of the scene, each for its seconds. Seams are sewn first, without weight and wind, for as long as they take: the
-    /// phases that have no weight and come first last so much less.
+    /// After the phases of the scene, each for its seconds. Seams are sewn first, without weight
+    /// and wind, for as long as they take: the phases that have no weight and come first last so
+    /// much less.
     Phases {
         /// Longest time for sewing, s.
         longest: f64,
     },
-    /// Sewn without weight and without wind, then at rest under the last phase's gravity, in its air, or after so many seconds of either.
+    /// Sewn without weight and without wind, then at rest under the last phase's gravity, in its
+    /// air, or after so many seconds of either.
     Rest {
         /// Way of every vertex in a sixtieth of a second, as a speed, m/s.
         speed: f64,
@@ -68,7 +71,8 @@ pub struct Motion {
     pub method: Method,
     /// Membrane and bending, for solvers that take them as energies.
     pub models: Models,
-    /// Time between two looks at contacts, s. Above 1/120 s a tight garment slips off: contacts hold after the step, not in it.
+    /// Time between two looks at contacts, s. Above 1/120 s a tight garment slips off: contacts
+    /// hold after the step, not in it.
     pub dt: f64,
     /// Mass-proportional drag, 1/s.
     pub drag: f64,
@@ -76,7 +80,8 @@ pub struct Motion {
     pub viscosity: f64,
     /// Speed at which the two sides of a seam are brought together, m/s.
     pub closing: f64,
-    /// Share of the friction with the body and among cloth that acts while seams close: hands that sew smooth the cloth.
+    /// Share of the friction with the body and among cloth that acts while seams close: hands that
+    /// sew smooth the cloth.
     pub sewing_friction: f64,
     /// Seams are joined when their gaps are below this, m.
     pub join_gap: f64,
@@ -97,7 +102,8 @@ pub struct Motion {
 pub struct Calming {
     /// Time in which the drag doubles, s, up to 120 1/s; infinite where it stays.
     pub doubling: f64,
-    /// Time in which friction grows to its full value, s: cloth slips into place as a wearer shakes it.
+    /// Time in which friction grows to its full value, s: cloth slips into place as a wearer shakes
+    /// it.
     pub slip: f64,
 }
 
@@ -165,7 +171,8 @@ pub struct Moved {
     pub progress: Progress,
     /// Whether it is at rest; after [`Until::Phases`] always true, for that is all that was asked.
     pub converged: bool,
-    /// Whether contacts of cloth with cloth held all of it back in the last step: it hangs in the air.
+    /// Whether contacts of cloth with cloth held all of it back in the last step: it hangs in the
+    /// air.
     pub is_jammed: bool,
     /// Elastic and gravitational energy, J.
     pub energy: f64,

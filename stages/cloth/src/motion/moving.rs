@@ -17,7 +17,8 @@ use crate::statics::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
 
-/// The shortest step of a solver that chooses its own, as a share of the time between two looks at contacts: shorter ones would take for ever.
+/// The shortest step of a solver that chooses its own, as a share of the time between two looks at
+/// contacts: shorter ones would take for ever.
 const SHORTEST: f64 = 5e-5;
 
 /// Steps that differ by less than this share are the same: the end of a phase is met by rounding.
@@ -54,7 +55,8 @@ pub(super) struct Moving {
     pub(super) progress: Progress,
     pub(super) is_joined: bool,
     pub(super) joined_at: Option<f64>,
-    /// Whether contacts held all of the cloth back in the last step: it hangs in the air, and is not at rest.
+    /// Whether contacts held all of the cloth back in the last step: it hangs in the air, and is
+    /// not at rest.
     pub(super) is_jammed: bool,
 }
 
@@ -209,7 +211,8 @@ impl Moving {
         Ok((report, moves))
     }
 
-    /// As many of the solver's own steps as fill `dt`, each corrected by what was near at their start; by how much each node moves.
+    /// As many of the solver's own steps as fill `dt`, each corrected by what was near at their
+    /// start; by how much each node moves.
     ///
     /// Errors: those of the solver; steps that are too short to fill it.
     fn many_steps(
@@ -254,7 +257,8 @@ impl Moving {
         Ok((report, moves))
     }
 
-    /// Lifts what dips into the body between its vertices: triangles that are wider than the body is flat.
+    /// Lifts what dips into the body between its vertices: triangles that are wider than the body
+    /// is flat.
     pub(super) fn clear(&mut self, wearer: Collider<'_>) {
         for _ in 0..CLEAR_ROUNDS {
             let start = self.state.x.clone();
@@ -295,8 +299,9 @@ impl Moving {
         Ok(())
     }
 
-    /// How limits, seams, cloth and body change the moves from `x`; how much of each is a push, no velocity, and whether the body
-    /// and pins leave all of the cloth alone. What is near is sought where it is not given.
+    /// How limits, seams, cloth and body change the moves from `x`; how much of each is a push, no
+    /// velocity, and whether the body and pins leave all of the cloth alone. What is near is sought
+    /// where it is not given.
     fn respond(
         &self,
         settings: &Motion,
@@ -333,7 +338,8 @@ impl Moving {
         (pushed, is_free)
     }
 
-    /// Ends moves where they would lead into the body or through cloth; to what share all of the cloth was held back.
+    /// Ends moves where they would lead into the body or through cloth; to what share all of the
+    /// cloth was held back.
     fn hold(&self, wearer: Option<Collider<'_>>, is_free: bool, start: &[Vec3], moves: &mut [Vec3]) -> f64 {
         let (offset, before) = (self.offset, moves.to_vec());
         if let Some(wearer) = wearer {
@@ -356,8 +362,8 @@ fn node_friction(run: &Run<'_>, sheet: &Sheet, fabrics: &[&Fabric]) -> Vec<f64> 
     friction
 }
 
-/// Shortens the moves of what nothing else holds as `short` does, but against their common motion, which is kept: cloth that meets
-/// cloth in mid-air changes how it is folded, not how it flies.
+/// Shortens the moves of what nothing else holds as `short` does, but against their common motion,
+/// which is kept: cloth that meets cloth in mid-air changes how it is folded, not how it flies.
 fn among_themselves(masses: &[f64], moves: &mut [Vec3], short: impl Fn(&mut [Vec3]) -> f64) -> f64 {
     let common = |moves: &[Vec3]| {
         let sum: Vec3 = moves.iter().zip(masses).map(|(m, w)| m * *w).sum();

@@ -17,7 +17,8 @@ pub(super) struct Near {
 }
 
 impl Near {
-    /// What nodes at `x` may come nearer to than `offset` while they move about as `moves` foretell.
+    /// What nodes at `x` may come nearer to than `offset` while they move about as `moves`
+    /// foretell.
     pub(super) fn of(
         tree: Option<&ClothTree>,
         wearer: Option<Collider<'_>>,

@@ -23,7 +23,8 @@ impl Seams {
         self.pairs.iter().map(|p| (*p, gap(p))).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// Changes the moves so that each pair's gap shrinks by at most `most`, the pair's momentum kept.
+    /// Changes the moves so that each pair's gap shrinks by at most `most`, the pair's momentum
+    /// kept.
     pub(super) fn close(&self, x: &[Vec3], moves: &mut [Vec3], masses: &[f64], fixed: &[bool], most: f64) {
         for &[a, b] in &self.pairs {
             let (a, b) = (a as usize, b as usize);

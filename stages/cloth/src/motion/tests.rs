@@ -153,7 +153,8 @@ fn a_sewn_motion_ends_when_the_seams_are_joined() {
     assert!(moved.converged && moved.joined_at.unwrap() < 5e-4);
 }
 
-/// The height of a small sheet let go 0.2 m above a floor of a great box, at its highest after it has met it.
+/// The height of a small sheet let go 0.2 m above a floor of a great box, at its highest after it
+/// has met it.
 fn bounce(response: Response) -> f64 {
     let mut scene = falling(2);
     // Flat, so that all of it meets the floor at once.
@@ -195,7 +196,8 @@ fn restitution_gives_back_its_share_of_the_speed() {
 
 #[test]
 fn a_penalty_lets_cloth_sink_by_its_weight_over_the_stiffness() {
-    // Where it is as stiff as steps allow it holds like a floor that gives way by no more than cloth is thick.
+    // Where it is as stiff as steps allow it holds like a floor that gives way by no more than
+    // cloth is thick.
     let offset = falling(2).material.thickness;
     let soft = bounce(Response { restitution: 0.0, penalty: Some(1e9) });
     assert!(soft > -0.5 * offset && soft < 0.2, "{soft}");
@@ -295,7 +297,8 @@ fn cloth_that_contacts_hold_in_the_air_is_not_at_rest() {
 
 #[test]
 fn gravity_waits_for_the_seams() {
-    // 0.5 s do not close the sides of a skirt at half a metre a second; it keeps its place all the same.
+    // 0.5 s do not close the sides of a skirt at half a metre a second; it keeps its place all the
+    // same.
     let scene = generate::tube(8, 10);
     let method = Method::Xpbd { substeps: 4 };
     let (mut sewn, mut time) = (0.0, 0.0);

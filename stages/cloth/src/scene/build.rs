@@ -26,7 +26,8 @@ use std::ops::Range;
 pub const GRAVITY: f64 = 9.81;
 
 impl Scene {
-    /// A scene without cloth yet: sewn without weight, then draped under gravity, with self-collision.
+    /// A scene without cloth yet: sewn without weight, then draped under gravity, with
+    /// self-collision.
     #[must_use]
     pub fn new(name: impl Into<String>, material: Fabric) -> Self {
         let phase = |name: &str, g: f64| Phase {
@@ -53,8 +54,9 @@ impl Scene {
         }
     }
 
-    /// Adds a panel of the scene's material: its flat shape (metres, warp along y), where it starts, its triangles counted from
-    /// its own first vertex. Returns its vertices' numbers in the scene; change `panels.last_mut()` for a material of its own.
+    /// Adds a panel of the scene's material: its flat shape (metres, warp along y), where it
+    /// starts, its triangles counted from its own first vertex. Returns its vertices' numbers in
+    /// the scene; change `panels.last_mut()` for a material of its own.
     pub fn add_panel(
         &mut self,
         name: impl Into<String>,

@@ -1,4 +1,5 @@
-//! The standard scenes, made by program: a square that hangs, falls or drapes on a sphere, and a skirt sewn on a form.
+//! The standard scenes, made by program: a square that hangs, falls or drapes on a sphere, and a
+//! skirt sewn on a form.
 //!
 //! They are what tests and measurements use, so that neither needs files.
 
@@ -74,7 +75,8 @@ pub fn hang(cells: u32) -> Scene {
     Scene { pinned: corners, ..square(format!("hang_{cells}"), cells, 1.0) }
 }
 
-/// A square metre below two pins of no triangle, 5 cm above its upper corners, to which these are to be sewn.
+/// A square metre below two pins of no triangle, 5 cm above its upper corners, to which these are
+/// to be sewn.
 #[must_use]
 pub fn curtain(cells: u32) -> Scene {
     let hung = hang(cells);
@@ -138,7 +140,8 @@ pub fn stack(layers: usize, cells: u32) -> Scene {
     scene
 }
 
-/// Two panels of `nx` by `ny` cells before and behind a form, to be sewn at their sides into a skirt.
+/// Two panels of `nx` by `ny` cells before and behind a form, to be sewn at their sides into a
+/// skirt.
 #[must_use]
 pub fn tube(nx: u32, ny: u32) -> Scene {
     let (top, hem, height, waist, depth) = (0.40, 0.62, 0.55, 1.05, 0.17);
@@ -248,7 +251,8 @@ fn profile(y: f64, column: usize) -> f64 {
     a[column] + (b[column] - a[column]) * (y - a[0]) / (b[0] - a[0])
 }
 
-/// Moves every vertex that is not pinned by up to `by` metres along each axis, by a seeded sequence.
+/// Moves every vertex that is not pinned by up to `by` metres along each axis, by a seeded
+/// sequence.
 pub fn jitter(scene: &mut Scene, by: f64, seed: u64) {
     let mut state: BTreeMap<u32, ()> = BTreeMap::new();
     scene.pinned.iter().for_each(|&p| {

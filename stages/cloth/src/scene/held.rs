@@ -1,7 +1,8 @@
-//! How friction holds a garment where it starts: what a solver that brought it to rest left, so that another run goes on from it.
+//! How friction holds a garment where it starts: what a solver that brought it to rest left, so
+//! that another run goes on from it.
 //!
-//! Without it, contacts begin to hold where they are first seen, and cloth that was kept by friction has to slide a little before friction
-//! keeps it again.
+//! Without it, contacts begin to hold where they are first seen, and cloth that was kept by
+//! friction has to slide a little before friction keeps it again.
 
 use super::{Scene, SceneError};
 use crate::statics::friction_history::FrictionContact;
@@ -19,7 +20,8 @@ pub struct Held {
     pub slides: Vec<Vec3>,
     /// Distance at which the body begins to press on each vertex, m; none without a body.
     pub offsets: Vec<f64>,
-    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment; none where there is no such friction.
+    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment; none
+    /// where there is no such friction.
     pub folds: Vec<f64>,
     /// Where cloth lies on cloth, by sewn points.
     pub contacts: Vec<FrictionContact>,
@@ -43,7 +45,8 @@ impl Held {
     }
 }
 
-/// A contact from its nodes and its other numbers: weights, normal, anchor, way slid, load, coefficient.
+/// A contact from its nodes and its other numbers: weights, normal, anchor, way slid, load,
+/// coefficient.
 #[must_use]
 pub fn contact(nodes: [u32; 4], f: &[f64; FIGURES]) -> FrictionContact {
     let vector = |k: usize| Vec3::new(f[k], f[k + 1], f[k + 2]);

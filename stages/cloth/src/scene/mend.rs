@@ -1,8 +1,9 @@
 //! Mends the cloth of a scene that was read, and tells what is odd about it.
 //!
-//! Triangles listed twice are dropped. Vertices that lie on each other without being joined are told, joined where that was asked for,
-//! and refused where a panel is nothing but faces by themselves: it would come apart. Pieces of a panel that nothing sews together are
-//! told. A vertex of no triangle stays where it starts. Cost: O(n log n).
+//! Triangles listed twice are dropped. Vertices that lie on each other without being joined are
+//! told, joined where that was asked for, and refused where a panel is nothing but faces by
+//! themselves: it would come apart. Pieces of a panel that nothing sews together are told. A vertex
+//! of no triangle stays where it starts. Cost: O(n log n).
 
 use super::{Scene, SceneError, Seam};
 use nalgebra::Vector3;

@@ -1,7 +1,8 @@
 //! Prepared scenes: panels, seams, a body and what the cloth is made of.
 //!
-//! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON form `garment-scene-1`
-//! (described in docs/reference/scene.md), `generate` makes the standard ones.
+//! A scene is what a solver starts from and what a judge measures against; `read` reads the JSON
+//! form `garment-scene-1` (described in docs/reference/scene.md), `generate` makes the standard
+//! ones.
 
 mod build;
 mod check;
@@ -77,8 +78,8 @@ pub struct Panel {
     pub material: Option<Fabric>,
     /// Coefficient of friction on the body, if not the body's own.
     pub body_friction: Option<f64>,
-    /// Which layer it is worn in: panels of a higher number lie outside those of a lower one, wherever both are. The outside is the
-    /// side from which its triangles run counter-clockwise.
+    /// Which layer it is worn in: panels of a higher number lie outside those of a lower one,
+    /// wherever both are. The outside is the side from which its triangles run counter-clockwise.
     pub layer: u32,
 }
 
@@ -89,13 +90,15 @@ pub struct Seam {
     pub name: String,
     /// The pairs.
     pub pairs: Vec<[u32; 2]>,
-    /// Whether each pair becomes one point, without any gap; else threads keep holding two vertices together.
+    /// Whether each pair becomes one point, without any gap; else threads keep holding two vertices
+    /// together.
     pub joined: bool,
-    /// How many times longer one side is than the other, where it is gathered: its folds, too small for the mesh, then take up the
-    /// difference, and do not press the other side long. The pairs must follow the seam.
+    /// How many times longer one side is than the other, where it is gathered: its folds, too small
+    /// for the mesh, then take up the difference, and do not press the other side long. The pairs
+    /// must follow the seam.
     pub gather: Option<f64>,
-    /// Where the seam is pressed to stay folded: the angle between the outsides of its two sheets at rest, radians. Pi lies flat, 0 has
-    /// the outsides face to face, 2 pi the insides.
+    /// Where the seam is pressed to stay folded: the angle between the outsides of its two sheets
+    /// at rest, radians. Pi lies flat, 0 has the outsides face to face, 2 pi the insides.
     pub fold: Option<f64>,
 }
 

@@ -72,7 +72,8 @@ pub fn parse(text: &[u8], load: &Load<'_>, options: &Options) -> Result<Loaded, 
     Ok(Loaded { scene, warnings })
 }
 
-/// Looks whether a scene's text has the form and its OBJ can be read, and at nothing that stands in them: a small part of reading it.
+/// Looks whether a scene's text has the form and its OBJ can be read, and at nothing that stands in
+/// them: a small part of reading it.
 ///
 /// # Errors
 /// [`SceneError`] as [`parse`] gives it.

@@ -1,7 +1,8 @@
 //! Names of a scene's fields that nothing reads: unknown ones, and those that stand twice.
 //!
-//! The reader of the values would pass them over or take the last. Method: one walk over the text, which is known to be JSON; which
-//! fields an object has is asked of the structure that it is read into, so that there is one list. Cost: O(bytes).
+//! The reader of the values would pass them over or take the last. Method: one walk over the text,
+//! which is known to be JSON; which fields an object has is asked of the structure that it is read
+//! into, so that there is one list. Cost: O(bytes).
 
 use super::raw::{
     RawAir, RawBand, RawBody, RawContact, RawHeld, RawLimit, RawMaterial, RawPanel, RawPhase, RawScene,

@@ -1,7 +1,8 @@
 //! Lengths that no garment has are those of another unit.
 //!
-//! A scene is in metres. The OBJ of its body comes from a modelling program and may be in another unit: where it is larger than any
-//! body, the unit is taken in which it fits the cloth. What is odd otherwise is told or refused, before anything is solved.
+//! A scene is in metres. The OBJ of its body comes from a modelling program and may be in another
+//! unit: where it is larger than any body, the unit is taken in which it fits the cloth. What is
+//! odd otherwise is told or refused, before anything is solved.
 
 use super::{Scene, SceneError};
 use nalgebra::Vector3;
@@ -21,7 +22,8 @@ const UNITS: [(f64, &str); 3] = [(0.01, "centimetres"), (0.001, "millimetres"), 
 /// How many times longer the flat cloth may be than where it starts, and the other way round.
 const REST: f64 = 8.0;
 
-/// How many times longer the cloth may be than its body, and the body than the cloth, before that is told.
+/// How many times longer the cloth may be than its body, and the body than the cloth, before that
+/// is told.
 const BESIDE: (f64, f64) = (5.0, 20.0);
 
 /// Brings the body to metres and tells what is odd.

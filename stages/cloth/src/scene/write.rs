@@ -1,4 +1,5 @@
-//! Writing the JSON form `garment-scene-1`, so that a garment of ours can be given to other programs.
+//! Writing the JSON form `garment-scene-1`, so that a garment of ours can be given to other
+//! programs.
 
 use super::held::figures;
 use super::{Held, Panel, Phase, Scene, Seam};
@@ -9,8 +10,8 @@ use toile_geometry::obj;
 
 /// The scene as JSON; `body_obj` is the name of the OBJ that holds its body, beside the file.
 ///
-/// Every panel's own fabric is written with the panel. Programs that know one stiffness for warp and weft find the
-/// greater of the scene's two in `stretch`, and likewise in `bend`.
+/// Every panel's own fabric is written with the panel. Programs that know one stiffness for warp
+/// and weft find the greater of the scene's two in `stretch`, and likewise in `bend`.
 #[must_use]
 pub fn to_json(scene: &Scene, body_obj: &str) -> String {
     let seconds: f64 = scene.phases.iter().map(|p| p.seconds).sum();

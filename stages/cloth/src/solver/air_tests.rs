@@ -1,4 +1,5 @@
-//! Air against what can be written down: terminal speeds, a sheet that the wind carries off, a flap in the wind, energy.
+//! Air against what can be written down: terminal speeds, a sheet that the wind carries off, a flap
+//! in the wind, energy.
 #![allow(clippy::unwrap_used)]
 use super::*;
 use crate::energy::{Air, AirDrag, Cloth, Models, Vec3};
@@ -109,7 +110,8 @@ fn wind_gives_a_free_sheet_its_momentum_to_the_exact_amount_whatever_the_step() 
             // The first of central differences' steps moves velocities by half of its length.
             let t = if k == 1 { time - first_half(&flown, dt) } else { time };
             let exact = wind - Vec3::new(left(3.0, AIR.tangential, t), 0.0, -left(8.0, AIR.normal, t));
-            // Turns bound the grip by its greatest part: over long steps the lesser one is left by some of them.
+            // Turns bound the grip by its greatest part: over long steps the lesser one is left by
+            // some of them.
             let left_over = if k == 3 && dt > 0.05 { 5e-4 } else { 1e-7 };
             assert!((v - exact).norm() < left_over, "{} at {dt}: {v} against {exact}", solver.name());
             let momentum: Vec3 = s.v.iter().zip(&flown.model.masses).map(|(v, m)| v * *m).sum();
@@ -130,7 +132,8 @@ fn a_flap_hangs_in_the_wind_at_the_angle_that_weight_and_wind_balance() {
     let mut flown = flown(300.0, 5, Air { wind: Vec3::z() * speed, ..AIR });
     flown.model = flown.model.pinned(|v| flown.mesh.at_top(v));
     flown.model.drag = 6.0;
-    // sigma g sin a = rho c_n (w cos a)² / 2, for every part of the flap: it is straight without being stiff.
+    // sigma g sin a = rho c_n (w cos a)² / 2, for every part of the flap: it is straight without
+    // being stiff.
     let q = AIR.density * AIR.normal * speed * speed / (2.0 * SIGMA * G);
     let sine = ((1.0 + 4.0 * q * q).sqrt() - 1.0) / (2.0 * q);
     for mut solver in flown.steppers(1.0 / 200.0) {
@@ -248,7 +251,8 @@ fn the_static_solver_rests_in_still_air_and_names_others_for_wind() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
-    /// However the sheet lies and moves, still air takes energy, and the linear step holds as much as the law.
+    /// However the sheet lies and moves, still air takes energy, and the linear step holds as much
+    /// as the law.
     #[test]
     fn air_takes_energy_and_the_grips_add_up_to_the_law(
         numbers in prop::collection::vec(-3.0..3.0_f64, 24), wind in prop::collection::vec(-20.0..20.0_f64, 3),

@@ -1,9 +1,12 @@
-//! Central differences with an adaptive step (Fan et al., 1999; step control after Desbrun), in the leapfrog form that keeps its
-//! second order when the step changes: `v' = ((1 - c dt/2) v + dt f/m) / (1 + c dt/2)`, `x' = x + dt v'`.
+//! Central differences with an adaptive step (Fan et al., 1999; step control after Desbrun), in the
+//! leapfrog form that keeps its second order when the step changes:
+//! `v' = ((1 - c dt/2) v + dt f/m) / (1 + c dt/2)`, `x' = x + dt v'`.
 //!
-//! Undamped and of second order, a few flops a vertex and step. Unstable above `2/omega_max`, which is computed (not guessed) from
-//! the stiffness matrix and again as the sheet stiffens; a fixed step above it is refused. Stiffness-proportional damping lowers the
-//! limit to `(2/w)(sqrt(1 + z²) - z)`, `z = viscosity w / 2`. Obstacles act on velocities, with Coulomb friction that really sticks.
+//! Undamped and of second order, a few flops a vertex and step. Unstable above `2/omega_max`, which
+//! is computed (not guessed) from the stiffness matrix and again as the sheet stiffens; a fixed
+//! step above it is refused. Stiffness-proportional damping lowers the limit to
+//! `(2/w)(sqrt(1 + z²) - z)`, `z = viscosity w / 2`. Obstacles act on velocities, with Coulomb
+//! friction that really sticks.
 
 use super::{Model, Report, Solver, State, omega_max};
 use crate::energy::{Projection, Vec3, carried, mobility};
@@ -92,13 +95,15 @@ impl Solver for CentralDifferences {
     }
 
     /// # Errors
-    /// [`ClothError::TimeStepUnstable`] for a fixed step at or above the limit; [`ClothError::Diverged`]; those of input.
+    /// [`ClothError::TimeStepUnstable`] for a fixed step at or above the limit;
+    /// [`ClothError::Diverged`]; those of input.
     fn advance(&mut self, model: &Model, state: &mut State) -> Result<Report, ClothError> {
         if self.last_dt == 0.0 {
             model.check(state)?;
         }
         let dt = self.choose(model, &state.x)?;
-        // Velocities live half a step behind: the first step is half as long, and a changed step moves them to its own middle.
+        // Velocities live half a step behind: the first step is half as long, and a changed step
+        // moves them to its own middle.
         let reach = 0.5 * (self.last_dt + dt);
         let mut force = model.forces(&state.x);
         if model.viscosity > 0.0 {

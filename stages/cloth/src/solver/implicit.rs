@@ -1,8 +1,10 @@
-//! Implicit (backward) Euler as a minimisation: `x' = argmin |x - y|²_M / 2dt² + E(x)`, y where inertia alone would lead
-//! (Baraff and Witkin, 1998, there with one Newton step; here to a residual).
+//! Implicit (backward) Euler as a minimisation: `x' = argmin |x - y|²_M / 2dt² + E(x)`, y where
+//! inertia alone would lead (Baraff and Witkin, 1998, there with one Newton step; here to a
+//! residual).
 //!
-//! Stable at any step, never gains energy. A mode of frequency w loses the factor `1/sqrt(1 + (w dt)²)` a step: choose dt by the
-//! motion that must survive. Velocities are those of the middle of a step, as with central differences, so free fall is exact.
+//! Stable at any step, never gains energy. A mode of frequency w loses the factor
+//! `1/sqrt(1 + (w dt)²)` a step: choose dt by the motion that must survive. Velocities are those of
+//! the middle of a step, as with central differences, so free fall is exact.
 
 use super::{Model, Newton, NewtonReport, Report, Solver, State};
 use crate::energy::{AirStep, Energy, Places, Projection, Vec3, total_value};
@@ -113,7 +115,8 @@ impl Solver for ImplicitEuler {
     }
 
     /// # Errors
-    /// Those of input, and what [`Newton::minimise`] finds. A step that ran out of iterations is taken and reported as not converged.
+    /// Those of input, and what [`Newton::minimise`] finds. A step that ran out of iterations is
+    /// taken and reported as not converged.
     fn advance(&mut self, model: &Model, state: &mut State) -> Result<Report, ClothError> {
         check_parameter("dt", self.dt, |dt| dt > 0.0, "above 0 s")?;
         model.check(state)?;
@@ -141,7 +144,8 @@ impl Solver for ImplicitEuler {
         energies.extend((model.drag > 0.0).then_some(&drag as &dyn Energy));
         energies.extend(viscous.as_ref().map(|v| v as &dyn Energy));
         energies.extend(air.as_ref().map(|a| a as &dyn Energy));
-        // From the better of coasting and standing still: then a step can never end above the energy it began with.
+        // From the better of coasting and standing still: then a step can never end above the
+        // energy it began with.
         let mut x = start.clone();
         if total_value(&energies, &inertia.target) < total_value(&energies, &x) {
             x.clone_from(&inertia.target);

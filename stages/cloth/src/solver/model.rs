@@ -58,7 +58,8 @@ impl State {
 }
 
 impl Model {
-    /// A sheet with no energies yet, standard gravity along -y, nothing held. Vertices that no triangle uses are held.
+    /// A sheet with no energies yet, standard gravity along -y, nothing held. Vertices that no
+    /// triangle uses are held.
     #[must_use]
     pub fn of(sheet: &Sheet) -> Self {
         Self {
@@ -125,7 +126,8 @@ impl Model {
     /// Checks parameters and state before the first step.
     ///
     /// # Errors
-    /// [`ClothError::NonFiniteInput`], [`ClothError::InvalidParameter`], [`ClothError::EmptyScene`].
+    /// [`ClothError::NonFiniteInput`], [`ClothError::InvalidParameter`],
+    /// [`ClothError::EmptyScene`].
     pub fn check(&self, state: &State) -> Result<(), ClothError> {
         if self.masses.is_empty() {
             return Err(ClothError::EmptyScene);

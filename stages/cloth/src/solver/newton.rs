@@ -1,8 +1,9 @@
 //! Newton's method with line search on a sum of energies.
 //!
-//! Each iteration solves `(H + mu M) d = -g` and walks along d until the energy falls enough (Armijo). H is the exact Hessian near
-//! the minimum, where steps are taken whole, and its positive part elsewhere. `mu` is a pseudo-time step 1/dt² (pseudo-transient
-//! continuation; Kelley and Keyes, 1998): large far from equilibrium, where a Newton step would fling a soft strip across
+//! Each iteration solves `(H + mu M) d = -g` and walks along d until the energy falls enough
+//! (Armijo). H is the exact Hessian near the minimum, where steps are taken whole, and its positive
+//! part elsewhere. `mu` is a pseudo-time step 1/dt² (pseudo-transient continuation; Kelley and
+//! Keyes, 1998): large far from equilibrium, where a Newton step would fling a soft strip across
 //! the room, and zero near it. Cost: one factor and a handful of energy evaluations an iteration.
 
 use crate::energy::{Energy, Projection, Vec3, matrix_of, total_gradient, total_value, write_matrix};
@@ -48,7 +49,8 @@ pub struct Newton {
     pub linear: LinearMethod,
     /// First pseudo-time step, s; infinite for plain Newton.
     pub pseudo_step: f64,
-    /// Whether to begin with the pseudo-time step, or to bring it in only when the line search cuts a step.
+    /// Whether to begin with the pseudo-time step, or to bring it in only when the line search cuts
+    /// a step.
     pub cautious: bool,
     /// Asked in every iteration.
     pub stopper: Stopper,
@@ -84,8 +86,8 @@ impl Newton {
     /// Moves the free vertices of `x` to a minimum of the energies nearby.
     ///
     /// # Errors
-    /// [`ClothError::Factorization`] if no shift makes the matrix positive; [`ClothError::Diverged`] for NaN; [`ClothError::Stopped`]. `x` is then
-    /// the best so far.
+    /// [`ClothError::Factorization`] if no shift makes the matrix positive;
+    /// [`ClothError::Diverged`] for NaN; [`ClothError::Stopped`]. `x` is then the best so far.
     pub fn minimise(
         &mut self,
         energies: &[&dyn Energy],
@@ -216,7 +218,8 @@ fn largest_ratio(h: &BlockMatrix, masses: &[f64]) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The whole step if it halves the residual and the energy rises by no more than its rounding can: forces then still tell the way.
+/// The whole step if it halves the residual and the energy rises by no more than its rounding can:
+/// forces then still tell the way.
 fn whole_step(
     energies: &[&dyn Energy],
     x: &[Vec3],
@@ -232,7 +235,8 @@ fn whole_step(
         .then_some((1.0, next, next_value))
 }
 
-/// Walks along `d` until the energy falls by its share; the share of d, the place and the energy there.
+/// Walks along `d` until the energy falls by its share; the share of d, the place and the energy
+/// there.
 fn line_search(
     energies: &[&dyn Energy],
     x: &[Vec3],

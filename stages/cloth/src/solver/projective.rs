@@ -1,10 +1,13 @@
-//! Projective dynamics (Bouaziz, Martin, Liu, Kavan, Pauly, 2014): implicit Euler by turns of a local and a global step.
+//! Projective dynamics (Bouaziz, Martin, Liu, Kavan, Pauly, 2014): implicit Euler by turns of a
+//! local and a global step.
 //!
-//! Local: each triangle's deformation is taken to the nearest rotation. Global: one linear system whose matrix never changes, so
-//! it is factored once, a number a vertex pair. Membrane `k A |F - R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull),
-//! bending quadratic. Every turn lowers the energy; the first few do most of it, the rest converge slowly, slower the
-//! stiffer the sheet and the longer the step: `iterations` trades that. The model's energies are not used; its masses, gravity, drag, air,
-//! pins and obstacles are. In air the matrix is factored anew each step: how firmly the air grips depends on the motion.
+//! Local: each triangle's deformation is taken to the nearest rotation. Global: one linear system
+//! whose matrix never changes, so it is factored once, a number a vertex pair. Membrane
+//! `k A |F - R|² / 2` (isotropic, Poisson's ratio 0, linear in a pull), bending quadratic. Every
+//! turn lowers the energy; the first few do most of it, the rest converge slowly, slower the
+//! stiffer the sheet and the longer the step: `iterations` trades that. The model's energies are
+//! not used; its masses, gravity, drag, air, pins and obstacles are. In air the matrix is factored
+//! anew each step: how firmly the air grips depends on the motion.
 
 use nalgebra::{Matrix3, Matrix3x2, Vector2};
 use rayon::prelude::*;
@@ -37,7 +40,8 @@ pub struct Projective {
 }
 
 impl Projective {
-    /// For a sheet of stiffness `k` (N/m) and these masses, pins and drag; steps of `dt` with this many turns each.
+    /// For a sheet of stiffness `k` (N/m) and these masses, pins and drag; steps of `dt` with this
+    /// many turns each.
     ///
     /// # Errors
     /// [`ClothError::InvalidParameter`] for dt <= 0 or k < 0; [`ClothError::Factorization`].
@@ -92,7 +96,8 @@ impl Projective {
         })
     }
 
-    /// The grip of the air in a step from `state`, with a factor that bounds it from above: turns then go downhill.
+    /// The grip of the air in a step from `state`, with a factor that bounds it from above: turns
+    /// then go downhill.
     fn take_air(
         &mut self,
         air: &AirDrag,
@@ -142,7 +147,8 @@ impl Triangle {
     }
 }
 
-/// The 3 x 2 matrix with orthonormal columns nearest to `f`: f times the inverse square root of `f^T f`, in closed form.
+/// The 3 x 2 matrix with orthonormal columns nearest to `f`: f times the inverse square root of
+/// `f^T f`, in closed form.
 fn nearest_rotation(f: &Matrix3x2<f64>) -> Matrix3x2<f64> {
     let c = f.tr_mul(f);
     let s = c.determinant().max(0.0).sqrt();

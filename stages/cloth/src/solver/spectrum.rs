@@ -1,7 +1,8 @@
-//! Extreme frequencies of a model about a state: the greatest bounds the explicit step, the lowest are its slow swings.
+//! Extreme frequencies of a model about a state: the greatest bounds the explicit step, the lowest
+//! are its slow swings.
 //!
-//! Greatest: Lanczos on `M^-1/2 K M^-1/2`, full reorthogonalisation; 40 products give it to three digits. Lowest: subspace
-//! iteration with a factor of K.
+//! Greatest: Lanczos on `M^-1/2 K M^-1/2`, full reorthogonalisation; 40 products give it to three
+//! digits. Lowest: subspace iteration with a factor of K.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -47,7 +48,8 @@ pub fn omega_max(model: &Model, x: &[Vec3]) -> f64 {
     SymmetricEigen::new(t).eigenvalues.max().max(0.0).sqrt()
 }
 
-/// The `count` lowest angular frequencies about the equilibrium `x`, rad/s, ascending, with their shapes.
+/// The `count` lowest angular frequencies about the equilibrium `x`, rad/s, ascending, with their
+/// shapes.
 ///
 /// # Errors
 /// [`ClothError::Factorization`] if `x` is no stable equilibrium.

@@ -1,7 +1,9 @@
-//! Straight to equilibrium, without contact: Newton's method on the potential energy with a pseudo-time step.
+//! Straight to equilibrium, without contact: Newton's method on the potential energy with a
+//! pseudo-time step.
 //!
-//! Promises the residual in newtons that it reports. Finds the equilibrium downhill of the start, so a strip that could buckle
-//! to either side needs a nudge. Cost: one sparse factor an iteration, 10 to 60 iterations from a flat start.
+//! Promises the residual in newtons that it reports. Finds the equilibrium downhill of the start,
+//! so a strip that could buckle to either side needs a nudge. Cost: one sparse factor an iteration,
+//! 10 to 60 iterations from a flat start.
 
 use super::{Model, Newton, Report, Solver, State};
 use crate::energy::Energy;
@@ -33,7 +35,8 @@ impl Solver for Static {
     }
 
     /// # Errors
-    /// [`ClothError::NotConverged`] with the residual reached, [`ClothError::Wind`], besides those of input.
+    /// [`ClothError::NotConverged`] with the residual reached, [`ClothError::Wind`], besides those
+    /// of input.
     fn advance(&mut self, model: &Model, state: &mut State) -> Result<Report, ClothError> {
         model.check(state)?;
         model.air.as_ref().map_or(Ok(()), |a| a.air.check_still())?;

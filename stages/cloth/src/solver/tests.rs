@@ -287,7 +287,8 @@ fn st_venant_kirchhoff_hangs_by_its_own_law() {
     let mut s = state;
     Static::to(1e-9).advance(&model, &mut s).unwrap();
     let tip = -s.x.iter().map(|x| x.y).fold(f64::INFINITY, f64::min);
-    // The stretch under the load q below a point: s (s^2 - 1) / 2 = q; its mean above 1 over the length is the tip's way.
+    // The stretch under the load q below a point: s (s^2 - 1) / 2 = q; its mean above 1 over the
+    // length is the tip's way.
     let stretch =
         |q: f64| (0..50).fold(1.0 + q, |s: f64, _| s - (0.5 * s * (s * s - 1.0) - q) / (1.5 * s * s - 0.5));
     let exact =
@@ -295,7 +296,8 @@ fn st_venant_kirchhoff_hangs_by_its_own_law() {
     assert!((tip / exact - 1.0).abs() < 0.005, "{tip} against {exact}");
 }
 
-/// Internal forces alone change neither momentum of a free sheet, whatever shape and speeds it starts with.
+/// Internal forces alone change neither momentum of a free sheet, whatever shape and speeds it
+/// starts with.
 #[test]
 fn central_differences_keep_both_momenta() {
     for seed in 1..6_u32 {

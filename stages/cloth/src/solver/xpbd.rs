@@ -1,10 +1,13 @@
-//! Extended position-based dynamics with small steps (Macklin, Mueller, Chentanez, 2016; Macklin et al., 2019).
+//! Extended position-based dynamics with small steps (Macklin, Mueller, Chentanez, 2016; Macklin et
+//! al., 2019).
 //!
-//! Each triangle is one constraint of three strains (weft, warp, shear angle) with the fabric's 3 x 3 compliance, each inner edge one
-//! of its fold angle with the hinge's; one Gauss-Seidel walk a small step. In the limit of small steps it solves the same equations as the
-//! finite elements in their linear range; at a given cost it is too soft, most of all in long, stiff pieces, because a walk carries a pull
-//! only as far as the vertices are numbered. Never unstable. Cost: one 3 x 3 solve a triangle and step, no matrix.
-//! The model's energies are not used; its masses, gravity, drag, air, pins and obstacles are.
+//! Each triangle is one constraint of three strains (weft, warp, shear angle) with the fabric's 3 x
+//! 3 compliance, each inner edge one of its fold angle with the hinge's; one Gauss-Seidel walk a
+//! small step. In the limit of small steps it solves the same equations as the finite elements in
+//! their linear range; at a given cost it is too soft, most of all in long, stiff pieces, because a
+//! walk carries a pull only as far as the vertices are numbered. Never unstable. Cost: one 3 x 3
+//! solve a triangle and step, no matrix. The model's energies are not used; its masses, gravity,
+//! drag, air, pins and obstacles are.
 
 use nalgebra::Matrix3;
 
@@ -39,7 +42,8 @@ impl Xpbd {
     /// For a sheet of this fabric.
     ///
     /// # Errors
-    /// What [`Fabric::check`] finds; [`ClothError::InvalidParameter`] for a sheet with no stiffness at all in some direction.
+    /// What [`Fabric::check`] finds; [`ClothError::InvalidParameter`] for a sheet with no stiffness
+    /// at all in some direction.
     pub fn new(sheet: &Sheet, fabric: &Fabric, dt: f64, substeps: usize) -> Result<Self, ClothError> {
         let woven = Woven::new(fabric)?;
         let stiffness = woven.linear_stiffness();
@@ -84,7 +88,8 @@ impl Xpbd {
                 self.project(&mut state.x, inverse_mass, h);
             }
             Some(air) => {
-                // The air grips what moved in the last step, half a step of gravity behind the velocities.
+                // The air grips what moved in the last step, half a step of gravity behind the
+                // velocities.
                 let last: Vec<Vec3> = state.v.iter().map(|v| v - half).collect();
                 let grips = air.grips(&state.x, &last);
                 let answers = mobilities(model, &grips, h);

@@ -24,8 +24,8 @@ const FEW: f64 = 0.15;
 const PART_STEPS: usize = 20;
 
 impl NewtonState {
-    /// Brings the nodes that the last step moved most to rest by themselves, where they are few. Near rest a few nodes buckle
-    /// one after the other while the others sleep.
+    /// Brings the nodes that the last step moved most to rest by themselves, where they are few.
+    /// Near rest a few nodes buckle one after the other while the others sleep.
     ///
     /// # Errors
     /// [`Halt`], as [`Self::step`].

@@ -17,11 +17,13 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre of thickness: a cloth
-/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer converges sooner.
+/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre
+/// of thickness: a cloth strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of
+/// its thickness. Softer converges sooner.
 const CONTACT_STIFFNESS: f64 = 0.5;
 
-/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours would push each other.
+/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours
+/// would push each other.
 const LAYER_SHARE: f64 = 0.25;
 
 /// Who wears the garment.
@@ -35,7 +37,8 @@ pub struct Collider<'a> {
     pub(super) never: std::convert::Infallible,
 }
 
-/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn point.
+/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn
+/// point.
 pub(super) fn assemble<'a>(
     scene: &Scene,
     body: Option<Collider<'a>>,
@@ -136,7 +139,8 @@ pub(super) fn assemble<'a>(
     })
 }
 
-/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted from 1, m.
+/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted
+/// from 1, m.
 pub(super) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = usize>, sheet: &Sheet) -> f64 {
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     panels.map(|p| cloths[p].thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest)
@@ -152,8 +156,8 @@ pub(super) fn gravity(scene: &Scene) -> Vec3 {
     scene.phases.last().map(|p| p.gravity).unwrap_or_default()
 }
 
-/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch stiffness: strong enough to
-/// carry the garment without a gap.
+/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch
+/// stiffness: strong enough to carry the garment without a gap.
 pub(super) const KEPT_PULL: f64 = 0.1;
 
 /// Threads of the seams that are not joined.

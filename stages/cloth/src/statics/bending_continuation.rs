@@ -1,22 +1,25 @@
-//! Bending that starts far too stiff and is let go level by level, so that a garment picks its folds for a reason.
+//! Bending that starts far too stiff and is let go level by level, so that a garment picks its
+//! folds for a reason.
 //!
-//! Cloth has many states of rest, and a solver that goes straight to one of them picks it by chance: by the last digit of where
-//! the cloth began. A stiff sheet has few, mostly one. So the garment is sewn, and first comes to rest, as if its bending
-//! length were half of its size; each such state is brought so near rest that it forgets where it began. Stiffness then falls
-//! by steps (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending length of [`EDGES`] edges: a
-//! fold that a level would shape by its mesh is not formed on it, but on a finer one, out of a state that is settled. The
-//! finest level ends with the fabric as it is.
+//! Cloth has many states of rest, and a solver that goes straight to one of them picks it by
+//! chance: by the last digit of where the cloth began. A stiff sheet has few, mostly one. So the
+//! garment is sewn, and first comes to rest, as if its bending length were half of its size; each
+//! such state is brought so near rest that it forgets where it began. Stiffness then falls by steps
+//! (graduated non-convexity, Blake and Zisserman 1987), on each level down to a bending length of
+//! [`EDGES`] edges: a fold that a level would shape by its mesh is not formed on it, but on a finer
+//! one, out of a state that is settled. The finest level ends with the fabric as it is.
 //!
-//! Friction remembers, too. Where a garment stays in its place without it, as on shoulders, it is left out on the way and
-//! comes back at the end of each level. A skirt is held by it from the place that it finds without; a cloth on a ball keeps it
-//! all the way (see `initial`).
+//! Friction remembers, too. Where a garment stays in its place without it, as on shoulders, it is
+//! left out on the way and comes back at the end of each level. A skirt is held by it from the
+//! place that it finds without; a cloth on a ball keeps it all the way (see `initial`).
 //!
-//! Cost: a few short runs on the coarse levels and four or five on the finest, of some twenty factorizations each. Limit: where
-//! friction is kept, where the cloth began is felt a little.
+//! Cost: a few short runs on the coarse levels and four or five on the finest, of some twenty
+//! factorizations each. Limit: where friction is kept, where the cloth began is felt a little.
 
 use crate::fabric::Fabric;
 
-/// The coarsest level has about this many nodes at most: a polygon of much fewer corners has seats of its own on a body.
+/// The coarsest level has about this many nodes at most: a polygon of much fewer corners has seats
+/// of its own on a body.
 pub(super) const COARSEST: usize = 700;
 
 /// Bending length of the first state, as a share of the garment's size (the root of its area).
@@ -25,11 +28,12 @@ const FIRST_LENGTH: f64 = 0.5;
 /// Factor at most between the stiffness of one run and the next.
 const STRIDE: f64 = 8.0;
 
-/// Edges of a level in the bending length that it lets go to. What bends over fewer bends as its mesh lies: another mesh would
-/// pick other folds.
+/// Edges of a level in the bending length that it lets go to. What bends over fewer bends as its
+/// mesh lies: another mesh would pick other folds.
 pub(super) const EDGES: f64 = 8.0;
 
-/// The same for cloth that is sewn through itself, whose patterns have tens of thousands of vertices: coarser meshes do more of the way.
+/// The same for cloth that is sewn through itself, whose patterns have tens of thousands of
+/// vertices: coarser meshes do more of the way.
 pub(super) const EDGES_THROUGH: f64 = 2.0;
 
 /// How stiff bending is on the way.
@@ -44,12 +48,13 @@ pub(super) struct Grade {
 }
 
 impl Grade {
-    /// Of a garment of that size, the root of its area in metres, whose levels let go to a bending length of so many edges; nothing where
-    /// cloth has no bending or no weight.
+    /// Of a garment of that size, the root of its area in metres, whose levels let go to a bending
+    /// length of so many edges; nothing where cloth has no bending or no weight.
     pub(super) fn of(cloths: &[&Fabric], gravity: f64, size: f64, edges: f64) -> Option<Self> {
         let of = |c: &&Fabric| (c.bending_warp.min(c.bending_weft) / (c.density * gravity)).cbrt();
         let length = cloths.iter().map(of).filter(|l| *l > 0.0).fold(f64::INFINITY, f64::min);
-        // Bending so small that its stiffest state is no finite number counts as none: it would be let go for ever.
+        // Bending so small that its stiffest state is no finite number counts as none: it would be
+        // let go for ever.
         Some(Self { length, first: FIRST_LENGTH * size, edges })
             .filter(|g| g.first().is_finite() && length.is_finite())
     }
@@ -59,8 +64,8 @@ impl Grade {
         self.factor(self.first)
     }
 
-    /// The least factor whose folds edges of that length carry, m: one of the same steps for every mesh, so that all of them
-    /// let go through the same states.
+    /// The least factor whose folds edges of that length carry, m: one of the same steps for every
+    /// mesh, so that all of them let go through the same states.
     pub(super) fn resolved(&self, edge: f64) -> f64 {
         let strides = (self.first() / self.factor(self.edges * edge)).log(STRIDE).floor();
         self.first() / STRIDE.powf(strides.max(0.0))

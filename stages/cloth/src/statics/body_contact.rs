@@ -1,4 +1,5 @@
-//! The body under the cloth: from which distance it presses, how near a move may lead, and what was seen of it.
+//! The body under the cloth: from which distance it presses, how near a move may lead, and what was
+//! seen of it.
 
 use crate::contact::skin::CollisionSurface;
 use nalgebra::Vector3;
@@ -39,12 +40,14 @@ pub struct BodyContact<'a> {
     pub depth: f64,
     /// Edges of the sheet and their rest lengths: between two nodes on a curved body an edge sags.
     pub edges: Vec<([u32; 2], f64)>,
-    /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as keeps the girth right.
+    /// Whether edges must stay outside the body, too; otherwise they may sag into it as far as
+    /// keeps the girth right.
     pub clear: bool,
     /// Whether the layer grows under nodes that are pressed to the guard, so that it carries them.
     pub grows: bool,
-    /// Whether contact becomes stiffer under nodes that lie in the body, until it brings them out: cloth that is sewn through a body, or around
-    /// another, may be too tight for it to come out by itself.
+    /// Whether contact becomes stiffer under nodes that lie in the body, until it brings them out:
+    /// cloth that is sewn through a body, or around another, may be too tight for it to come out by
+    /// itself.
     pub hard: bool,
     /// Whether cloth may pass through the body, which pushes it out all the same.
     pub passes: bool,
@@ -76,23 +79,26 @@ impl BodyContact<'_> {
         GUARD * if self.grows { self.offset } else { self.offsets[i] }
     }
 
-    /// Lets the layer under node `i` grow if it lies at its bottom. A stiff sheet presses harder on a few nodes than the layer
-    /// can carry; the guard would stop them at every step, and nothing would come to rest.
+    /// Lets the layer under node `i` grow if it lies at its bottom. A stiff sheet presses harder on
+    /// a few nodes than the layer can carry; the guard would stop them at every step, and nothing
+    /// would come to rest.
     pub(super) fn grow(&mut self, i: usize, distance: f64) {
         if distance < PRESSED * self.offset {
             self.offsets[i] += GUARD * self.offset;
         }
     }
 
-    /// Takes a node that the guard stops at the bottom of its layer for one that presses harder than its contact carries.
+    /// Takes a node that the guard stops at the bottom of its layer for one that presses harder
+    /// than its contact carries.
     pub(super) fn press(&mut self, i: usize, distance: f64) {
         if distance < PRESSED * self.offsets[i] {
             self.pressed.push(i as u32);
         }
     }
 
-    /// Makes contact stiffer where the last step pressed a node to the guard: its share of the sheet is too small for what comes
-    /// together there, and held by the guard alone it would never rest.
+    /// Makes contact stiffer where the last step pressed a node to the guard: its share of the
+    /// sheet is too small for what comes together there, and held by the guard alone it would never
+    /// rest.
     pub(super) fn stiffen(&mut self) {
         self.pressed.sort_unstable();
         self.pressed.dedup();
@@ -102,8 +108,8 @@ impl BodyContact<'_> {
         }
     }
 
-    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a convex body, but for edges that are
-    /// held off it themselves.
+    /// Moves the offsets of touching nodes outwards where the edges between them would dip into a
+    /// convex body, but for edges that are held off it themselves.
     pub(super) fn allow_for_sag(
         &mut self,
         near: &[Option<Nearest>],
@@ -123,13 +129,15 @@ impl BodyContact<'_> {
         }
         // Offsets only grow within a level, or contacts would come and go with them.
         for (i, sag) in sags.into_iter().enumerate() {
-            // A polygon around a circle has its length when its corners stand a third of the sag outside.
+            // A polygon around a circle has its length when its corners stand a third of the sag
+            // outside.
             let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
             self.offsets[i] = self.offsets[i].max(self.offset + least);
         }
     }
 
-    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that it is far.
+    /// How far to look for the body around `p`; not at all where what was `seen` earlier tells that
+    /// it is far.
     pub(super) fn reach(&self, p: &Vec3, offset: f64, seen: Option<&DistanceCache>) -> Option<f64> {
         let within = offset + self.depth;
         let Some(seen) = seen else { return Some(within) };

@@ -1,8 +1,9 @@
 //! Cloth in a plane that its seams draw together in that plane.
 //!
-//! A curtain that is gathered to a row of pins has to fold, but a flat sheet on which every force lies in its plane never leaves it: it is
-//! pressed together instead, and the seams stay open. What is flat at the start and after it was drawn together begins again a hair
-//! out of its plane, as no real cloth is flat; how it folds then is chance, as it is for real cloth. Cost: O(n).
+//! A curtain that is gathered to a row of pins has to fold, but a flat sheet on which every force
+//! lies in its plane never leaves it: it is pressed together instead, and the seams stay open. What
+//! is flat at the start and after it was drawn together begins again a hair out of its plane, as no
+//! real cloth is flat; how it folds then is chance, as it is for real cloth. Cost: O(n).
 
 use super::pieces::Pieces;
 use nalgebra::{SymmetricEigen, Vector3};
@@ -15,11 +16,12 @@ const FLAT: f64 = 1e-6;
 /// How far points begin out of the plane at most, as a share of an edge.
 const OUT: f64 = 0.01;
 
-/// The share of the golden section, whose multiples are spread evenly and alike for no two neighbours.
+/// The share of the golden section, whose multiples are spread evenly and alike for no two
+/// neighbours.
 const GOLDEN: f64 = 0.618_033_988_749_894_9;
 
-/// A start for cloth that sewing has brought from `start` to `end`: panels that are flat in both a hair out of their plane, with `edge` for the
-/// length of their edges, m. Nothing where none is.
+/// A start for cloth that sewing has brought from `start` to `end`: panels that are flat in both a
+/// hair out of their plane, with `edge` for the length of their edges, m. Nothing where none is.
 pub(super) fn out_of_plane(pieces: &Pieces, start: &[Vec3], end: &[Vec3], edge: f64) -> Option<Vec<Vec3>> {
     let mut has_cloth = vec![false; start.len()];
     pieces.triangles.iter().flatten().for_each(|&v| has_cloth[v as usize] = true);

@@ -1,10 +1,12 @@
 //! Cloth clear of the body between its vertices, too.
 //!
-//! Vertices rest a thickness outside; on a curved body the triangle between them hangs nearer, by the square of its length over eight radii,
-//! and dips in where the mesh is coarse. Here triangles near the body are looked at on a lattice of points, and what each
-//! lacks is handed to its corners, which then stand off farther. Where the body shows its triangles, what passes through these between the
-//! points is found as well: an edge between two facets is finer than the lattice. Cost: a distance a lattice point and a look at the body's
-//! tree a triangle, once the cloth is at rest. Limits: features finer than the lattice of a body that shows no triangles.
+//! Vertices rest a thickness outside; on a curved body the triangle between them hangs nearer, by
+//! the square of its length over eight radii, and dips in where the mesh is coarse. Here triangles
+//! near the body are looked at on a lattice of points, and what each lacks is handed to its
+//! corners, which then stand off farther. Where the body shows its triangles, what passes through
+//! these between the points is found as well: an edge between two facets is finer than the lattice.
+//! Cost: a distance a lattice point and a look at the body's tree a triangle, once the cloth is at
+//! rest. Limits: features finer than the lattice of a body that shows no triangles.
 
 use crate::contact::skin::CollisionSurface;
 use crate::mesh::Sheet;
@@ -14,7 +16,8 @@ use toile_geometry::facets::Facets;
 
 type Vec3 = Vector3<f64>;
 
-/// Spacing of the lattice, m: over a limb of 2 cm radius the surface between its points rises by less than [`GAP`] and a half.
+/// Spacing of the lattice, m: over a limb of 2 cm radius the surface between its points rises by
+/// less than [`GAP`] and a half.
 const SPACING: f64 = 0.006;
 
 /// Most points along an edge.
@@ -23,7 +26,8 @@ const MOST: usize = 8;
 /// Triangles that one task looks after.
 const CHUNK: usize = 64;
 
-/// Places at which a triangle passes through facets that are looked at, with the middles between them.
+/// Places at which a triangle passes through facets that are looked at, with the middles between
+/// them.
 const MOST_PLACES: usize = 12;
 
 /// The least distance that lattice points must keep, m.
@@ -80,8 +84,8 @@ pub fn clearance(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Clea
     out
 }
 
-/// Adds what triangles with a node `near` the body lack that pass through its facets: as deep as the middles lie between the places where
-/// they do.
+/// Adds what triangles with a node `near` the body lack that pass through its facets: as deep as
+/// the middles lie between the places where they do.
 fn add_crossings(
     sheet: &Sheet,
     body: &dyn CollisionSurface,

@@ -12,7 +12,8 @@ pub(super) fn pieces_of(system: &System<'_>) -> Vec<u32> {
     piece
 }
 
-/// The piece of cloth that each vertex of a scene belongs to: what hangs together by triangles and seams.
+/// The piece of cloth that each vertex of a scene belongs to: what hangs together by triangles and
+/// seams.
 pub(crate) fn pieces_of_scene(scene: &Scene) -> Vec<u32> {
     let n = scene.rest.len();
     let sides = scene.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]]]);

@@ -1,9 +1,10 @@
 //! A coarser mesh of the same pieces, on a subset of their vertices.
 //!
-//! Method: a maximal independent set of the sewn points is kept, corners and pins first, then outlines, then the inside;
-//! every other vertex is collapsed into a neighbour where no triangle turns over or becomes a sliver (Hoppe 1996, in the
-//! plane). The two sides of a seam collapse together, so they keep matching. Each fine vertex then knows the coarse
-//! triangle that it lies in. A third to a quarter of the vertices remain. Cost O(n) on ordinary meshes.
+//! Method: a maximal independent set of the sewn points is kept, corners and pins first, then
+//! outlines, then the inside; every other vertex is collapsed into a neighbour where no triangle
+//! turns over or becomes a sliver (Hoppe 1996, in the plane). The two sides of a seam collapse
+//! together, so they keep matching. Each fine vertex then knows the coarse triangle that it lies
+//! in. A third to a quarter of the vertices remain. Cost O(n) on ordinary meshes.
 
 use self::keep::independent;
 use self::locate::Locator;
@@ -109,7 +110,8 @@ struct Mesh {
     at: Vec<Vec<u32>>,
     /// Vertices of each sewn point.
     members: Vec<Vec<u32>>,
-    /// The two neighbours along the outline; both the vertex itself inside, and where outlines meet.
+    /// The two neighbours along the outline; both the vertex itself inside, and where outlines
+    /// meet.
     outline: Vec<Option<[u32; 2]>>,
     on_outline: Vec<bool>,
 }
@@ -149,7 +151,8 @@ impl Mesh {
         all
     }
 
-    /// Collapses every vertex of the sewn point `p` into one neighbouring point, if there is a good one.
+    /// Collapses every vertex of the sewn point `p` into one neighbouring point, if there is a good
+    /// one.
     fn collapse(&mut self, p: u32, fine: &Pieces, keep: &[bool]) {
         let members = self.members[p as usize].clone();
         let Some(&first) = members.first() else { return };

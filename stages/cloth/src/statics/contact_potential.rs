@@ -1,11 +1,14 @@
-//! How hard cloth presses on cloth that is nearer than a thickness: a spring at first, a wall in the end.
+//! How hard cloth presses on cloth that is nearer than a thickness: a spring at first, a wall in
+//! the end.
 //!
-//! Down to half of the thickness `t` the energy is `k/2 (t - d)^2` of the distance `d`; below it goes on as a logarithm, with the
-//! same slope and curvature where they meet (the two-stage potential of offset geometric contact, Chen et al. 2025). A spring
-//! alone carries no more than `k t`: under a greater load layers would lie on each other without any distance, held only by the
-//! search for the first impact, and nothing could move any more.
+//! Down to half of the thickness `t` the energy is `k/2 (t - d)^2` of the distance `d`; below it
+//! goes on as a logarithm, with the same slope and curvature where they meet (the two-stage
+//! potential of offset geometric contact, Chen et al. 2025). A spring alone carries no more than
+//! `k t`: under a greater load layers would lie on each other without any distance, held only by
+//! the search for the first impact, and nothing could move any more.
 
-/// Share of the thickness below which the wall goes on straight: layers that start in one place have no distance.
+/// Share of the thickness below which the wall goes on straight: layers that start in one place
+/// have no distance.
 const NEAREST: f64 = 1e-3;
 
 /// Energy, force and curvature at one distance.

@@ -1,11 +1,14 @@
-//! Cloth that crosses itself is taken out of itself along the contours where it does, by geometry alone.
+//! Cloth that crosses itself is taken out of itself along the contours where it does, by geometry
+//! alone.
 //!
-//! Method: intersection contour minimisation (Volino, Magnenat-Thalmann 2006). Where an edge passes through a triangle, the contour goes on
-//! from there into the triangles beside the edge. Edge and triangle move against each other in the direction in which the contour becomes
-//! shorter the fastest; a contour that ends at a hem is drawn out over it, a closed one shrinks to nothing. Between these moves edges that
-//! were stretched are drawn back to their lengths. No side need be known. Cost: a look for crossings a sweep. Limits: contours that are as
-//! long whichever way the cloth moves, as where one tube passes straight through another, or a hem lies below cloth along its whole length, may
-//! stay.
+//! Method: intersection contour minimisation (Volino, Magnenat-Thalmann 2006). Where an edge passes
+//! through a triangle, the contour goes on from there into the triangles beside the edge. Edge and
+//! triangle move against each other in the direction in which the contour becomes shorter the
+//! fastest; a contour that ends at a hem is drawn out over it, a closed one shrinks to nothing.
+//! Between these moves edges that were stretched are drawn back to their lengths. No side need be
+//! known. Cost: a look for crossings a sweep. Limits: contours that are as long whichever way the
+//! cloth moves, as where one tube passes straight through another, or a hem lies below cloth along
+//! its whole length, may stay.
 
 use crate::mesh::{Edge, Sheet};
 use nalgebra::Vector3;
@@ -14,26 +17,32 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// How far an edge moves in a sweep at most, as a share of the mean edge, and the gradient at which it moves 0.7 of that.
+/// How far an edge moves in a sweep at most, as a share of the mean edge, and the gradient at which
+/// it moves 0.7 of that.
 const STEP: (f64, f64) = (0.3, 0.3);
 
-/// After so many sweeps without fewer crossings moves are this share of that: the last ones are stepped over, to and fro.
+/// After so many sweeps without fewer crossings moves are this share of that: the last ones are
+/// stepped over, to and fro.
 const SHORTER: (usize, f64) = (20, 0.3);
 
 /// Sweeps at most, and those in which the least number of crossings must fall.
 const SWEEPS: usize = 400;
 const PATIENCE: usize = 60;
 
-/// How strongly an edge is pulled back by its end that has gone through less, beside a gradient of 1.
+/// How strongly an edge is pulled back by its end that has gone through less, beside a gradient
+/// of 1.
 const BACK: f64 = 0.2;
 
-/// Least sine of the angle between an edge and a triangle: one nearly in its plane would move without bound.
+/// Least sine of the angle between an edge and a triangle: one nearly in its plane would move
+/// without bound.
 const LEAST_STEEP: f64 = 0.1;
 
-/// How often edges are drawn back to their lengths after a sweep, and by which share of what they lack.
+/// How often edges are drawn back to their lengths after a sweep, and by which share of what they
+/// lack.
 const KEEP: (usize, f64) = (4, 0.3);
 
-/// Moves nodes until cloth crosses itself no more, or no fewer times; the crossings left. `x` is the best state found.
+/// Moves nodes until cloth crosses itself no more, or no fewer times; the crossings left. `x` is
+/// the best state found.
 pub(super) fn uncross(sheet: &Sheet, tree: &ClothTree, pinned: &[bool], x: &mut [Vec3]) -> usize {
     if tree.crossings(x).is_empty() {
         return 0;
@@ -83,7 +92,8 @@ fn beside(e: &Edge) -> ([u32; 2], Beside) {
 
 /// An edge that passes through a triangle.
 struct Meeting {
-    /// The direction in which the edge moves against the triangle to shorten their contour, the longer the faster that becomes shorter.
+    /// The direction in which the edge moves against the triangle to shorten their contour, the
+    /// longer the faster that becomes shorter.
     gradient: Vec3,
     /// Where along the edge, 0 to 1.
     along: f64,
@@ -102,7 +112,8 @@ fn meeting(e: [u32; 2], t: [u32; 3], sides: &Beside, x: &[Vec3]) -> Option<Meeti
     let at = p + (q - p) * along;
     let slope = edge.dot(&normal);
     let steep = slope.abs().max(LEAST_STEEP).copysign(slope);
-    // The end that has gone through less comes back, where nothing else tells the way: straight contours are as long whichever way they move.
+    // The end that has gone through less comes back, where nothing else tells the way: straight
+    // contours are as long whichever way they move.
     let shallow = if from.abs() < to.abs() { to } else { from };
     let mut gradient = normal * BACK.copysign(shallow);
     for across in sides.iter().flatten().filter(|v| !t.contains(v)).map(|v| x[*v as usize] - p) {

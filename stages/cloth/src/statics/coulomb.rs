@@ -1,18 +1,20 @@
-//! Friction of one point: a potential of how far it has slid from its anchor, whose slope nears Coulomb's limit.
+//! Friction of one point: a potential of how far it has slid from its anchor, whose slope nears
+//! Coulomb's limit.
 //!
-//! The potential is `limit * soft * (sqrt(1 + (s / soft)^2) - 1)` of the way `s` along the surface: a spring where the point
-//! has hardly moved, the limit where it slides. Its matrix is positive semi-definite.
+//! The potential is `limit * soft * (sqrt(1 + (s / soft)^2) - 1)` of the way `s` along the surface:
+//! a spring where the point has hardly moved, the limit where it slides. Its matrix is positive
+//! semi-definite.
 
 use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// How far behind an anchor is dragged, in soft ways: friction is then half of its limit, so that what slides stops with
-/// some to spare.
+/// How far behind an anchor is dragged, in soft ways: friction is then half of its limit, so that
+/// what slides stops with some to spare.
 const SLIP_RETURN: f64 = 0.577;
 
-/// The way that a point slides before friction comes near its limit, m: at this way it is 0.7 of it. Longer converges
-/// sooner; cloth creeps that far before it holds.
+/// The way that a point slides before friction comes near its limit, m: at this way it is 0.7 of
+/// it. Longer converges sooner; cloth creeps that far before it holds.
 pub(super) const SLIP_TOLERANCE: f64 = 1e-4;
 
 /// A point held near its anchor.

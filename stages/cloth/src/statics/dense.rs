@@ -1,7 +1,8 @@
 //! Dense Cholesky elimination in pieces that several threads may share.
 //!
-//! The pieces depend on the sizes alone, so the bits are the same for any number of threads. Products, triangular solutions and
-//! small factors are those of the `faer` library, which picks its instructions at run time.
+//! The pieces depend on the sizes alone, so the bits are the same for any number of threads.
+//! Products, triangular solutions and small factors are those of the `faer` library, which picks
+//! its instructions at run time.
 
 use super::scalar::Real;
 use crate::linear::leave_vectors;
@@ -22,7 +23,8 @@ const STRIP: usize = 128;
 /// Multiplications above which pieces are worth a task of their own.
 const TASK: usize = 2_000_000;
 
-/// Factors the lower trapezoid `a`, at least as high as wide: Cholesky's columns of a matrix whose other columns are elsewhere.
+/// Factors the lower trapezoid `a`, at least as high as wide: Cholesky's columns of a matrix whose
+/// other columns are elsewhere.
 ///
 /// # Errors
 /// The column whose pivot is not positive.
@@ -65,7 +67,8 @@ fn solve_rows<T: Real>(top: MatRef<'_, T>, mut below: MatMut<'_, T>) {
     join_if(work > TASK, || solve_rows(top, upper), || solve_rows(top, lower));
 }
 
-/// Takes `l` times the transpose of its first rows from the lower trapezoid `to`, or writes it there, negative.
+/// Takes `l` times the transpose of its first rows from the lower trapezoid `to`, or writes it
+/// there, negative.
 pub(super) fn take_product<T: Real>(mut to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     let columns = to.ncols();
     if columns <= STRIP {
@@ -92,8 +95,9 @@ fn take_strip<T: Real>(to: MatMut<'_, T>, accum: Accum, l: MatRef<'_, T>) {
     leave_vectors();
 }
 
-/// The factor of a fixed matrix and what it leaves of the border, to show this machine's arithmetic; see
-/// [`crate::linear::probe`]. The matrix is strictly dominated by its diagonal, so it has a factor.
+/// The factor of a fixed matrix and what it leaves of the border, to show this machine's
+/// arithmetic; see [`crate::linear::probe`]. The matrix is strictly dominated by its diagonal, so
+/// it has a factor.
 pub(crate) fn probe_factor<T: Real>(rows: usize, columns: usize) -> Vec<f64> {
     let value =
         |r: usize, c: usize| if r == c { 2.0 * rows as f64 } else { ((r * c + r + c) % 97) as f64 / 97.0 };

@@ -10,12 +10,12 @@ use super::mesh_level::Level;
 use super::newton::NewtonOptions;
 use crate::error::ClothError;
 
-/// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of that of the end: so near
-/// rest, the state forgets where it began.
+/// Steps of a state on the way from stiff to limp, and the speed at which it rests, as a share of
+/// that of the end: so near rest, the state forgets where it began.
 const FORGET: (usize, f64) = (60, 0.05);
 
-/// How far the middle of a garment without friction may move from where it was placed, as a share of its size; else it slides
-/// off.
+/// How far the middle of a garment without friction may move from where it was placed, as a share
+/// of its size; else it slides off.
 const MOST_FALL: f64 = 0.1;
 
 /// First and longest step of pseudo-time, s, and the farthest way in a step, m.
@@ -24,7 +24,8 @@ const SPAN: (f64, f64, f64) = (0.05, 1.0, 0.1);
 /// First step of pseudo-time on the finest mesh, s: what a coarser one leaves has little speed.
 const FIRST_AT_END: f64 = 0.15;
 
-/// Steps in which cloth that a coarser mesh left on both sides of a sharp edge must come out over it.
+/// Steps in which cloth that a coarser mesh left on both sides of a sharp edge must come out over
+/// it.
 const FREEING: usize = 20;
 
 /// The longest step on the way from stiff to limp, s: what slides without friction takes its time.
@@ -43,13 +44,15 @@ impl<'a> Solve<'a> {
             if plan.rest.from_here && !plan.scene.held.is_empty() {
                 hold_as(&plan.scene.held, &mut level.system, &plan.pieces[k], &level.x);
             }
-            // Another thread makes the next finer level ready meanwhile; below the finest there is none, and nobody asks.
+            // Another thread makes the next finer level ready meanwhile; below the finest there is
+            // none, and nobody asks.
             ready = Err(ClothError::EmptyScene.into());
             let is_free = rayon::in_place_scope(|scope| {
                 if k > 0 {
                     scope.spawn(|_| ready = plan.level(k - 1));
                 }
-                // What was sewn through itself has no start that is free of crossings: a finer mesh may come over the edge.
+                // What was sewn through itself has no start that is free of crossings: a finer mesh
+                // may come over the edge.
                 if !self.free(k, &mut level, progress)? && !plan.rest.sew_through {
                     return Ok(false);
                 }
@@ -58,7 +61,8 @@ impl<'a> Solve<'a> {
             if !is_free {
                 return Ok(Draped::TooCoarse { finer: plan.pieces[k].points });
             }
-            // What was sewn through itself may come free on a finer mesh; nothing is gained by sewing it there anew.
+            // What was sewn through itself may come free on a finer mesh; nothing is gained by
+            // sewing it there anew.
             if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {
                 return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
             }
@@ -80,8 +84,8 @@ impl<'a> Solve<'a> {
         Err(ClothError::EmptyScene.into())
     }
 
-    /// Lets level `k` come out over sharp edges and corners of the body that its coarser mesh came to lie on both sides of; whether it
-    /// has. From its own start no mesh comes to cross one.
+    /// Lets level `k` come out over sharp edges and corners of the body that its coarser mesh came
+    /// to lie on both sides of; whether it has. From its own start no mesh comes to cross one.
     fn free(
         &mut self,
         k: usize,
@@ -95,8 +99,8 @@ impl<'a> Solve<'a> {
         Ok(!level.system.is_pierced(&level.x))
     }
 
-    /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it was left by the level before, and
-    /// whether without friction.
+    /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it
+    /// was left by the level before, and whether without friction.
     fn bring(
         &mut self,
         k: usize,
@@ -119,7 +123,8 @@ impl<'a> Solve<'a> {
         if k == 0 { self.end(level, progress) } else { Ok(()) }
     }
 
-    /// Brings a finer level from one stiffness to another, without friction if it stays; the stiffness reached.
+    /// Brings a finer level from one stiffness to another, without friction if it stays; the
+    /// stiffness reached.
     fn carry_on(
         &mut self,
         k: usize,
@@ -140,7 +145,8 @@ impl<'a> Solve<'a> {
         Ok(way[1])
     }
 
-    /// Lets the bending of level `k` go from one factor to another, and gives friction back; whether the garment stays.
+    /// Lets the bending of level `k` go from one factor to another, and gives friction back;
+    /// whether the garment stays.
     pub(super) fn continue_to(
         &mut self,
         k: usize,
@@ -166,7 +172,8 @@ impl<'a> Solve<'a> {
         Ok(true)
     }
 
-    /// Brings a level near rest; whether it stays on the body. With friction only a fall past the body says that it does not.
+    /// Brings a level near rest; whether it stays on the body. With friction only a fall past the
+    /// body says that it does not.
     pub(super) fn stays(
         &mut self,
         level: &mut Level<'a>,

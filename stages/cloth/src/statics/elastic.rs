@@ -1,5 +1,6 @@
-//! What a level's sheet resists with, in the form the static solver wants: the energies of the chosen models, their places in its
-//! matrix, and the part of it that never changes, which is summed once a pattern.
+//! What a level's sheet resists with, in the form the static solver wants: the energies of the
+//! chosen models, their places in its matrix, and the part of it that never changes, which is
+//! summed once a pattern.
 
 use crate::energy::bending::Creases;
 use crate::energy::{Band, Bands, Cloth, Models, Places, Projection, Resistance, Subset, Vec3};
@@ -7,7 +8,8 @@ use crate::error::ClothError;
 use crate::linear::Pattern;
 use nalgebra::Matrix3;
 
-/// Rounds of smoothing before the folds of a state are taken that a coarser mesh has handed on: they lie along its edges.
+/// Rounds of smoothing before the folds of a state are taken that a coarser mesh has handed on:
+/// they lie along its edges.
 const ROUNDS: usize = 4;
 
 /// The elastic energy of a sheet.
@@ -46,8 +48,8 @@ impl Clone for Elastic {
 }
 
 impl Elastic {
-    /// The models of a cloth, elastic bands on it, and creases: the numbers of hinges among its inner edges, and the angle between the
-    /// outsides of each hinge's sheets at rest, radians.
+    /// The models of a cloth, elastic bands on it, and creases: the numbers of hinges among its
+    /// inner edges, and the angle between the outsides of each hinge's sheets at rest, radians.
     ///
     /// # Errors
     /// What the models find in a fabric.
@@ -95,7 +97,8 @@ impl Elastic {
         self.placed = self.own.clone();
     }
 
-    /// Follows into a wider pattern, in which the slots of that of the last [`Self::bind`] are at `slots`.
+    /// Follows into a wider pattern, in which the slots of that of the last [`Self::bind`] are at
+    /// `slots`.
     pub fn follow(&mut self, pattern: &Pattern, slots: &[u32]) {
         let blocks = pattern.blocks();
         self.placed.places = self.own.places.iter().map(|p| p.moved(slots, blocks)).collect();
@@ -126,8 +129,8 @@ impl Elastic {
         self.energies.iter().for_each(|e| e.add_gradient(x, gradient));
     }
 
-    /// Writes the second derivative with the predicted stress and a share of its `compression`, N/m; positive semi-definite
-    /// without any.
+    /// Writes the second derivative with the predicted stress and a share of its `compression`,
+    /// N/m; positive semi-definite without any.
     pub fn write_matrix(&self, x: &[Vec3], compression: f64, values: &mut [Matrix3<f64>]) {
         values.copy_from_slice(&self.placed.constant);
         let form = Projection::Compressed(compression);

@@ -38,7 +38,8 @@ pub struct Equilibrium {
     pub unbalanced: Unbalanced,
     /// How far friction holds each vertex back, m: what [`Live`](super::live::Live) goes on from.
     pub slides: Vec<Vec3>,
-    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what `Live` goes on from.
+    /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what
+    /// `Live` goes on from.
     pub folds: Vec<f64>,
     /// Friction of every contact of cloth with cloth, by sewn points: what `Live` goes on from.
     pub friction_contacts: Vec<FrictionContact>,
@@ -46,13 +47,15 @@ pub struct Equilibrium {
     pub offsets: Vec<f64>,
     /// Elastic and gravitational energy, J.
     pub energy: f64,
-    /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than the mesh can follow.
+    /// Deepest point inside the body between vertices, m; 0 unless the body has edges sharper than
+    /// the mesh can follow.
     pub dip: f64,
     /// Widest seam when it was joined, m; nothing where there are none.
     pub joined_at: Option<f64>,
     /// Every level, coarse to fine, of the try that came to its end.
     pub levels: Vec<LevelReport>,
-    /// How often the garment was begun again, each time on a finer coarsest mesh, or once without grading.
+    /// How often the garment was begun again, each time on a finer coarsest mesh, or once without
+    /// grading.
     pub restarts: usize,
 }
 

@@ -13,8 +13,9 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// How far, in edges, a seam may stay open because its mesh is too coarse: a polygon of n corners about a limb is longer than the limb's
-/// girth by 3.3 edges over n, and what is folded onto itself by its seams by an edge or two.
+/// How far, in edges, a seam may stay open because its mesh is too coarse: a polygon of n corners
+/// about a limb is longer than the limb's girth by 3.3 edges over n, and what is folded onto itself
+/// by its seams by an edge or two.
 pub(super) const MOST_EDGES: f64 = 3.0;
 
 /// What is about a vertex whose step has no solution.

@@ -19,7 +19,8 @@ pub(crate) fn list_of(scene: &Scene, is_fallen: &[bool]) -> String {
 }
 
 impl Solve<'_> {
-    /// The error of cloth that is past the body, if any of a level's nodes at `x` is. `piece` is that of each node.
+    /// The error of cloth that is past the body, if any of a level's nodes at `x` is. `piece` is
+    /// that of each node.
     pub(super) fn fallen(
         &self,
         system: &System<'_>,

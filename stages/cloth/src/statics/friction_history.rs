@@ -1,9 +1,11 @@
 //! Friction of cloth on cloth: what each contact remembers from step to step.
 //!
-//! The point that rubs is the way between the two features of a contact (see [`Contact`]); its anchor lies where the way was when
-//! they first touched. Features change as cloth slides, and above a corner or a side of its partner a vertex swaps triangles with
-//! every rounding. So what is remembered is how far the two have slid, not where: a contact goes on from the way of the last step,
-//! and a new one takes over from contacts of the same two places, which share a node on either side with it.
+//! The point that rubs is the way between the two features of a contact (see [`Contact`]); its
+//! anchor lies where the way was when they first touched. Features change as cloth slides, and
+//! above a corner or a side of its partner a vertex swaps triangles with every rounding. So what is
+//! remembered is how far the two have slid, not where: a contact goes on from the way of the last
+//! step, and a new one takes over from contacts of the same two places, which share a node on
+//! either side with it.
 
 use super::contact::Contact;
 use super::coulomb::{Coulomb, SLIP_TOLERANCE};
@@ -44,7 +46,8 @@ impl FrictionContact {
         between(&self.nodes, &self.weights, x)
     }
 
-    /// Drags the anchor along, where the features have slid on in this step: what holds beside cloth that slides goes on holding.
+    /// Drags the anchor along, where the features have slid on in this step: what holds beside
+    /// cloth that slides goes on holding.
     pub(super) fn drag(&mut self, x: &[Vec3]) {
         let (rub, at) = (self.rub(), self.at(x));
         if (rub.way(&at) - self.slid).norm() > SLIP_TOLERANCE {

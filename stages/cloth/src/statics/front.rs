@@ -1,7 +1,8 @@
 //! Dense elimination of one front of a sparse factor.
 //!
-//! A front of `m` unknowns, the first `own` of which are eliminated, is kept in two column-major parts: its own columns,
-//! `m` rows each, which become the factor's, and the border's lower triangle, which becomes what the parent adds.
+//! A front of `m` unknowns, the first `own` of which are eliminated, is kept in two column-major
+//! parts: its own columns, `m` rows each, which become the factor's, and the border's lower
+//! triangle, which becomes what the parent adds.
 
 use super::dense::{factor_columns, take_product};
 use super::scalar::Real;
@@ -42,14 +43,16 @@ fn add<T: Real>(from: &[T], to: &mut [T], first: usize, run: &Run, skip: usize) 
 pub(super) struct Dense<'a, T> {
     /// Own columns, `m` rows each.
     pub(super) columns: &'a mut Vec<T>,
-    /// The border's part, `m - own` rows and columns or more; only its lower triangle is used. Elimination writes it first.
+    /// The border's part, `m - own` rows and columns or more; only its lower triangle is used.
+    /// Elimination writes it first.
     pub(super) border: Vec<T>,
     m: usize,
     own: usize,
 }
 
 impl<'a, T: Real> Dense<'a, T> {
-    /// A front in the memory of `columns`, which are zeros then, and of `border`, which elimination writes over.
+    /// A front in the memory of `columns`, which are zeros then, and of `border`, which elimination
+    /// writes over.
     pub(super) fn zeros(columns: &'a mut Vec<T>, mut border: Vec<T>, m: usize, own: usize) -> Self {
         let n = m - own;
         columns.resize(m * own, T::ZERO);
@@ -83,7 +86,8 @@ impl<'a, T: Real> Dense<'a, T> {
         }
     }
 
-    /// Adds what a child leaves in the own columns: a lower triangle over its border, whose nodes are the rows of these runs.
+    /// Adds what a child leaves in the own columns: a lower triangle over its border, whose nodes
+    /// are the rows of these runs.
     pub(super) fn add_to_own(&mut self, update: &[T], runs: &[Run]) {
         let own = runs.partition_point(|r| 3 * (r.parent as usize) < self.own);
         self.extend_add(update, runs, 0..own);
@@ -109,7 +113,8 @@ impl<'a, T: Real> Dense<'a, T> {
         }
     }
 
-    /// Eliminates the own columns, which become the factor's, and writes what that leaves of the border.
+    /// Eliminates the own columns, which become the factor's, and writes what that leaves of the
+    /// border.
     ///
     /// # Errors
     /// The column whose pivot is not positive.

@@ -1,8 +1,9 @@
 //! What keeps cloth at its height while it is sewn.
 //!
-//! Cloth without weight and friction that seams draw around a body slides along it to where the body is thinner: off the
-//! shoulders, down to the waist. A spring for each panel, along the vertical alone, holds the mean height of
-//! its nodes near that at which it was placed: its edges stay free to come together.
+//! Cloth without weight and friction that seams draw around a body slides along it to where the
+//! body is thinner: off the shoulders, down to the waist. A spring for each panel, along the
+//! vertical alone, holds the mean height of its nodes near that at which it was placed: its edges
+//! stay free to come together.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -46,7 +47,8 @@ impl HeightSprings {
         }
     }
 
-    /// Adds an upper bound of the matrix, which couples all nodes of a group: that of a spring for each node.
+    /// Adds an upper bound of the matrix, which couples all nodes of a group: that of a spring for
+    /// each node.
     pub(super) fn add_matrix(&self, masses: &[f64], values: &mut [Matrix3<f64>]) {
         let along = self.up * self.up.transpose();
         for (v, m) in values.iter_mut().zip(masses) {

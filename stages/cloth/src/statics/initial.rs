@@ -1,12 +1,14 @@
 //! The first state of a garment: stiff, on the coarsest level, with friction or without.
 //!
-//! Friction keeps a garment wherever its seams happened to close. So it first finds its place without. Where it lies there
-//! as it would with friction, friction is left out on the way from stiff to limp; else friction holds it from there on.
-//! What slides off or turns away without friction (a plate on a ball, a skirt on a round body) keeps it from its sewing on.
+//! Friction keeps a garment wherever its seams happened to close. So it first finds its place
+//! without. Where it lies there as it would with friction, friction is left out on the way from
+//! stiff to limp; else friction holds it from there on. What slides off or turns away without
+//! friction (a plate on a ball, a skirt on a round body) keeps it from its sewing on.
 //!
-//! A garment that is its own mirror image has its states of rest in pairs, and a hair decides between the two. So it is
-//! turned back to how it was placed, and finds its place under a small turning force first, as structures that may buckle
-//! either way are computed with a small flaw (Koiter 1945, "On the stability of elastic equilibrium"); then without it.
+//! A garment that is its own mirror image has its states of rest in pairs, and a hair decides
+//! between the two. So it is turned back to how it was placed, and finds its place under a small
+//! turning force first, as structures that may buckle either way are computed with a small flaw
+//! (Koiter 1945, "On the stability of elastic equilibrium"); then without it.
 
 use super::bending_continuation::stages;
 use super::equilibrium::Progress;
@@ -18,23 +20,24 @@ use super::newton::NewtonOptions;
 /// Steps of the first state: a skirt that nothing holds may turn about its body for ever.
 const FIRST_STEPS: usize = 40;
 
-/// First states, the stiffest first, that are tried. A garment that slides off from each of them, with friction and without,
-/// is taken to slide off from a limper one too.
+/// First states, the stiffest first, that are tried. A garment that slides off from each of them,
+/// with friction and without, is taken to slide off from a limper one too.
 const TRIES: usize = 2;
 
-/// How far apart, in the mean and as a share of the garment's size, the first state may lie with friction and without: where
-/// it is farther, friction holds the garment up.
+/// How far apart, in the mean and as a share of the garment's size, the first state may lie with
+/// friction and without: where it is farther, friction holds the garment up.
 const MOST_SLIP: f64 = 0.03;
 
 /// How far the first state may turn away without friction, rad: what turns farther, friction holds.
 const MOST_TURN: f64 = 0.175;
 
-/// The turning force, as a share of the weight: enough to tell two mirror images apart from starts moved by 1 mm, too little
-/// to turn a skirt on to its next seat.
+/// The turning force, as a share of the weight: enough to tell two mirror images apart from starts
+/// moved by 1 mm, too little to turn a skirt on to its next seat.
 const TWIST: f64 = 0.08;
 
 impl<'a> Solve<'a> {
-    /// Brings the coarsest level to its first state and on to `end`: how stiff it is then, and whether friction was left out.
+    /// Brings the coarsest level to its first state and on to `end`: how stiff it is then, and
+    /// whether friction was left out.
     pub(super) fn forget(
         &mut self,
         k: usize,

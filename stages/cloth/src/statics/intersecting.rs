@@ -1,4 +1,5 @@
-//! What is told of a level that cannot be solved: cloth that came through cloth, or a vertex whose step has no solution.
+//! What is told of a level that cannot be solved: cloth that came through cloth, or a vertex whose
+//! step has no solution.
 
 use super::error::{StaticsError, Unsolvable};
 use super::load::Load;

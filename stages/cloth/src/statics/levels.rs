@@ -28,8 +28,8 @@ const CLEARINGS: usize = 8;
 /// First step of pseudo-time after that: the cloth hardly moves, s.
 const CLEAR_STEP: f64 = 0.2;
 
-/// Most points of a mesh on which the garment is sewn anew because it still crossed itself on a coarser one: larger ones take long to sew, and
-/// what is left may come free while it drapes.
+/// Most points of a mesh on which the garment is sewn anew because it still crossed itself on a
+/// coarser one: larger ones take long to sew, and what is left may come free while it drapes.
 const MOST_CROSSED: usize = 4000;
 
 /// How the levels ended.
@@ -37,7 +37,8 @@ pub(super) enum Draped {
     Equilibrium(Box<Equilibrium>),
     /// The state carried to a level crosses itself and could not be undone.
     Tangled(Entangled),
-    /// The body comes through a coarse level between its vertices, or cloth that was sewn on it stays crossed.
+    /// The body comes through a coarse level between its vertices, or cloth that was sewn on it
+    /// stays crossed.
     TooCoarse {
         /// Points of the next finer level.
         finer: usize,
@@ -94,14 +95,16 @@ impl<'a> Solve<'a> {
         }
     }
 
-    /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by its end.
+    /// Says if the body comes through level `k` with its nodes at `x`; the finest one is judged by
+    /// its end.
     pub(super) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
         let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
         let wearer = self.plan.body?;
         (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
-    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle again.
+    /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle
+    /// again.
     pub(super) fn clear(
         &mut self,
         system: &mut System<'_>,

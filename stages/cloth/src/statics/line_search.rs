@@ -1,4 +1,5 @@
-//! How much of a step is taken: the potential must fall below the highest of the last few (Grippo, Lampariello, Lucidi 1986).
+//! How much of a step is taken: the potential must fall below the highest of the last few (Grippo,
+//! Lampariello, Lucidi 1986).
 
 use super::state::greatest;
 use super::system::{Evaluation, System};
@@ -15,7 +16,8 @@ pub(super) const ROUNDING: f64 = 1e-10;
 /// Share of the slope by which the potential must fall (Armijo's rule).
 const LEAST_FALL: f64 = 1e-4;
 
-/// Steps whose highest potential a new one is measured by. More lets the cloth pass through worse states to better ones.
+/// Steps whose highest potential a new one is measured by. More lets the cloth pass through worse
+/// states to better ones.
 const MEMORY: usize = 8;
 
 /// The way gone in a step.
@@ -26,7 +28,8 @@ pub(super) struct Way {
     pub end: Option<Evaluation>,
 }
 
-/// Shortens the step until the potential falls below the highest of the last ones; it is `start` where the step begins.
+/// Shortens the step until the potential falls below the highest of the last ones; it is `start`
+/// where the step begins.
 pub(super) fn descend(
     system: &System<'_>,
     x: &[Vec3],

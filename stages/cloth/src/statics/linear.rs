@@ -12,8 +12,9 @@ use std::collections::BTreeMap;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of compression that the matrix has near rest, if it is positive definite with it. All of it is the true second
-/// derivative, which few limp states can factor; none of it makes folds that are about to form far too stiff.
+/// Share of compression that the matrix has near rest, if it is positive definite with it. All of
+/// it is the true second derivative, which few limp states can factor; none of it makes folds that
+/// are about to form far too stiff.
 const COMPRESSION: f64 = 0.7;
 
 /// Steps below this are near rest; before, the matrix without compression converges sooner, m.
@@ -22,8 +23,8 @@ const NEAR_REST: f64 = 2e-3;
 /// Inertia beyond which a matrix that is not positive definite has lost its numbers, 1/s².
 const MOST_INERTIA: f64 = 1e12;
 
-/// Steps for which contacts keep their places in the matrix: those that come and go are soon back, and new places cost an order
-/// of elimination.
+/// Steps for which contacts keep their places in the matrix: those that come and go are soon back,
+/// and new places cost an order of elimination.
 const REMEMBERED: u32 = 8;
 
 /// The matrix and its factor.

@@ -1,8 +1,9 @@
 //! A garment that stays at rest while its fabric, its pins or its wearer change.
 //!
-//! All that [`StaticEquilibrium`] knows of the finest level is kept: places, friction's anchors, near pairs, the order of elimination.
-//! A small change needs one or two of Newton's steps to follow, each a factorization and O(n) more; when the changes stop,
-//! [`Live::settle`] goes on to rest, which is proved as always. Mesh and seams stay as they are. Since friction and folds
+//! All that [`StaticEquilibrium`] knows of the finest level is kept: places, friction's anchors,
+//! near pairs, the order of elimination. A small change needs one or two of Newton's steps to
+//! follow, each a factorization and O(n) more; when the changes stop, [`Live::settle`] goes on to
+//! rest, which is proved as always. Mesh and seams stay as they are. Since friction and folds
 //! remember, the state may be another one than a fresh start would find; both are states of rest.
 
 use super::assemble::{Collider, assemble, cloths, kept_threads};
@@ -81,10 +82,12 @@ impl<'a> Live<'a> {
         self.pieces.spread(&self.x)
     }
 
-    /// Changes the scene: fabrics, friction, pins, gravity. Mesh, seams and panels' ranges must stay.
+    /// Changes the scene: fabrics, friction, pins, gravity. Mesh, seams and panels' ranges must
+    /// stay.
     ///
     /// # Errors
-    /// [`StaticsError`]: the changed scene is at fault, or of another shape; then nothing has changed.
+    /// [`StaticsError`]: the changed scene is at fault, or of another shape; then nothing has
+    /// changed.
     pub fn change(&mut self, edit: impl FnOnce(&mut Scene)) -> Result<(), StaticsError> {
         let mut scene = self.scene.clone();
         edit(&mut scene);
@@ -152,8 +155,9 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
-    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already. The last one is short: it takes away
-    /// the strain that long ones leave. The residual is that of the state it ends in.
+    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already. The last one
+    /// is short: it takes away the strain that long ones leave. The residual is that of the state
+    /// it ends in.
     ///
     /// # Errors
     /// [`StaticsError::NotPositive`], where no inertia makes the matrix positive definite.
@@ -206,7 +210,8 @@ impl<'a> Live<'a> {
     /// Goes on until the garment is at rest; `progress` hears of every step.
     ///
     /// # Errors
-    /// Every [`StaticsError`]; the steps allowed are those of the finest level of [`StaticEquilibrium`].
+    /// Every [`StaticsError`]; the steps allowed are those of the finest level of
+    /// [`StaticEquilibrium`].
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<Equilibrium, StaticsError> {
         let (clock, budget, pace) = (Instant::now(), self.rest.budget, self.pace());
         let first = self.descent.outcome().steps;

@@ -19,7 +19,8 @@ pub(super) struct Level<'s> {
 }
 
 impl Level<'_> {
-    /// Puts its nodes where the level before left the cloth, held back by friction as there; `handed` where that was a coarser one.
+    /// Puts its nodes where the level before left the cloth, held back by friction as there;
+    /// `handed` where that was a coarser one.
     pub(super) fn begin(&mut self, x: Vec<Vec3>, slides: Vec<Vec3>, handed: bool) {
         if slides.len() == x.len() {
             self.system.slides = slides;
@@ -74,8 +75,8 @@ impl Level<'_> {
         turn(&self.axis(), &self.system.masses, &arms(&self.layout), &arms(&self.x))
     }
 
-    /// Turns it about its axis towards how it was placed, no farther than the body pushes out what it meets. What is pinned
-    /// stays.
+    /// Turns it about its axis towards how it was placed, no farther than the body pushes out what
+    /// it meets. What is pinned stays.
     pub(super) fn turn_back(&mut self) {
         let Some(depth) = self.system.support.as_ref().map(|s| s.depth) else { return };
         if self.system.pinned.contains(&true) {
@@ -88,7 +89,8 @@ impl Level<'_> {
         self.x.iter_mut().for_each(|p| *p = middle + back * (*p - middle));
     }
 
-    /// Forces on its nodes that turn it about its axis and are such a share of its weight in all, N.
+    /// Forces on its nodes that turn it about its axis and are such a share of its weight in all,
+    /// N.
     pub(super) fn twist(&self, share: f64) -> Vec<Vec3> {
         let arms = arms(&self.axis(), &self.middle(), &self.x);
         let torque: f64 = arms.iter().zip(&self.system.masses).map(|(a, m)| m * a.norm()).sum();
@@ -108,7 +110,8 @@ fn arms(axis: &Vec3, middle: &Vec3, x: &[Vec3]) -> Vec<Vec3> {
     x.iter().map(|p| axis.cross(&(p - middle))).collect()
 }
 
-/// The turn about an axis that brings one set of arms nearest to another (least squares by mass), rad.
+/// The turn about an axis that brings one set of arms nearest to another (least squares by mass),
+/// rad.
 fn turn(axis: &Vec3, masses: &[f64], from: &[Vec3], to: &[Vec3]) -> f64 {
     let each = || masses.iter().zip(from).zip(to);
     let sine: f64 = each().map(|((m, a), b)| m * axis.dot(&a.cross(b))).sum();

@@ -1,9 +1,10 @@
 //! A factor in single precision where that solves well, in double precision where it does not.
 //!
-//! Method: the solution of single precision is held against the matrix in double precision and refined (see `scalar`). Where it
-//! leaves more than [`RIGHT`] of the right side, the matrix is factored anew in double precision. Cost: half of a factor of
-//! double precision, and a product with the matrix, O(n). What is left of the right side depends on the numbers alone, so the
-//! bits do not depend on threads.
+//! Method: the solution of single precision is held against the matrix in double precision and
+//! refined (see `scalar`). Where it leaves more than [`RIGHT`] of the right side, the matrix is
+//! factored anew in double precision. Cost: half of a factor of double precision, and a product
+//! with the matrix, O(n). What is left of the right side depends on the numbers alone, so the bits
+//! do not depend on threads.
 
 use super::multifrontal::{Factor, Halt, Stop, Symbolic};
 use super::scalar::Precision;
@@ -12,8 +13,8 @@ use nalgebra::{Matrix3, Vector3};
 
 type Vec3 = Vector3<f64>;
 
-/// What a solution in single precision may leave, as a share of the right side: the step is then right to about a thousandth,
-/// which is more than Newton's method makes of it.
+/// What a solution in single precision may leave, as a share of the right side: the step is then
+/// right to about a thousandth, which is more than Newton's method makes of it.
 const RIGHT: f64 = 1e-4;
 
 /// Refinements of a solution before the matrix counts as too ill conditioned for single precision.
@@ -36,8 +37,8 @@ pub(super) struct Mixed {
 }
 
 impl Mixed {
-    /// Factors the matrix and solves for `right`. Where the matrix `may_fail` to be positive definite, single precision's word
-    /// is taken for it.
+    /// Factors the matrix and solves for `right`. Where the matrix `may_fail` to be positive
+    /// definite, single precision's word is taken for it.
     ///
     /// # Errors
     /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
@@ -117,7 +118,8 @@ mod tests {
         (pattern, symbolic, values)
     }
 
-    /// The solution under a pull of 1 N at the free end: how precise its factor was, and how far it is off, as a share.
+    /// The solution under a pull of 1 N at the free end: how precise its factor was, and how far it
+    /// is off, as a share.
     fn pulled(stiff: f64, hold: f64, precision: Precision) -> (bool, f64) {
         let (pattern, symbolic, values) = chain(stiff, hold);
         let matrix = Matrix { pattern: &pattern, symbolic: &symbolic, values: &values };
@@ -138,7 +140,8 @@ mod tests {
 
     #[test]
     fn what_is_too_ill_conditioned_is_solved_in_double_precision() {
-        // The hold is lost beside the springs in single precision: the pivot is zero, or any number.
+        // The hold is lost beside the springs in single precision: the pivot is zero, or any
+        // number.
         let (is_single, off) = pulled(1.0, 1e-9, Precision::Mixed);
         assert!(!is_single && off < 1e-4, "{is_single} {off}");
     }

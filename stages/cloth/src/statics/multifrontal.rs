@@ -1,13 +1,14 @@
 //! Sparse Cholesky factors of a block matrix, front by front.
 //!
-//! Method: the multifrontal method (Duff, Reid 1983) over a nested dissection. Each front is a small dense matrix: its own
-//! nodes, eliminated, and the border, which passes to the parent. All heavy work is dense products, so it runs near the
-//! speed of the machine. Fronts of different branches run side by side, large ones in strips of fixed size, and are summed in
-//! the order of the children, so the bits do not depend on threads. The first half of the solution (`substitute`) is made while
-//! a front is at hand.
+//! Method: the multifrontal method (Duff, Reid 1983) over a nested dissection. Each front is a
+//! small dense matrix: its own nodes, eliminated, and the border, which passes to the parent. All
+//! heavy work is dense products, so it runs near the speed of the machine. Fronts of different
+//! branches run side by side, large ones in strips of fixed size, and are summed in the order of
+//! the children, so the bits do not depend on threads. The first half of the solution
+//! (`substitute`) is made while a front is at hand.
 //!
-//! Cost for a sheet of n nodes: about 40 n log2 n numbers in the factor, O(n^1.5) multiplications. Limit: memory of the
-//! factor, about 0.5 GB at 50,000 nodes.
+//! Cost for a sheet of n nodes: about 40 n log2 n numbers in the factor, O(n^1.5) multiplications.
+//! Limit: memory of the factor, about 0.5 GB at 50,000 nodes.
 
 mod substitute;
 
@@ -61,7 +62,8 @@ struct Front {
     children: Vec<usize>,
     /// For each child, where its border lies among this front's rows.
     child_runs: Vec<Vec<Run>>,
-    /// Slot, local row and local column of each block that enters here, and whether it enters transposed.
+    /// Slot, local row and local column of each block that enters here, and whether it enters
+    /// transposed.
     entries: Vec<(u32, u32, u32, bool)>,
     /// Unknowns of this front and all below it.
     weight: usize,
@@ -85,12 +87,14 @@ pub struct Factor<T> {
     spare: Spare<T>,
 }
 
-/// Memory of borders, kept from front to front and from one factorization to the next: fresh pages cost more than sums.
+/// Memory of borders, kept from front to front and from one factorization to the next: fresh pages
+/// cost more than sums.
 #[derive(Debug, Default)]
 struct Spare<T>(Mutex<Vec<Vec<T>>>);
 
 impl<T> Spare<T> {
-    /// The smallest that holds `size` numbers, or a new one: were a leaf's to grow for the root, all would in the end.
+    /// The smallest that holds `size` numbers, or a new one: were a leaf's to grow for the root,
+    /// all would in the end.
     fn take(&self, size: usize) -> Vec<T> {
         let Ok(mut spare) = self.0.lock() else { return Vec::new() };
         let fits = (0..spare.len()).filter(|&k| spare[k].capacity() >= size);
@@ -106,7 +110,8 @@ impl<T> Spare<T> {
 }
 
 impl Symbolic {
-    /// Orders and analyses `pattern`; `layout` holds a place for each node, best where the sheet lies flat.
+    /// Orders and analyses `pattern`; `layout` holds a place for each node, best where the sheet
+    /// lies flat.
     pub fn new(pattern: &Pattern, layout: &[Vector3<f64>]) -> Self {
         let parts = dissect(pattern, layout);
         let mut order = vec![0u32; pattern.nodes()];
@@ -146,8 +151,9 @@ impl Symbolic {
         self.fronts.iter().map(front).sum()
     }
 
-    /// Factors the matrix of these block values into the memory of `factor` and solves for `x`, which is the right side, then
-    /// the solution; where it fails, `x` is as it was. `stop` is asked before every front.
+    /// Factors the matrix of these block values into the memory of `factor` and solves for `x`,
+    /// which is the right side, then the solution; where it fails, `x` is as it was. `stop` is
+    /// asked before every front.
     ///
     /// # Errors
     /// [`Halt`]: the matrix is not positive definite, or `stop` said so.
@@ -196,8 +202,8 @@ struct Left<T> {
 }
 
 impl<T: Real> Solve<'_, T> {
-    /// Factors the front `k` and all below it, whose columns are the last of `columns` and whose right sides are `y`, which
-    /// becomes the solution's first half.
+    /// Factors the front `k` and all below it, whose columns are the last of `columns` and whose
+    /// right sides are `y`, which becomes the solution's first half.
     fn eliminate(&self, k: usize, columns: &mut [Vec<T>], y: &mut [T]) -> Result<Left<T>, Halt> {
         let front = &self.symbolic.fronts[k];
         let Some((mine, below)) = columns.split_last_mut() else { return Err(Halt::Stopped) };

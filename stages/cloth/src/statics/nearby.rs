@@ -1,8 +1,9 @@
 //! Pairs of cloth that may meet, kept while the cloth hardly moves.
 //!
-//! Pairs are sought a little farther out than contact reaches: a node's hold until it has moved by that slack, which near rest
-//! is many steps. Then they are sought anew for the nodes that have, while the others keep theirs; so a search costs what
-//! moves. A node with a long way before it looks along that way, for that step alone.
+//! Pairs are sought a little farther out than contact reaches: a node's hold until it has moved by
+//! that slack, which near rest is many steps. Then they are sought anew for the nodes that have,
+//! while the others keep theirs; so a search costs what moves. A node with a long way before it
+//! looks along that way, for that step alone.
 
 use crate::contact::give_way::give_way;
 use crate::contact::limit::{hold_apart, meet};
@@ -14,7 +15,8 @@ use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the slack that may be used up where a part begins: it goes on with the pairs that are known.
+/// Share of the slack that may be used up where a part begins: it goes on with the pairs that are
+/// known.
 const KEPT: f64 = 0.3;
 
 /// Share of the nodes with a long way from which on all look along their ways, and no farther.
@@ -25,7 +27,8 @@ pub(super) struct Nearby {
     tree: Option<ClothTree>,
     /// Where each node's pairs were sought; nothing where they hold for one step alone.
     at: Vec<Option<Vec3>>,
-    /// What a part of a system knows of is about it: this holds while its nodes stay near where they were.
+    /// What a part of a system knows of is about it: this holds while its nodes stay near where
+    /// they were.
     fence: Option<Fence>,
     /// Whether layers that lie in each other met in the last step.
     jammed: bool,
@@ -63,13 +66,15 @@ impl Nearby {
         &self.at
     }
 
-    /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by `reach` from there, m.
+    /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by
+    /// `reach` from there, m.
     pub(super) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
         let at = at.into_iter().flatten().collect();
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
 
-    /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet within `reach` of `at`, m.
+    /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet
+    /// within `reach` of `at`, m.
     pub(super) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
         Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
@@ -106,7 +111,8 @@ impl Nearby {
         layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, moves]);
     }
 
-    /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one step alone, along their way.
+    /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one
+    /// step alone, along their way.
     fn renewed(
         &self,
         tree: &ClothTree,
@@ -131,8 +137,9 @@ impl Nearby {
         self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
     }
 
-    /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends before it meets where it cannot. The
-    /// share of the moves that is left; of cloth that gets free of crossings, which takes long ways, all counts as left.
+    /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends
+    /// before it meets where it cannot. The share of the moves that is left; of cloth that gets
+    /// free of crossings, which takes long ways, all counts as left.
     pub(super) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;

@@ -1,9 +1,10 @@
 //! Nested dissection: an order of elimination that keeps the factor of a sheet's matrix sparse.
 //!
-//! The nodes are laid out in space (where the panels lay before sewing: flat), cut in two about the middle again and again
-//! (George 1973); the nodes of one half that are coupled to the other are the separator and come last. Of the cuts across
-//! each side that with the smallest separator is taken (see [`halve`]).
-//! Cost O(n log n). The order is only as good as the layout, but right for any.
+//! The nodes are laid out in space (where the panels lay before sewing: flat), cut in two about the
+//! middle again and again (George 1973); the nodes of one half that are coupled to the other are
+//! the separator and come last. Of the cuts across each side that with the smallest separator is
+//! taken (see [`halve`]). Cost O(n log n). The order is only as good as the layout, but right for
+//! any.
 
 mod bisection;
 
@@ -11,7 +12,8 @@ use crate::linear::Pattern;
 use bisection::Halves;
 use nalgebra::Vector3;
 
-/// Parts of at most this many nodes are not cut further: a dense block of some 50 unknowns is cheaper than more fronts.
+/// Parts of at most this many nodes are not cut further: a dense block of some 50 unknowns is
+/// cheaper than more fronts.
 const LEAF_NODES: usize = 16;
 
 /// Rounds of [`smoothed`]: half a cell out of line becomes a twentieth.
@@ -37,8 +39,8 @@ pub fn dissect(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Part> {
     parts
 }
 
-/// The layout with each node moved to the middle of those that it is coupled to, a few times over: rows that stand out of line, and
-/// meshes without any, can then be cut straight.
+/// The layout with each node moved to the middle of those that it is coupled to, a few times over:
+/// rows that stand out of line, and meshes without any, can then be cut straight.
 pub fn smoothed(pattern: &Pattern, layout: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
     let neighbours = Neighbours::new(pattern);
     let mut layout = layout.to_vec();

@@ -1,25 +1,30 @@
 //! Newton's method to rest on one level.
 //!
-//! Each step minimises the potential plus the inertia of a step of pseudo-time (a sheet at rest that is let go), which
-//! grows as long as steps succeed: far from rest the cloth falls without overshooting, near rest the steps are Newton's
-//! own. A step is first kept out of the body, then cut back where cloth would meet cloth (and tried again in less pseudo-time
-//! where most of it is cut), then shortened until the potential lies below the highest of the last few (Grippo, Lampariello,
-//! Lucidi 1986): cloth hardly stretches but bends freely, so a good step may first raise the potential.
+//! Each step minimises the potential plus the inertia of a step of pseudo-time (a sheet at rest
+//! that is let go), which grows as long as steps succeed: far from rest the cloth falls without
+//! overshooting, near rest the steps are Newton's own. A step is first kept out of the body, then
+//! cut back where cloth would meet cloth (and tried again in less pseudo-time where most of it is
+//! cut), then shortened until the potential lies below the highest of the last few (Grippo,
+//! Lampariello, Lucidi 1986): cloth hardly stretches but bends freely, so a good step may first
+//! raise the potential.
 //!
-//! Ending the moves of some nodes may leave the others a step uphill, of which no share lowers the potential. Then the step is sought again
-//! with the stopped nodes held still (an active set), where the pace says so: gathers and armholes jam without; cloth that is to slide off an
-//! edge is kept from it by them.
+//! Ending the moves of some nodes may leave the others a step uphill, of which no share lowers the
+//! potential. Then the step is sought again with the stopped nodes held still (an active set),
+//! where the pace says so: gathers and armholes jam without; cloth that is to slide off an edge is
+//! kept from it by them.
 //!
-//! For the same reason the matrix takes the stress that the last step foretold, not that of the new places, whose strain
-//! has an error of second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea 2017): steps may then
-//! be many times longer. It leaves the answer alone, for the forces are those of the places.
+//! For the same reason the matrix takes the stress that the last step foretold, not that of the new
+//! places, whose strain has an error of second order times a great stiffness (the mixed form of
+//! Magisano, Leonetti, Garcea 2017): steps may then be many times longer. It leaves the answer
+//! alone, for the forces are those of the places.
 //!
-//! Where a step moved few nodes, these and those around them are brought to rest by themselves before the next one (see
-//! `awake`); a state of rest is proved with all.
+//! Where a step moved few nodes, these and those around them are brought to rest by themselves
+//! before the next one (see `awake`); a state of rest is proved with all.
 //!
-//! Cost of a step: one factorization, O(n^1.5), and O(n) for all else. Of the short steps that prove rest only the first of a
-//! row has its own; the cloth moves so little in them that it serves the others. What the search along a step has looked
-//! up at its end is not looked up again where the next step starts.
+//! Cost of a step: one factorization, O(n^1.5), and O(n) for all else. Of the short steps that
+//! prove rest only the first of a row has its own; the cloth moves so little in them that it serves
+//! the others. What the search along a step has looked up at its end is not looked up again where
+//! the next step starts.
 
 use super::line_search::{descend, shorten};
 use super::linear::Linear;
@@ -43,32 +48,38 @@ const GROWTH: f64 = 1.5;
 /// Steps of [`REST_STEP`] in a row before the cloth is let go on.
 const MOST_PROOFS: usize = 3;
 
-/// Slow steps in a row before the next proof, once one has failed: a proof costs a factorization and hardly moves.
+/// Slow steps in a row before the next proof, once one has failed: a proof costs a factorization
+/// and hardly moves.
 const SLOW_STEPS: usize = 3;
 
 /// Least step of pseudo-time in which the speed tells that nothing slides or falls any more, s.
 const SLOW_STEP: f64 = 0.1;
 
-/// Speed in a step of pseudo-time above which rest is not tried, and a coarser mesh is not left, m/s, however fast cloth at rest may be: in
-/// such a step, which may last a second, what slides down a body slowly goes far.
+/// Speed in a step of pseudo-time above which rest is not tried, and a coarser mesh is not left,
+/// m/s, however fast cloth at rest may be: in such a step, which may last a second, what slides
+/// down a body slowly goes far.
 const CREEP: f64 = 0.01;
 
-/// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see [`crate::statics::self_contact::SelfContact::hold`]): what
-/// the proof of a pile held it forgets only far from rest, or it would look for it again at every proof.
+/// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see
+/// [`crate::statics::self_contact::SelfContact::hold`]): what the proof of a pile held it forgets
+/// only far from rest, or it would look for it again at every proof.
 const FAST: f64 = 10.0;
 
-/// What holds a node still that is stopped, N/m, and the share of its move that a stopped node loses at least.
+/// What holds a node still that is stopped, N/m, and the share of its move that a stopped node
+/// loses at least.
 const BRAKE: f64 = 1e7;
 const STOPPED: f64 = 0.5;
 
 /// Shortest step of pseudo-time, s.
 const SHORTEST: f64 = 1e-3;
 
-/// Share of a step (of its norm) that contacts of cloth with cloth must leave, or it is tried again with pseudo-time [`RETRY`] times
-/// as long. Else layers that come down on each other are pressed together at once, and jam.
+/// Share of a step (of its norm) that contacts of cloth with cloth must leave, or it is tried again
+/// with pseudo-time [`RETRY`] times as long. Else layers that come down on each other are pressed
+/// together at once, and jam.
 const LEAST_KEPT: f64 = 0.7;
 
-/// Shares below which pseudo-time falls, and above which it may grow, where cloth lies in layers: on more than half of its nodes.
+/// Shares below which pseudo-time falls, and above which it may grow, where cloth lies in layers:
+/// on more than half of its nodes.
 const FEW_KEPT: f64 = 0.8;
 const MOST_KEPT: f64 = 0.9;
 
@@ -150,10 +161,12 @@ impl NewtonState {
         self.verifying = true;
     }
 
-    /// One step; says at rest where nothing gains speed any more. `stop` is asked every few milliseconds.
+    /// One step; says at rest where nothing gains speed any more. `stop` is asked every few
+    /// milliseconds.
     ///
     /// # Errors
-    /// [`Halt`]: `stop` said so, or no inertia makes the matrix positive definite, for the numbers are not finite.
+    /// [`Halt`]: `stop` said so, or no inertia makes the matrix positive definite, for the numbers
+    /// are not finite.
     pub fn step(
         &mut self,
         system: &mut System<'_>,
@@ -220,7 +233,8 @@ impl NewtonState {
             (pulled, kept) = self.bound(system, x, &mut moves, pace.farthest);
         }
         if kept < LEAST_KEPT && !pulled && !self.verifying && self.dt > SHORTEST {
-            // The cloth stays: most of the step leads cloth through cloth, and what is left of it would tear the sheet about.
+            // The cloth stays: most of the step leads cloth through cloth, and what is left of it
+            // would tear the sheet about.
             self.dt = (RETRY * self.dt).max(SHORTEST);
             self.moves.clear();
             return Ok(self.outcome);
@@ -240,8 +254,8 @@ impl NewtonState {
         Ok(self.outcome)
     }
 
-    /// Ends moves where they lead beyond what is known, into the body or through cloth: whether pulled nodes still have a way to go, and the share of the
-    /// moves that cloth leaves.
+    /// Ends moves where they lead beyond what is known, into the body or through cloth: whether
+    /// pulled nodes still have a way to go, and the share of the moves that cloth leaves.
     fn bound(
         &mut self,
         system: &mut System<'_>,
@@ -262,7 +276,8 @@ impl NewtonState {
         (pulled, if system.threads.is_empty() { left } else { 1.0 })
     }
 
-    /// Whether a step that was ended for some nodes leads the others uphill: no share of it lowers the potential.
+    /// Whether a step that was ended for some nodes leads the others uphill: no share of it lowers
+    /// the potential.
     fn is_misled(&self, system: &System<'_>, g: &[Vec3], moves: &[Vec3]) -> bool {
         let slope: f64 = g.iter().zip(moves).map(|(g, m)| g.dot(m)).sum();
         slope > 0.0 && system.threads.is_empty() && !system.is_tangled()
@@ -274,7 +289,8 @@ impl NewtonState {
         let slow = self.outcome.speed < limit && !pulled;
         self.outcome.at_rest = slow && (self.verifying || !pace.prove);
         if self.verifying {
-            // A long step leaves strain of second order behind, which the first short ones take away.
+            // A long step leaves strain of second order behind, which the first short ones take
+            // away.
             self.proofs += 1;
             self.verifying = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
             (self.slow_steps, self.failed) = (0, true);
@@ -321,8 +337,8 @@ impl NewtonState {
     }
 }
 
-/// Moves `x` to rest, or as far as the pace allows. `layout` orders the elimination, `tree` finds cloth near cloth; `stop`
-/// is asked every few milliseconds.
+/// Moves `x` to rest, or as far as the pace allows. `layout` orders the elimination, `tree` finds
+/// cloth near cloth; `stop` is asked every few milliseconds.
 ///
 /// # Errors
 /// [`Halt`], as [`NewtonState::step`].
@@ -360,7 +376,8 @@ pub fn relax(
     Ok(descent.outcome)
 }
 
-/// The next step of pseudo-time after one of which the search took a `share` and contacts had left so much.
+/// The next step of pseudo-time after one of which the search took a `share` and contacts had left
+/// so much.
 fn next_dt(dt: f64, share: f64, kept: f64, pace: &NewtonOptions) -> f64 {
     match share {
         s if s < 0.5 || kept < FEW_KEPT => (dt * 0.6).max(SHORTEST),

@@ -3,7 +3,8 @@
 use super::equilibrium::Equilibrium;
 use super::unbalanced::{Meets, Unbalanced};
 
-/// Why a state is not at rest, in words; `panel` is that of the place with the greatest force, and `wanted` the speed of rest, m/s.
+/// Why a state is not at rest, in words; `panel` is that of the place with the greatest force, and
+/// `wanted` the speed of rest, m/s.
 #[must_use]
 pub fn unrest(state: &Equilibrium, panel: &str, wanted: f64) -> String {
     let (outcome, Unbalanced { force, meets, .. }) = (&state.outcome, state.unbalanced);

@@ -1,11 +1,13 @@
 //! Whether the body comes through the cloth between its vertices.
 //!
-//! Vertices stay outside the body, but a coarse triangle may be wider than a limb: an arm then comes through its inside, and
-//! a finer mesh would be pushed off it on the wrong side. A triangle that only sags into a bulge sees the body's surface on one side; one that a
-//! limb comes through reaches the limb's axis (the medial axis, Blum 1967), from where the surface is as near on all sides.
-//! So the nearest places of the surface are looked up for a lattice of points on each triangle. Cost: one distance a triangle; for
-//! those that hang deep one for every third point of the lattice, and for those points that the first ones leave in doubt, since
-//! depth changes no faster than the place. Limits: limbs thinner than twice [`LEAST_RADIUS`].
+//! Vertices stay outside the body, but a coarse triangle may be wider than a limb: an arm then
+//! comes through its inside, and a finer mesh would be pushed off it on the wrong side. A triangle
+//! that only sags into a bulge sees the body's surface on one side; one that a limb comes through
+//! reaches the limb's axis (the medial axis, Blum 1967), from where the surface is as near on all
+//! sides. So the nearest places of the surface are looked up for a lattice of points on each
+//! triangle. Cost: one distance a triangle; for those that hang deep one for every third point of
+//! the lattice, and for those points that the first ones leave in doubt, since depth changes no
+//! faster than the place. Limits: limbs thinner than twice [`LEAST_RADIUS`].
 
 use super::clearance::{LEAST_RADIUS, lattice};
 use crate::contact::skin::CollisionSurface;
@@ -14,11 +16,12 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Points deeper than this may lie near a limb's axis, m; what lies nearer to an edge of the body has sagged over it.
+/// Points deeper than this may lie near a limb's axis, m; what lies nearer to an edge of the body
+/// has sagged over it.
 const DEEP: f64 = 0.5 * LEAST_RADIUS;
 
-/// Cosine of the angle between the surface's normals on both sides of a limb's axis, at most: 120 degrees, over which a
-/// chord of a circle hangs half of its radius deep.
+/// Cosine of the angle between the surface's normals on both sides of a limb's axis, at most: 120
+/// degrees, over which a chord of a circle hangs half of its radius deep.
 const OPPOSED: f64 = -0.5;
 
 /// Of so many points of a lattice one is asked first.

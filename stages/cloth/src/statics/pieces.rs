@@ -18,11 +18,13 @@ pub struct Pieces {
     pub rest: Vec<Vector2<f64>>,
     /// Vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// The sewn point that each vertex ends up at, 0 to `points`: both sides of a seam are coarsened together.
+    /// The sewn point that each vertex ends up at, 0 to `points`: both sides of a seam are
+    /// coarsened together.
     pub point: Vec<u32>,
     /// How many sewn points there are.
     pub points: usize,
-    /// The node that each vertex becomes, 0 to `nodes`: that of its sewn point, unless a seam there is not joined.
+    /// The node that each vertex becomes, 0 to `nodes`: that of its sewn point, unless a seam there
+    /// is not joined.
     pub node: Vec<u32>,
     /// How many nodes there are after sewing.
     pub nodes: usize,
@@ -30,7 +32,8 @@ pub struct Pieces {
     pub panel: Vec<u32>,
     /// Whether a vertex lies on a seam that gathers.
     pub gathered: Vec<bool>,
-    /// The angle at rest between the two sheets of a seam that is pressed to stay folded, on its vertices, radians.
+    /// The angle at rest between the two sheets of a seam that is pressed to stay folded, on its
+    /// vertices, radians.
     pub fold: Vec<Option<f64>>,
     /// Elastic bands.
     pub bands: Vec<Path>,
@@ -128,7 +131,8 @@ impl Pieces {
         self.gathered.contains(&true).then(|| Sheet::flat(&self.rest, &self.triangles, 1.0))
     }
 
-    /// Rest corners of every triangle; along a gathered seam the longer side's are drawn together to the length of the shorter.
+    /// Rest corners of every triangle; along a gathered seam the longer side's are drawn together
+    /// to the length of the shorter.
     fn corners(&self) -> Vec<[Vector2<f64>; 3]> {
         let mut corners: Vec<[Vector2<f64>; 3]> =
             self.triangles.iter().map(|t| t.map(|v| self.rest[v as usize])).collect();
@@ -181,7 +185,8 @@ impl Pieces {
         springs
     }
 
-    /// Edges of the sewn sheet that are pressed to stay folded: the number of each among those with two triangles, and its angle.
+    /// Edges of the sewn sheet that are pressed to stay folded: the number of each among those with
+    /// two triangles, and its angle.
     #[must_use]
     pub fn creases(&self, sheet: &Sheet) -> Vec<(usize, f64)> {
         if self.fold.iter().all(Option::is_none) {
@@ -209,8 +214,8 @@ impl Pieces {
         self.panel[self.triangles[triangle][0] as usize] as usize
     }
 
-    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over these. A pinned vertex of no triangle
-    /// has no mass to be weighted by and counts as one.
+    /// The mean of `values` over the vertices of each node, weighted; where some are pinned, over
+    /// these. A pinned vertex of no triangle has no mass to be weighted by and counts as one.
     #[must_use]
     pub fn sew(&self, values: &[Vector3<f64>], weights: &[f64]) -> Vec<Vector3<f64>> {
         let mut is_held = vec![false; self.nodes];

@@ -1,4 +1,5 @@
-//! What a way to rest is laid out on, before anything moves: the levels, from the cut pieces to the coarsest mesh.
+//! What a way to rest is laid out on, before anything moves: the levels, from the cut pieces to the
+//! coarsest mesh.
 
 use super::assemble::{Collider, assemble, cloths, gravity, kept_threads};
 use super::bending_continuation::{EDGES, EDGES_THROUGH, Grade};
@@ -20,12 +21,14 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready while a coarser one moves.
+/// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready
+/// while a coarser one moves.
 pub(super) struct Plan<'a> {
     pub(super) rest: &'a StaticEquilibrium,
     pub(super) scene: &'a Scene,
     pub(super) body: Option<Collider<'a>>,
-    /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing else.
+    /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing
+    /// else.
     pub(super) around: &'a [&'a dyn CollisionSurface],
     /// Says whether the caller wants to stop.
     pub(super) stopper: &'a Stopper,
@@ -122,7 +125,8 @@ impl<'a> Plan<'a> {
         system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
         system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
         if let (true, true, Some(s)) = (self.rest.bending_continuation, k > 0, &mut system.support) {
-            // Offsets that grow with the edges of a passing state would shake the cloth, and with it the choice of folds.
+            // Offsets that grow with the edges of a passing state would shake the cloth, and with
+            // it the choice of folds.
             s.edges.clear();
         }
         system.support.iter_mut().for_each(|s| s.hard = self.rest.sew_through);

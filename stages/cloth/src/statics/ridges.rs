@@ -1,13 +1,16 @@
-//! Cloth against the body's sharp edges and corners: edges of the cloth against edges of the body, corners against triangles.
+//! Cloth against the body's sharp edges and corners: edges of the cloth against edges of the body,
+//! corners against triangles.
 //!
-//! A contact is a place where the distance of cloth and feature is a local minimum: inside both edges, or inside the triangle (or on
-//! one of its sides, where no triangle of the side is nearer), on the outer side of the feature (the pairs that Chen et al. 2025 name
-//! feasible). It presses as cloth presses on cloth (see `contact_potential`), so that no load brings the two together, and rubs by Coulomb's law
-//! with what it has slid remembered from step to step. Moves end before cloth passes a feature (`ridges/limit`). Cloth that a body
-//! passes through all the same, as what a coarser mesh left may, is pushed back out over the feature that it is the least
-//! way behind.
+//! A contact is a place where the distance of cloth and feature is a local minimum: inside both
+//! edges, or inside the triangle (or on one of its sides, where no triangle of the side is nearer),
+//! on the outer side of the feature (the pairs that Chen et al. 2025 name feasible). It presses as
+//! cloth presses on cloth (see `contact_potential`), so that no load brings the two together, and
+//! rubs by Coulomb's law with what it has slid remembered from step to step. Moves end before cloth
+//! passes a feature (`ridges/limit`). Cloth that a body passes through all the same, as what a
+//! coarser mesh left may, is pushed back out over the feature that it is the least way behind.
 //!
-//! Cost: a look for pairs where the cloth has moved by more than a thickness; none for a body without sharp features.
+//! Cost: a look for pairs where the cloth has moved by more than a thickness; none for a body
+//! without sharp features.
 
 use super::body_contact::{BodyContact, NUDGE};
 use super::contact_potential::ContactPotential;
@@ -25,10 +28,12 @@ mod limit;
 
 type Vec3 = Vector3<f64>;
 
-/// How far beyond a thickness pairs are looked for, in thicknesses: they hold until the cloth has moved that far.
+/// How far beyond a thickness pairs are looked for, in thicknesses: they hold until the cloth has
+/// moved that far.
 const SLACK: f64 = 1.5;
 
-/// Cloth that is farther than this from every feature is not looked at again until it has moved that far, m.
+/// Cloth that is farther than this from every feature is not looked at again until it has moved
+/// that far, m.
 const FAR: f64 = 0.03;
 
 /// Edges or triangles that one task looks after.
@@ -102,7 +107,8 @@ pub struct Ridges {
     contacts: Vec<Contact>,
 }
 
-/// What of cloth and body a pair is about that is pushed out over one feature only: an edge of the cloth, or a corner of the body.
+/// What of cloth and body a pair is about that is pushed out over one feature only: an edge of the
+/// cloth, or a corner of the body.
 type Part = [u32; 3];
 
 impl Pair {
@@ -166,7 +172,8 @@ impl Contact {
 }
 
 impl Ridges {
-    /// The sharp features of a body and a sheet that lies on it as `support` says; nothing where there are none.
+    /// The sharp features of a body and a sheet that lies on it as `support` says; nothing where
+    /// there are none.
     pub(super) fn new(support: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
         Some(Self {
             sharp: support.body.sharp()?,
@@ -192,7 +199,8 @@ impl Ridges {
         self.contacts.clear();
     }
 
-    /// Whether an edge of the cloth lies over an edge of the body: its nodes need not stand off for it.
+    /// Whether an edge of the cloth lies over an edge of the body: its nodes need not stand off for
+    /// it.
     pub(super) fn bridges(&self, edge: [u32; 2]) -> bool {
         self.bridges.binary_search(&[edge[0].min(edge[1]), edge[0].max(edge[1])]).is_ok()
     }
@@ -265,7 +273,8 @@ impl Ridges {
         pairs
     }
 
-    /// Looks for cloth that the body passes through at `x`: each edge and each corner is then pushed back over the nearest feature.
+    /// Looks for cloth that the body passes through at `x`: each edge and each corner is then
+    /// pushed back over the nearest feature.
     pub(super) fn look_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
         let deepest = self.deepest();
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
@@ -273,7 +282,8 @@ impl Ridges {
         self.pierced.sort_unstable();
     }
 
-    /// Adds what the body has come to pass through since: cloth that is led around the end of a feature may sink behind another.
+    /// Adds what the body has come to pass through since: cloth that is led around the end of a
+    /// feature may sink behind another.
     fn look_again_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
         let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
         let sunk = self.sunk(support, &self.pairs, x, self.thickness);
@@ -281,7 +291,8 @@ impl Ridges {
         self.pierced.sort_unstable();
     }
 
-    /// The pairs of which the cloth lies behind the feature, less than `deepest` and inside the body: the nearest of each part.
+    /// The pairs of which the cloth lies behind the feature, less than `deepest` and inside the
+    /// body: the nearest of each part.
     fn sunk(&self, support: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3], deepest: f64) -> Vec<(Part, Pair)> {
         let near = |p: &Pair| {
             let near = p.near(&self.sharp, x);
@@ -307,8 +318,8 @@ impl Ridges {
         by_part.into_iter().map(|p| (p.0, p.2)).collect()
     }
 
-    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or its edges lead into the body, as
-    /// through a thin plate, where no side of a feature tells.
+    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or
+    /// its edges lead into the body, as through a thin plate, where no side of a feature tells.
     pub(super) fn is_pierced(&self, support: &BodyContact<'_>, x: &[Vec3]) -> bool {
         let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
         !leads_in(support, &pairs, x).is_empty() || !self.sunk(support, &pairs, x, self.deepest()).is_empty()
@@ -319,7 +330,8 @@ impl Ridges {
         (DEEPEST * self.longest).max(2.0 * self.thickness)
     }
 
-    /// The pairs that touch at `x`, with the distance that they have, negative where the body passes through the cloth.
+    /// The pairs that touch at `x`, with the distance that they have, negative where the body
+    /// passes through the cloth.
     fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Near, f64)> {
         let mut found: Vec<(Pair, Near, f64)> = Vec::new();
         let mut on_sides: Vec<(Pair, Near)> = Vec::new();
@@ -345,7 +357,8 @@ impl Ridges {
         found
     }
 
-    /// Adds corners that are nearest to a side, once, where neither triangle of it is nearer by its inside.
+    /// Adds corners that are nearest to a side, once, where neither triangle of it is nearer by its
+    /// inside.
     fn add_sides(&self, on_sides: &[(Pair, Near)], found: &mut Vec<(Pair, Near, f64)>) {
         let has = |p: &Pair, side: &[u32; 2]| side.iter().all(|i| p.nodes.contains(i));
         let inside: Vec<Pair> = found.iter().map(|(p, ..)| *p).filter(|p| p.count() == 3).collect();
@@ -360,7 +373,8 @@ impl Ridges {
         }
     }
 
-    /// Finds the contacts at `x`, and what friction holds of them: call it at the start of each step.
+    /// Finds the contacts at `x`, and what friction holds of them: call it at the start of each
+    /// step.
     pub(super) fn touch(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
         let sharp = &self.sharp;
         self.pierced.retain(|p| {
@@ -444,7 +458,8 @@ impl Ridges {
         }
     }
 
-    /// Adds the matrix at the step's start, N/m. The sheet couples all nodes of an edge or a triangle.
+    /// Adds the matrix at the step's start, N/m. The sheet couples all nodes of an edge or a
+    /// triangle.
     pub(super) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
         for c in &self.contacts {
             let rub = c.rub().map_or_else(Matrix3::zeros, |r| r.matrix(&c.point(x)));
@@ -513,7 +528,8 @@ impl Ridges {
         self.pierced.sort_unstable();
     }
 
-    /// Keeps what friction holds, and what the body passes through, of the same cloth before its fabric or its body changed.
+    /// Keeps what friction holds, and what the body passes through, of the same cloth before its
+    /// fabric or its body changed.
     pub(super) fn go_on(&mut self, before: &Self) {
         if Arc::ptr_eq(&self.sharp, &before.sharp) {
             self.contacts = before.contacts.clone();

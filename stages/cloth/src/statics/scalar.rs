@@ -1,8 +1,8 @@
 //! The numbers of a factor: of single or of double precision.
 //!
-//! A factor in single precision takes half of the memory and of the time. Its solution is held against the matrix in double
-//! precision and refined (Wilkinson 1963; Carson, Higham 2018); where that does not help, the matrix is too ill
-//! conditioned, and is factored in double precision.
+//! A factor in single precision takes half of the memory and of the time. Its solution is held
+//! against the matrix in double precision and refined (Wilkinson 1963; Carson, Higham 2018); where
+//! that does not help, the matrix is too ill conditioned, and is factored in double precision.
 
 use faer::traits::RealField;
 use std::iter::Sum;

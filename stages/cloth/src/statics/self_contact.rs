@@ -1,8 +1,9 @@
 //! Cloth against itself: a penalty between features that are nearer than a thickness.
 //!
-//! Each vertex is pressed away from the points of the sheet where its distance is a local minimum, and edges from edges
-//! where both closest points lie inside (offset geometric contact, Chen et al. 2025, names these the feasible pairs), so
-//! that nothing is counted twice. What touches rubs, by Coulomb's law (see `friction_history`).
+//! Each vertex is pressed away from the points of the sheet where its distance is a local minimum,
+//! and edges from edges where both closest points lie inside (offset geometric contact, Chen et al.
+//! 2025, names these the feasible pairs), so that nothing is counted twice. What touches rubs, by
+//! Coulomb's law (see `friction_history`).
 
 use super::contact::Contact;
 use super::contact_potential::ContactPotential;
@@ -34,7 +35,8 @@ pub struct SelfContact {
     pub crowded: bool,
     /// Stiffness at each node, N/m.
     pub stiffness: Vec<f64>,
-    /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts. Empty where there is none.
+    /// Coefficient of friction of cloth on cloth at each node; where two rub, the mean counts.
+    /// Empty where there is none.
     pub friction: Vec<f64>,
     /// The friction that is taken away for a while.
     pub away: Vec<f64>,
@@ -44,7 +46,8 @@ pub struct SelfContact {
     pub corners: Vec<u16>,
     /// Pairs that may touch during the step, sorted.
     pub pairs: Vec<Pair>,
-    /// Those that count as contacts while they are near, sorted; none where only their features tell.
+    /// Those that count as contacts while they are near, sorted; none where only their features
+    /// tell.
     pub held: Option<Vec<Pair>>,
     /// Those that touch at its start.
     pub contacts: Vec<Contact>,

@@ -11,7 +11,8 @@ pub struct StaticEquilibrium {
     pub models: Models,
     /// Speed that cloth at rest must not gain in a sixtieth of a second, m/s.
     pub speed: f64,
-    /// The share of the vertices that may gain more: some never come to rest where the skin of a body folds.
+    /// The share of the vertices that may gain more: some never come to rest where the skin of a
+    /// body folds.
     pub non_static: f64,
     /// The coarsest level has at most about this many nodes.
     pub coarsest: usize,
@@ -23,15 +24,17 @@ pub struct StaticEquilibrium {
     pub join_gap: f64,
     /// Wall time before giving up.
     pub budget: Duration,
-    /// Whether bending starts far too stiff and is let go level by level, so that the state of rest hardly depends on where the
-    /// cloth began.
+    /// Whether bending starts far too stiff and is let go level by level, so that the state of rest
+    /// hardly depends on where the cloth began.
     pub bending_continuation: bool,
-    /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a coarser mesh keeps its folds.
+    /// Whether the cloth goes on from where it is, on its own mesh alone: what came to rest on a
+    /// coarser mesh keeps its folds.
     pub from_here: bool,
-    /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep them open, and the sewn
-    /// garment is taken out of itself.
+    /// Whether cloth passes through cloth while its seams close: what lies in its way does not keep
+    /// them open, and the sewn garment is taken out of itself.
     pub sew_through: bool,
-    /// Whether a step of a tenth of a second and more in which nothing is faster than `speed` proves rest, too.
+    /// Whether a step of a tenth of a second and more in which nothing is faster than `speed`
+    /// proves rest, too.
     pub long_proof: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,

@@ -27,10 +27,12 @@ const SEAM_PULL: f64 = 0.01;
 /// Factor by which a seam that stays open pulls harder, and how often.
 const HARDER: (f64, usize) = (3.0, 4);
 
-/// Steps of sewing, its first step of pseudo-time, s, and the least way that is the farthest of a step, m.
+/// Steps of sewing, its first step of pseudo-time, s, and the least way that is the farthest of a
+/// step, m.
 const SEWING: (usize, f64, f64) = (40, 0.02, 0.05);
 
-/// Steps in which a wide gap must shrink, and by what share of itself; else it is pulled harder, or given up.
+/// Steps in which a wide gap must shrink, and by what share of itself; else it is pulled harder, or
+/// given up.
 const SHRINKING: (usize, f64) = (12, 0.01);
 
 /// How many times more a gap may shrink under a harder pull than in proportion to it.
@@ -39,7 +41,8 @@ const MORE_THAN_LINEAR: f64 = 3.0;
 /// The share of an edge that a gap may be wide where cloth is taken out of itself after sewing.
 const SNAPPED: f64 = 0.3;
 
-/// Cloth that is less deep in the body than this comes out while it drapes, and the farthest that is looked for it, m.
+/// Cloth that is less deep in the body than this comes out while it drapes, and the farthest that
+/// is looked for it, m.
 const SHALLOW: f64 = 5e-3;
 const DEEPEST: f64 = 0.3;
 
@@ -47,11 +50,13 @@ const DEEPEST: f64 = 0.3;
 const SETTLING: usize = 60;
 const LONGEST: f64 = 0.5;
 
-/// How stiff a panel is held at its mean height while it is sewn, a square metre of it, as a share of the pull of a metre of seam in the first
-/// round, 1/m^2. Found by trial: stiffer in the harder rounds, waist seams of panels placed apart stay open.
+/// How stiff a panel is held at its mean height while it is sewn, a square metre of it, as a share
+/// of the pull of a metre of seam in the first round, 1/m^2. Found by trial: stiffer in the harder
+/// rounds, waist seams of panels placed apart stay open.
 const HELD: f64 = 40.0;
 
-/// The share of that with which sewn cloth is held that a body pushes out of itself: it goes up with the shoulders.
+/// The share of that with which sewn cloth is held that a body pushes out of itself: it goes up
+/// with the shoulders.
 const LOOSE: f64 = 0.05;
 
 /// Steps in which cloth without seams is pressed flat.
@@ -128,8 +133,8 @@ impl Solve<'_> {
         Ok(uncross(&sheet, &tree, &pinned, &mut self.x))
     }
 
-    /// Draws the seams of cloth together that is as stiff as its first state is to be, or else, each time from the start, as stiff as they
-    /// close; the force a metre that it took.
+    /// Draws the seams of cloth together that is as stiff as its first state is to be, or else,
+    /// each time from the start, as stiff as they close; the force a metre that it took.
     fn draw(
         &mut self,
         sheet: &Sheet,
@@ -142,10 +147,12 @@ impl Solve<'_> {
         let mut force = 0.0;
         let start = x.to_vec();
         let softer = stages(first, 1.0);
-        // What stays wide open as limp as it is would stay so while it is stiffer, too: that is looked at before the stages between.
+        // What stays wide open as limp as it is would stay so while it is stiffer, too: that is
+        // looked at before the stages between.
         let probe = softer.last().copied().filter(|_| softer.len() > 1);
         for (k, stiff) in std::iter::once(first).chain(probe).chain(softer).enumerate() {
-            // Cloth too stiff to go round the body has been squeezed out of its place: above the arms, off the shoulders.
+            // Cloth too stiff to go round the body has been squeezed out of its place: above the
+            // arms, off the shoulders.
             x.copy_from_slice(&start);
             force = self.pull(sheet, pairs, x, stiff, progress)?;
             let gap = widest(x, pairs);
@@ -225,7 +232,8 @@ impl Solve<'_> {
         self.slide(solid, 0.0, SETTLING, &|_| false, progress)
     }
 
-    /// Lets the sewn cloth move on a solid, without weight, held at its height so hard, in so many steps or until it is done.
+    /// Lets the sewn cloth move on a solid, without weight, held at its height so hard, in so many
+    /// steps or until it is done.
     fn slide(
         &mut self,
         solid: Collider<'_>,
@@ -340,7 +348,8 @@ impl Solve<'_> {
     }
 }
 
-/// Whether a gap, `before` one pull and `after` a harder one, stays open under the hardest, when so many rounds of pulling are over.
+/// Whether a gap, `before` one pull and `after` a harder one, stays open under the hardest, when so
+/// many rounds of pulling are over.
 fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
     let (factor, most) = HARDER;
     // Of a sheet that stretches, the gap shrinks in proportion to the pull.

@@ -1,21 +1,26 @@
 //! `StaticEquilibrium`: a whole scene straight to static equilibrium.
 //!
-//! Method: panels are coarsened; the coarsest level is sewn (seams pull with a force that hardly depends on their gap,
-//! without weight, until they meet; then each pair becomes one node, so the gap is exactly zero) and draped; each finer
-//! level starts from the coarser one's state, carried over by the triangles that its vertices lie in at rest. So the fall
-//! and the sewing happen where steps cost milliseconds, and the finest level only settles.
+//! Method: panels are coarsened; the coarsest level is sewn (seams pull with a force that hardly
+//! depends on their gap, without weight, until they meet; then each pair becomes one node, so the
+//! gap is exactly zero) and draped; each finer level starts from the coarser one's state, carried
+//! over by the triangles that its vertices lie in at rest. So the fall and the sewing happen where
+//! steps cost milliseconds, and the finest level only settles.
 //!
-//! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes through a triangle: see
-//! `penetration`), the garment is sewn again on the next finer one.
+//! Where the coarsest level shows itself too coarse (a seam stays open, layers tangle, a limb comes
+//! through a triangle: see `penetration`), the garment is sewn again on the next finer one.
 //!
-//! Where the body would keep seams open, the coarsest level may be sewn on other solids (see [`StaticEquilibrium::solve_around`]).
+//! Where the body would keep seams open, the coarsest level may be sewn on other solids (see
+//! [`StaticEquilibrium::solve_around`]).
 //!
-//! With [`StaticEquilibrium::from_here`] there are no coarser levels: cloth that hangs already settles where it is.
+//! With [`StaticEquilibrium::from_here`] there are no coarser levels: cloth that hangs already
+//! settles where it is.
 //!
-//! With [`StaticEquilibrium::bending_continuation`] bending starts stiff and is let go on the way (see `bending_continuation`), so that chance has less of a say.
+//! With [`StaticEquilibrium::bending_continuation`] bending starts stiff and is let go on the way
+//! (see `bending_continuation`), so that chance has less of a say.
 //!
-//! Cost: some 35 to 150 factorizations of the finest level (docs/log/2026-11-23-rest-speed.md). Limits: what the coarse level cannot see (a fold finer than its
-//! mesh) must form on finer levels; one out of many equilibria is found, as friction and folds have many.
+//! Cost: some 35 to 150 factorizations of the finest level (docs/log/2026-11-23-rest-speed.md).
+//! Limits: what the coarse level cannot see (a fold finer than its mesh) must form on finer levels;
+//! one out of many equilibria is found, as friction and folds have many.
 
 pub use super::assemble::Collider;
 use super::assemble::gravity;
@@ -66,9 +71,11 @@ impl StaticEquilibrium {
         self.solve_around(scene, wearer, &[], &Stopper::default(), progress)
     }
 
-    /// The same, sewn on other solids before the body comes: seams close on the first of `around`, then each of the others pushes the
-    /// sewn cloth out of itself, and the body as the last; on the first and on the body the cloth slides to where it fits. For
-    /// [`StaticEquilibrium::sew_through`], where the body keeps seams open. `stopper` is asked inside of steps, too.
+    /// The same, sewn on other solids before the body comes: seams close on the first of `around`,
+    /// then each of the others pushes the sewn cloth out of itself, and the body as the last; on
+    /// the first and on the body the cloth slides to where it fits. For
+    /// [`StaticEquilibrium::sew_through`], where the body keeps seams open. `stopper` is asked
+    /// inside of steps, too.
     ///
     /// # Errors
     /// Every [`StaticsError`].
@@ -122,8 +129,8 @@ impl StaticEquilibrium {
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
                 (Err(StaticsError::FallsPast(fallen)), Some(finer)) if !fallen.is_certain => finer,
-                // A polygon of so few corners does not go round a limb, is folded onto itself by its seams, or hands on
-                // folds that lie too close for a finer mesh to come apart.
+                // A polygon of so few corners does not go round a limb, is folded onto itself by
+                // its seams, or hands on folds that lie too close for a finer mesh to come apart.
                 (Err(e), Some(finer)) if e.is_of_a_coarse_mesh(plan.edge()) => finer,
                 (Err(e), _) => return Err(e),
             };

@@ -1,12 +1,15 @@
-//! A pile of many cloths comes to rest one by one, from the innermost outwards, before all of them move together.
+//! A pile of many cloths comes to rest one by one, from the innermost outwards, before all of them
+//! move together.
 //!
-//! Where many cloths start in the air they all fall at once, and wherever two meet the step of all of them is cut short. One that
-//! comes down on cloth that holds still is a small problem: some tens of steps of a sheet's own size. Each is laid down with the
-//! weight of all that will lie on it, as if these had its shape (see [`Part::standing_for`]). What is left for the whole is what
+//! Where many cloths start in the air they all fall at once, and wherever two meet the step of all
+//! of them is cut short. One that comes down on cloth that holds still is a small problem: some
+//! tens of steps of a sheet's own size. Each is laid down with the weight of all that will lie on
+//! it, as if these had its shape (see [`Part::standing_for`]). What is left for the whole is what
 //! this leaves out, and takes some tens of steps (block Gauss-Seidel, used once, as a start).
 //!
-//! What a cloth may meet is cut out with it (see `subdomain`) and known within a reach of where it is; beyond that it is cut out anew.
-//! Cost: for each cloth O(n) a cut, and steps of its own and its neighbours' size.
+//! What a cloth may meet is cut out with it (see `subdomain`) and known within a reach of where it
+//! is; beyond that it is cut out anew. Cost: for each cloth O(n) a cut, and steps of its own and
+//! its neighbours' size.
 
 use super::multifrontal::{Halt, Stop};
 use super::nearby::Nearby;
@@ -37,7 +40,8 @@ const MOST_SEEN: usize = 20;
 /// Steps within which a cloth that leaves its reach is given a longer one.
 const SOON: usize = 3;
 
-/// How many cloths a scene has, where they are so many and may meet that they are laid down one by one.
+/// How many cloths a scene has, where they are so many and may meet that they are laid down one by
+/// one.
 pub(super) fn pile_of(scene: &Scene) -> Option<usize> {
     Some(scene).filter(|s| s.self_collision).map(count_cloths).filter(|n| *n >= MANY)
 }
@@ -80,7 +84,8 @@ fn cloths(system: &System<'_>) -> (Vec<u32>, usize) {
     groups(system.masses.len(), system.links().into_iter())
 }
 
-/// The cloths with triangles, from the innermost: by layer, then by mean distance from the body, or by height where there is none.
+/// The cloths with triangles, from the innermost: by layer, then by mean distance from the body, or
+/// by height where there is none.
 fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u32> {
     let far = distances(system, x);
     let mut mean = vec![(0u32, 0.0, 0usize); count];
@@ -124,7 +129,8 @@ impl Way {
 }
 
 impl Around<'_> {
-    /// Brings the awake nodes near rest, all else holding still; they stand for so many cloths, one on the other.
+    /// Brings the awake nodes near rest, all else holding still; they stand for so many cloths, one
+    /// on the other.
     fn settle(
         &self,
         system: &mut System<'_>,
@@ -149,7 +155,8 @@ impl Around<'_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Moves a part until it is at rest, `watch` breaks or it leaves what it knows; what came first of the first two.
+    /// Moves a part until it is at rest, `watch` breaks or it leaves what it knows; what came first
+    /// of the first two.
     fn go<'s>(
         &self,
         mut part: Part<'s>,

@@ -1,12 +1,14 @@
 //! What is wrong with where a scene starts, told before anything is solved.
 //!
-//! A fault of the start that is found by solving is found late, and told as another: panels that lie in each other as cloth that does
-//! not come free, a seam that is sewn the wrong way round as one whose panels are cut too small. Looked at are vertices in the
-//! body, seams (`seams`: pins that they would bring together, pairs that run against each other), and cloth in cloth
+//! A fault of the start that is found by solving is found late, and told as another: panels that
+//! lie in each other as cloth that does not come free, a seam that is sewn the wrong way round as
+//! one whose panels are cut too small. Looked at are vertices in the body, seams (`seams`: pins
+//! that they would bring together, pairs that run against each other), and cloth in cloth
 //! (`touching`).
 //!
-//! Cost: a distance to the body for each vertex and a search for neighbours, O(n log n). Limit: cloth that crosses on a fine mesh
-//! alone is not refused, for the garment starts on a coarser one that is free of crossings.
+//! Cost: a distance to the body for each vertex and a search for neighbours, O(n log n). Limit:
+//! cloth that crosses on a fine mesh alone is not refused, for the garment starts on a coarser one
+//! that is free of crossings.
 
 mod seams;
 mod touching;
@@ -157,7 +159,8 @@ pub(crate) fn check<E: From<StartError> + From<ClothError>>(
     Ok(start)
 }
 
-/// Where the vertices start, those inside the body moved out to its nearest point, however deep they are.
+/// Where the vertices start, those inside the body moved out to its nearest point, however deep
+/// they are.
 ///
 /// # Errors
 /// [`StartError::PinnedApart`]: what seams cannot bring together whatever lies between.
@@ -196,7 +199,8 @@ pub(crate) fn check_lying<E: From<StartError> + From<ClothError>>(
     Ok(touching::check_lying(scene, pieces, &tree, start, thickness)?)
 }
 
-/// The start with vertices that lie a little inside the body moved out, and whether there is a body.
+/// The start with vertices that lie a little inside the body moved out, and whether there is a
+/// body.
 fn cleared(scene: &Scene, skin: Option<&dyn CollisionSurface>) -> Result<(Vec<Vec3>, bool), StartError> {
     let Some(skin) = skin else { return Ok((scene.positions.clone(), false)) };
     clear_start(&scene.positions, skin, scene.material.thickness).map_err(|sunk| {

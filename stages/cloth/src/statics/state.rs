@@ -29,9 +29,11 @@ pub struct NewtonOptions {
     pub prove: bool,
     /// Whether a whole step of [`SLOW_STEP`] and more in which nothing is fast proves rest, too.
     pub long_proof: bool,
-    /// Whether steps are taken without a search along them: the cloth gets about in rough ground, where some nodes never come to rest.
+    /// Whether steps are taken without a search along them: the cloth gets about in rough ground,
+    /// where some nodes never come to rest.
     pub rough: bool,
-    /// Whether a step that raises the potential, because some of its nodes are stopped, is sought again with these held still.
+    /// Whether a step that raises the potential, because some of its nodes are stopped, is sought
+    /// again with these held still.
     pub yields: bool,
     /// How precise the factor of each step is.
     pub precision: Precision,
@@ -48,7 +50,8 @@ pub struct Outcome {
     pub steps: usize,
     /// Whether the cloth is at rest.
     pub at_rest: bool,
-    /// Greatest speed gained in the last step of time, m/s, but for the share of nodes that may be faster.
+    /// Greatest speed gained in the last step of time, m/s, but for the share of nodes that may be
+    /// faster.
     pub speed: f64,
     /// Greatest speed gained in it, m/s.
     pub fastest: f64,
@@ -60,7 +63,8 @@ pub struct Outcome {
     pub share: f64,
     /// The step of pseudo-time, s.
     pub dt: f64,
-    /// Greatest speed gained in the last step of [`REST_STEP`], m/s: what says how far from rest the cloth is. Nothing before the first.
+    /// Greatest speed gained in the last step of [`REST_STEP`], m/s: what says how far from rest
+    /// the cloth is. Nothing before the first.
     pub gained: Option<f64>,
 }
 

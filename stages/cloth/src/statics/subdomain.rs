@@ -1,8 +1,9 @@
 //! The part of a system that still moves, by itself: sleeping nodes hold still.
 //!
-//! Near rest most of a garment sleeps while a few nodes buckle one after the other. A step that moves only these, and the
-//! elements about them, costs what they cost (nonlinear elimination: Lanzkron, Rose, Wilkes 1996).
-//! The whole system looks again afterwards, so the state of rest is that of the whole.
+//! Near rest most of a garment sleeps while a few nodes buckle one after the other. A step that
+//! moves only these, and the elements about them, costs what they cost (nonlinear elimination:
+//! Lanzkron, Rose, Wilkes 1996). The whole system looks again afterwards, so the state of rest is
+//! that of the whole.
 
 use super::body_contact::BodyContact;
 use super::friction_history::FrictionContact;
@@ -64,14 +65,16 @@ impl<'a> Part<'a> {
         pick(&self.nodes, of)
     }
 
-    /// The tree of its triangles, of which only those of awake nodes look for what they may meet. `layout` is that of the part.
+    /// The tree of its triangles, of which only those of awake nodes look for what they may meet.
+    /// `layout` is that of the part.
     pub(super) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
         let awake: Vec<bool> = self.pick(self.cut.active());
         whole.part(&self.nodes, self.cut.index(), layout).with_active(&awake)
     }
 
-    /// This part, to stand for so many of one shape, one on the other, of which it is the lowest: what lies under it carries
-    /// them all. Told in the forces of one: contact is softer by that number, and so is what presses for friction.
+    /// This part, to stand for so many of one shape, one on the other, of which it is the lowest:
+    /// what lies under it carries them all. Told in the forces of one: contact is softer by that
+    /// number, and so is what presses for friction.
     pub(super) fn standing_for(mut self, count: usize) -> Self {
         self.bundle = count as f64;
         self.weigh(1.0 / self.bundle);

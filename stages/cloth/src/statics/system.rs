@@ -1,9 +1,11 @@
 //! Everything that acts on one level's nodes, as one potential: value, gradient and matrix.
 //!
-//! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its surface, so that
-//! vertices rest outside it), and friction as a potential about anchors: a force that grows with the way slid and nears
-//! Coulomb's limit without reaching it, so that every state of rest keeps the law. Anchors are dragged along while the
-//! cloth moves fast. Cloth rubs on cloth in the same way (see `friction_history`). Normals and limits of friction are those of the step's start.
+//! Membrane, bending, weight, seams that still pull, the body (a penalty within a thickness of its
+//! surface, so that vertices rest outside it), and friction as a potential about anchors: a force
+//! that grows with the way slid and nears Coulomb's limit without reaching it, so that every state
+//! of rest keeps the law. Anchors are dragged along while the cloth moves fast. Cloth rubs on cloth
+//! in the same way (see `friction_history`). Normals and limits of friction are those of the step's
+//! start.
 
 use super::body_contact::{BodyContact, ContactQuery, DistanceCache, NEAR, NUDGE};
 use super::coulomb::Coulomb;
@@ -58,7 +60,8 @@ pub struct System<'a> {
     pub touches: Vec<BodyTouch>,
     /// Where friction holds each node.
     pub anchors: Vec<Option<Vec3>>,
-    /// How far friction holds each node back when it first touches: what the coarser level found, m.
+    /// How far friction holds each node back when it first touches: what the coarser level found,
+    /// m.
     pub slides: Vec<Vec3>,
     /// What presses each node on the body, a mean over the last steps, N.
     pub loads: Vec<f64>,
@@ -101,7 +104,8 @@ impl System<'_> {
         links
     }
 
-    /// The body nearest to each node, if it presses there; remembers what was seen, now or by who came here before.
+    /// The body nearest to each node, if it presses there; remembers what was seen, now or by who
+    /// came here before.
     fn look(&mut self, x: &[Vec3], sight: Option<Vec<ContactQuery>>) -> Vec<Option<Nearest>> {
         if self.support.is_none() {
             return vec![None; x.len()];
@@ -160,7 +164,8 @@ impl System<'_> {
                 let distance = seen.get(i).map_or(0.0, |n| n.distance);
                 match s.grows {
                     true => s.grow(i, distance),
-                    // What a seam presses on the body gives way to the seam, or the seam stays open.
+                    // What a seam presses on the body gives way to the seam, or the seam stays
+                    // open.
                     false if sews => {}
                     false => s.press(i, distance),
                 }
@@ -174,7 +179,8 @@ impl System<'_> {
         self.ridges.iter_mut().for_each(|r| r.seek(x, &vec![Vec3::zeros(); x.len()]));
     }
 
-    /// Ends moves that lead the cloth past a sharp feature of the body before that; it gives way where it can.
+    /// Ends moves that lead the cloth past a sharp feature of the body before that; it gives way
+    /// where it can.
     pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(r) = &mut self.ridges else { return };
         r.seek(x, moves);
@@ -196,7 +202,8 @@ impl System<'_> {
         }
     }
 
-    /// Looks for cloth that the body passes through at `x`, as what a coarser mesh left may: it is pushed back out.
+    /// Looks for cloth that the body passes through at `x`, as what a coarser mesh left may: it is
+    /// pushed back out.
     pub fn look_for_pierced(&mut self, x: &[Vec3]) {
         if let (Some(r), Some(s)) = (&mut self.ridges, &self.support) {
             r.look_for_pierced(s, x);
@@ -374,8 +381,8 @@ impl System<'_> {
         g
     }
 
-    /// Matrix at the step's start: second derivative plus `inertia` times the masses. Without `compression` it is positive
-    /// definite.
+    /// Matrix at the step's start: second derivative plus `inertia` times the masses. Without
+    /// `compression` it is positive definite.
     pub fn matrix(
         &self,
         x: &[Vec3],

@@ -1,8 +1,11 @@
-//! Knots: cloth that crosses itself in a few places, and that its contacts do not take out of itself.
+//! Knots: cloth that crosses itself in a few places, and that its contacts do not take out of
+//! itself.
 //!
-//! Method: the contours along which it crosses itself are shortened (see `contour`). Where that leaves some, the nodes of what crosses, and
-//! the rings of nodes around them, move to the mean of their neighbours again and again (Laplacian smoothing, Field 1988), which lays a fold
-//! that is knotted flat. Then cloth comes to rest from there. Each try takes more rings. Cost: one more run from near rest a try.
+//! Method: the contours along which it crosses itself are shortened (see `contour`). Where that
+//! leaves some, the nodes of what crosses, and the rings of nodes around them, move to the mean of
+//! their neighbours again and again (Laplacian smoothing, Field 1988), which lays a fold that is
+//! knotted flat. Then cloth comes to rest from there. Each try takes more rings. Cost: one more run
+//! from near rest a try.
 
 use super::contour::uncross;
 use super::equilibrium::{LevelReport, Progress};
@@ -26,7 +29,8 @@ const SWEEPS: usize = 30;
 const PATIENCE: usize = 25;
 
 impl Solve<'_> {
-    /// Runs one level, and where cloth that was sewn through itself stays knotted, smooths the knots and runs it again.
+    /// Runs one level, and where cloth that was sewn through itself stays knotted, smooths the
+    /// knots and runs it again.
     pub(super) fn run_free(
         &self,
         system: &mut System<'_>,

@@ -9,7 +9,8 @@ pub(crate) fn panel(scene: &Scene, number: u32) -> String {
     panel.map_or_else(|| "cloth of no panel".into(), |p| format!("panel '{}'", p.name))
 }
 
-/// Two panels as the subject of a sentence about each other, with its verb: "panels 'a' and 'b' cross each other", "panel 'a' crosses itself".
+/// Two panels as the subject of a sentence about each other, with its verb: "panels 'a' and 'b'
+/// cross each other", "panel 'a' crosses itself".
 pub(crate) fn both(panels: &[String; 2], many: &str, one: &str) -> String {
     let [a, b] = panels;
     match (a == b, a.strip_prefix("panel "), b.strip_prefix("panel ")) {

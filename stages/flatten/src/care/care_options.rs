@@ -8,16 +8,18 @@ use crate::newton::NewtonOptions;
 pub struct CareOptions {
     /// Make the two sides of seams equal.
     pub seams: bool,
-    /// A chain of boundary that leaves its line by at most this share of its length becomes straight; 0 for
-    /// none. Below 0.2.
+    /// A chain of boundary that leaves its line by at most this share of its length becomes
+    /// straight; 0 for none. Below 0.2.
     pub straight: f64,
-    /// Angle between an edge's direction before and after a vertex that makes it a corner, degrees, above 0.
+    /// Angle between an edge's direction before and after a vertex that makes it a corner, degrees,
+    /// above 0.
     pub corner: f64,
-    /// How exactly pieces must be mirror images in space, a share of their diagonal; 0 leaves left and right
-    /// alone. Below 0.1.
+    /// How exactly pieces must be mirror images in space, a share of their diagonal; 0 leaves left
+    /// and right alone. Below 0.1.
     pub mirror: f64,
-    /// How near pieces with different meshes must be to mirror images, in space (mean) and in the plane
-    /// (largest), a share of their diagonal, for their outlines to be made so; 0 leaves them alone. Below 0.2.
+    /// How near pieces with different meshes must be to mirror images, in space (mean) and in the
+    /// plane (largest), a share of their diagonal, for their outlines to be made so; 0 leaves them
+    /// alone. Below 0.2.
     pub mirror_outline: f64,
     /// When the solver stops.
     pub newton: NewtonOptions,

@@ -4,9 +4,9 @@ use crate::surface::Surface;
 use nalgebra::Point2;
 use std::f64::consts::PI;
 
-/// Cuts every boundary loop of a flat piece at vertices whose inner angle differs from a straight line by more
-/// than `corner` (radians), and at `ends`. Chains are open, both ends in them, the piece on their left; a loop
-/// without any cut is one chain that ends where it begins.
+/// Cuts every boundary loop of a flat piece at vertices whose inner angle differs from a straight
+/// line by more than `corner` (radians), and at `ends`. Chains are open, both ends in them, the
+/// piece on their left; a loop without any cut is one chain that ends where it begins.
 #[must_use]
 pub fn boundary_chains(surface: &Surface, flat: &[Point2<f64>], ends: &[u32], corner: f64) -> Vec<Vec<u32>> {
     let mut is_end = corner_vertices(surface, flat, corner);
@@ -15,8 +15,8 @@ pub fn boundary_chains(surface: &Surface, flat: &[Point2<f64>], ends: &[u32], co
     surface.loops().iter().flat_map(|vertices| cut_loop(vertices, cuts)).collect()
 }
 
-/// For each vertex whether it is a boundary vertex with an inner angle that differs from a straight line by
-/// more than `corner`.
+/// For each vertex whether it is a boundary vertex with an inner angle that differs from a straight
+/// line by more than `corner`.
 pub(super) fn corner_vertices(surface: &Surface, flat: &[Point2<f64>], corner: f64) -> Vec<bool> {
     let angles = inner_angles(surface, flat);
     let mut is_corner = vec![false; flat.len()];

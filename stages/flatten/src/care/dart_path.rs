@@ -1,4 +1,5 @@
-//! Ways along edges from the inside of a flat piece to its boundary (Dijkstra 1959), cheap near a ray.
+//! Ways along edges from the inside of a flat piece to its boundary (Dijkstra 1959), cheap near a
+//! ray.
 
 use crate::linear::Graph;
 use crate::surface::Surface;
@@ -6,8 +7,8 @@ use nalgebra::{Point2, Vector2};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// At this distance from the ray, a share of the piece's extent, a way costs twice its length; it grows with
-/// the square.
+/// At this distance from the ray, a share of the piece's extent, a way costs twice its length; it
+/// grows with the square.
 const BESIDE: f64 = 0.02;
 
 /// What every search of one piece shares.
@@ -38,8 +39,8 @@ impl<'a> Ways<'a> {
         &self.neighbours[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
     }
 
-    /// The cheapest way to `tip` from the boundary near the ray from the tip along `direction`, its first
-    /// vertex alone on the boundary; none from the boundary to itself.
+    /// The cheapest way to `tip` from the boundary near the ray from the tip along `direction`, its
+    /// first vertex alone on the boundary; none from the boundary to itself.
     pub(super) fn to_boundary(&self, tip: u32, direction: Vector2<f64>) -> Option<Vec<u32>> {
         if self.is_on_boundary(tip) {
             return None;

@@ -1,8 +1,9 @@
 //! Where a dart may end: the places of most strain and of most curvature.
 //!
-//! Strain energy of triangles, and the angle that is missing around each inner vertex (its Gaussian curvature),
-//! are gathered at the vertices and spread over a neighbourhood, so that neither a sliver nor the mesh's
-//! fineness decides. A dart that was sewn shut is a point of curvature: its tip.
+//! Strain energy of triangles, and the angle that is missing around each inner vertex (its Gaussian
+//! curvature), are gathered at the vertices and spread over a neighbourhood, so that neither a
+//! sliver nor the mesh's fineness decides. A dart that was sewn shut is a point of curvature: its
+//! tip.
 
 use super::dart_path::Ways;
 use crate::distortion::TriangleStrain;
@@ -22,7 +23,8 @@ struct Field<'a> {
     rounds: usize,
 }
 
-/// The inner vertices of most spread strain and of most spread curvature, and the largest spread strain.
+/// The inner vertices of most spread strain and of most spread curvature, and the largest spread
+/// strain.
 pub(super) fn tips(surface: &Surface, ways: &Ways<'_>, strains: &[TriangleStrain]) -> (Vec<u32>, f64) {
     let field = Field::new(surface, ways);
     let energy =

@@ -1,10 +1,12 @@
 //! Darts and cuts where a fitted piece strains more than its cloth bears.
 //!
-//! Again and again, while the strain spread over a neighbourhood passes the limit: from the place of most
-//! strain and from that of most curvature the ways to the boundary are tried, down and up the grain and across
-//! it (and their mirror images, if the piece is symmetric); each is cut and flattened, and the one that saves
-//! most energy is kept, those along the grain counting a quarter more. Ways much longer than the shortest are not tried. Proposals
-//! end when the limit is met, when no cut saves enough of what is left, or at the number that is allowed. Cost: up to eight flattenings a dart.
+//! Again and again, while the strain spread over a neighbourhood passes the limit: from the place
+//! of most strain and from that of most curvature the ways to the boundary are tried, down and up
+//! the grain and across it (and their mirror images, if the piece is symmetric); each is cut and
+//! flattened, and the one that saves most energy is kept, those along the grain counting a quarter
+//! more. Ways much longer than the shortest are not tried. Proposals end when the limit is met,
+//! when no cut saves enough of what is left, or at the number that is allowed. Cost: up to eight
+//! flattenings a dart.
 
 use super::Objective;
 use super::dart_path::Ways;
@@ -23,7 +25,8 @@ use nalgebra::{Point2, Vector2};
 pub struct Dart {
     /// Vertices of the uncut surface from the boundary to the tip, along edges.
     pub path: Vec<u32>,
-    /// The share of the piece's energy, before any cut, that this one saves (with its mirror image, if it has one).
+    /// The share of the piece's energy, before any cut, that this one saves (with its mirror image,
+    /// if it has one).
     pub saves: f64,
     /// The largest spread strain before and after this cut.
     pub strain: [f64; 2],
@@ -34,7 +37,8 @@ pub struct Dart {
 /// When to propose.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DartOptions {
-    /// The strain that the cloth bears, spread over a neighbourhood: 0.015 is 1.5 per cent. Above 0.
+    /// The strain that the cloth bears, spread over a neighbourhood: 0.015 is 1.5 per cent.
+    /// Above 0.
     pub max_strain: f64,
     /// The least share of the energy that is left that a cut must save, above 0, below 1.
     pub least_saving: f64,
@@ -50,17 +54,19 @@ impl Default for DartOptions {
     }
 }
 
-/// By how much more a saving counts where the cut lies along the grain; in between by the square of the cosine.
+/// By how much more a saving counts where the cut lies along the grain; in between by the square of
+/// the cosine.
 const GRAIN_BONUS: f64 = 0.25;
 
-/// A dart is at most so many times as long as the shortest from its tip: one that runs across the piece, through the
-/// places where others end, would save the most and could not be sewn.
+/// A dart is at most so many times as long as the shortest from its tip: one that runs across the
+/// piece, through the places where others end, would save the most and could not be sewn.
 const MOST_DETOUR: f64 = 2.0;
 
 /// The share of the first energy that a cut saves at least, whatever is left.
 const LEAST_OF_FIRST: f64 = 0.01;
 
-/// How exactly a piece must be its own mirror image for its darts to be mirrored, a share of its diagonal.
+/// How exactly a piece must be its own mirror image for its darts to be mirrored, a share of its
+/// diagonal.
 const SYMMETRIC: f64 = 1e-3;
 
 /// A piece with its cuts so far.
@@ -111,12 +117,12 @@ pub fn propose_darts(
     Ok(darts)
 }
 
-/// Cuts a surface along darts; the piece's vertices and triangles know those of the surface, and its seams are
-/// the darts' legs.
+/// Cuts a surface along darts; the piece's vertices and triangles know those of the surface, and
+/// its seams are the darts' legs.
 ///
 /// # Errors
-/// [`SurfaceError::NoSuchEdge`] if a path leaves the edges, [`SurfaceError::Disconnected`] if the cuts divide
-/// the piece.
+/// [`SurfaceError::NoSuchEdge`] if a path leaves the edges, [`SurfaceError::Disconnected`] if the
+/// cuts divide the piece.
 pub fn cut_darts(surface: &Surface, darts: &[Dart]) -> Result<Pieces, SurfaceError> {
     let paths: Vec<_> = darts.iter().map(|d| d.path.clone()).collect();
     cut(surface, &paths)
@@ -206,7 +212,8 @@ impl<'a> Search<'a> {
         Ok(best)
     }
 
-    /// A way and its mirror image, cut and flattened; none if that divides the piece or cannot be flattened.
+    /// A way and its mirror image, cut and flattened; none if that divides the piece or cannot be
+    /// flattened.
     fn candidate(&self, stage: &Stage, cuts: &[Vec<u32>], way: Vec<u32>, along: f64) -> Option<Candidate> {
         let mut paths = vec![way];
         if let Some(image) = self.image(&paths[0]).filter(|i| apart(i, &paths[0])) {

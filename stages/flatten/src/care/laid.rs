@@ -1,7 +1,8 @@
 //! Two outlines of a pair in one plane, and where the vertices of each belong on the other.
 //!
-//! Between corners and seam ends, which correspond by their lengths, a vertex belongs where the other line is nearest, so that
-//! nothing is strained along the edge for the sake of its spacing. Cost O(n^2) for n vertices of each outline.
+//! Between corners and seam ends, which correspond by their lengths, a vertex belongs where the
+//! other line is nearest, so that nothing is strained along the edge for the sake of its spacing.
+//! Cost O(n^2) for n vertices of each outline.
 
 use super::outline::{Correspondence, Motion, Outline};
 use nalgebra::{Point2, Vector2};
@@ -46,11 +47,13 @@ impl Side {
 /// How an outline is drawn to the other.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pull {
-    /// Corners and seam ends to their places, what lies between onto the line, along which it is free.
+    /// Corners and seam ends to their places, what lies between onto the line, along which it is
+    /// free.
     Slide,
     /// Every vertex to the place on the line that is nearest.
     Hold,
-    /// As before, but that an edge that cuts off a vertex of the other outline is moved out by half of that.
+    /// As before, but that an edge that cuts off a vertex of the other outline is moved out by half
+    /// of that.
     Fit,
 }
 
@@ -67,8 +70,9 @@ impl Laid {
         farthest(&self.a, &self.b).max(farthest(&self.b, &self.a))
     }
 
-    /// For each vertex of an outline, in its own plane and order, where it should lie, and whether it must lie there: corners
-    /// and seam ends, and what stands for those of the other. The first is drawn to the mean of both, the second onto the first.
+    /// For each vertex of an outline, in its own plane and order, where it should lie, and whether
+    /// it must lie there: corners and seam ends, and what stands for those of the other. The first
+    /// is drawn to the mean of both, the second onto the first.
     pub(super) fn targets(&self, side: Side, pull: Pull) -> Vec<Target> {
         let targets = self.on_other(side, pull);
         match side {
@@ -126,7 +130,8 @@ impl Laid {
     }
 }
 
-/// By how much vertices of one outline are moved so that their edges cut off half as much of the other.
+/// By how much vertices of one outline are moved so that their edges cut off half as much of the
+/// other.
 fn moved_out(own: &Outline, other: &Outline) -> Vec<Vector2<f64>> {
     let mut shifts = vec![Vector2::zeros(); own.places().len()];
     for p in other.places() {

@@ -1,9 +1,9 @@
 //! Left and right: pieces that are mirror images in space become mirror images in the plane.
 //!
-//! For two pieces the mirror is the plane half-way between their centres; for one piece with itself it is a
-//! plane through its centre across one of its axes of inertia. Each mirrored vertex must meet a vertex, one to
-//! one, within a tolerance. Then both flat pieces become the mean of the one and the mirrored other, laid over
-//! each other by the best rigid motion. Cost O(n log n) a pair.
+//! For two pieces the mirror is the plane half-way between their centres; for one piece with itself
+//! it is a plane through its centre across one of its axes of inertia. Each mirrored vertex must
+//! meet a vertex, one to one, within a tolerance. Then both flat pieces become the mean of the one
+//! and the mirrored other, laid over each other by the best rigid motion. Cost O(n log n) a pair.
 
 use crate::islands::Piece;
 use crate::surface::Surface;
@@ -23,7 +23,8 @@ pub struct MirrorPair {
     pub exact: bool,
 }
 
-/// All pairs, each piece in one at most; `tolerance` is a share of the diagonal of a piece's box, such as 0.0001.
+/// All pairs, each piece in one at most; `tolerance` is a share of the diagonal of a piece's box,
+/// such as 0.0001.
 #[must_use]
 pub fn mirror_pairs(pieces: &[Piece], tolerance: f64) -> Vec<MirrorPair> {
     let mut taken = vec![false; pieces.len()];
@@ -145,7 +146,8 @@ fn mirrored_partner(pair: &MirrorPair, a: &[Point2<f64>], b: &[Point2<f64>]) -> 
     image.iter().map(|q| Point2::from(turn * (q.coords - from) + to)).collect()
 }
 
-/// Both places as the mean of one and the mirrored other; the first keeps its grain upright, the second is its image.
+/// Both places as the mean of one and the mirrored other; the first keeps its grain upright, the
+/// second is its image.
 pub(super) fn mean(pair: &MirrorPair, a: &[Point2<f64>], b: &[Point2<f64>]) -> [Vec<Point2<f64>>; 2] {
     let image = mirrored_partner(pair, a, b);
     let first: Vec<_> = a.iter().zip(&image).map(|(p, q)| nalgebra::center(p, q)).collect();

@@ -1,7 +1,7 @@
 //! Pattern care: what a flat piece needs to be a pattern that can be cut and sewn.
 //!
-//! Seams whose two sides come out equal, straight edges straight, left and right mirror images, darts where the
-//! strain is too large.
+//! Seams whose two sides come out equal, straight edges straight, left and right mirror images,
+//! darts where the strain is too large.
 
 mod care_options;
 mod chains;

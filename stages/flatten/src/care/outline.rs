@@ -1,8 +1,9 @@
 //! Two outlines laid over each other: the one and the mirrored other.
 //!
-//! Both are sampled evenly along their lengths; of all shifts of the one against the other that is taken whose
-//! best rigid motion (Procrustes) leaves least distance. Corners and seam ends that then lie near each other
-//! are knots; in between, lengths correspond in proportion. Cost O(k^2) for k samples.
+//! Both are sampled evenly along their lengths; of all shifts of the one against the other that is
+//! taken whose best rigid motion (Procrustes) leaves least distance. Corners and seam ends that
+//! then lie near each other are knots; in between, lengths correspond in proportion. Cost O(k^2)
+//! for k samples.
 
 use nalgebra::{Matrix3, Point2, Rotation2, Vector2, Vector3};
 
@@ -107,8 +108,9 @@ impl Motion {
         Rotation2::new(-self.turn.angle() / 2.0)
     }
 
-    /// The motion after one step that brings the moved `second` nearer to the points of `first`: least squares of the distances
-    /// across its line, so that long edges may slide along each other (Chen and Medioni 1992).
+    /// The motion after one step that brings the moved `second` nearer to the points of `first`:
+    /// least squares of the distances across its line, so that long edges may slide along each
+    /// other (Chen and Medioni 1992).
     pub(super) fn nearer(&self, first: &Outline, second: &Outline) -> Self {
         let moved = second.moved(self);
         let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
@@ -142,8 +144,8 @@ pub(super) fn fit(p: &[Point2<f64>], q: &[Point2<f64>]) -> Motion {
     Motion { from, turn: Rotation2::new(sum.y.atan2(sum.x)), to }
 }
 
-/// The motion that lays `b` over `a` but for the spacing of the samples, and the share of its length where `a`
-/// begins on it.
+/// The motion that lays `b` over `a` but for the spacing of the samples, and the share of its
+/// length where `a` begins on it.
 pub(super) fn align(a: &Outline, b: &Outline) -> (Motion, f64) {
     let (p, q) = (a.samples(), b.samples());
     let middle = |s: &[Point2<f64>]| s.iter().fold(Vector2::zeros(), |m, p| m + p.coords) / SAMPLES as f64;
@@ -165,14 +167,15 @@ pub(super) fn align(a: &Outline, b: &Outline) -> (Motion, f64) {
 /// Which length of one outline is which of the other.
 #[derive(Debug, Clone)]
 pub(super) struct Correspondence {
-    /// Pairs of lengths, the first increasing within one round, the second within one round from its first.
+    /// Pairs of lengths, the first increasing within one round, the second within one round from
+    /// its first.
     knots: Vec<[f64; 2]>,
     rounds: [f64; 2],
 }
 
 impl Correspondence {
-    /// From points of both outlines (already laid over each other) that may be knots, those that must first, and the
-    /// shift of [`align`].
+    /// From points of both outlines (already laid over each other) that may be knots, those that
+    /// must first, and the shift of [`align`].
     pub(super) fn new(a: &Outline, b: &Outline, points: &[[Vec<usize>; 2]], shift: f64, reach: f64) -> Self {
         let rounds = [a.length(), b.length()];
         let spacing = rounds[0] / a.places.len() as f64 + rounds[1] / b.places.len() as f64;
@@ -182,7 +185,8 @@ impl Correspondence {
             let more: Vec<_> = mutual_pairs(a, b, points, reach).into_iter().filter(away).collect();
             knots.extend(more);
         }
-        // A corner that the other outline does not have takes its nearest vertex, away from other knots.
+        // A corner that the other outline does not have takes its nearest vertex, away from other
+        // knots.
         let [points_a, points_b] = points.last().map_or([&[][..]; 2], |p| [&p[0], &p[1]]);
         let all = |x: &Outline| (0..x.places.len()).collect::<Vec<_>>();
         let singles_a =

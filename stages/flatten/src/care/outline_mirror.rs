@@ -1,10 +1,12 @@
 //! Left and right pieces whose meshes differ: their outlines become mirror images.
 //!
-//! Two pieces are a pair if the mirrored boundary of one lies near that of the other in space, about the plane
-//! half-way between their centres (one plane for the whole garment), and their flat outlines lie near each
-//! other, too. The first is solved for near the mean outline; the second slides along the first one's outline, then is held on
-//! it. In turn the first is held on the mean of both and the second on the first, until no vertex of the one is far off the other
-//! or for a few rounds. Cost O(n^2) for n boundary vertices of each pair, and three to seven solutions a piece.
+//! Two pieces are a pair if the mirrored boundary of one lies near that of the other in space,
+//! about the plane half-way between their centres (one plane for the whole garment), and their flat
+//! outlines lie near each other, too. The first is solved for near the mean outline; the second
+//! slides along the first one's outline, then is held on it. In turn the first is held on the mean
+//! of both and the second on the first, until no vertex of the one is far off the other or for a
+//! few rounds. Cost O(n^2) for n boundary vertices of each pair, and three to seven solutions a
+//! piece.
 
 use super::chains::corner_vertices;
 use super::laid::{Laid, Pull, Side};
@@ -32,8 +34,8 @@ pub struct OutlinePair {
 /// The mirror plane of a garment: a point and the normal.
 type Plane = (Point3<f64>, Vector3<f64>);
 
-/// How far the planes of two pairs may differ: the sine of the angle, and the distance as a share of a piece's
-/// diagonal.
+/// How far the planes of two pairs may differ: the sine of the angle, and the distance as a share
+/// of a piece's diagonal.
 const SAME_PLANE: f64 = 0.1;
 
 /// Most boundary points of a piece that are compared in space.
@@ -45,10 +47,12 @@ const LIKE: f64 = 0.05;
 /// How often the motion that lays two outlines over each other is fitted.
 const FITS: usize = 4;
 
-/// Weight that draws a vertex to a place: as stiff as a triangle, so that the piece gives way for its seams.
+/// Weight that draws a vertex to a place: as stiff as a triangle, so that the piece gives way for
+/// its seams.
 const DRAW_WEIGHT: f64 = 1.0;
 
-/// Weight that holds an outline: a thousand times the stiffness of a triangle; only seam lengths still move it.
+/// Weight that holds an outline: a thousand times the stiffness of a triangle; only seam lengths
+/// still move it.
 const HOLD_WEIGHT: f64 = 1e3;
 
 /// The share of a corner's angle that is enough to lay outlines over each other by.
@@ -57,11 +61,12 @@ const KNOT: f64 = 0.25;
 /// How often the second outline slides along the first before it is held.
 const SLIDES: usize = 2;
 
-/// How often the one is held on the other and the other on the mean of both, at most: what only one of the two meshes
-/// can draw is halved each time.
+/// How often the one is held on the other and the other on the mean of both, at most: what only one
+/// of the two meshes can draw is halved each time.
 const ROUNDS: usize = 6;
 
-/// Outlines that are so near are mirror images, a share of a piece's diagonal: 0.4 mm on one of a metre.
+/// Outlines that are so near are mirror images, a share of a piece's diagonal: 0.4 mm on one of a
+/// metre.
 const NEAR: f64 = 4e-4;
 
 /// Pairs of pieces that are not in `taken`; `tolerance` is a share of a piece's diagonal.
@@ -101,7 +106,8 @@ fn same_plane(first: &Plane, other: &Plane, size: f64) -> bool {
         && (other.0 - first.0).dot(&first.1).abs() <= SAME_PLANE * size
 }
 
-/// The mean distance of the mirrored boundary of `s` from that of `t`, as a share of the diagonal, and the plane.
+/// The mean distance of the mirrored boundary of `s` from that of `t`, as a share of the diagonal,
+/// and the plane.
 fn mirrored_distance(s: &Surface, t: &Surface) -> Option<(f64, Plane)> {
     let (a, b) = (boundary(s), boundary(t));
     let centre = |p: &[Point3<f64>]| p.iter().fold(Vector3::zeros(), |m, p| m + p.coords) / p.len() as f64;
@@ -257,7 +263,8 @@ impl OutlineMirror<'_> {
         Laid { pieces: [a, b], a: first, b: moved, ends, near, motion, map }
     }
 
-    /// Terms that draw one outline to the other: the first to the mean of both, the second onto the first.
+    /// Terms that draw one outline to the other: the first to the mean of both, the second onto the
+    /// first.
     fn drawn(&self, laid: &Laid, side: Side, pull: Pull) -> Vec<Term> {
         let outline = &self.pieces.pieces[laid.pieces[side as usize]].surface.loops()[0];
         let weight = if (side, pull) == (Side::First, Pull::Slide) { DRAW_WEIGHT } else { HOLD_WEIGHT };

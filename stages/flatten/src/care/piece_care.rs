@@ -1,7 +1,8 @@
-//! One piece solved again with its seam lengths as equations and stiff terms for its straight edges.
+//! One piece solved again with its seam lengths as equations and stiff terms for its straight
+//! edges.
 //!
-//! The start is the flat piece as it is; what comes out has the least energy of all shapes that fulfil the
-//! equations. Cost: a few Newton iterations, each with one more solution a seam side.
+//! The start is the flat piece as it is; what comes out has the least energy of all shapes that
+//! fulfil the equations. Cost: a few Newton iterations, each with one more solution a seam side.
 
 use super::straight::{line_terms, snap};
 use super::{CareOptions, Objective, boundary_chains, straight_chains};
@@ -24,8 +25,8 @@ pub(super) struct PieceCare<'a> {
 }
 
 impl PieceCare<'_> {
-    /// Solves again, with some vertices drawn to places (in the unit of the piece); returns how many chains are
-    /// straight now.
+    /// Solves again, with some vertices drawn to places (in the unit of the piece); returns how
+    /// many chains are straight now.
     pub(super) fn solve(&self, flat: &mut Flattening, near: &[Term]) -> Result<usize, FlattenError> {
         let lines = self.lines(flat, near);
         if lines.is_empty() && self.sides.is_empty() && near.is_empty() {
@@ -100,8 +101,8 @@ impl PieceCare<'_> {
     }
 }
 
-/// The plane in which the solver works: stretched as the garment is, so that the energy knows it, lengths in
-/// the unit of the frames.
+/// The plane in which the solver works: stretched as the garment is, so that the energy knows it,
+/// lengths in the unit of the frames.
 struct StretchedPlane {
     frames: Frames,
     stretch: Vector2<f64>,

@@ -1,9 +1,11 @@
-//! The pieces of a garment solved again so that seams fit, straight edges are straight and mirror images agree.
+//! The pieces of a garment solved again so that seams fit, straight edges are straight and mirror
+//! images agree.
 //!
-//! In this order: pieces whose vertices are mirror images become so; each seam gets one length for both sides
-//! (and for its mirror image); each piece is solved again with those lengths and its straight edges, so that
-//! every correction is the gentlest that the cloth allows; then outlines of left and right pieces with
-//! different meshes become mirror images. Cost: some ten Newton iterations a piece.
+//! In this order: pieces whose vertices are mirror images become so; each seam gets one length for
+//! both sides (and for its mirror image); each piece is solved again with those lengths and its
+//! straight edges, so that every correction is the gentlest that the cloth allows; then outlines of
+//! left and right pieces with different meshes become mirror images. Cost: some ten Newton
+//! iterations a piece.
 
 use super::Objective;
 use super::care_options::CareOptions;
@@ -38,14 +40,15 @@ pub struct CareReport {
     pub seams: Vec<SeamLengths>,
     /// How many chains of each piece were made straight.
     pub straight: Vec<usize>,
-    /// Mirror pairs, each with the largest distance of the one from the image of the other before the care.
+    /// Mirror pairs, each with the largest distance of the one from the image of the other before
+    /// the care.
     pub mirrors: Vec<(MirrorPair, f64)>,
     /// Pairs whose outlines were made mirror images.
     pub outlines: Vec<OutlinePair>,
 }
 
-/// Where an outline is held on another, edges that leave their line by this share are straight: the other's edges
-/// decide, not how far its own are from straight.
+/// Where an outline is held on another, edges that leave their line by this share are straight: the
+/// other's edges decide, not how far its own are from straight.
 const STRAIGHT: f64 = 1e-4;
 
 /// Corrects the flat pieces in place; `flats` and `placements` have one entry a piece.
@@ -78,7 +81,8 @@ pub fn refine(
     };
     let solved = flats.par_iter_mut().enumerate().map(|(i, flat)| care(i).solve(flat, &[]));
     let straight = solved.collect::<Vec<_>>().into_iter().collect::<Result<Vec<_>, _>>()?;
-    // Where only the vertices are mirror images, the mean of two solutions would undo their seam lengths.
+    // Where only the vertices are mirror images, the mean of two solutions would undo their seam
+    // lengths.
     let exact: Vec<_> = pairs.iter().filter(|p| p.exact).cloned().collect();
     make_mirrors(pieces, &exact, flats);
     let solve = |i: usize, near: &[Term], pull: Pull, flat: &mut Flattening| {

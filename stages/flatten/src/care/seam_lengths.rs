@@ -1,7 +1,7 @@
 //! How long the two sides of a seam are, and how long they should be.
 //!
-//! A seam's target is the mean of its two flat sides, together with those of the seams that are its mirror
-//! images, all weighted alike.
+//! A seam's target is the mean of its two flat sides, together with those of the seams that are its
+//! mirror images, all weighted alike.
 
 use super::flat_length;
 use crate::flatteners::Flattening;
@@ -27,7 +27,8 @@ impl SeamLengths {
 /// Seams of left and right whose lengths differ by more than this share are not mirror images.
 const MIRRORED_SEAM: f64 = 0.25;
 
-/// The length that each seam should get: the mean of its sides, and of those of the seams that are its mirror images.
+/// The length that each seam should get: the mean of its sides, and of those of the seams that are
+/// its mirror images.
 pub(super) fn seam_targets(seams: &[Seam], flats: &[Flattening], alike: &[[usize; 2]]) -> Vec<f64> {
     let means = seams.iter().map(|s| side_lengths(s, flats)).map(|[a, b]| (a + b) / 2.0);
     let means: Vec<f64> = means.collect();

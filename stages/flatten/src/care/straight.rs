@@ -3,11 +3,12 @@
 use crate::newton::Term;
 use nalgebra::Point2;
 
-/// Weight of a point's distance from its place on the line: a hundred thousand times the stiffness of a triangle.
+/// Weight of a point's distance from its place on the line: a hundred thousand times the stiffness
+/// of a triangle.
 const LINE_WEIGHT: f64 = 1e5;
 
-/// Whether all points of an open chain of three or more lie within `share` of its end-to-end length from the
-/// line between its ends.
+/// Whether all points of an open chain of three or more lie within `share` of its end-to-end length
+/// from the line between its ends.
 #[must_use]
 pub fn is_straight(chain: &[u32], flat: &[Point2<f64>], share: f64) -> bool {
     let [first, .., last] = chain else { return false };

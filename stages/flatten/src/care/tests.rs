@@ -129,7 +129,8 @@ fn left_and_right_of_different_meshes_get_mirrored_outlines() {
     assert_eq!(pairs, [[0, 1]]);
     let pair = report.outlines[0];
     assert!(pair.after < 0.2 * pair.before && pair.after < 5e-4, "{pair:?}");
-    // They stand like mirror images: the lower left corner of the one is the lower right of the other.
+    // They stand like mirror images: the lower left corner of the one is the lower right of the
+    // other.
     let place = |i: usize, v: u32| {
         let k = sleeves.pieces[i].vertices.iter().position(|&u| u == v);
         k.map(|k| flat[i].points[k]).unwrap_or_default()
@@ -170,7 +171,8 @@ fn darts_follow_a_grain_that_is_an_edge() {
 
 #[test]
 fn a_dart_between_the_vertices_is_found_within_a_cell() {
-    // A cone on a panel 40 x 50 cm, cells of 1 cm, its tip between vertices; 25 degrees are missing around it.
+    // A cone on a panel 40 x 50 cm, cells of 1 cm, its tip between vertices; 25 degrees are missing
+    // around it.
     let slope = ((1.0f64 / (1.0 - 25.0 / 360.0)).powi(2) - 1.0).sqrt();
     let bodice = surface(grid(40, 50, |u, v| {
         let (x, y) = (40.0 * u - 20.0, 50.0 * v);
@@ -188,7 +190,8 @@ fn a_dart_between_the_vertices_is_found_within_a_cell() {
 
 #[test]
 fn a_dart_does_not_run_on_through_the_tip_of_another() {
-    // Two cones side by side, unlike enough not to be mirror images: one cut through both tips would save the most.
+    // Two cones side by side, unlike enough not to be mirror images: one cut through both tips
+    // would save the most.
     let hill = |x: f64, y: f64, at: f64, high: f64| (high - 0.6 * (x - at).hypot(y)).max(0.0);
     let bodice = surface(grid(30, 24, |u, v| {
         let (x, y) = (2.5 * u - 1.25, 2.0 * v - 1.0);

@@ -1,7 +1,7 @@
 //! Boundary edges that cross each other in the plane, by exact predicates (Shewchuk 1997).
 //!
-//! Edges sorted by their least x; each is compared with those that begin before it ends. Cost about n^1.5 for n
-//! edges of even length.
+//! Edges sorted by their least x; each is compared with those that begin before it ends. Cost about
+//! n^1.5 for n edges of even length.
 
 use nalgebra::Point2;
 use robust::{Coord, orient2d};

@@ -1,8 +1,8 @@
 //! How much a flat piece differs from the garment's: the table by which a flattening is judged.
 //!
-//! Errors are counted as the published method does from 3D to 2D: area `(S3 - S2) / S3`, outline `(L3 - L2) /
-//! L3`. Strains are those of the garment against the flat cloth (`|J^-1 e| - 1`): above zero where the cloth
-//! must stretch. Cost O(n log n).
+//! Errors are counted as the published method does from 3D to 2D: area `(S3 - S2) / S3`, outline
+//! `(L3 - L2) / L3`. Strains are those of the garment against the flat cloth (`|J^-1 e| - 1`):
+//! above zero where the cloth must stretch. Cost O(n log n).
 
 mod crossings;
 mod strain;
@@ -38,7 +38,8 @@ pub struct Distortion {
     pub outline_error: f64,
     /// The corners of the boundary, by their vertices.
     pub corners: Vec<CornerAngles>,
-    /// The largest change of an inner angle at a corner of the boundary, degrees; 0 without corners.
+    /// The largest change of an inner angle at a corner of the boundary, degrees; 0 without
+    /// corners.
     pub corner_change: f64,
     /// Strain along the warp.
     pub warp: Spread,
@@ -65,7 +66,8 @@ pub struct CornerAngles {
     pub plane: f64,
 }
 
-/// A boundary vertex is a corner if its angle differs by more than this from a straight line, degrees.
+/// A boundary vertex is a corner if its angle differs by more than this from a straight line,
+/// degrees.
 pub const CORNER: f64 = 30.0;
 
 /// Measures a flat piece against its surface; y is the warp.

@@ -1,13 +1,15 @@
-//! As-rigid-as-possible energy (Liu and others 2008): `|J - R|^2` with the nearest rotation R; in stretches,
-//! `(s - 1)^2` each.
+//! As-rigid-as-possible energy (Liu and others 2008): `|J - R|^2` with the nearest rotation R; in
+//! stretches, `(s - 1)^2` each.
 //!
-//! That alone lets triangles lose their area: a thousandth of the symmetric Dirichlet energy keeps it above zero.
+//! That alone lets triangles lose their area: a thousandth of the symmetric Dirichlet energy keeps
+//! it above zero.
 
 use super::SymmetricDirichlet;
 use super::isotropic::{Isotropic, Stretches};
 use nalgebra::Vector2;
 
-/// The share of symmetric Dirichlet energy: it changes stretches by some thousandths of their distance from 1.
+/// The share of symmetric Dirichlet energy: it changes stretches by some thousandths of their
+/// distance from 1.
 const AREA_KEEPER: f64 = 1e-3;
 
 /// `(s1 - 1)^2 + (s2 - 1)^2`, with a thousandth of [`SymmetricDirichlet`].

@@ -1,8 +1,9 @@
 //! Energies of the two stretches alone, by the eigensystem of Smith, de Goes, Kim (2019).
 //!
-//! For `J = U diag(s1, s2) V^T` and a density `f(s1, s2)` the Hessian has four known eigenvectors: the two scalings
-//! (a 2 x 2 block of second derivatives of `f`), the flip, with `(f1 - f2) / (s1 - s2)`, and the twist, with
-//! `(f1 + f2) / (s1 + s2)`. Each is cut off at zero by itself, so no numerical eigenvalues are needed.
+//! For `J = U diag(s1, s2) V^T` and a density `f(s1, s2)` the Hessian has four known eigenvectors:
+//! the two scalings (a 2 x 2 block of second derivatives of `f`), the flip, with
+//! `(f1 - f2) / (s1 - s2)`, and the twist, with `(f1 + f2) / (s1 + s2)`. Each is cut off at zero by
+//! itself, so no numerical eigenvalues are needed.
 
 use super::{Derivatives, Energy, Hessian};
 use nalgebra::{Matrix2, Matrix4, Vector2, Vector4};
@@ -16,8 +17,8 @@ pub trait Isotropic: Sync {
     fn stretches(&self, s: Vector2<f64>) -> Stretches;
 }
 
-/// Derivatives of a density without mixed term, and the eigenvalue of the flip, which would be 0 / 0 at equal
-/// stretches.
+/// Derivatives of a density without mixed term, and the eigenvalue of the flip, which would be 0 /
+/// 0 at equal stretches.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretches {
     /// First derivatives.
@@ -36,7 +37,8 @@ impl<E: Isotropic> Energy for E {
     fn derivatives(&self, _: usize, j: &Matrix2<f64>, wanted: Hessian) -> Derivatives {
         let (u, s, v) = rotations(j);
         let d = self.stretches(s);
-        // Columns of U and V as outer products: the four directions of the eigensystem, unit length.
+        // Columns of U and V as outer products: the four directions of the eigensystem, unit
+        // length.
         let outer =
             |a: Vector2<f64>, b: Vector2<f64>| Vector4::new(a.x * b.x, a.x * b.y, a.y * b.x, a.y * b.y);
         let (u1, u2, v1, v2) = (u, Vector2::new(-u.y, u.x), v, Vector2::new(-v.y, v.x));
@@ -62,7 +64,8 @@ pub fn singular_values(j: &Matrix2<f64>) -> Vector2<f64> {
     Vector2::new(q + r, q - r)
 }
 
-/// The part of a map that turns and scales, and the part that stretches along one direction and shrinks across it.
+/// The part of a map that turns and scales, and the part that stretches along one direction and
+/// shrinks across it.
 fn parts(j: &Matrix2<f64>) -> (Vector2<f64>, Vector2<f64>) {
     let turning = Vector2::new(j.m11 + j.m22, j.m21 - j.m12) / 2.0;
     (turning, Vector2::new(j.m11 - j.m22, j.m21 + j.m12) / 2.0)
@@ -74,8 +77,8 @@ fn rotations(j: &Matrix2<f64>) -> (Vector2<f64>, Vector2<f64>, Vector2<f64>) {
     let (q, r) = (turning.norm(), stretching.norm());
     let unit = |v: Vector2<f64>, length: f64| if length > 0.0 { v / length } else { Vector2::x() };
     let (turn, stretch) = (unit(turning, q), unit(stretching, r));
-    // U turns by half the sum of the two angles, U V^T by the first: halving an angle needs a root, not an arc
-    // tangent.
+    // U turns by half the sum of the two angles, U V^T by the first: halving an angle needs a root,
+    // not an arc tangent.
     let u =
         half(Vector2::new(turn.x * stretch.x - turn.y * stretch.y, turn.x * stretch.y + turn.y * stretch.x));
     let v = Vector2::new(turn.x * u.x + turn.y * u.y, turn.x * u.y - turn.y * u.x);

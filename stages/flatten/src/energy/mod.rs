@@ -1,8 +1,9 @@
-//! Energies of one triangle as functions of its map `J` from 3D to the plane, and their derivatives.
+//! Energies of one triangle as functions of its map `J` from 3D to the plane, and their
+//! derivatives.
 //!
-//! The energy of a pattern is the sum over triangles of share of the area times density `e(J)`. Far from a
-//! minimum the Hessian of each density is taken with its negative eigenvalues cut off, so that sums of them are
-//! positive semi-definite and Newton's step goes downhill.
+//! The energy of a pattern is the sum over triangles of share of the area times density `e(J)`. Far
+//! from a minimum the Hessian of each density is taken with its negative eigenvalues cut off, so
+//! that sums of them are positive semi-definite and Newton's step goes downhill.
 
 mod arap;
 mod isotropic;
@@ -22,10 +23,12 @@ use nalgebra::{Matrix2, Matrix4, Vector4};
 
 /// A density of energy.
 pub trait Energy: Sync {
-    /// The density at the map `j` of a triangle; infinite where the triangle is flipped or without area.
+    /// The density at the map `j` of a triangle; infinite where the triangle is flipped or without
+    /// area.
     fn value(&self, triangle: usize, j: &Matrix2<f64>) -> f64;
 
-    /// Value, gradient and Hessian by the entries of `j` in the order 11, 12, 21, 22; `j` has a positive determinant.
+    /// Value, gradient and Hessian by the entries of `j` in the order 11, 12, 21, 22; `j` has a
+    /// positive determinant.
     fn derivatives(&self, triangle: usize, j: &Matrix2<f64>, hessian: Hessian) -> Derivatives;
 
     /// Whether a turn of the whole pattern leaves the energy as it is.
@@ -37,7 +40,8 @@ pub trait Energy: Sync {
 /// Which second derivatives are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Hessian {
-    /// As they are: near a minimum their sum is positive, and Newton's method converges quadratically.
+    /// As they are: near a minimum their sum is positive, and Newton's method converges
+    /// quadratically.
     Exact,
     /// Without negative eigenvalues.
     Projected,

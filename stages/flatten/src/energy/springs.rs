@@ -1,16 +1,18 @@
-//! Springs along the edges of each triangle: `1/2 (l - d)^2 / d^2` of each edge, d its length in 3D, l in the plane.
+//! Springs along the edges of each triangle: `1/2 (l - d)^2 / d^2` of each edge, d its length in
+//! 3D, l in the plane.
 //!
-//! The structural springs of the sewing simulation, `f = c (l - d)`, laid in the plane. Their stiffness c falls
-//! with the square of the rest length and grows with the area beside the spring, so that the energy does not
-//! depend on the mesh's fineness. Springs alone let a triangle fold to nothing: a thousandth of the symmetric
-//! Dirichlet energy keeps its area above zero.
+//! The structural springs of the sewing simulation, `f = c (l - d)`, laid in the plane. Their
+//! stiffness c falls with the square of the rest length and grows with the area beside the spring,
+//! so that the energy does not depend on the mesh's fineness. Springs alone let a triangle fold to
+//! nothing: a thousandth of the symmetric Dirichlet energy keeps its area above zero.
 
 use super::{Derivatives, Energy, Hessian, SymmetricDirichlet};
 use crate::frames::local_edges;
 use crate::surface::Surface;
 use nalgebra::{Matrix2, Vector2, Vector4};
 
-/// The share of symmetric Dirichlet energy: it moves no vertex by more than a thousandth of the strain there.
+/// The share of symmetric Dirichlet energy: it moves no vertex by more than a thousandth of the
+/// strain there.
 const AREA_KEEPER: f64 = 1e-3;
 
 /// Rest vectors of the edges of every triangle, each of unit length in the triangle's plane.

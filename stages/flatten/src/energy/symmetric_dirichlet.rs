@@ -1,7 +1,8 @@
-//! Symmetric Dirichlet energy (Smith and Schaefer 2015): `|J|^2 + |J^-1|^2 - 4`, in stretches `s^2 + 1/s^2 - 2` each.
+//! Symmetric Dirichlet energy (Smith and Schaefer 2015): `|J|^2 + |J^-1|^2 - 4`, in stretches
+//! `s^2 + 1/s^2 - 2` each.
 //!
-//! Zero for isometries; a stretch by a factor costs as much as a shrinkage by it; infinite where a triangle
-//! loses its area.
+//! Zero for isometries; a stretch by a factor costs as much as a shrinkage by it; infinite where a
+//! triangle loses its area.
 
 use super::isotropic::{Isotropic, Stretches};
 use nalgebra::Vector2;

@@ -2,7 +2,8 @@ use super::*;
 use crate::shapes::{bump, surface};
 use proptest::prelude::*;
 
-/// Gradient and exact Hessian against differences of the value; the projected one has no negative eigenvalues.
+/// Gradient and exact Hessian against differences of the value; the projected one has no negative
+/// eigenvalues.
 fn check_derivatives(energy: &dyn Energy, j: Matrix2<f64>) {
     let d = energy.derivatives(0, &j, Hessian::Projected);
     let exact = energy.derivatives(0, &j, Hessian::Exact);

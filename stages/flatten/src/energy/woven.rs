@@ -1,12 +1,13 @@
 //! Woven cloth: stiff along warp and weft, soft in shear.
 //!
-//! The pattern's x is the weft, its y the warp. From the flat pattern to the garment a unit vector along the
-//! weft stretches to `w = |J^-1 e_x|`, one along the warp to `p = |J^-1 e_y|`, and their angle leaves a right
-//! angle by `g`. The density is `kw/8 (w - 1/w)^2 + kp/8 (p - 1/p)^2 + ks/2 tan^2 g`: to second order in the
-//! strains the elastic energy of a membrane of these three stiffnesses, and infinite where a triangle loses its
-//! area. With the gradients a and b of the flat x and y on the garment, P = a.a, Q = b.b, R = a.b, D = P Q -
-//! R^2: w^2 = Q / D, p^2 = P / D, tan^2 g = R^2 / D. Cost: some 200 operations a triangle, and 4 x 4
-//! eigenvalues where the Hessian is not positive.
+//! The pattern's x is the weft, its y the warp. From the flat pattern to the garment a unit vector
+//! along the weft stretches to `w = |J^-1 e_x|`, one along the warp to `p = |J^-1 e_y|`, and their
+//! angle leaves a right angle by `g`. The density is
+//! `kw/8 (w - 1/w)^2 + kp/8 (p - 1/p)^2 + ks/2 tan^2 g`: to second order in the strains the elastic
+//! energy of a membrane of these three stiffnesses, and infinite where a triangle loses its area.
+//! With the gradients a and b of the flat x and y on the garment, P = a.a, Q = b.b, R = a.b, D = P
+//! Q - R^2: w^2 = Q / D, p^2 = P / D, tan^2 g = R^2 / D. Cost: some 200 operations a triangle, and
+//! 4 x 4 eigenvalues where the Hessian is not positive.
 
 use super::{Derivatives, Energy, Hessian, project};
 use crate::error::FlattenError;
@@ -28,7 +29,8 @@ impl WovenStiffness {
     pub const COTTON: Self = Self { warp: 800.0, weft: 800.0, shear: 20.0 };
 }
 
-/// Most by which stiffnesses may differ: beyond it the softest is lost in the rounding of the stiffest.
+/// Most by which stiffnesses may differ: beyond it the softest is lost in the rounding of the
+/// stiffest.
 const MOST_RATIO: f64 = 1e6;
 
 /// The energy of [`WovenStiffness`], its stiffest direction counted as 4.
@@ -43,7 +45,8 @@ impl Woven {
     /// An energy by stiffnesses, each above zero.
     ///
     /// # Errors
-    /// [`FlattenError::InvalidParameter`] if one is not above zero, or not within a factor of 10^6 of the others.
+    /// [`FlattenError::InvalidParameter`] if one is not above zero, or not within a factor of 10^6
+    /// of the others.
     pub fn new(stiffness: WovenStiffness) -> Result<Self, FlattenError> {
         let WovenStiffness { warp, weft, shear } = stiffness;
         let most = warp.max(weft).max(shear);

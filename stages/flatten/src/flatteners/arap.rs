@@ -1,11 +1,11 @@
-//! As rigid as possible (Liu, Zhang, Xu, Gotsman, Gortler 2008): each triangle keeps its shape as far as its
-//! neighbours let it.
+//! As rigid as possible (Liu, Zhang, Xu, Gotsman, Gortler 2008): each triangle keeps its shape as
+//! far as its neighbours let it.
 //!
-//! Local step: the rotation nearest to each triangle's map. Global step: the places whose maps are nearest to
-//! those rotations, a linear system whose factor is made once. Each pair lowers the energy `sum share |J -
-//! R|^2`, ever more slowly; so after a few, Newton's method goes the rest of the way to the minimum, which also
-//! keeps triangles from flipping. Cost: one factor of n unknowns, two solutions an iteration, then some Newton
-//! steps.
+//! Local step: the rotation nearest to each triangle's map. Global step: the places whose maps are
+//! nearest to those rotations, a linear system whose factor is made once. Each pair lowers the
+//! energy `sum share |J - R|^2`, ever more slowly; so after a few, Newton's method goes the rest of
+//! the way to the minimum, which also keeps triangles from flipping. Cost: one factor of n
+//! unknowns, two solutions an iteration, then some Newton steps.
 
 use super::{Flattening, Placement};
 use crate::energy::Arap;
@@ -21,8 +21,8 @@ use nalgebra::{Point2, Vector2};
 /// How long to iterate.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ArapOptions {
-    /// Pairs of local and global steps, 0 or more; by default 0: from a start without flips Newton's method
-    /// alone is faster.
+    /// Pairs of local and global steps, 0 or more; by default 0: from a start without flips
+    /// Newton's method alone is faster.
     pub pairs: usize,
     /// When Newton's method stops; 0 iterations leave the result of the pairs, if it has no flips.
     pub newton: NewtonOptions,
@@ -34,7 +34,8 @@ const DRIFT: f64 = 1e-6;
 /// Flattens with the least `|J - R|^2`.
 ///
 /// # Errors
-/// Parameters of the placement or options, [`FlattenError::NoStart`], [`FlattenError::Factorization`].
+/// Parameters of the placement or options, [`FlattenError::NoStart`],
+/// [`FlattenError::Factorization`].
 pub fn arap(
     surface: &Surface,
     options: ArapOptions,

@@ -1,4 +1,5 @@
-//! Least squares conformal maps as a flattener (Lévy and others 2002): angles kept, size fitted to the true area.
+//! Least squares conformal maps as a flattener (Lévy and others 2002): angles kept, size fitted to
+//! the true area.
 
 use super::{Flattening, NOTHING_MINIMISED, Placement};
 use crate::error::FlattenError;
@@ -7,7 +8,8 @@ use crate::start::conformal_start;
 use crate::surface::Surface;
 use crate::system::System;
 
-/// Flattens with the least angle errors; where that flips triangles, gives Tutte's embedding instead, and says so.
+/// Flattens with the least angle errors; where that flips triangles, gives Tutte's embedding
+/// instead, and says so.
 ///
 /// # Errors
 /// Parameters of the placement, [`FlattenError::NoStart`], [`FlattenError::Factorization`].

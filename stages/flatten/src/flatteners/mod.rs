@@ -1,5 +1,5 @@
-//! The flatteners: each gives one flat place a vertex, at true scale, no triangle flipped, counter-clockwise
-//! from the right side.
+//! The flatteners: each gives one flat place a vertex, at true scale, no triangle flipped,
+//! counter-clockwise from the right side.
 //!
 //! | function | minimises | use |
 //! |---|---|---|
@@ -30,13 +30,15 @@ use nalgebra::Point2;
 /// A flat piece and how it came about.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Flattening {
-    /// One place a vertex of the surface, in the surface's unit of length; y is the warp, up along the grain.
+    /// One place a vertex of the surface, in the surface's unit of length; y is the warp, up along
+    /// the grain.
     pub points: Vec<Point2<f64>>,
     /// Where the solution started.
     pub start: Start,
     /// What the minimisation did; nothing for a map that needs none.
     pub report: NewtonReport,
-    /// Whether the grain has a direction on the piece; a piece that lies across it is left as it is.
+    /// Whether the grain has a direction on the piece; a piece that lies across it is left as it
+    /// is.
     pub upright: bool,
 }
 
@@ -52,7 +54,8 @@ pub struct Placement {
 /// A uniform strain of the garment as it is given: the pattern comes out smaller by it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Tension {
-    /// Along the warp (pattern y): 0.1 means that the garment is 10 % longer than its cloth. Above -0.9, below 10.
+    /// Along the warp (pattern y): 0.1 means that the garment is 10 % longer than its cloth. Above
+    /// -0.9, below 10.
     pub warp: f64,
     /// Along the weft (pattern x).
     pub weft: f64,

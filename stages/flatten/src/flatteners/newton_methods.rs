@@ -11,10 +11,12 @@ use crate::surface::Surface;
 use crate::system::System;
 use nalgebra::{Point2, Vector2};
 
-/// Flattens with the least symmetric Dirichlet energy (Smith and Schaefer 2015), which no triangle can flip under.
+/// Flattens with the least symmetric Dirichlet energy (Smith and Schaefer 2015), which no triangle
+/// can flip under.
 ///
 /// # Errors
-/// Parameters of the placement or options, [`FlattenError::NoStart`], [`FlattenError::Factorization`].
+/// Parameters of the placement or options, [`FlattenError::NoStart`],
+/// [`FlattenError::Factorization`].
 pub fn symmetric_dirichlet(
     surface: &Surface,
     options: NewtonOptions,
@@ -29,9 +31,9 @@ pub fn symmetric_dirichlet(
     placement.finish(surface, &frames, flat, (start, report))
 }
 
-/// Flattens by the published method: neighbours laid out by their distances, then springs along the edges relax
-/// in the plane until the energy that a step would save is below the tolerance. Where the layout flips
-/// triangles, another start without flips is taken.
+/// Flattens by the published method: neighbours laid out by their distances, then springs along the
+/// edges relax in the plane until the energy that a step would save is below the tolerance. Where
+/// the layout flips triangles, another start without flips is taken.
 ///
 /// # Errors
 /// As [`symmetric_dirichlet`].
@@ -54,7 +56,8 @@ pub fn springs(
     placement.finish(surface, &frames, flat, (start, report))
 }
 
-/// Flattens for woven cloth: the warp (along the grain, pattern y) and the weft keep their lengths, shear gives way.
+/// Flattens for woven cloth: the warp (along the grain, pattern y) and the weft keep their lengths,
+/// shear gives way.
 ///
 /// The mean grain is held upright while the threads settle.
 ///

@@ -18,7 +18,8 @@ pub fn split_components(positions: &[Point3<f64>], triangles: &[[u32; 3]]) -> Re
     islands_by_group(positions, triangles, &vec![0; triangles.len()])
 }
 
-/// Cuts where the two sides of an edge have different UV indices; `uv` has three a triangle, as OBJ's `f v/vt`.
+/// Cuts where the two sides of an edge have different UV indices; `uv` has three a triangle, as
+/// OBJ's `f v/vt`.
 ///
 /// # Errors
 /// [`SurfaceError::LengthMismatch`], and the faults of [`Surface::new`] of any piece.
@@ -53,11 +54,12 @@ pub fn islands_by_group(
     gather(positions, triangles, &joined(triangles, |h| [groups[h as usize / 3], 0])?)
 }
 
-/// Cuts where the two sides of an edge have different labels; `labels` has one a half-edge, `3 t + k` from corner k of triangle t
-/// to the next.
+/// Cuts where the two sides of an edge have different labels; `labels` has one a half-edge,
+/// `3 t + k` from corner k of triangle t to the next.
 ///
 /// # Errors
-/// As [`islands_by_uv`]; [`SurfaceError::NonManifoldEdge`] where three sides of one edge have the same label.
+/// As [`islands_by_uv`]; [`SurfaceError::NonManifoldEdge`] where three sides of one edge have the
+/// same label.
 pub fn islands_by_labels(
     positions: &[Point3<f64>],
     triangles: &[[u32; 3]],
@@ -68,7 +70,8 @@ pub fn islands_by_labels(
     gather(positions, triangles, &joined(triangles, |h| labels[h as usize])?)
 }
 
-/// Cuts along marked edges, each given by its two vertices; an edge of three triangles or more must be marked.
+/// Cuts along marked edges, each given by its two vertices; an edge of three triangles or more must
+/// be marked.
 ///
 /// # Errors
 /// [`SurfaceError::NoSuchEdge`], and the faults of [`Surface::new`] of any piece.

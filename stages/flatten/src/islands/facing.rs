@@ -1,8 +1,9 @@
 //! Pieces that show their wrong side: found across seams.
 //!
-//! Two pieces that face the same way walk a common edge of the garment in opposite directions. From the first
-//! piece of each garment part over the seams every piece is compared with its neighbour by most of their common
-//! edges; where that marks more than half of the part's triangles, the others are marked instead.
+//! Two pieces that face the same way walk a common edge of the garment in opposite directions. From
+//! the first piece of each garment part over the seams every piece is compared with its neighbour
+//! by most of their common edges; where that marks more than half of the part's triangles, the
+//! others are marked instead.
 
 use crate::surface::{FREE, sorted_edges};
 use std::collections::BTreeMap;
@@ -29,8 +30,8 @@ pub(super) fn inside_out(triangles: &[[u32; 3]], opposite: &[u32], component: &[
     turned
 }
 
-/// For each pair of components that share free edges: how many more are walked in opposite directions than in
-/// the same.
+/// For each pair of components that share free edges: how many more are walked in opposite
+/// directions than in the same.
 fn votes(triangles: &[[u32; 3]], opposite: &[u32], component: &[u32]) -> BTreeMap<(usize, usize), i64> {
     let mut votes = BTreeMap::new();
     let edges = sorted_edges(triangles);

@@ -1,9 +1,10 @@
 //! A garment mesh cut into its pieces, and the seams that held them together.
 //!
-//! Three ways to say where: corners with UV indices (islands of the texture), a group or material a triangle,
-//! or marked seam edges, which may end inside a piece (a dart). Each piece becomes a checked [`Surface`]; a
-//! seam is a chain of boundary edges of one piece and a chain of another (or the same) that are the same edges
-//! of the garment. Cost: two sorts of the 3 t edges of t triangles.
+//! Three ways to say where: corners with UV indices (islands of the texture), a group or material a
+//! triangle, or marked seam edges, which may end inside a piece (a dart). Each piece becomes a
+//! checked [`Surface`]; a seam is a chain of boundary edges of one piece and a chain of another (or
+//! the same) that are the same edges of the garment. Cost: two sorts of the 3 t edges of t
+//! triangles.
 
 mod cut;
 mod facing;

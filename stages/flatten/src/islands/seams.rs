@@ -37,8 +37,8 @@ struct Pair {
     b: Edge,
 }
 
-/// All seams of pieces whose vertices know the garment's. Where three boundaries or more share an edge, the
-/// first is paired with each.
+/// All seams of pieces whose vertices know the garment's. Where three boundaries or more share an
+/// edge, the first is paired with each.
 pub(super) fn find_seams(pieces: &[Piece]) -> Vec<Seam> {
     let mut pairs = pair_edges(pieces);
     pairs.sort_by_key(|p| (p.a.piece, p.a.of_loop, p.a.place, p.b));

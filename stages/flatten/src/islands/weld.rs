@@ -1,14 +1,14 @@
 //! Welding: points at the same place get the same number.
 //!
-//! File formats repeat vertices along seams and UV points at every corner. A grid as fine as the tolerance
-//! holds the points; each looks in the cells around its own and joins the lowest-numbered point within the
-//! tolerance. Cost O(n log n).
+//! File formats repeat vertices along seams and UV points at every corner. A grid as fine as the
+//! tolerance holds the points; each looks in the cells around its own and joins the lowest-numbered
+//! point within the tolerance. Cost O(n log n).
 
 use nalgebra::{Point2, Point3};
 use std::collections::BTreeMap;
 
-/// For each point the number of the first point within `tolerance` of it (0: exactly there); points that are
-/// not finite stay alone.
+/// For each point the number of the first point within `tolerance` of it (0: exactly there); points
+/// that are not finite stay alone.
 #[must_use]
 pub fn weld_places(points: &[Point3<f64>], tolerance: f64) -> Vec<u32> {
     if tolerance > 0.0 { weld_near(points, tolerance) } else { weld_equal(points) }

@@ -1,9 +1,9 @@
 //! Sparse Cholesky factor of a symmetric (or Hermitian) matrix on the graph of a mesh: `A = L L^H`.
 //!
-//! One number or a 2 x 2 block a vertex and a pair of coupled vertices. The order comes from nested dissection,
-//! the factor is supernodal (by the `faer` library). The symbolic part is done once a graph and reused. One
-//! thread, so the bits never change. For n vertices the factor holds about n log n numbers and takes about
-//! n^1.5 products.
+//! One number or a 2 x 2 block a vertex and a pair of coupled vertices. The order comes from nested
+//! dissection, the factor is supernodal (by the `faer` library). The symbolic part is done once a
+//! graph and reused. One thread, so the bits never change. For n vertices the factor holds about n
+//! log n numbers and takes about n^1.5 products.
 
 use super::graph::Graph;
 use super::vectors::leave_vectors;
@@ -27,8 +27,8 @@ pub(crate) struct Cholesky<T> {
 }
 
 impl<T: ComplexField + Copy> Cholesky<T> {
-    /// Analyses the pattern for `width` numbers a vertex, 1 or 2; `order` lists the vertices in the order of
-    /// elimination.
+    /// Analyses the pattern for `width` numbers a vertex, 1 or 2; `order` lists the vertices in the
+    /// order of elimination.
     ///
     /// # Errors
     /// [`FlattenError::Factorization`] if memory runs out.
@@ -79,8 +79,8 @@ impl<T: ComplexField + Copy> Cholesky<T> {
     /// Solves for the right-hand sides in `b`, one whole column after the other, in place.
     ///
     /// # Errors
-    /// [`FlattenError::Factorization`] if a result is not finite: the factor stops at pivots that are not above
-    /// zero, but lets NaN pass.
+    /// [`FlattenError::Factorization`] if a result is not finite: the factor stops at pivots that
+    /// are not above zero, but lets NaN pass.
     pub(crate) fn solve(&self, b: &mut [T]) -> Result<(), FlattenError> {
         let rows = self.pattern.ncols();
         let columns = b.len() / rows.max(1);
@@ -122,15 +122,18 @@ fn expanded(order: &[u32], width: usize) -> Vec<u32> {
     order.iter().flat_map(|&v| (0..width).map(move |k| width * v + k)).collect()
 }
 
-/// Where the values of a matrix with one number a vertex lie: the diagonal of vertex `i`, then its pairs in order.
+/// Where the values of a matrix with one number a vertex lie: the diagonal of vertex `i`, then its
+/// pairs in order.
 #[must_use]
 pub(crate) fn slot(graph: &Graph, i: usize) -> usize {
     graph.start(i) + i
 }
 
-/// Where a 2 x 2 block's columns begin: the diagonal block of vertex `i` at its first and second column.
+/// Where a 2 x 2 block's columns begin: the diagonal block of vertex `i` at its first and second
+/// column.
 ///
-/// The first column holds two numbers of the diagonal block, the second one; each pair then has two numbers a column.
+/// The first column holds two numbers of the diagonal block, the second one; each pair then has two
+/// numbers a column.
 #[must_use]
 pub(crate) fn block_slots(graph: &Graph, i: usize) -> [usize; 2] {
     let first = 4 * graph.start(i) + 3 * i;

@@ -1,14 +1,15 @@
 //! Nested dissection: an order of elimination that keeps the factor of a surface's matrix sparse.
 //!
-//! The vertices are cut in two about the middle of the longer side of their box, again and again (George 1973);
-//! those of one half that are coupled to the other half are the separator and are eliminated last. Cost O(n log
-//! n). The order is only as good as the places given, but right for any: a factor of n vertices has about 8 n
-//! log2 n blocks.
+//! The vertices are cut in two about the middle of the longer side of their box, again and again
+//! (George 1973); those of one half that are coupled to the other half are the separator and are
+//! eliminated last. Cost O(n log n). The order is only as good as the places given, but right for
+//! any: a factor of n vertices has about 8 n log2 n blocks.
 
 use super::graph::Graph;
 use nalgebra::Point3;
 
-/// Parts of at most this many vertices are not cut further: smaller supernodes cost more than their zeros save.
+/// Parts of at most this many vertices are not cut further: smaller supernodes cost more than their
+/// zeros save.
 const LEAF: usize = 12;
 
 /// The vertices in the order of elimination, halves before separators.
@@ -33,7 +34,8 @@ struct Dissection<'a> {
 }
 
 impl Dissection<'_> {
-    /// Appends the order of `part`. As deep as log2 of its length, for each half has at most half of it.
+    /// Appends the order of `part`. As deep as log2 of its length, for each half has at most half
+    /// of it.
     fn cut(&mut self, part: &mut [u32]) {
         if part.len() <= LEAF {
             self.order.extend_from_slice(part);

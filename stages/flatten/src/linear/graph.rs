@@ -1,6 +1,7 @@
 //! Which vertices of a mesh are coupled: the pattern of every matrix here.
 
-/// Couplings of vertices, each pair once: for vertex i the sorted vertices above i that it is coupled to.
+/// Couplings of vertices, each pair once: for vertex i the sorted vertices above i that it is
+/// coupled to.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Graph {
     starts: Vec<u32>,

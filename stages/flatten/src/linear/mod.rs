@@ -1,4 +1,5 @@
-//! Sparse symmetric systems on the graph of a mesh: order of elimination, symbolic factor, factor, solution.
+//! Sparse symmetric systems on the graph of a mesh: order of elimination, symbolic factor, factor,
+//! solution.
 
 mod cholesky;
 mod dissection;

@@ -1,7 +1,7 @@
 //! Energy, gradient and Hessian of a whole pattern from those of its triangles.
 //!
-//! Triangles are evaluated in parallel and added one after the other, so the bits are the same for any number
-//! of threads.
+//! Triangles are evaluated in parallel and added one after the other, so the bits are the same for
+//! any number of threads.
 
 use super::{Problem, RIGID};
 use crate::energy::Hessian;
@@ -24,7 +24,8 @@ pub(super) struct Assembly {
     batch: Vec<Element>,
 }
 
-/// One triangle's energy, gradient by corner, diagonal blocks, and blocks of corners (0, 1), (1, 2), (2, 0).
+/// One triangle's energy, gradient by corner, diagonal blocks, and blocks of corners (0, 1), (1,
+/// 2), (2, 0).
 #[derive(Clone, Copy)]
 struct Element {
     value: f64,
@@ -142,7 +143,8 @@ impl Assembly {
         self.values[second] += block.m22;
     }
 
-    /// Adds a block whose rows belong to the first vertex; `first_is_row` if that is the higher one.
+    /// Adds a block whose rows belong to the first vertex; `first_is_row` if that is the higher
+    /// one.
     fn add_pair(&mut self, slots: [u32; 2], first_is_row: bool, block: &Matrix2<f64>) {
         let [first, second] = slots.map(|s| s as usize);
         let (below, above) = if first_is_row { (block.m21, block.m12) } else { (block.m12, block.m21) };
@@ -169,7 +171,8 @@ fn element(problem: &Problem<'_>, q: &[Point2<f64>], t: usize, wanted: Hessian) 
     let (share, d) = (problem.frames.share(t), problem.energy.derivatives(t, &j, wanted));
     let [_, b, c] = problem.frames.gradients(t);
     let block = |g: &Vector2<f64>, h: &Vector2<f64>| {
-        // Rows of the result by the flat coordinates of the corner with gradient g, columns by those of h.
+        // Rows of the result by the flat coordinates of the corner with gradient g, columns by
+        // those of h.
         let entry = |r: usize, s: usize| {
             let m = |k: usize, l: usize| d.hessian[(2 * r + k, 2 * s + l)];
             g.x * (m(0, 0) * h.x + m(0, 1) * h.y) + g.y * (m(1, 0) * h.x + m(1, 1) * h.y)
@@ -177,7 +180,8 @@ fn element(problem: &Problem<'_>, q: &[Point2<f64>], t: usize, wanted: Hessian) 
         Matrix2::new(entry(0, 0), entry(0, 1), entry(1, 0), entry(1, 1)) * share
     };
     let (bb, bc, cc) = (block(&b, &b), block(&b, &c), block(&c, &c));
-    // Moving all three corners alike changes nothing, so the blocks of corner 0 are minus sums of the others.
+    // Moving all three corners alike changes nothing, so the blocks of corner 0 are minus sums of
+    // the others.
     let ab = -(bb + bc.transpose());
     let ca = -(bc.transpose() + cc);
     let aa = -(ab + ca.transpose());

@@ -11,7 +11,8 @@ pub(crate) enum Constraint {
         vertices: Vec<u32>,
         /// Its length, in units of length of the problem, above 0.
         target: f64,
-        /// What x and y are multiplied with before lengths are taken: the cloth relaxed from its tension.
+        /// What x and y are multiplied with before lengths are taken: the cloth relaxed from its
+        /// tension.
         scale: Vector2<f64>,
     },
     /// A weighted sum of places has no part along `direction`: the mean grain stays upright.

@@ -1,8 +1,8 @@
 //! How far to go along a direction.
 //!
-//! First the length at which some triangle would lose its area (the least positive root of a quadratic each,
-//! Smith and Schaefer 2015); from nine tenths of it, at most 1, the length is halved until the energy has
-//! fallen by a share of what the slope promises.
+//! First the length at which some triangle would lose its area (the least positive root of a
+//! quadratic each, Smith and Schaefer 2015); from nine tenths of it, at most 1, the length is
+//! halved until the energy has fallen by a share of what the slope promises.
 
 use super::Problem;
 use super::assembly::energy_at;

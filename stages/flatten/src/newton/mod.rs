@@ -1,12 +1,13 @@
 //! Newton's method for the flat places of a surface's vertices.
 //!
-//! Minimises `sum_t share_t e(J_t) + terms` under a few constraints `c(q) = 0`. Each iteration solves
-//! `H d = -g - C^T m`, `C d = -c` with one sparse Cholesky factor of H (the symbolic part made once) and, for k
-//! constraints, k more solutions; it shortens the step so that no triangle flips (Smith and Schaefer 2015) and
-//! halves it until the energy, or with constraints the energy plus a multiple of their violation, falls enough
-//! (Armijo). Far from a minimum the second derivatives are projected (no negative eigenvalues), near it they
-//! are taken as they are. It stops when the energy that one more step would save, half of `-g.d`, is below the
-//! tolerance. Cost: for n vertices about n^1.5 products an iteration; four to ten iterations from a start
+//! Minimises `sum_t share_t e(J_t) + terms` under a few constraints `c(q) = 0`. Each iteration
+//! solves `H d = -g - C^T m`, `C d = -c` with one sparse Cholesky factor of H (the symbolic part
+//! made once) and, for k constraints, k more solutions; it shortens the step so that no triangle
+//! flips (Smith and Schaefer 2015) and halves it until the energy, or with constraints the energy
+//! plus a multiple of their violation, falls enough (Armijo). Far from a minimum the second
+//! derivatives are projected (no negative eigenvalues), near it they are taken as they are. It
+//! stops when the energy that one more step would save, half of `-g.d`, is below the tolerance.
+//! Cost: for n vertices about n^1.5 products an iteration; four to ten iterations from a start
 //! without flips near the minimum.
 
 mod assembly;
@@ -34,8 +35,8 @@ use nalgebra::{DMatrix, DVector, Point2, Vector2};
 pub struct NewtonOptions {
     /// Most iterations, 0 or more.
     pub iterations: usize,
-    /// The energy by area (0.0002 is about a strain of one per cent everywhere) that one more step may still
-    /// save; above 0.
+    /// The energy by area (0.0002 is about a strain of one per cent everywhere) that one more step
+    /// may still save; above 0.
     pub tolerance: f64,
 }
 
@@ -68,14 +69,15 @@ pub struct NewtonReport {
     pub converged: bool,
 }
 
-/// Where a step would save less than this share of the energy, second derivatives are taken as they are.
+/// Where a step would save less than this share of the energy, second derivatives are taken as they
+/// are.
 const NEAR: f64 = 0.1;
 
 /// Where their sum was not positive, the next try waits until a step saves this much less.
 const NEARER: f64 = 0.01;
 
-/// What is added to the diagonal of a matrix that rounding has left without a factor (Levenberg 1944): first
-/// this share of its largest entry, then each time so many times more, so many times.
+/// What is added to the diagonal of a matrix that rounding has left without a factor (Levenberg
+/// 1944): first this share of its largest entry, then each time so many times more, so many times.
 const LEAST_SHIFT: f64 = 1e-14;
 const SHIFT_GROWTH: f64 = 30.0;
 const MOST_SHIFTS: usize = 6;
@@ -83,8 +85,9 @@ const MOST_SHIFTS: usize = 6;
 /// A violation of a constraint (a share of the length that it is about) below this counts as met.
 const MET: f64 = 1e-7;
 
-/// Weight of the identity by area that keeps rigid motions from making the matrix singular; it is less than a
-/// ten-thousandth of the stiffness of the softest deformation, and does not move the minimum.
+/// Weight of the identity by area that keeps rigid motions from making the matrix singular; it is
+/// less than a ten-thousandth of the stiffness of the softest deformation, and does not move the
+/// minimum.
 const RIGID: f64 = 1e-4;
 
 /// What is minimised.
@@ -111,7 +114,8 @@ impl Problem<'_> {
     /// Moves `q` (units of [`Frames::unit`], no triangle flipped) to a minimum.
     ///
     /// # Errors
-    /// [`FlattenError::InvalidParameter`] for options, [`FlattenError::Factorization`] if a system has no factor.
+    /// [`FlattenError::InvalidParameter`] for options, [`FlattenError::Factorization`] if a system
+    /// has no factor.
     pub(crate) fn minimise(
         &self,
         q: &mut [Point2<f64>],
@@ -147,8 +151,8 @@ impl Problem<'_> {
         }
     }
 
-    /// Sums up and factors at `q`, with exact second derivatives near a minimum if their sum is positive;
-    /// returns the energy, and whether they were exact.
+    /// Sums up and factors at `q`, with exact second derivatives near a minimum if their sum is
+    /// positive; returns the energy, and whether they were exact.
     fn factor(
         &self,
         assembly: &mut Assembly,
@@ -230,8 +234,8 @@ fn report(iterations: usize, energy: f64, step: &Step, converged: bool) -> Newto
     NewtonReport { iterations, energy, remaining: step.remaining, converged }
 }
 
-/// Adds to the free step `d` what makes it meet the linearised constraints, by their Schur complement; returns
-/// the multipliers.
+/// Adds to the free step `d` what makes it meet the linearised constraints, by their Schur
+/// complement; returns the multipliers.
 fn meet(
     factor: &Cholesky<f64>,
     values: &DVector<f64>,
@@ -244,7 +248,8 @@ fn meet(
     let solved: Vec<&[f64]> = solved.chunks_exact(d.len()).collect();
     let schur = DMatrix::from_fn(k, k, |i, j| dot(&columns[i], solved[j]));
     let wanted = DVector::from_iterator(k, columns.iter().zip(values).map(|(c, v)| dot(c, d) + v));
-    // Constraints that say the same twice have a singular complement: its pseudo-inverse serves both.
+    // Constraints that say the same twice have a singular complement: its pseudo-inverse serves
+    // both.
     let smallest = schur.diagonal().amax() * 1e-12;
     let multipliers = schur.svd(true, true).solve(&wanted, smallest).unwrap_or_else(|_| DVector::zeros(k));
     for (m, column) in multipliers.iter().zip(&solved) {

@@ -1,6 +1,8 @@
-//! Quadratic terms beside the triangles: `weight |sum_k c_k q_k - target|^2` of up to three vertices.
+//! Quadratic terms beside the triangles: `weight |sum_k c_k q_k - target|^2` of up to three
+//! vertices.
 //!
-//! A vertex held at a place or on a line, a point held on the line between two others, two points held together.
+//! A vertex held at a place or on a line, a point held on the line between two others, two points
+//! held together.
 
 use nalgebra::{Matrix2, Point2, Vector2};
 

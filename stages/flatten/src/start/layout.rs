@@ -1,9 +1,11 @@
-//! Layout by neighbour distances: triangle after triangle, each new vertex from two that are placed.
+//! Layout by neighbour distances: triangle after triangle, each new vertex from two that are
+//! placed.
 //!
-//! The first step of the published flattening: from a first triangle outwards in breadth, each vertex is placed
-//! at its true distances from the two ends of an edge that is placed already; the first triangle that reaches
-//! it decides. Exact for developable surfaces, on others the error piles up away from the first triangle, so
-//! the triangle nearest the middle is the first. Cost O(n).
+//! The first step of the published flattening: from a first triangle outwards in breadth, each
+//! vertex is placed at its true distances from the two ends of an edge that is placed already; the
+//! first triangle that reaches it decides. Exact for developable surfaces, on others the error
+//! piles up away from the first triangle, so the triangle nearest the middle is the first. Cost
+//! O(n).
 
 use crate::frames::local_edges;
 use crate::surface::{FREE, Surface};

@@ -1,10 +1,10 @@
-//! Least squares conformal maps (Lévy, Petitjean, Ray, Maillot 2002), as one Hermitian system of one complex
-//! number a vertex.
+//! Least squares conformal maps (Lévy, Petitjean, Ray, Maillot 2002), as one Hermitian system of
+//! one complex number a vertex.
 //!
-//! With `z = x + i y` and `w_k = g_k.x + i g_k.y` of the hat functions' gradients, a triangle's map is
-//! conformal where `sum_k w_k z_k = 0`; minimised is the sum over triangles of area times the square of that.
-//! Two far boundary vertices are held. Free boundary, holes allowed. No size of its own, and no promise against
-//! flips. Cost: one factor of n complex unknowns.
+//! With `z = x + i y` and `w_k = g_k.x + i g_k.y` of the hat functions' gradients, a triangle's map
+//! is conformal where `sum_k w_k z_k = 0`; minimised is the sum over triangles of area times the
+//! square of that. Two far boundary vertices are held. Free boundary, holes allowed. No size of its
+//! own, and no promise against flips. Cost: one factor of n complex unknowns.
 
 use crate::error::FlattenError;
 use crate::frames::Frames;

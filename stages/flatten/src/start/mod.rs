@@ -1,8 +1,8 @@
 //! Starts: flat places without flipped triangles, from which an energy can be minimised.
 //!
-//! Tried in order of cost: the projection along the mean normal (taken only if it strains little), least
-//! squares conformal maps, the embedding of Tutte. The last has no flips by theorem, for any disk with holes. A
-//! start far from isometric settles first.
+//! Tried in order of cost: the projection along the mean normal (taken only if it strains little),
+//! least squares conformal maps, the embedding of Tutte. The last has no flips by theorem, for any
+//! disk with holes. A start far from isometric settles first.
 
 mod layout;
 mod lscm;
@@ -37,11 +37,12 @@ pub enum Start {
     Neighbours,
 }
 
-/// A projection that shrinks any triangle to less than this share is no good start: bending it open takes
-/// longer than solving anew.
+/// A projection that shrinks any triangle to less than this share is no good start: bending it open
+/// takes longer than solving anew.
 const LEAST_PROJECTED: f64 = 0.3;
 
-/// Symmetric Dirichlet energy by area of a start that needs to settle: stretches of about a half everywhere.
+/// Symmetric Dirichlet energy by area of a start that needs to settle: stretches of about a half
+/// everywhere.
 const FAR: f64 = 1.0;
 
 /// When a start has settled enough for other energies to take over.
@@ -50,8 +51,8 @@ const SETTLED: NewtonOptions = NewtonOptions { iterations: 60, tolerance: 1e-3 }
 /// The cheapest start without flips, in units of [`Frames::unit`].
 ///
 /// # Errors
-/// [`FlattenError::NoStart`] if rounding leaves flips in every one, [`FlattenError::Factorization`] from
-/// Tutte's system.
+/// [`FlattenError::NoStart`] if rounding leaves flips in every one, [`FlattenError::Factorization`]
+/// from Tutte's system.
 pub(crate) fn start(
     surface: &Surface,
     system: &System,
@@ -76,7 +77,8 @@ fn settle(system: &System, frames: &Frames, flat: &mut [Point2<f64>]) -> Result<
     Ok(())
 }
 
-/// Least squares conformal maps where they have no flips, else Tutte's embedding; scaled to the true area.
+/// Least squares conformal maps where they have no flips, else Tutte's embedding; scaled to the
+/// true area.
 ///
 /// # Errors
 /// As [`start`].

@@ -1,9 +1,10 @@
 //! The barycentric embedding (Tutte 1963) with the weights of Floater (1997) in symmetric form.
 //!
-//! The outer boundary goes to a circle by its edge lengths; each inner vertex is the weighted mean of its
-//! neighbours. A hole gets a vertex of its own, joined to its rim, so the surface is a disk and the theorem
-//! holds: with weights above zero no triangle flips. Weights: cotangents as far as they are above zero; if
-//! rounding still flips a triangle, all weights 1. Cost: one or two factors of n unknowns.
+//! The outer boundary goes to a circle by its edge lengths; each inner vertex is the weighted mean
+//! of its neighbours. A hole gets a vertex of its own, joined to its rim, so the surface is a disk
+//! and the theorem holds: with weights above zero no triangle flips. Weights: cotangents as far as
+//! they are above zero; if rounding still flips a triangle, all weights 1. Cost: one or two factors
+//! of n unknowns.
 
 use crate::error::FlattenError;
 use crate::frames::{Frames, flipped};

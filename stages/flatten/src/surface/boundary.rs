@@ -2,7 +2,8 @@
 
 use super::edges::{FREE, ends};
 
-/// The loops of vertices along free half-edges, the surface on their left, each from its lowest half-edge.
+/// The loops of vertices along free half-edges, the surface on their left, each from its lowest
+/// half-edge.
 ///
 /// Each vertex must have one fan of triangles (see [`corner_vertices`](super::corner_vertices)).
 #[must_use]

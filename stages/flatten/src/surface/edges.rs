@@ -6,8 +6,8 @@ use rayon::slice::ParallelSliceMut;
 /// Stands for "no triangle on the other side".
 pub const FREE: u32 = u32::MAX;
 
-/// Half-edge `3 t + k` runs from corner k of triangle t to the next corner; the list gives the half-edge on the
-/// other side, or [`FREE`].
+/// Half-edge `3 t + k` runs from corner k of triangle t to the next corner; the list gives the
+/// half-edge on the other side, or [`FREE`].
 pub(crate) type Opposite = Vec<u32>;
 
 /// Pairs the half-edges of a mesh, whichever way its triangles run.

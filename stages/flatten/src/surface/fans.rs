@@ -1,7 +1,7 @@
 //! Vertices from corners: corners are one vertex where their triangles hang together by edges.
 //!
-//! A vertex where only tips touch (a bow-tie) becomes several. Used for repair and for cutting: cut edges join
-//! no corners.
+//! A vertex where only tips touch (a bow-tie) becomes several. Used for repair and for cutting: cut
+//! edges join no corners.
 
 use super::edges::FREE;
 

@@ -1,10 +1,10 @@
 //! A checked surface: one connected, oriented, manifold piece with at least one boundary loop.
 //!
-//! Checks, in order: lists not empty, places finite, indices in range, areas above zero, at most two triangles
-//! an edge, one component, two sides, a boundary, no handles. Repairs, each counted: triangles that run against
-//! the others are turned (the majority stays), vertices where only the tips of triangles touch are split,
-//! vertices without triangles are left out. Cost: one sort of the 3 t edges of t triangles, else linear. Limit:
-//! 2^30 triangles or vertices.
+//! Checks, in order: lists not empty, places finite, indices in range, areas above zero, at most
+//! two triangles an edge, one component, two sides, a boundary, no handles. Repairs, each counted:
+//! triangles that run against the others are turned (the majority stays), vertices where only the
+//! tips of triangles touch are split, vertices without triangles are left out. Cost: one sort of
+//! the 3 t edges of t triangles, else linear. Limit: 2^30 triangles or vertices.
 
 mod boundary;
 mod components;
@@ -30,7 +30,8 @@ use nalgebra::{Point3, Vector2, Vector3};
 /// Most vertices or triangles: three corners each must have a 32-bit number.
 pub const MOST: usize = 1 << 30;
 
-/// A triangle lower than this share of its longest edge counts as one without area: its angles are rounding noise.
+/// A triangle lower than this share of its longest edge counts as one without area: its angles are
+/// rounding noise.
 pub const LEAST_QUALITY: f64 = 1e-10;
 
 /// Coordinates beyond this are refused: squares of squares of them must not overflow.
@@ -45,7 +46,8 @@ pub struct Surface {
     opposite: Vec<u32>,
     loops: Vec<Vec<u32>>,
     repairs: Repairs,
-    /// Triangles, ascending, that were cut otherwise than they lie, with two edges from their first corner as cut.
+    /// Triangles, ascending, that were cut otherwise than they lie, with two edges from their first
+    /// corner as cut.
     cut: Vec<(u32, [Vector2<f64>; 2])>,
 }
 
@@ -61,13 +63,15 @@ pub struct Repairs {
 }
 
 impl Surface {
-    /// Checks and repairs a mesh; triangles keep their numbers, vertices keep theirs unless some were split or
-    /// left out.
+    /// Checks and repairs a mesh; triangles keep their numbers, vertices keep theirs unless some
+    /// were split or left out.
     ///
-    /// `positions` in any unit of length; `triangles` counter-clockwise seen from the right side of the fabric.
+    /// `positions` in any unit of length; `triangles` counter-clockwise seen from the right side of
+    /// the fabric.
     ///
     /// # Errors
-    /// Every [`SurfaceError`] but those of lists and seams: the first fault in the order of the module's head.
+    /// Every [`SurfaceError`] but those of lists and seams: the first fault in the order of the
+    /// module's head.
     pub fn new(positions: Vec<Point3<f64>>, mut triangles: Vec<[u32; 3]>) -> Result<Self, SurfaceError> {
         check(&positions, &triangles)?;
         let mut opposite = opposites(&triangles)?;
@@ -124,14 +128,15 @@ impl Surface {
         &self.sources
     }
 
-    /// For half-edge `3 t + k` (from corner k of triangle t to the next) the half-edge of the other triangle
-    /// there, or [`FREE`].
+    /// For half-edge `3 t + k` (from corner k of triangle t to the next) the half-edge of the other
+    /// triangle there, or [`FREE`].
     #[must_use]
     pub fn opposite(&self) -> &[u32] {
         &self.opposite
     }
 
-    /// The boundary loops, each counter-clockwise about the surface, the longest (in 3D) first; the others are holes.
+    /// The boundary loops, each counter-clockwise about the surface, the longest (in 3D) first; the
+    /// others are holes.
     #[must_use]
     pub fn loops(&self) -> &[Vec<u32>] {
         &self.loops
@@ -155,12 +160,15 @@ impl Surface {
         (0..self.triangles.len()).map(|t| self.area_vector(t).norm()).sum()
     }
 
-    /// The surface with triangles that were cut otherwise than they lie, such as those that a gather draws together: for each the edges from
-    /// corner 0 to 1 and from 0 to 2 as they were cut, in the plane of the triangle (x along its first edge in space, y to the left of that).
-    /// Flatteners and strains take these for its true shape; area and outline in space stay those of the places.
+    /// The surface with triangles that were cut otherwise than they lie, such as those that a
+    /// gather draws together: for each the edges from corner 0 to 1 and from 0 to 2 as they were
+    /// cut, in the plane of the triangle (x along its first edge in space, y to the left of that).
+    /// Flatteners and strains take these for its true shape; area and outline in space stay those
+    /// of the places.
     ///
     /// # Errors
-    /// [`SurfaceError::Degenerate`] for edges that span no area or are turned over, and for triangles that there are none of.
+    /// [`SurfaceError::Degenerate`] for edges that span no area or are turned over, and for
+    /// triangles that there are none of.
     pub fn with_cut_shapes(
         mut self,
         mut shapes: Vec<(u32, [Vector2<f64>; 2])>,
@@ -189,7 +197,8 @@ impl Surface {
     /// The surface with its vertices elsewhere, one place for each; its triangles are the same.
     ///
     /// # Errors
-    /// [`SurfaceError::LengthMismatch`], [`SurfaceError::NotFinite`] and [`SurfaceError::Degenerate`].
+    /// [`SurfaceError::LengthMismatch`], [`SurfaceError::NotFinite`] and
+    /// [`SurfaceError::Degenerate`].
     pub fn with_positions(&self, positions: Vec<Point3<f64>>) -> Result<Self, SurfaceError> {
         if positions.len() != self.positions.len() {
             let (found, wanted) = (positions.len(), self.positions.len());

@@ -1,8 +1,8 @@
 //! Turning triangles until all run the same way.
 //!
-//! From a first triangle over the edges: a neighbour that walks the common edge in the same direction is
-//! turned. Where that turns more than half, the others are turned instead, so the majority's right side stays
-//! the right side.
+//! From a first triangle over the edges: a neighbour that walks the common edge in the same
+//! direction is turned. Where that turns more than half, the others are turned instead, so the
+//! majority's right side stays the right side.
 
 use super::edges::{FREE, ends};
 use crate::error::SurfaceError;

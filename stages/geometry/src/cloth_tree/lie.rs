@@ -6,8 +6,9 @@ use crate::volume::BoundingVolume;
 
 use crate::Vec3;
 impl<V: BoundingVolume> ClothTree<V> {
-    /// Triangles whose middles are nearer than `reach` to another triangle, and that one, sorted; those about to be sewn to each other
-    /// do not count. Triangles that cross or touch along a line have their middles elsewhere.
+    /// Triangles whose middles are nearer than `reach` to another triangle, and that one, sorted;
+    /// those about to be sewn to each other do not count. Triangles that cross or touch along a
+    /// line have their middles elsewhere.
     #[must_use]
     pub fn lying(&self, x: &[Vec3], reach: f64) -> Vec<([u32; 3], [u32; 3])> {
         let lies = |s: usize, t: usize, out: &mut Vec<_>| {

@@ -1,4 +1,5 @@
-//! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among cloth that holds still.
+//! A part of the tree, and a tree of which only a part looks for others: for cloth that moves among
+//! cloth that holds still.
 
 use super::{Active, ClothTree, Search};
 use crate::Vec3;
@@ -6,7 +7,8 @@ use crate::pair::Pair;
 use crate::volume::BoundingVolume;
 
 impl<V: BoundingVolume> ClothTree<V> {
-    /// The same, where only triangles of `active` nodes look for what they may meet: what is not active meets nothing else that is not.
+    /// The same, where only triangles of `active` nodes look for what they may meet: what is not
+    /// active meets nothing else that is not.
     #[must_use]
     pub fn with_active(self, active: &[bool]) -> Self {
         Self { active: Some(self.active(active)), ..self }
@@ -20,8 +22,8 @@ impl<V: BoundingVolume> ClothTree<V> {
         Active { parts, triangles }
     }
 
-    /// Those of [`ClothTree::pairs`] that have one of these nodes; each of them must be among those that look for others. Cost:
-    /// O(n) for the boxes, and what is about the nodes.
+    /// Those of [`ClothTree::pairs`] that have one of these nodes; each of them must be among those
+    /// that look for others. Cost: O(n) for the boxes, and what is about the nodes.
     #[must_use]
     pub fn pairs_of(&self, nodes: &[bool], x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
         if nodes.iter().all(|n| *n) {
@@ -32,8 +34,9 @@ impl<V: BoundingVolume> ClothTree<V> {
         pairs
     }
 
-    /// The tree of the triangles all of whose nodes are among `nodes`, ascending; `index` tells where in that list each node of
-    /// the whole comes, and `layout` holds a place for each of the list. At least one triangle must be.
+    /// The tree of the triangles all of whose nodes are among `nodes`, ascending; `index` tells
+    /// where in that list each node of the whole comes, and `layout` holds a place for each of the
+    /// list. At least one triangle must be.
     #[must_use]
     pub fn part(&self, nodes: &[u32], index: &[u32], layout: &[Vec3]) -> Self {
         let own = |t: &[u32; 3]| t.map(|v| index[v as usize]);
@@ -43,8 +46,8 @@ impl<V: BoundingVolume> ClothTree<V> {
         part.sewing(nodes.iter().map(|&i| self.point[i as usize]).collect())
     }
 
-    /// Which nodes belong to triangles that may come nearer than `reach` to one that looks for others, at `x`; more are named than
-    /// are that near, none is left out.
+    /// Which nodes belong to triangles that may come nearer than `reach` to one that looks for
+    /// others, at `x`; more are named than are that near, none is left out.
     #[must_use]
     pub fn about(&self, x: &[Vec3], reach: f64) -> Vec<bool> {
         let still = vec![Vec3::zeros(); x.len()];

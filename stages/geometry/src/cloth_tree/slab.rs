@@ -1,20 +1,23 @@
 //! A quick test for two triangles that are too far apart for any of their features to meet.
 //!
-//! Boxes of triangles that lie slanted are thick: where cloth lies in layers, a triangle's box meets those of many layers. Along the
-//! normal of either triangle they are flat (two of the axes of the separating axis theorem).
+//! Boxes of triangles that lie slanted are thick: where cloth lies in layers, a triangle's box
+//! meets those of many layers. Along the normal of either triangle they are flat (two of the axes
+//! of the separating axis theorem).
 
 use super::Search;
 
 use crate::Vec3;
 impl Search<'_> {
-    /// Whether the triangles are farther apart than any pair of their features looks: [`Search::keep`] would drop all of them.
+    /// Whether the triangles are farther apart than any pair of their features looks:
+    /// [`Search::keep`] would drop all of them.
     pub(super) fn is_far(&self, a: &[u32; 3], b: &[u32; 3]) -> bool {
         let [p, q] = [a, b].map(|t| t.map(|v| self.x[v as usize]));
         let reach = self.reach + self.approach(a, b);
         is_beside(&p, &q, reach) || is_beside(&q, &p, reach)
     }
 
-    /// A bound on how fast any two features of two triangles approach, by which the reach of a pair grows.
+    /// A bound on how fast any two features of two triangles approach, by which the reach of a pair
+    /// grows.
     fn approach(&self, a: &[u32; 3], b: &[u32; 3]) -> f64 {
         let shared = a.iter().chain(b).map(|&v| self.moves[v as usize]).sum::<Vec3>() / 6.0;
         let fastest = |t: &[u32; 3]| {

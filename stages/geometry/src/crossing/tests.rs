@@ -99,7 +99,8 @@ fn insides_cross_where_they_have_a_segment_in_common() {
     assert!(!insides_cross_unit([[2.0, 2.0, 1.0], [2.0, 2.0, -1.0], [3.0, 2.0, 1.0]]), "beside it");
 }
 
-/// The same in whole numbers: the segment that the one has in the other's plane, cut by the other's sides.
+/// The same in whole numbers: the segment that the one has in the other's plane, cut by the other's
+/// sides.
 fn insides_cross_exactly(a: &[[i128; 3]; 3], b: &[[i128; 3]; 3]) -> bool {
     let minus = |p: [i128; 3], q: [i128; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
     let dot = |p: [i128; 3], q: [i128; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];

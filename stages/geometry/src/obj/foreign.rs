@@ -1,4 +1,5 @@
-//! What a file is that holds no OBJ mesh: another format, by its first bytes, or an OBJ without faces.
+//! What a file is that holds no OBJ mesh: another format, by its first bytes, or an OBJ without
+//! faces.
 
 use super::text::{Lines, decode, words};
 
@@ -42,7 +43,8 @@ const BEGINNINGS: [(&[u8], &str); 33] = [
 /// How far into a file a word is looked for that tells its format.
 const LOOK: usize = 4096;
 
-/// The format of a file that is no OBJ, with its article: `a binary STL`. None where the bytes may be an OBJ.
+/// The format of a file that is no OBJ, with its article: `a binary STL`. None where the bytes may
+/// be an OBJ.
 #[must_use]
 pub fn other_format(bytes: &[u8]) -> Option<&'static str> {
     let text = decode(bytes);

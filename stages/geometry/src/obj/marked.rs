@@ -1,7 +1,7 @@
 //! What an OBJ file says beside its mesh: texture points, groups, materials and lines.
 //!
-//! A second pass over the text takes the `vt`, `g`, `o`, `usemtl` and `l` lines and the texture indices of the faces; each triangle takes
-//! those of its face. Cost: linear in the text.
+//! A second pass over the text takes the `vt`, `g`, `o`, `usemtl` and `l` lines and the texture
+//! indices of the faces; each triangle takes those of its face. Cost: linear in the text.
 
 use super::parse::{MAX_COORDINATE, MAX_TRIANGLES, clip, corner, parse_faces};
 use super::text::{Lines, decode, words};

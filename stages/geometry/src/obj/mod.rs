@@ -1,9 +1,10 @@
 //! Wavefront OBJ: bodies are read from it and results are written to it.
 //!
-//! Method: `text` makes lines of bytes in any encoding, [`parse`] takes the `v` and `f` lines (all else is passed over), [`parse_marked`]
-//! also what says where a garment's pieces end, `polygon` cuts
-//! faces into triangles, [`repair`] mends what exporters leave behind, [`outer_surface`] drops what no cloth can touch. What cannot be
-//! mended (holes, edges of three triangles) is left for the check of the body. Cost: linear in the text, and a sort of the edges.
+//! Method: `text` makes lines of bytes in any encoding, [`parse`] takes the `v` and `f` lines (all
+//! else is passed over), [`parse_marked`] also what says where a garment's pieces end, `polygon`
+//! cuts faces into triangles, [`repair`] mends what exporters leave behind, [`outer_surface`] drops
+//! what no cloth can touch. What cannot be mended (holes, edges of three triangles) is left for the
+//! check of the body. Cost: linear in the text, and a sort of the edges.
 
 mod foreign;
 mod marked;

@@ -22,10 +22,11 @@ struct Face {
     corners: std::ops::Range<usize>,
 }
 
-/// Reads vertices and faces: `v x y z` and `f a b c`, with whatever stands behind (colours, texture and normal indices).
+/// Reads vertices and faces: `v x y z` and `f a b c`, with whatever stands behind (colours, texture
+/// and normal indices).
 ///
-/// Indices may be negative, faces may stand before their vertices and have any number of corners; [`decode`] and [`Lines`] tell
-/// which encodings and line endings are read.
+/// Indices may be negative, faces may stand before their vertices and have any number of corners;
+/// [`decode`] and [`Lines`] tell which encodings and line endings are read.
 ///
 /// # Errors
 /// [`ObjError`] with the line.
@@ -57,8 +58,9 @@ pub(super) fn parse_faces(text: &[u8]) -> Result<(Mesh, Vec<u32>), ObjError> {
             return Err(ObjError::TooMany { line, what: "triangles", most: MAX_TRIANGLES });
         }
     }
-    // A face that is listed again, from another corner on or the other way round, is cut as the first time, so that its triangles
-    // are found to be the same. Only looked up, never walked through.
+    // A face that is listed again, from another corner on or the other way round, is cut as the
+    // first time, so that its triangles are found to be the same. Only looked up, never walked
+    // through.
     let mut known: HashMap<Vec<u32>, (Vec<u32>, std::ops::Range<usize>)> = HashMap::new();
     let mut faces_of = Vec::new();
     for (number, face) in faces.into_iter().enumerate() {
@@ -101,7 +103,8 @@ fn follower(face: &[u32], corner: u32) -> Option<u32> {
     Some(face[(at + 1) % face.len()])
 }
 
-/// How many triangles the faces of an OBJ text have before anything is mended; what is wrong with it is not looked for.
+/// How many triangles the faces of an OBJ text have before anything is mended; what is wrong with
+/// it is not looked for.
 #[must_use]
 pub fn count_triangles(bytes: &[u8]) -> usize {
     let of = |(_, line): (usize, std::borrow::Cow<'_, [u8]>)| {
@@ -123,8 +126,8 @@ fn vertex<'a>(mut words: impl Iterator<Item = &'a [u8]>, line: usize) -> Result<
     Ok(Vector3::new(next()?, next()?, next()?))
 }
 
-/// The vertex of `7`, `7/1`, `7/1/3` or `7//3`, counted from 0; a negative one counts from the last vertex above it. A positive one
-/// may come later in the file.
+/// The vertex of `7`, `7/1`, `7/1/3` or `7//3`, counted from 0; a negative one counts from the last
+/// vertex above it. A positive one may come later in the file.
 pub(super) fn corner(word: &[u8], count: usize, line: usize) -> Result<i64, ObjError> {
     let first = word.split(|b| *b == b'/').next().unwrap_or_default();
     let index = std::str::from_utf8(first).ok().and_then(|w| w.parse::<i64>().ok());

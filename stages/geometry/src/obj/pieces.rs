@@ -18,7 +18,8 @@ pub fn is_flat([a, b, c]: [Vector3<f64>; 3]) -> bool {
 pub(super) struct Pieces {
     /// The piece of each vertex.
     pub(super) of: Vec<u32>,
-    /// Whether each edge of a piece has two triangles that run through it opposite ways, and it has triangles.
+    /// Whether each edge of a piece has two triangles that run through it opposite ways, and it has
+    /// triangles.
     pub(super) closed: Vec<bool>,
     /// Triangles of each piece.
     pub(super) triangles: Vec<usize>,

@@ -1,7 +1,8 @@
 //! Faces of any number of corners as triangles.
 //!
-//! Method: a fan, which suits convex faces and the nearly flat quads of bodies; where a triangle of it would be turned over, ears are
-//! cut instead (Meisters, 1975), seen along the face's normal (Newell). Cost: the corners; their square where ears are cut.
+//! Method: a fan, which suits convex faces and the nearly flat quads of bodies; where a triangle of
+//! it would be turned over, ears are cut instead (Meisters, 1975), seen along the face's normal
+//! (Newell). Cost: the corners; their square where ears are cut.
 
 use nalgebra::{Vector2, Vector3};
 

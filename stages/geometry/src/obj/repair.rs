@@ -1,9 +1,10 @@
-//! Mends what exporters leave behind: vertices split along the seams of a texture, triangles without area, triangles listed twice,
-//! vertices that no face uses.
+//! Mends what exporters leave behind: vertices split along the seams of a texture, triangles
+//! without area, triangles listed twice, vertices that no face uses.
 //!
-//! Method: pieces that are closed as they stand are kept to the last bit. Vertices of the others are joined where they lie within
-//! [`JOIN`] of the size of each other; then triangles that lost their area go, and one that lies flat between three vertices in a
-//! line gives its long side to its neighbour. Cost: O(n), and a sort of the edges.
+//! Method: pieces that are closed as they stand are kept to the last bit. Vertices of the others
+//! are joined where they lie within [`JOIN`] of the size of each other; then triangles that lost
+//! their area go, and one that lies flat between three vertices in a line gives its long side to
+//! its neighbour. Cost: O(n), and a sort of the edges.
 
 use super::Mesh;
 use super::pieces::{Pieces, directed, is_flat};
@@ -12,7 +13,8 @@ use std::collections::{BTreeMap, HashMap};
 
 type Vec3 = Vector3<f64>;
 
-/// Distance within which vertices are one, as a share of the mesh's diagonal: the sixth digit of an exporter.
+/// Distance within which vertices are one, as a share of the mesh's diagonal: the sixth digit of an
+/// exporter.
 pub const JOIN: f64 = 1e-6;
 
 /// How often flat triangles are looked for: each time one of two that lie on each other goes.
@@ -130,7 +132,8 @@ fn drop_collapsed(mesh: &mut Mesh, repairs: &mut Repairs) {
     repairs.without_area += before - mesh.triangles.len();
 }
 
-/// Drops triangles that name the same vertices as others: of those that run both ways round, the ones against their neighbours.
+/// Drops triangles that name the same vertices as others: of those that run both ways round, the
+/// ones against their neighbours.
 fn drop_doubled(mesh: &mut Mesh, repairs: &mut Repairs) {
     let kept = first_of_each(&mesh.triangles);
     repairs.twice += mesh.triangles.len() - kept.len();
@@ -170,7 +173,8 @@ pub fn first_of_each(triangles: &[[u32; 3]]) -> Vec<usize> {
     kept
 }
 
-/// For each vertex the first of those that lie within `reach` of it, itself where there is none or it takes no part.
+/// For each vertex the first of those that lie within `reach` of it, itself where there is none or
+/// it takes no part.
 ///
 /// Method: a grid of cells four times as wide, so that few neighbours need a look.
 #[must_use]
@@ -205,7 +209,8 @@ pub fn joined(points: &[Vec3], takes_part: &[bool], reach: f64) -> Vec<u32> {
     first
 }
 
-/// Takes away triangles whose corners lie in a line: the neighbour across the long side is cut at the corner between.
+/// Takes away triangles whose corners lie in a line: the neighbour across the long side is cut at
+/// the corner between.
 fn unfold(mesh: &mut Mesh, repairs: &mut Repairs) {
     for _ in 0..PASSES {
         let corners = |t: &[u32; 3]| t.map(|v| mesh.vertices[v as usize]);

@@ -18,8 +18,9 @@ struct Piece {
     first: Vector3<f64>,
 }
 
-/// Beside a largest piece that is closed, leaves out open pieces (hair, eyelashes, a ground) and the inner side of walls, and turns
-/// pieces that face inwards. Where the largest is not closed, nothing is changed: what is missing there cannot be guessed.
+/// Beside a largest piece that is closed, leaves out open pieces (hair, eyelashes, a ground) and
+/// the inner side of walls, and turns pieces that face inwards. Where the largest is not closed,
+/// nothing is changed: what is missing there cannot be guessed.
 #[must_use]
 pub fn outer_surface(mut mesh: Mesh, repairs: &mut Repairs) -> Mesh {
     let pieces = Pieces::new(&mesh);

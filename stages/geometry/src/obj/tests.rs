@@ -208,7 +208,8 @@ fn beside_a_closed_body_open_pieces_and_inner_walls_are_left_out_and_others_turn
     let (mesh, told) = body(inside_out(CUBE));
     assert!((volume(&mesh) - 1.0).abs() < 1e-12);
     assert_eq!(told.unwrap(), "1 piece is turned to face outwards");
-    // A smaller cube that faces inwards: the inner side of a wall within the first, a thing turned over beside it.
+    // A smaller cube that faces inwards: the inner side of a wall within the first, a thing turned
+    // over beside it.
     let small = |x: f64| -> String {
         let line = |l: &str| {
             let p: Vec<f64> = l[2..].split(' ').map(|w| w.parse().unwrap()).collect();
@@ -246,7 +247,8 @@ fn shifted(text: &str, by: u32) -> String {
     text.lines().map(|l| if l.starts_with('f') { face(l) } else { format!("{l}\n") }).collect()
 }
 
-/// A ball of so many rings and columns, split, doubled and written in ways that exporters have; the clean one comes out again.
+/// A ball of so many rings and columns, split, doubled and written in ways that exporters have; the
+/// clean one comes out again.
 #[derive(Debug, Clone)]
 struct Spoiled {
     split: Vec<bool>,

@@ -1,7 +1,8 @@
 //! Bytes of a text file as lines, whatever wrote them.
 //!
-//! A byte order mark is skipped, UTF-16 is recoded by its mark, lines end in LF, CR LF or CR. Other encodings (Latin-1, Shift-JIS)
-//! need nothing: all that is read are digits and two letters, and what stands in comments and names is passed over as bytes.
+//! A byte order mark is skipped, UTF-16 is recoded by its mark, lines end in LF, CR LF or CR. Other
+//! encodings (Latin-1, Shift-JIS) need nothing: all that is read are digits and two letters, and
+//! what stands in comments and names is passed over as bytes.
 
 use std::borrow::Cow;
 
@@ -22,9 +23,11 @@ pub fn decode(bytes: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// The lines of a text with their numbers, counted from 1; `v` and `f` lines that end in `\` with those that continue them.
+/// The lines of a text with their numbers, counted from 1; `v` and `f` lines that end in `\` with
+/// those that continue them.
 ///
-/// Other lines are not continued: a comment or a name may end in `\` (`# C:\bodies\`) and must not swallow the vertex below it.
+/// Other lines are not continued: a comment or a name may end in `\` (`# C:\bodies\`) and must not
+/// swallow the vertex below it.
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
     number: usize,

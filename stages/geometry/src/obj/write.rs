@@ -4,7 +4,8 @@ use nalgebra::Vector3;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Vertices in their order, then the triangles; nine digits, so that a micrometre in a metre survives.
+/// Vertices in their order, then the triangles; nine digits, so that a micrometre in a metre
+/// survives.
 #[must_use]
 pub fn to_text(vertices: &[Vector3<f64>], triangles: &[[u32; 3]]) -> String {
     let mut text = String::with_capacity(48 * vertices.len() + 24 * triangles.len());

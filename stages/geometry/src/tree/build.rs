@@ -8,8 +8,8 @@ use crate::{Corners, Vec3};
 const BINS: usize = 12;
 
 impl Tree {
-    /// The tree over triangles, at most `leaf` of them together, and their numbers in its order. A corner that is no finite
-    /// number must not be among them.
+    /// The tree over triangles, at most `leaf` of them together, and their numbers in its order. A
+    /// corner that is no finite number must not be among them.
     #[must_use]
     pub fn over(corners: &[Corners], leaf: usize) -> (Self, Vec<u32>) {
         let boxes: Vec<(Aabb, Vec3)> =
@@ -81,7 +81,8 @@ fn part(order: &mut [u32], is_first: impl Fn(usize) -> bool) -> usize {
     count
 }
 
-/// The bin before which to cut, by least sum of surface times count; `None` where all is in one bin.
+/// The bin before which to cut, by least sum of surface times count; `None` where all is in one
+/// bin.
 fn best_cut(order: &[u32], bins: &[u8], boxes: &[(Aabb, Vec3)]) -> Option<usize> {
     let mut filled = [(Aabb::empty(), 0usize); BINS];
     for (&i, &bin) in order.iter().zip(bins) {

@@ -1,7 +1,8 @@
 //! Which things of a tree are near each other: the tree against itself.
 //!
-//! A part meets itself where its children do, and where one child meets the other (Gottschalk, Lin, Manocha 1996 for two
-//! trees). Parts run side by side; what they find is put together in their order, whatever the number of threads.
+//! A part meets itself where its children do, and where one child meets the other (Gottschalk, Lin,
+//! Manocha 1996 for two trees). Parts run side by side; what they find is put together in their
+//! order, whatever the number of threads.
 
 use super::Tree;
 use crate::volume::BoundingVolume;
@@ -18,14 +19,16 @@ pub struct Meeting<'m, V, T> {
     pub things: &'m [V],
     /// How near they must be.
     pub reach: f64,
-    /// Which parts and which things look for others; without it all do. Two of which neither looks are passed over.
+    /// Which parts and which things look for others; without it all do. Two of which neither looks
+    /// are passed over.
     pub active: Option<(&'m [bool], &'m [bool])>,
     /// Told of every two things whose volumes are within reach, the earlier one first.
     pub visit: &'m (dyn Fn(usize, usize, &mut Vec<T>) + Sync),
 }
 
 impl Tree {
-    /// What `visit` adds for every two things that are near each other; the order depends on the tree alone.
+    /// What `visit` adds for every two things that are near each other; the order depends on the
+    /// tree alone.
     pub fn meetings<V: BoundingVolume, T: Send>(&self, meeting: &Meeting<'_, V, T>) -> Vec<T> {
         let mut found = Vec::new();
         if !self.is_empty() {

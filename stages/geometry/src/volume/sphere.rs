@@ -38,7 +38,8 @@ fn farthest<'a>(points: &'a [Vec3], from: &Vec3) -> &'a Vec3 {
 }
 
 impl BoundingVolume for Sphere {
-    // Ritter 1990: the ball between two far points, grown to the rest; within some 10 % of the best.
+    // Ritter 1990: the ball between two far points, grown to the rest; within some 10 % of the
+    // best.
     fn fit(points: &[Vec3]) -> Self {
         let a = farthest(points, &points[0]);
         let b = farthest(points, a);

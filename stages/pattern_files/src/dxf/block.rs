@@ -13,7 +13,8 @@ use toile_core::artifact::{Piece, Point2, Vector2, polygon_area, polyline_length
 pub(super) const TOLERANCE: f64 = 7e-6;
 /// Readers take a line whose ends are nearer than this for a closed one, metres.
 const JOINT: f64 = 2.01e-4;
-/// Readers leave out shorter lines inside pieces, and refuse smaller cut-outs, metres and square metres.
+/// Readers leave out shorter lines inside pieces, and refuse smaller cut-outs, metres and square
+/// metres.
 const NO_LINE: f64 = 1e-5;
 const NO_HOLE: f64 = 1e-7;
 /// A cut line is split where it turns by more than this, degrees.

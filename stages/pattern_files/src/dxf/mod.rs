@@ -1,13 +1,15 @@
 //! DXF of AAMA and ASTM D6673: release 12, ASCII, a block a piece, millimetres.
 //!
-//! Layers: 1 boundary, as open polylines that are split where seams end, and the texts by which programs know a piece; 2 turn points, 3
-//! curve points, 4 notches, 7 grain, 8 lines inside, 11 cut-outs, 13 drill holes, 14 the line that is sewn along where there is a seam
-//! allowance (1 is the cut line then), 15 texts for people; of ASTM also 84, the boundary as it is checked. Curves become polylines
-//! within 0.01 mm. [`text`] knows the tags, [`block`] what is drawn of a piece.
+//! Layers: 1 boundary, as open polylines that are split where seams end, and the texts by which
+//! programs know a piece; 2 turn points, 3 curve points, 4 notches, 7 grain, 8 lines inside, 11
+//! cut-outs, 13 drill holes, 14 the line that is sewn along where there is a seam allowance (1 is
+//! the cut line then), 15 texts for people; of ASTM also 84, the boundary as it is checked. Curves
+//! become polylines within 0.01 mm. [`text`] knows the tags, [`block`] what is drawn of a piece.
 //!
-//! Cost: a millisecond a piece. Limits: the format has no seams, no places around the body, no layers of clothes and no purposes
-//! of lines inside pieces; each is told, and seams stand in the file beside it. Pieces are written whole: there is no mirror line (layer
-//! 6). No grading: one size.
+//! Cost: a millisecond a piece. Limits: the format has no seams, no places around the body, no
+//! layers of clothes and no purposes of lines inside pieces; each is told, and seams stand in the
+//! file beside it. Pieces are written whole: there is no mirror line (layer 6). No grading: one
+//! size.
 
 mod block;
 mod text;
@@ -45,11 +47,12 @@ pub enum Standard {
 
 /// A pattern as a DXF, with its seams in the file beside it.
 ///
-/// Characters beyond Latin-1 are written as `\U+XXXX`, as release 12 knows none of them. An edge whose ends are nearer to each other than
-/// 0.2 mm is no edge to readers: it becomes a part of the edge before it where it is short, and is halved where it is long.
+/// Characters beyond Latin-1 are written as `\U+XXXX`, as release 12 knows none of them. An edge
+/// whose ends are nearer to each other than 0.2 mm is no edge to readers: it becomes a part of the
+/// edge before it where it is short, and is halved where it is long.
 ///
-/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond [`FARTHEST`](crate::FARTHEST); a seam allowance
-/// that cannot be cut.
+/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
+/// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut.
 pub fn to_dxf(pattern: &Pattern, standard: Standard, options: &Options) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;

@@ -45,7 +45,8 @@ impl Tags {
         self.tag(0, "LINE").tag(8, layer).point(10, a).point(11, b)
     }
 
-    /// A point by itself; its thickness is the depth of a notch, mm, its angle the direction of one, degrees.
+    /// A point by itself; its thickness is the depth of a notch, mm, its angle the direction of
+    /// one, degrees.
     pub(super) fn dot(&mut self, layer: i32, at: [f64; 2], notch: Option<(f64, f64)>) -> &mut Self {
         self.tag(0, "POINT").tag(8, layer).point(10, at);
         if let Some((depth, angle)) = notch {
@@ -71,8 +72,8 @@ pub(super) fn held(text: &str) -> String {
     text.chars().map(|c| if u32::from(c) < 0x1_0000 { c } else { '_' }).collect()
 }
 
-/// A text as it is written: characters that are not of Latin-1, and those that begin codes, as `\U+XXXX`; beyond those a `_`. All
-/// that are no ASCII where `ascii` is asked for.
+/// A text as it is written: characters that are not of Latin-1, and those that begin codes, as
+/// `\U+XXXX`; beyond those a `_`. All that are no ASCII where `ascii` is asked for.
 pub(super) fn encoded(text: &str, ascii: bool) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,11 +1,12 @@
 //! Lines from point to point as the curves of the format: straight edges and cubic curves.
 //!
-//! Method: the line is split where it turns by more than [`CORNER`]; each run becomes one straight line where its points lie on
-//! it, else one cubic curve by least squares over its points, parameters and control points
-//! improved together by tangent distances (Schneider 1990; Wang, Pottmann and Liu 2006). A run
-//! that leaves its curve by more than the tolerance, at points or between them, is divided at the worst point. What no curve
-//! fits stays straight from point to point. Cost: points squared, a millisecond for a hundred. Limits: curves that follow each
-//! other meet without a gap, but their directions may differ a little there.
+//! Method: the line is split where it turns by more than [`CORNER`]; each run becomes one straight
+//! line where its points lie on it, else one cubic curve by least squares over its points,
+//! parameters and control points improved together by tangent distances (Schneider 1990; Wang,
+//! Pottmann and Liu 2006). A run that leaves its curve by more than the tolerance, at points or
+//! between them, is divided at the worst point. What no curve fits stays straight from point to
+//! point. Cost: points squared, a millisecond for a hundred. Limits: curves that follow each other
+//! meet without a gap, but their directions may differ a little there.
 
 use super::curve::Curve;
 use kurbo::{CubicBez, ParamCurve, ParamCurveDeriv};
@@ -20,11 +21,13 @@ const FEWEST: usize = 5;
 const ROUNDS: usize = 24;
 /// The share of the whole distance of a point beside that from the tangent.
 const SLIDE: f64 = 1e-6;
-/// Points of a curve that are compared with the line, for each of the line's; of a line that is drawn more finely than by so many, as many as it has.
+/// Points of a curve that are compared with the line, for each of the line's; of a line that is
+/// drawn more finely than by so many, as many as it has.
 const SAMPLES: usize = 6;
 const FINE: usize = 600;
 
-/// The curves of a line through these points, at least two; they leave it by no more than `tolerance`, metres.
+/// The curves of a line through these points, at least two; they leave it by no more than
+/// `tolerance`, metres.
 pub(super) fn fitted(points: &[Point2], tolerance: f64) -> Vec<Curve> {
     let mut points: Vec<Point2> = points.to_vec();
     points.dedup();
@@ -96,8 +99,8 @@ fn cubic(points: &[Point2]) -> Option<CubicBez> {
     Some(curve)
 }
 
-/// The inner control points by least squares over the distances of the points from the curve's tangents, which lets the points
-/// slide along the curve.
+/// The inner control points by least squares over the distances of the points from the curve's
+/// tangents, which lets the points slide along the curve.
 fn nearer(points: &[Point2], at: &[f64], curve: &CubicBez) -> Option<CubicBez> {
     let (mut matrix, mut right) = (Matrix4::<f64>::zeros(), Vector4::<f64>::zeros());
     for (point, &t) in points.iter().zip(at) {
@@ -168,7 +171,8 @@ fn distance(points: &[Point2], curve: &CubicBez) -> (f64, usize) {
     of_curve.chain(of_line).fold((0.0, 1), |worst, one| if one.0 > worst.0 { one } else { worst })
 }
 
-/// The distance of a point from a line, and the number of the line's point that is nearest behind it.
+/// The distance of a point from a line, and the number of the line's point that is nearest behind
+/// it.
 fn nearest(line: &[Point2], p: Point2) -> (f64, usize) {
     let chord = |(k, w): (usize, &[Point2])| {
         let d = w[1] - w[0];

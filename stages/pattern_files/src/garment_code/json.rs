@@ -18,7 +18,8 @@ impl<T: Serialize> Serialize for InOrder<'_, T> {
     }
 }
 
-/// A whole file. GarmentCode reads none without `parameters` and their order, of which a pattern that is drawn has none.
+/// A whole file. GarmentCode reads none without `parameters` and their order, of which a pattern
+/// that is drawn has none.
 #[derive(Serialize)]
 pub(super) struct File<'a> {
     pattern: Body<'a>,
@@ -165,8 +166,8 @@ fn relative(curve: &Curve, c: Point2) -> [f64; 2] {
     [to.dot(&chord) / square, chord.perp(&to) / square]
 }
 
-/// The radius of an arc in the file's units. Near a half circle the last bits of it decide: of its neighbours the number is
-/// taken from which a reader finds the bulge again.
+/// The radius of an arc in the file's units. Near a half circle the last bits of it decide: of its
+/// neighbours the number is taken from which a reader finds the bulge again.
 fn radius(curve: &Curve, bulge: f64) -> f64 {
     let at = |p: Point2| p * UNITS;
     let chord: Vector2 = at(curve.end) - at(curve.start);

@@ -1,11 +1,13 @@
 //! GarmentCode JSON, `*_specification.json`.
 //!
-//! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its specification. Centimetres, 100 units a
-//! metre; control points relative to the chord of their edge; radii of circles in centimetres. [`curves`] makes edges of the
-//! format, [`stitches`] stitches, [`json`] the text.
+//! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its
+//! specification. Centimetres, 100 units a metre; control points relative to the chord of their
+//! edge; radii of circles in centimetres. [`curves`] makes edges of the format, [`stitches`]
+//! stitches, [`json`] the text.
 //!
-//! Cost: some milliseconds a piece. Limits: the format has no holes, lines inside pieces, notches, grain lines, drill holes,
-//! layers and kinds of seams; each is told. A polyline becomes straight edges and cubic curves within 0.025 mm.
+//! Cost: some milliseconds a piece. Limits: the format has no holes, lines inside pieces, notches,
+//! grain lines, drill holes, layers and kinds of seams; each is told. A polyline becomes straight
+//! edges and cubic curves within 0.025 mm.
 
 mod curve;
 mod curves;
@@ -29,11 +31,12 @@ const PLAUSIBLE: std::ops::RangeInclusive<f64> = 0.15..=5.0;
 
 /// A pattern as a file of GarmentCode, with all its seams in the file beside it.
 ///
-/// An edge keeps its name as its label, as a `name` where GarmentCode would refuse two labels in one stitch; `edge_0`, `edge_1`, ... by their
-/// place need none. A piece without a place is put beside
-/// the others. Numbers are written so that they are read back to the last bit.
+/// An edge keeps its name as its label, as a `name` where GarmentCode would refuse two labels in
+/// one stitch; `edge_0`, `edge_1`, ... by their place need none. A piece without a place is put
+/// beside the others. Numbers are written so that they are read back to the last bit.
 ///
-/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond [`FARTHEST`](crate::FARTHEST).
+/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
+/// [`FARTHEST`](crate::FARTHEST).
 pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
     writable(pattern)?;
     let (mut notes, mut warnings) = (left_out(&pattern.pieces), Vec::new());
@@ -64,7 +67,8 @@ pub fn to_json(pattern: &Pattern) -> Result<Written, WriteError> {
     Ok(Written { bytes: text.into_bytes(), seams, notes, warnings })
 }
 
-/// Takes the labels from the edges of stitches whose sides are called differently: GarmentCode refuses those.
+/// Takes the labels from the edges of stitches whose sides are called differently: GarmentCode
+/// refuses those.
 fn labelled_alike(panels: &mut [(&str, Panel<'_>)], stitches: impl Iterator<Item = [(usize, usize); 2]>) {
     for sides in stitches {
         let [a, b] = sides.map(|(panel, edge)| panels[panel].1.edges[edge].called().map(str::to_owned));

@@ -1,17 +1,20 @@
 //! Where pieces stand in the file; the format wants a place for each.
 //!
-//! Pieces that have none stand side by side, to the right of those that have one. Method: each is turned so that its stitches do not run
-//! against the way in which it stands: readers take the wrong direction of a stitch from the edges' directions in space. Of the 24
-//! turns about the axes the first is taken with which the fewest stitches run so, beginning with the piece that has most
-//! stitches to those that stand already; then each is looked at again. Cost: pieces squared times stitches. Limits: there
-//! may be no such turn; and the places are no garment around a body, which is told.
+//! Pieces that have none stand side by side, to the right of those that have one. Method: each is
+//! turned so that its stitches do not run against the way in which it stands: readers take the
+//! wrong direction of a stitch from the edges' directions in space. Of the 24 turns about the axes
+//! the first is taken with which the fewest stitches run so, beginning with the piece that has most
+//! stitches to those that stand already; then each is looked at again. Cost: pieces squared times
+//! stitches. Limits: there may be no such turn; and the places are no garment around a body, which
+//! is told.
 
 use super::stitches::{Curves, Stitch};
 use toile_core::artifact::{Piece, Point3, Pose, Vector2, Vector3};
 
 /// Between pieces that have no place, metres.
 const GAP: f64 = 0.1;
-/// A stitch runs against its edges where their directions agree by more than this cosine; readers ask for 0.5.
+/// A stitch runs against its edges where their directions agree by more than this cosine; readers
+/// ask for 0.5.
 const AGAINST: f64 = 0.45;
 /// Readers do not look at shorter edges, metres.
 const SHORT: f64 = 0.04;
@@ -44,7 +47,8 @@ pub(super) fn poses(
     poses
 }
 
-/// A stitch between two pieces: the directions of its edges, the second turned around where starts meet ends do.
+/// A stitch between two pieces: the directions of its edges, the second turned around where starts
+/// meet ends do.
 struct Chord {
     pieces: [usize; 2],
     ways: [Vector2; 2],
@@ -104,7 +108,8 @@ fn best(k: usize, turns: &[Pose], found: &[Option<Pose>], chords: &[Chord]) -> O
     turns.iter().min_by_key(|turn| against(turn)).copied()
 }
 
-/// All turns about the axes: upright before and behind the body first, then head down, then the others.
+/// All turns about the axes: upright before and behind the body first, then head down, then the
+/// others.
 fn turns() -> Vec<Pose> {
     let (x, y, z) = (Vector3::x(), Vector3::y(), Vector3::z());
     let mut out: Vec<Pose> = Vec::with_capacity(24);

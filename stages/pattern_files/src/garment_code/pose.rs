@@ -1,7 +1,8 @@
 //! The place of a piece as the format has it: a translation, and Euler angles of `Rz Ry Rx`.
 //!
-//! Method: the angle about y from the first column, that about z from the same column, that about x from what is left when z is
-//! undone, so that all three are sharp even where y is a right angle (Shoemake 1994). Cost: none to speak of.
+//! Method: the angle about y from the first column, that about z from the same column, that about x
+//! from what is left when z is undone, so that all three are sharp even where y is a right angle
+//! (Shoemake 1994). Cost: none to speak of.
 
 use toile_core::artifact::{Pose, Vector3};
 

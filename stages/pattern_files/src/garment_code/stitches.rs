@@ -1,9 +1,10 @@
 //! Seams as stitches of the format, each of which joins one edge to one edge.
 //!
-//! Method: the curves of both sides of a seam are cut until they meet one to one, at the same shares of the sides' lengths. The
-//! start of the first edge meets the end of the second, unless `right_wrong` stands with the stitch. Cost: linear in the curves.
-//! Limits: the format has no seam of three sides, none along a line inside a piece, and no edge in two of them; such a
-//! seam is left out, which is told.
+//! Method: the curves of both sides of a seam are cut until they meet one to one, at the same
+//! shares of the sides' lengths. The start of the first edge meets the end of the second, unless
+//! `right_wrong` stands with the stitch. Cost: linear in the curves. Limits: the format has no seam
+//! of three sides, none along a line inside a piece, and no edge in two of them; such a seam is
+//! left out, which is told.
 
 use super::curve::Curve;
 use std::collections::BTreeSet;
@@ -27,7 +28,8 @@ pub(super) struct Stitch {
     pub right_wrong: bool,
 }
 
-/// The stitches of all seams that the format holds; curves are cut for them, and what is left out is told.
+/// The stitches of all seams that the format holds; curves are cut for them, and what is left out
+/// is told.
 pub(super) fn stitches(pattern: &Pattern, curves: &mut Curves, told: &mut Vec<String>) -> Vec<Stitch> {
     let mut sewn = BTreeSet::new();
     let mut kept: Vec<(&PatternSeam, [Vec<Link>; 2])> = Vec::new();
@@ -130,7 +132,8 @@ fn stops(curves: &Curves, side: &[Link]) -> (Vec<f64>, f64) {
     (stops, whole)
 }
 
-/// Cuts the curve of a side at that length from the side's start, metres; never at an end of a curve.
+/// Cuts the curve of a side at that length from the side's start, metres; never at an end of a
+/// curve.
 fn cut(curves: &mut Curves, side: &[Link], at: f64) {
     let mut before = 0.0;
     for step in chain(curves, side) {

@@ -1,4 +1,5 @@
-//! The first page: a square to measure, what the lines mean, how the pages are joined. And the sheet in one piece.
+//! The first page: a square to measure, what the lines mean, how the pages are joined. And the
+//! sheet in one piece.
 
 use super::canvas::{Canvas, Hold, SHEET, Style, Type};
 use super::sheet::{CUT, DOTTED, FOLD, SEW, Sheet, THIN};
@@ -57,8 +58,8 @@ fn subtitle(pattern: &Pattern, options: &Options) -> String {
     out
 }
 
-/// A square to measure, its lower left corner there: the middles of its lines are 100 mm apart, and the lines so thin that their
-/// edges are within a tenth of a millimetre.
+/// A square to measure, its lower left corner there: the middles of its lines are 100 mm apart, and
+/// the lines so thin that their edges are within a tenth of a millimetre.
 fn square(canvas: &mut Canvas, [x, y]: [f64; 2]) {
     let (right, top) = (x + SQUARE, y + SQUARE);
     canvas.closed(&[[x, y], [right, y], [right, top], [x, top]], Style::solid(0.1));

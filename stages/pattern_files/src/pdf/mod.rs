@@ -1,12 +1,14 @@
 //! PDF of a pattern in true scale, on pages that are joined, or in one piece.
 //!
-//! The first page has a square of 100 mm to measure, what the lines mean and how the pages are joined; then come what is cut and in what
-//! order it is sewn; then the pieces. On these: the cut line solid, the line that is sewn along dashed, grain line, fold lines,
-//! notches, drill holes, names, and the number of each seam at all its edges. [`sheet`] lays and draws the pieces, [`tiles`] cuts the
-//! sheet into pages, [`front`] and [`order`] are the pages with words, [`canvas`] draws.
+//! The first page has a square of 100 mm to measure, what the lines mean and how the pages are
+//! joined; then come what is cut and in what order it is sewn; then the pieces. On these: the cut
+//! line solid, the line that is sewn along dashed, grain line, fold lines, notches, drill holes,
+//! names, and the number of each seam at all its edges. [`sheet`] lays and draws the pieces,
+//! [`tiles`] cuts the sheet into pages, [`front`] and [`order`] are the pages with words,
+//! [`canvas`] draws.
 //!
-//! Cost: some ten milliseconds a piece. Limits: letters of Western Europe, others are question marks, which is told; one size; every
-//! piece is cut once, no pieces are folded.
+//! Cost: some ten milliseconds a piece. Limits: letters of Western Europe, others are question
+//! marks, which is told; one size; every piece is cut once, no pieces are folded.
 
 mod canvas;
 mod front;
@@ -29,7 +31,8 @@ use toile_core::artifact::Pattern;
 pub const MOST_PAGES: usize = 500;
 /// The longest side of a page that readers of PDF take, mm.
 const LONGEST: f64 = 14_400.0 / POINTS;
-/// How wide a sheet in one piece is where no piece is wider, mm: a roll of 36 inches less its margins, then wider ones.
+/// How wide a sheet in one piece is where no piece is wider, mm: a roll of 36 inches less its
+/// margins, then wider ones.
 const WIDTHS: [f64; 5] = [890.0, 1500.0, 2500.0, 4000.0, LONGEST];
 
 /// What a pattern is printed on.
@@ -61,8 +64,9 @@ struct Page {
 
 /// A pattern as pages to print. No program reads it back: its file of seams is empty.
 ///
-/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond [`FARTHEST`](crate::FARTHEST); a seam allowance
-/// that cannot be cut; more than [`MOST_PAGES`] pages; a sheet in one piece that is longer than 5.08 m.
+/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
+/// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut; more than [`MOST_PAGES`]
+/// pages; a sheet in one piece that is longer than 5.08 m.
 pub fn to_pdf(pattern: &Pattern, paper: Paper, options: &Options) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;

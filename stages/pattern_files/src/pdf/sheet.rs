@@ -20,7 +20,8 @@ pub(super) const SEW: Style = Style::dashed(0.3, &[4.0, 2.0]);
 pub(super) const THIN: Style = Style::solid(0.3);
 pub(super) const FOLD: Style = Style::dashed(0.3, &[8.0, 2.0, 1.0, 2.0]);
 pub(super) const DOTTED: Style = Style::dashed(0.3, &[1.0, 1.5]);
-/// How far seams' numbers stand inside of the line that is sewn along, and how large their circles are, mm; the first that fits.
+/// How far seams' numbers stand inside of the line that is sewn along, and how large their circles
+/// are, mm; the first that fits.
 const NUMBERS: [(f64, f64); 3] = [(6.5, 2.8), (4.5, 2.2), (2.6, 1.4)];
 /// A notch is drawn from the line that is cut to this far inside of that which is sewn, mm.
 const NOTCH: f64 = 3.0;
@@ -88,8 +89,9 @@ impl<'a> Sheet<'a> {
         self.pieces.iter().for_each(|p| p.draw(canvas));
     }
 
-    /// Which boxes of a grid the pieces reach, `columns` in each row, mm: those that a line of theirs crosses, and those within a
-    /// piece. The first box of the first row has its lower left corner at `low`.
+    /// Which boxes of a grid the pieces reach, `columns` in each row, mm: those that a line of
+    /// theirs crosses, and those within a piece. The first box of the first row has its lower left
+    /// corner at `low`.
     pub(super) fn reached(&self, low: [f64; 2], step: [f64; 2], columns: usize, rows: usize) -> Vec<bool> {
         let mut out = vec![false; columns * rows];
         let number = |x: f64, k: usize, most: usize| {
@@ -276,7 +278,8 @@ impl<'a> Laid<'a> {
         }
     }
 
-    /// Where the number of a seam stands, and the radius of its circle: inside, and no larger than its edge bears.
+    /// Where the number of a seam stands, and the radius of its circle: inside, and no larger than
+    /// its edge bears.
     fn number(&self, m: &SeamMark) -> (Point2, f64) {
         let fits = |(far, r): &(f64, f64)| {
             let at = m.at + m.inwards * *far;

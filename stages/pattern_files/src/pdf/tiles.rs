@@ -1,8 +1,9 @@
 //! A sheet cut into pages that are joined again.
 //!
-//! A page shows its part of the sheet and, to the right and below, a margin of [`OVERLAP`] of the next ones, on which those are
-//! glued. Pages are laid from left to right and from above; rows and columns are counted from 1. Marks on the joints carry
-//! the same number on both pages. A page with nothing on it is left out.
+//! A page shows its part of the sheet and, to the right and below, a margin of [`OVERLAP`] of the
+//! next ones, on which those are glued. Pages are laid from left to right and from above; rows and
+//! columns are counted from 1. Marks on the joints carry the same number on both pages. A page with
+//! nothing on it is left out.
 
 use super::Paper;
 use super::canvas::{Canvas, Hold, SHEET, Style, Type};
@@ -13,7 +14,8 @@ use toile_core::artifact::Point2;
 const MARGIN: f64 = 10.0;
 /// How far pages overlap, mm.
 pub(super) const OVERLAP: f64 = 10.0;
-/// Of so many times the most pages, those with nothing on them among them, it is looked which are needed.
+/// Of so many times the most pages, those with nothing on them among them, it is looked which are
+/// needed.
 const EMPTY: usize = 4;
 /// Columns that are tried.
 const COLUMNS: usize = 12;
@@ -37,7 +39,8 @@ pub(super) struct Tiles {
 }
 
 impl Tiles {
-    /// Lays the pieces so that they need few pages of that paper; how many there would be comes with it.
+    /// Lays the pieces so that they need few pages of that paper; how many there would be comes
+    /// with it.
     pub(super) fn lay(sheet: &mut Sheet<'_>, paper: Paper, most: usize) -> Result<Self, usize> {
         let [w, h] = paper.size();
         let step = [w - 2.0 * MARGIN - OVERLAP, h - 2.0 * MARGIN - OVERLAP];
@@ -79,7 +82,8 @@ impl Tiles {
         if tiles.pages.len() > most { Err(tiles.pages.len()) } else { Ok(tiles) }
     }
 
-    /// The part of the sheet that a page shows beside the overlap. The sheet's upper left corner is that of the first page.
+    /// The part of the sheet that a page shows beside the overlap. The sheet's upper left corner is
+    /// that of the first page.
     pub(super) fn part(&self, (row, column): (usize, usize)) -> (Point2, Point2) {
         let [w, h] = self.step;
         let (x, y) = (column as f64 * w, (self.rows - row - 1) as f64 * h);

@@ -1,11 +1,13 @@
 //! SVG of a pattern, in true scale: a unit is a millimetre.
 //!
-//! Each piece is a group under its name, each edge a path under its own; classes say what the other lines are for, as the
-//! reader of drawings takes them: `allowance`, `grainline`, `notch`, `drill`, `hole`, `mark`. Curves are kept as curves, arcs as cubic ones. Seams are
-//! numbered, the number stands at each of their edges; the seams themselves stand in the file beside it.
+//! Each piece is a group under its name, each edge a path under its own; classes say what the other
+//! lines are for, as the reader of drawings takes them: `allowance`, `grainline`, `notch`, `drill`,
+//! `hole`, `mark`. Curves are kept as curves, arcs as cubic ones. Seams are numbered, the number
+//! stands at each of their edges; the seams themselves stand in the file beside it.
 //!
-//! Cost: a millisecond a piece. Limits: a drawing has no places around the body, no layers, no depths of notches, no purposes of
-//! lines inside pieces; each is told. No reader takes pieces of less than 4 cm² for pieces.
+//! Cost: a millisecond a piece. Limits: a drawing has no places around the body, no layers, no
+//! depths of notches, no purposes of lines inside pieces; each is told. No reader takes pieces of
+//! less than 4 cm² for pieces.
 
 mod names;
 mod text;
@@ -51,8 +53,8 @@ const ARROW: f64 = 5e-3;
 
 /// A pattern as a drawing, with its seams in the file beside it.
 ///
-/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond [`FARTHEST`](crate::FARTHEST); a seam allowance
-/// that cannot be cut.
+/// Errors: a pattern that is not sound, that has no pieces, or with a piece beyond
+/// [`FARTHEST`](crate::FARTHEST); a seam allowance that cannot be cut.
 pub fn to_svg(pattern: &Pattern, options: &Options) -> Result<Written, WriteError> {
     writable(pattern)?;
     let cut = cut_lines(pattern, &options.allowances)?;

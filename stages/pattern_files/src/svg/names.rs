@@ -1,8 +1,8 @@
 //! Names as the reader of drawings takes them.
 //!
-//! The reader tells what a line is for by the words of its name, such as `fold` or `notch`; a name with such a word would
-//! change what the line is. A label has at most 80 characters there, and no point, which would end the name of a piece where seams name an
-//! edge.
+//! The reader tells what a line is for by the words of its name, such as `fold` or `notch`; a name
+//! with such a word would change what the line is. A label has at most 80 characters there, and no
+//! point, which would end the name of a piece where seams name an edge.
 
 use super::words::tells;
 use crate::names::{PieceNames, one_line, sewable, unique};
@@ -26,14 +26,16 @@ pub(super) fn of_piece(name: &str, taken: &mut BTreeSet<String>) -> String {
     unique(taken, &told)
 }
 
-/// The label of an edge, unlike those that are taken: its own where that says nothing of a role, else one by its number.
+/// The label of an edge, unlike those that are taken: its own where that says nothing of a role,
+/// else one by its number.
 fn of_edge(name: &str, k: usize, taken: &mut BTreeSet<String>) -> String {
     let bare = one_line(name, MOST);
     let kept = bare == name && !words(name).1 && !name.contains('.') && !taken.contains(name);
     unique(taken, &if kept { name.to_owned() } else { format!("edge_{k}") })
 }
 
-/// The labels of a piece's edges, each with the number of its parts, and of its lines that are drawn.
+/// The labels of a piece's edges, each with the number of its parts, and of its lines that are
+/// drawn.
 pub(super) fn of_edges(label: &str, edges: &[(&str, usize)], lines: &[&str]) -> PieceNames {
     let mut taken: BTreeSet<String> = (0..lines.len()).map(|k| format!("line_{k}")).collect();
     let mut names = PieceNames { piece: label.to_owned(), ..PieceNames::default() };

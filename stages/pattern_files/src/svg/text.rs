@@ -86,8 +86,9 @@ impl Pen {
     }
 }
 
-/// An arc as cubic curves, each by its control points and its end, that leave it by less than a billionth of its radius. Arcs of SVG are
-/// told by their radius, of which near a half circle the last digits decide.
+/// An arc as cubic curves, each by its control points and its end, that leave it by less than a
+/// billionth of its radius. Arcs of SVG are told by their radius, of which near a half circle the
+/// last digits decide.
 fn arc(start: Point2, end: Point2, bulge: f64) -> Vec<[Point2; 3]> {
     let chord = end - start;
     let left = |v: Vector2| Vector2::new(-v.y, v.x);

@@ -1,4 +1,5 @@
-//! Words of a name by which a drawing tells what a line is for: one list for who writes drawings and who reads them.
+//! Words of a name by which a drawing tells what a line is for: one list for who writes drawings
+//! and who reads them.
 
 /// The line that is cut along.
 pub const ALLOWANCE: [&str; 6] = ["sa", "allowance", "seamallowance", "cutline", "cuttingline", "cutting"];

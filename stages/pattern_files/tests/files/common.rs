@@ -1,4 +1,5 @@
-//! A garment with something of everything, and readers of the formats that know no more than their descriptions.
+//! A garment with something of everything, and readers of the formats that know no more than their
+//! descriptions.
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -35,7 +36,8 @@ pub(crate) fn rectangle(name: &str, width: f64, height: f64) -> Piece {
     }
 }
 
-/// A front with a dart, curves of every kind, and marks; a back, a band of one edge for two, a pocket.
+/// A front with a dart, curves of every kind, and marks; a back, a band of one edge for two, a
+/// pocket.
 pub(crate) fn blouse() -> Pattern {
     let mut front = rectangle("front", 0.5, 0.6);
     front.outer.corners.splice(1..1, [p(0.2, 0.0), p(0.215, 0.14), p(0.23, 0.0)]);
@@ -104,7 +106,8 @@ pub(crate) fn outline(edges: &[(String, Vec<Point2>)]) -> Vec<Point2> {
     edges.iter().flat_map(|(_, points)| points[..points.len() - 1].to_vec()).collect()
 }
 
-/// How far the outlines of a piece and of a drawn one are apart, their lower left corners laid on each other, metres.
+/// How far the outlines of a piece and of a drawn one are apart, their lower left corners laid on
+/// each other, metres.
 pub(crate) fn apart(piece: &Piece, drawn: &[(String, Vec<Point2>)]) -> f64 {
     let low = |points: Vec<Point2>| {
         let lo = points.iter().fold(points[0], |a, b| a.inf(b));
@@ -124,7 +127,8 @@ pub(crate) fn apart(piece: &Piece, drawn: &[(String, Vec<Point2>)]) -> f64 {
     far(&a, &b).max(far(&b, &a))
 }
 
-/// The two sides of a stitch, each a panel and the number of its edge, and whether start meets start.
+/// The two sides of a stitch, each a panel and the number of its edge, and whether start meets
+/// start.
 pub(crate) type Stitch = ([(String, usize); 2], bool);
 
 /// The pieces of a GarmentCode file with their curves, places and parts of the body; its stitches.

@@ -1,4 +1,5 @@
-//! Files as other programs see them: `ezdxf` audits, `pdftoppm` renders. Skipped where they are missing.
+//! Files as other programs see them: `ezdxf` audits, `pdftoppm` renders. Skipped where they are
+//! missing.
 
 use crate::common::*;
 use std::process::Command;
@@ -113,7 +114,8 @@ fn the_square_measures_100_mm_and_pages_join() {
     // Cover, order, then the pages of the strip.
     let pages: Vec<Picture> = (3..6).map(|k| Picture::of(&file, k)).collect();
     for pair in pages.windows(2) {
-        // The overlap is the last centimetre before the margin of one page, the first behind that of the next.
+        // The overlap is the last centimetre before the margin of one page, the first behind that
+        // of the next.
         for mm in [2.0, 4.0, 6.0, 8.0] {
             let (left, right) = (((190.0 + mm) / MM).round() as usize, ((10.0 + mm) / MM).round() as usize);
             // Below the marks of the joint, above the margin.

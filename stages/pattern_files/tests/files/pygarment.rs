@@ -1,5 +1,6 @@
-//! What GarmentCode's own program (pygarment 2.0) asks of a file: what it takes by name without looking whether it is there, and what it
-//! refuses. `tests/pygarment/check.py` asks the program itself.
+//! What GarmentCode's own program (pygarment 2.0) asks of a file: what it takes by name without
+//! looking whether it is there, and what it refuses. `tests/pygarment/check.py` asks the program
+//! itself.
 
 use crate::common::*;
 use serde_json::Value;

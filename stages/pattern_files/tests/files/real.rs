@@ -1,4 +1,5 @@
-//! Patterns of GarmentCode from a folder that the variable `TOILE_PATTERNS` names; without it this is skipped.
+//! Patterns of GarmentCode from a folder that the variable `TOILE_PATTERNS` names; without it this
+//! is skipped.
 
 use crate::common::*;
 use std::path::PathBuf;

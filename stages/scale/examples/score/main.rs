@@ -1,10 +1,10 @@
 //! Scores the finder on drawn scenes: `score COUNT [KIND [FIRST [PICTURES]]]`.
 //!
-//! Scenes FIRST to FIRST + COUNT - 1 of each kind are drawn, with the object and without it among things that are
-//! like it, or of one KIND (`card`, `a4`, `letter`, `chess`, `ruler mm`, `ruler cm`, or `no card` and so on). A
-//! line a kind tells how many were found, in wrong places or where there is none, and by how much lengths all over
-//! the frame were off; a line a scene tells what was not right. With a folder PICTURES, photos of those scenes are
-//! written there.
+//! Scenes FIRST to FIRST + COUNT - 1 of each kind are drawn, with the object and without it among
+//! things that are like it, or of one KIND (`card`, `a4`, `letter`, `chess`, `ruler mm`,
+//! `ruler cm`, or `no card` and so on). A line a kind tells how many were found, in wrong places or
+//! where there is none, and by how much lengths all over the frame were off; a line a scene tells
+//! what was not right. With a folder PICTURES, photos of those scenes are written there.
 #![allow(clippy::print_stdout, missing_docs, unreachable_pub)]
 
 mod objects;
@@ -75,7 +75,8 @@ fn size(kind: &str) -> (u32, u32, f64) {
     }
 }
 
-/// A scene with the object beside a garment; the camera is tilted by up to 30 degrees, over rulers not at all.
+/// A scene with the object beside a garment; the camera is tilted by up to 30 degrees, over rulers
+/// not at all.
 fn scene(kind: &str, n: u64) -> Option<Scene> {
     let mut r = Random::new(seed(kind, n));
     let ruler = kind.starts_with("ruler");

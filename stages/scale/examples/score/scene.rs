@@ -27,7 +27,8 @@ pub struct Scene {
     pub tilt: f64,
 }
 
-/// A camera above the ground: pixels a metre at the middle, tilt, and the direction of tilt and roll, radians.
+/// A camera above the ground: pixels a metre at the middle, tilt, and the direction of tilt and
+/// roll, radians.
 pub fn camera(
     w: u32,
     h: u32,
@@ -96,7 +97,8 @@ impl Scene {
         }
     }
 
-    /// Lays a thing where it is in the frame and beside the garment and the others; false if there is no room.
+    /// Lays a thing where it is in the frame and beside the garment and the others; false if there
+    /// is no room.
     pub fn lay(&mut self, r: &mut Random, mut thing: Thing) -> bool {
         let Some(back) = self.to_pixels.try_inverse() else { return false };
         for _ in 0..4000 {

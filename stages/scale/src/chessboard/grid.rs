@@ -1,8 +1,8 @@
 //! Grids of corners.
 //!
-//! From a corner, its nearest neighbours along its two edges give the steps; then each neighbour is looked for
-//! a step further, with the step of the last one, so that perspective is followed. Tones must alternate: along
-//! an edge the next corner has dark and light exchanged.
+//! From a corner, its nearest neighbours along its two edges give the steps; then each neighbour is
+//! looked for a step further, with the step of the last one, so that perspective is followed. Tones
+//! must alternate: along an edge the next corner has dark and light exchanged.
 
 use super::saddles::Saddle;
 use nalgebra::{Point2, Vector2};

@@ -1,11 +1,12 @@
 //! Chessboards: inner corners, their grid, and the plane they lie on.
 //!
-//! Corners are saddles of the smoothed grey levels that pass a test on a ring around them (`saddles`). From a
-//! corner and its two nearest neighbours a grid is grown (`grid`), the largest full rectangle of it is taken,
-//! its corners are placed to a fraction of a pixel in the photo (`refine`), and the pose is fitted to them.
+//! Corners are saddles of the smoothed grey levels that pass a test on a ring around them
+//! (`saddles`). From a corner and its two nearest neighbours a grid is grown (`grid`), the largest
+//! full rectangle of it is taken, its corners are placed to a fraction of a pixel in the photo
+//! (`refine`), and the pose is fitted to them.
 //!
-//! Limits: any ground of two tones in squares is a chessboard; state the number of inner corners to refuse
-//! others. Squares need about 7 pixels of the photo reduced to 1400 px.
+//! Limits: any ground of two tones in squares is a chessboard; state the number of inner corners to
+//! refuse others. Squares need about 7 pixels of the photo reduced to 1400 px.
 
 mod grid;
 mod refine;
@@ -22,7 +23,8 @@ use nalgebra::{Matrix3, Point2, Vector2};
 
 /// Longer sides of the reduced copies that are tried, pixels.
 const SIZES: [usize; 3] = [1400, 600, 2800];
-/// The largest root mean square distance of the corners from the fitted plane, pixels and share of a square.
+/// The largest root mean square distance of the corners from the fitted plane, pixels and share of
+/// a square.
 const OFF: f64 = 0.5;
 const OFF_SHARE: f64 = 0.02;
 

@@ -1,13 +1,14 @@
 //! A corner's place to a fraction of a pixel.
 //!
-//! Around a corner every slope is at right angles to the line from the corner (Förstner and Gülch, 1987): the
-//! place that fits all slopes in a window best, weighted by a Gaussian, a few times.
+//! Around a corner every slope is at right angles to the line from the corner (Förstner and Gülch,
+//! 1987): the place that fits all slopes in a window best, weighted by a Gaussian, a few times.
 
 use crate::pixels::colour;
 use image::RgbImage;
 use nalgebra::{Matrix2, Point2, Vector2};
 
-/// The place near `start`, by a window of half a side of `reach` pixels; `start` where it moves out of it.
+/// The place near `start`, by a window of half a side of `reach` pixels; `start` where it moves out
+/// of it.
 pub(crate) fn refine(photo: &RgbImage, start: Point2<f64>, reach: f64) -> Point2<f64> {
     let mut at = start;
     for _ in 0..6 {

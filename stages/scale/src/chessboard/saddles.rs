@@ -1,8 +1,8 @@
 //! Places where two dark and two light squares meet.
 //!
-//! A saddle of the smoothed grey levels, where the determinant of the second derivatives is most negative, is
-//! kept if the grey levels on a ring around it change sides four times, and opposite ones are alike (after
-//! Bennett and Lasenby, ChESS, CVIU 118, 2014).
+//! A saddle of the smoothed grey levels, where the determinant of the second derivatives is most
+//! negative, is kept if the grey levels on a ring around it change sides four times, and opposite
+//! ones are alike (after Bennett and Lasenby, ChESS, CVIU 118, 2014).
 //!
 //! Cost: about 50 ns a pixel.
 
@@ -14,8 +14,8 @@ use rayon::prelude::*;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Saddle {
     pub(crate) at: Point2<f64>,
-    /// The directions of the two edges, each up to its sign; the squares between the first and the second,
-    /// turned clockwise, are dark.
+    /// The directions of the two edges, each up to its sign; the squares between the first and the
+    /// second, turned clockwise, are dark.
     pub(crate) edges: [Vector2<f64>; 2],
     /// Contrast, grey levels.
     pub(crate) contrast: f32,

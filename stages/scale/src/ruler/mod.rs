@@ -1,13 +1,14 @@
 //! Rulers: the spacing of marks along a straight edge.
 //!
-//! Straight segments of the reduced photo are taken for edges. Grey levels along lines beside an edge are
-//! tested for a period by autocorrelation (`period`). Marks are told from weaves and stripes by their shape: the
-//! period is there beside the edge, not beyond it, and deeper inside it gives way to five or ten times as much
-//! (millimetres) or to nothing (centimetres). The spacing is then followed along the edge by its phase, and a
-//! parabola through the phases gives it and its change.
+//! Straight segments of the reduced photo are taken for edges. Grey levels along lines beside an
+//! edge are tested for a period by autocorrelation (`period`). Marks are told from weaves and
+//! stripes by their shape: the period is there beside the edge, not beyond it, and deeper inside it
+//! gives way to five or ten times as much (millimetres) or to nothing (centimetres). The spacing is
+//! then followed along the edge by its phase, and a parabola through the phases gives it and its
+//! change.
 //!
-//! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 4 pixels each. Rulers in
-//! inches are refused where their marks are halved again and again (two, four, eight).
+//! Limits: the scale holds along the ruler; a tilt across it is not seen. Marks need 4 pixels each.
+//! Rulers in inches are refused where their marks are halved again and again (two, four, eight).
 
 mod period;
 mod strip;
@@ -82,7 +83,8 @@ fn fine(photo: &RgbImage, edge: &Segment) -> Option<ScaleError> {
     Some(ScaleError::RulerFine { place: [at.x, at.y], apart: p.lag, least: LEAST_APART })
 }
 
-/// Refuses where another ruler is as good: one whose middle is more than a ruler's width off the line.
+/// Refuses where another ruler is as good: one whose middle is more than a ruler's width off the
+/// line.
 fn alone(all: &[Marks], best: &Found, object: Object) -> Result<(), ScaleError> {
     let mut places = vec![middle(&best.corners)];
     let Some(along) = (best.corners[1] - best.corners[0]).try_normalize(1e-9) else { return Ok(()) };
@@ -99,7 +101,8 @@ fn alone(all: &[Marks], best: &Found, object: Object) -> Result<(), ScaleError> 
     }
 }
 
-/// Straight edges in photo pixels, from two reduced copies, as the texture of the ground is gone in one of them.
+/// Straight edges in photo pixels, from two reduced copies, as the texture of the ground is gone in
+/// one of them.
 fn edges(photo: &RgbImage) -> Vec<Segment> {
     let longer = photo.width().max(photo.height()) as usize;
     let mut ks = SIZES.map(|s| longer.div_ceil(s)).to_vec();
@@ -107,7 +110,8 @@ fn edges(photo: &RgbImage) -> Vec<Segment> {
     ks.into_iter().flat_map(|k| edges_at(photo, k)).collect()
 }
 
-/// The longest edges of the photo reduced by `k`, those alike once, each a tenth longer at both ends.
+/// The longest edges of the photo reduced by `k`, those alike once, each a tenth longer at both
+/// ends.
 fn edges_at(photo: &RgbImage, k: usize) -> Vec<Segment> {
     let small = Small::of(photo, k);
     let mut kept: Vec<Segment> = Vec::new();
@@ -133,7 +137,8 @@ fn part_of(s: &Segment, long: &Segment) -> bool {
     long.off(s.a) < 1.5 && long.off(s.b) < 1.5 && t > 0.0 && t < long.length()
 }
 
-/// The marks on lines beside an edge, wherever they are within a ruler's width; millimetres before others.
+/// The marks on lines beside an edge, wherever they are within a ruler's width; millimetres before
+/// others.
 fn marks(photo: &RgbImage, edge: &Segment) -> Option<Marks> {
     let strip = Strip::of(edge)?;
     let starts = starts(photo, &strip);
@@ -202,8 +207,8 @@ impl<'a> Across<'a> {
         period::at(&self.look(depth), self.lag)
     }
 
-    /// The depth, one way from the middle, where the period is gone on three lines; a gap of two, as between
-    /// marks and numbers, is no end.
+    /// The depth, one way from the middle, where the period is gone on three lines; a gap of two,
+    /// as between marks and numbers, is no end.
     fn end(&self, middle: f64, way: f64, most: f64) -> Option<f64> {
         let lines = ((11.0 * self.lag).min(150.0) / self.step) as i32;
         let depth = |n: i32| middle + way * f64::from(n) * self.step;
@@ -247,8 +252,8 @@ fn starts(photo: &RgbImage, strip: &Strip) -> Vec<(f64, Period)> {
     kept
 }
 
-/// Metres between marks, by the periods deeper inside: ten or five times as much tells millimetres, none tells
-/// centimetres; others are refused, as half centimetres and parts of an inch look alike.
+/// Metres between marks, by the periods deeper inside: ten or five times as much tells millimetres,
+/// none tells centimetres; others are refused, as half centimetres and parts of an inch look alike.
 fn unit(deep: &[Vec<f64>], lag: f64) -> Option<f64> {
     let best = |times: f64| deep.iter().map(|r| period::peak_at(r, lag * times)).fold(0.0, f64::max);
     let [two, four, five, eight, ten] = [2.0, 4.0, 5.0, 8.0, 10.0].map(best);
@@ -262,7 +267,8 @@ fn unit(deep: &[Vec<f64>], lag: f64) -> Option<f64> {
 /// The least autocorrelation of a period deeper inside.
 const TOLD: f64 = 0.35;
 
-/// Whether the shorter periods beside an edge are those of a ruler of centimetres: halves, fifths, tenths.
+/// Whether the shorter periods beside an edge are those of a ruler of centimetres: halves, fifths,
+/// tenths.
 fn of_centimetres(starts: &[(f64, Period)], lag: f64) -> bool {
     let metric = |p: &Period| {
         let times = lag / p.lag;

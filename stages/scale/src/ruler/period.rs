@@ -68,8 +68,8 @@ fn near(r: &[f64], lag: f64) -> f64 {
     (l.saturating_sub(1)..=l + 1).filter_map(|i| r.get(i)).copied().fold(0.0, f64::max)
 }
 
-/// How far the autocorrelation at a lag stands above that half a lag before and after; broad shapes have a high
-/// one at every small lag.
+/// How far the autocorrelation at a lag stands above that half a lag before and after; broad shapes
+/// have a high one at every small lag.
 pub(crate) fn at(r: &[f64], lag: f64) -> f64 {
     let between = |t: f64| {
         let i = t as usize;
@@ -79,7 +79,8 @@ pub(crate) fn at(r: &[f64], lag: f64) -> f64 {
     (near(r, lag) - 0.5 * (between(0.5 * lag) + between(1.5 * lag))).max(0.0)
 }
 
-/// The autocorrelation about a lag if it is a peak there: higher than half a fifth before and after.
+/// The autocorrelation about a lag if it is a peak there: higher than half a fifth before and
+/// after.
 pub(crate) fn peak_at(r: &[f64], lag: f64) -> f64 {
     let near = near(r, lag);
     let highest = |from: f64, to: f64| {
@@ -248,7 +249,8 @@ impl Curve {
         x / self.lag + self.row(x).dot(&self.fit) / TAU
     }
 
-    /// Places between two ends where the cycle is whole: middles of the marks, or of the gaps if marks are light.
+    /// Places between two ends where the cycle is whole: middles of the marks, or of the gaps if
+    /// marks are light.
     fn marks(&self, low: f64, high: f64) -> Vec<f64> {
         let spacing = 1.0 / self.rate(0.0);
         let (mut list, mut n, mut x) = (Vec::new(), self.cycle(low).ceil(), low);

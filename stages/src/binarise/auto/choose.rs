@@ -27,7 +27,8 @@ pub(super) struct Choice {
     pub larger: Option<f64>,
 }
 
-/// The mask with the most confidence, then the most agreement; the first of equals. `None` where no method found anything.
+/// The mask with the most confidence, then the most agreement; the first of equals. `None` where no
+/// method found anything.
 pub(super) fn choose(
     small: &Small,
     large: &Small,
@@ -65,8 +66,8 @@ pub(super) fn choose(
     Ok(Some(Choice { coarse, evidence: all[best], larger }))
 }
 
-/// The mask that holds the best one and much more, where evidence speaks for it too: methods agree about one part of a garment
-/// of two colours as well as about all of it.
+/// The mask that holds the best one and much more, where evidence speaks for it too: methods agree
+/// about one part of a garment of two colours as well as about all of it.
 fn whole(found: &[Found], all: &[Evidence], best: usize) -> usize {
     let count = |i: usize| found[i].mask.iter().filter(|on| **on).count() as f64;
     let held =

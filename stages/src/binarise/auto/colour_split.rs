@@ -1,8 +1,10 @@
-//! Otsu's split on colour: the one axis of Lab along which the middle of the frame differs most from its rim.
+//! Otsu's split on colour: the one axis of Lab along which the middle of the frame differs most
+//! from its rim.
 //!
-//! The axis is Fisher's discriminant of the rim's and the middle's colours (Fisher, The use of multiple measurements in
-//! taxonomic problems, 1936); along it the threshold is Otsu's (1979). It knows one ground and one garment and no neighbours,
-//! so that it errs where the other methods do not.
+//! The axis is Fisher's discriminant of the rim's and the middle's colours (Fisher, The use of
+//! multiple measurements in taxonomic problems, 1936); along it the threshold is Otsu's (1979). It
+//! knows one ground and one garment and no neighbours, so that it errs where the other methods do
+//! not.
 //!
 //! Cost: two looks at every small pixel.
 

@@ -1,8 +1,9 @@
 //! How much of a mask's contour lies where the photo has an edge.
 //!
-//! At each pixel of the contour the colours a little inside are held against those a little outside, along the normal. There
-//! is an edge where they differ by more than is just visible and by more than either side varies by itself. A bite out of a
-//! hem, a cut corner, a boundary in the middle of cloth have none.
+//! At each pixel of the contour the colours a little inside are held against those a little
+//! outside, along the normal. There is an edge where they differ by more than is just visible and
+//! by more than either side varies by itself. A bite out of a hem, a cut corner, a boundary in the
+//! middle of cloth have none.
 //!
 //! Cost: eight looks a pixel of the contour.
 
@@ -17,18 +18,19 @@ const VISIBLE: f64 = 4.6;
 /// An edge differs by more than so many standard deviations of its sides.
 const CLEAR: f64 = 1.5;
 
-/// What ends beside the frame lies at most so far from it, as a share of the shorter side: methods take the rim, 0.03, for ground.
+/// What ends beside the frame lies at most so far from it, as a share of the shorter side: methods
+/// take the rim, 0.03, for ground.
 const BESIDE: f64 = 0.035;
 
-/// The share of a mask's contour that lies on an edge of the photo, 0 to 1; the mask is of the small picture's size. Where
-/// the contour runs along the frame it is not looked at.
+/// The share of a mask's contour that lies on an edge of the photo, 0 to 1; the mask is of the
+/// small picture's size. Where the contour runs along the frame it is not looked at.
 pub(super) fn support(small: &Small, mask: &[bool]) -> f64 {
     let (bare, total) = bare(small, mask);
     1.0 - bare.len() as f64 / total.max(1) as f64
 }
 
-/// How much of a mask's contour lies beside the frame and not on an edge of the photo, as a share of the shorter side: there
-/// the garment goes on past the frame.
+/// How much of a mask's contour lies beside the frame and not on an edge of the photo, as a share
+/// of the shorter side: there the garment goes on past the frame.
 pub(super) fn bare_along_frame(small: &Small, mask: &[bool]) -> f64 {
     let side = small.w.min(small.h) as f64;
     let beside = bare(small, mask).0.into_iter().filter(|i| (small.depth(*i) as f64) < BESIDE * side);

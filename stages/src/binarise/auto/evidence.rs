@@ -1,10 +1,12 @@
-//! What speaks for a mask: other methods that find the same, and what a garment laid flat looks like.
+//! What speaks for a mask: other methods that find the same, and what a garment laid flat looks
+//! like.
 //!
-//! Each kind of evidence is brought to 0 to 1 between the value that speaks against a mask and the one that leaves no doubt;
-//! the confidence is their product, so that no kind makes up for another. Methods that
-//! agree to 0.96 differ by the width of a contour; a garment laid flat is its own mirror image to 0.85 with a fold or a
-//! sleeve aside, and less than 0.65 is half a garment; a contour follows edges but for a stretch in shade. The bounds were chosen by
-//! looking at 23 photos with masks drawn by hand (docs/log/2026-11-25-masks.md).
+//! Each kind of evidence is brought to 0 to 1 between the value that speaks against a mask and the
+//! one that leaves no doubt; the confidence is their product, so that no kind makes up for another.
+//! Methods that agree to 0.96 differ by the width of a contour; a garment laid flat is its own
+//! mirror image to 0.85 with a fold or a sleeve aside, and less than 0.65 is half a garment; a
+//! contour follows edges but for a stretch in shade. The bounds were chosen by looking at 23 photos
+//! with masks drawn by hand (docs/log/2026-11-25-masks.md).
 
 use super::super::small::Small;
 use super::contour::support;
@@ -12,8 +14,8 @@ use super::symmetry::symmetry;
 
 /// Agreement that speaks against a mask, and that leaves no doubt.
 const AGREE: [f64; 2] = [0.88, 0.96];
-/// The weight of the method that agrees best, beside the second best: two that agree to a hair while all others miss a
-/// stripe are right more often than three that agree roughly.
+/// The weight of the method that agrees best, beside the second best: two that agree to a hair
+/// while all others miss a stripe are right more often than three that agree roughly.
 const FIRST: f64 = 0.7;
 /// Mirror images alike.
 const ALIKE: [f64; 2] = [0.65, 0.85];

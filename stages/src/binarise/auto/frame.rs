@@ -1,8 +1,9 @@
 //! A hem a few pixels inside the frame: the strip of ground between them is ground.
 //!
-//! Methods that work at a reduced size bridge a strip of a pixel or two. Where a mask reaches the frame, the mean colours of
-//! the pixels along it, layer by layer inwards, show whether there is a step; if what lies outside of the step is like the
-//! ground along the same side, the garment ends at the step.
+//! Methods that work at a reduced size bridge a strip of a pixel or two. Where a mask reaches the
+//! frame, the mean colours of the pixels along it, layer by layer inwards, show whether there is a
+//! step; if what lies outside of the step is like the ground along the same side, the garment ends
+//! at the step.
 //!
 //! Cost: a look at some layers of pixels along the frame.
 
@@ -39,7 +40,8 @@ fn place((w, h): (u32, u32), side: usize, along: u32, deep: u32) -> (u32, u32) {
     }
 }
 
-/// Where along a side the mask meets the frame without reaching it, and how many layers of ground lie between.
+/// Where along a side the mask meets the frame without reaching it, and how many layers of ground
+/// lie between.
 fn strip(mask: &GrayImage, photo: &Photo, side: usize) -> Option<(Vec<u32>, u32)> {
     let (w, h) = mask.dimensions();
     let (length, across) = if side.is_multiple_of(2) { (w, h) } else { (h, w) };

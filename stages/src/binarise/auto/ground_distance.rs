@@ -1,9 +1,11 @@
 //! Otsu's split of each pixel's distance to the colours along the frame.
 //!
-//! The ground's colours are a mixture of Gaussians fitted to the frame's rim alone; distances are in standard deviations of the
-//! nearest. Nothing is asked of the frame's middle, so that trousers, whose legs leave the middle free, are no trouble.
+//! The ground's colours are a mixture of Gaussians fitted to the frame's rim alone; distances are
+//! in standard deviations of the nearest. Nothing is asked of the frame's middle, so that trousers,
+//! whose legs leave the middle free, are no trouble.
 //!
-//! Cost: one fit and a look at every small pixel. Limits: a shadow is as far from its ground as cloth is.
+//! Cost: one fit and a look at every small pixel. Limits: a shadow is as far from its ground as
+//! cloth is.
 
 use super::super::background::{LEAST_MODE, rim_width};
 use super::super::mixture::Mixture;

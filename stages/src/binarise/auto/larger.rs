@@ -1,10 +1,12 @@
 //! Whether a mask is a print on something larger.
 //!
-//! A random walk from a little outside the mask to the frame's rim ends at the next outline around it. Where the photo has an
-//! edge nearly all along that outline, and it holds much more than the mask, the mask is a part of a garment: the print on a
-//! white shirt on white. Around a whole garment the walk ends anywhere half-way to the frame, where there is no edge.
+//! A random walk from a little outside the mask to the frame's rim ends at the next outline around
+//! it. Where the photo has an edge nearly all along that outline, and it holds much more than the
+//! mask, the mask is a part of a garment: the print on a white shirt on white. Around a whole
+//! garment the walk ends anywhere half-way to the frame, where there is no edge.
 //!
-//! Cost: one random walk. Limits: on a patterned ground the walk ends at edges of the pattern; these seldom go all around.
+//! Cost: one random walk. Limits: on a patterned ground the walk ends at edges of the pattern;
+//! these seldom go all around.
 
 use super::super::morphology::dilate;
 use super::super::small::Small;

@@ -1,19 +1,23 @@
 //! The binariser that knows when it is wrong.
 //!
-//! Six methods, and the mask of an earlier stage where there is one, most of which share neither model nor start, look at the photo at a reduced size (`methods`): a graph cut,
-//! the ground's colours, a split of colours in two, the distance to the rim's colours, a random walk that sees edges alone, and a graph cut from that walk's end.
-//! For each mask `evidence` asks how far others agree with it, how much of its contour lies on an edge of the photo, and how
-//! alike its halves are. The best is taken: thin parts without a mirror image are taken off it and pairs of straps are put back (`thin`), wedges of ground
-//! between sleeve and side are opened (`wedge`), its boundary is cut at twice the size, inlets of ground between legs are opened up to their tips,
-//! it is set at the photo's own size, and a strip of ground between hem and frame is
-//! found (`frame`). The product of
-//! the evidence is the confidence. Below the least that is asked for, and where the mask looks like a print on something
-//! larger (`larger`), the photo is refused with a picture of the doubt (`doubt`).
+//! Six methods, and the mask of an earlier stage where there is one, most of which share neither
+//! model nor start, look at the photo at a reduced size (`methods`): a graph cut, the ground's
+//! colours, a split of colours in two, the distance to the rim's colours, a random walk that sees
+//! edges alone, and a graph cut from that walk's end. For each mask `evidence` asks how far others
+//! agree with it, how much of its contour lies on an edge of the photo, and how alike its halves
+//! are. The best is taken: thin parts without a mirror image are taken off it and pairs of straps
+//! are put back (`thin`), wedges of ground between sleeve and side are opened (`wedge`), its
+//! boundary is cut at twice the size, inlets of ground between legs are opened up to their tips, it
+//! is set at the photo's own size, and a strip of ground between hem and frame is found (`frame`).
+//! The product of the evidence is the confidence. Below the least that is asked for, and where the
+//! mask looks like a print on something larger (`larger`), the photo is refused with a picture of
+//! the doubt (`doubt`).
 //!
 //! Agreement of independent methods tells far more than any method knows of itself.
 //!
-//! Cost: 0.2 to 0.5 s for any photo. Limits: where all methods take the same part of a garment for ground and the photo has
-//! an edge there (sleeves of the ground's colour on a body of another), the mask passes.
+//! Cost: 0.2 to 0.5 s for any photo. Limits: where all methods take the same part of a garment for
+//! ground and the photo has an edge there (sleeves of the ground's colour on a body of another),
+//! the mask passes.
 
 mod choose;
 mod colour_split;
@@ -58,9 +62,10 @@ const NEXT: &str = "`GraphCut()`";
 
 /// Takes the best of several methods' masks, and refuses the photo where they leave doubt.
 ///
-/// The default for photos of any ground. Tells its confidence in the mask, 0 to 1; a photo that is refused is shown
-/// with what the methods disagree about, and one thing to try. The frame's rim must show ground, its middle the garment.
-/// Transparent pixels are ground. Where several things lie apart from each other, the largest is taken, or the one that is marked.
+/// The default for photos of any ground. Tells its confidence in the mask, 0 to 1; a photo that is
+/// refused is shown with what the methods disagree about, and one thing to try. The frame's rim
+/// must show ground, its middle the garment. Transparent pixels are ground. Where several things
+/// lie apart from each other, the largest is taken, or the one that is marked.
 #[stage(
     role = Binariser,
     version = 3,
@@ -81,7 +86,8 @@ pub struct Auto {
     /// The garment may touch the frame over this share of the photo's shorter side.
     #[param(default = 0.05, min = 0.0, max = 4.0)]
     pub touch: f64,
-    /// Places on the garment, by photo, as shares of width and height from the left upper corner: which of several things is meant.
+    /// Places on the garment, by photo, as shares of width and height from the left upper corner:
+    /// which of several things is meant.
     #[param(default = BTreeMap::new(), min = 0.0, max = 1.0)]
     pub garment: BTreeMap<String, Vec<Place>>,
     /// Two opposite corners of a rectangle that holds all of the garment, by photo, likewise.
@@ -128,7 +134,8 @@ impl Auto {
         Ok(mask)
     }
 
-    /// The part of the photo that shows the thing that is meant, with ground around; none where that is the whole photo.
+    /// The part of the photo that shows the thing that is meant, with ground around; none where
+    /// that is the whole photo.
     fn part(&self, photo: &Photo, cx: &Context) -> Result<Option<[[f64; 2]; 2]>, StageError> {
         if let Some(((a, b), (c, d))) = of_photo(&self.rect, photo, cx).copied() {
             let ([left, right], [top, bottom]) = ([a.min(c), a.max(c)], [b.min(d), b.max(d)]);
@@ -208,8 +215,8 @@ impl Auto {
         Ok(mask)
     }
 
-    /// Refuses a garment that the frame cuts. `bare` is the length of what ends beside the frame without an edge, as a share
-    /// of the shorter side.
+    /// Refuses a garment that the frame cuts. `bare` is the length of what ends beside the frame
+    /// without an edge, as a share of the shorter side.
     fn whole(&self, mask: &GrayImage, photo: &Photo, bare: f64, cx: &Context) -> Result<(), StageError> {
         let regions = Regions::of(mask);
         let frame = regions.by_size().first().map_or(0, |&i| regions.pieces[i].frame);

@@ -1,7 +1,7 @@
 //! How far a mask is its own mirror image, about an axis of any tilt.
 //!
-//! Axes through the centre of area, and a little beside it, are tried all around, then between the best; the score is the
-//! intersection over union of the mask and its mirror image.
+//! Axes through the centre of area, and a little beside it, are tried all around, then between the
+//! best; the score is the intersection over union of the mask and its mirror image.
 //!
 //! Cost: some 100 axes by 3,000 pixels, 3 ms.
 

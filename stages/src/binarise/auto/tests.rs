@@ -163,7 +163,8 @@ fn half_a_shirt_is_refused_in_words_that_say_what_is_seen() {
     assert_eq!(e.to_string(), "the two halves of what was found in \"front.jpg\" are alike to 68 % only");
 }
 
-/// A long-sleeved top whose right cuff touches the hem: the ground between sleeve and side is closed in.
+/// A long-sleeved top whose right cuff touches the hem: the ground between sleeve and side is
+/// closed in.
 #[test]
 fn a_wedge_of_ground_between_sleeve_and_side_is_opened() {
     let trunk = |x: f64, y: f64| (0.32..0.68).contains(&x) && (0.2..0.8).contains(&y);
@@ -217,7 +218,8 @@ fn a_mask_of_another_size_is_refused() {
 
 #[test]
 fn the_mask_of_an_earlier_stage_is_one_more_voice() {
-    // Half of the shirt has the ground's colour: alone the methods leave doubt, and the mask given decides.
+    // Half of the shirt has the ground's colour: alone the methods leave doubt, and the mask given
+    // decides.
     let photo = photo(|x, y| match tee(x, y) {
         true if x < 0.45 => [60, 80, 160],
         true => [205; 3],

@@ -1,7 +1,9 @@
-//! Thin parts without a mirror image: a cable that lies beside a shirt, and the ground that it closes in.
+//! Thin parts without a mirror image: a cable that lies beside a shirt, and the ground that it
+//! closes in.
 //!
-//! An opening takes off all that is thin. Straps are thin too, but come in pairs: what was taken off and lies, mirrored, on the
-//! mask again stays. What has no counterpart is taken off, if it is small.
+//! An opening takes off all that is thin. Straps are thin too, but come in pairs: what was taken
+//! off and lies, mirrored, on the mask again stays. What has no counterpart is taken off, if it is
+//! small.
 
 use super::super::finish::fill_holes;
 use super::super::morphology::{dilate, open};
@@ -20,7 +22,8 @@ const PAIRED: f64 = 0.5;
 /// A part is added from this share of its mirror image on.
 const SURELY_PAIRED: f64 = 0.8;
 
-/// The mask without thin parts that have no mirror image. `raw` is what was found before holes were filled, of the same size.
+/// The mask without thin parts that have no mirror image. `raw` is what was found before holes were
+/// filled, of the same size.
 pub(super) fn without_lone_parts(mask: &[bool], raw: &[bool], w: usize) -> Vec<bool> {
     let h = mask.len() / w.max(1);
     let radius = ((THIN * w.max(h) as f64).round() as u32).max(1);
@@ -40,7 +43,8 @@ pub(super) fn without_lone_parts(mask: &[bool], raw: &[bool], w: usize) -> Vec<b
     kept
 }
 
-/// The mask with thin parts of what was found before it was cleaned, where they come in pairs: straps that a clean-up took off.
+/// The mask with thin parts of what was found before it was cleaned, where they come in pairs:
+/// straps that a clean-up took off.
 pub(super) fn with_pairs(mask: &[bool], raw: &[bool], w: usize) -> Vec<bool> {
     let h = mask.len() / w.max(1);
     let Some(axis) = symmetry(mask, w) else { return mask.to_vec() };

@@ -1,8 +1,10 @@
 //! The things that lie in a photo, apart from each other: two garments on one sheet.
 //!
-//! What is far from the colours along the frame (`ground_distance`) is cut into its connected pieces. A piece is a thing where it is large, does not
-//! touch the frame, and has an edge of the photo nearly all along its outline: so patches of a patterned ground are none. Cost: a fit of the frame's
-//! colours and a look at every small pixel. Limits: garments that touch or cover each other are one thing; one of the ground's colours is none.
+//! What is far from the colours along the frame (`ground_distance`) is cut into its connected
+//! pieces. A piece is a thing where it is large, does not touch the frame, and has an edge of the
+//! photo nearly all along its outline: so patches of a patterned ground are none. Cost: a fit of
+//! the frame's colours and a look at every small pixel. Limits: garments that touch or cover each
+//! other are one thing; one of the ground's colours is none.
 
 use super::super::background::CLEAN;
 use super::super::beside::{SECOND, SIDE, Thing};
@@ -21,7 +23,8 @@ const LEAST: f64 = 0.02;
 /// And has an edge along this share of its outline.
 const OUTLINE: f64 = 0.8;
 
-/// The things of a photo, from the largest to the smallest; those that are small beside the largest are left out.
+/// The things of a photo, from the largest to the smallest; those that are small beside the largest
+/// are left out.
 pub(super) fn things(photo: &Photo) -> Vec<Thing> {
     let small = Small::of(photo, SIDE);
     let cut = GraphCut::default();

@@ -1,12 +1,14 @@
 //! Which side a random walk reaches first: the frame's rim or the frame's middle.
 //!
-//! A walker steps from pixel to pixel, less readily across a step of colour (Grady, Random walks for image segmentation,
-//! IEEE PAMI 28(11), 2006). The chance that it comes to the middle before it comes to the rim is the solution of a Laplace
-//! equation on the grid, found by conjugate gradients. It knows edges alone and no colour of either side: a weak edge that
-//! goes all around is enough, and a print, which is as unlike its cloth as cloth and ground are, does not part them.
+//! A walker steps from pixel to pixel, less readily across a step of colour (Grady, Random walks
+//! for image segmentation, IEEE PAMI 28(11), 2006). The chance that it comes to the middle before
+//! it comes to the rim is the solution of a Laplace equation on the grid, found by conjugate
+//! gradients. It knows edges alone and no colour of either side: a weak edge that goes all around
+//! is enough, and a print, which is as unlike its cloth as cloth and ground are, does not part
+//! them.
 //!
-//! Cost: some 100 rounds of ten operations a pixel; 20 ms at 200 pixels. Limits: on a patterned ground the edges of the
-//! pattern hold the walker up, and the boundary lies at any of them.
+//! Cost: some 100 rounds of ten operations a pixel; 20 ms at 200 pixels. Limits: on a patterned
+//! ground the edges of the pattern hold the walker up, and the boundary lies at any of them.
 
 use super::super::background::rim_width;
 use super::super::small::Small;
@@ -36,8 +38,8 @@ pub(super) fn walk(small: &Small, inside: &[bool], rim: f64, cx: &Context) -> Re
     Grid { width: w, right, down }.between_fixed(&fixed, &END, cx)
 }
 
-/// How readily a walker passes to the right and down; zero past the frame. Steps within what is known to be garment do not count
-/// in the mean, so that a print's edges do not hide the cloth's.
+/// How readily a walker passes to the right and down; zero past the frame. Steps within what is
+/// known to be garment do not count in the mean, so that a print's edges do not hide the cloth's.
 fn weights(small: &Small, inside: &[bool]) -> (Vec<f64>, Vec<f64>) {
     let (w, n) = (small.w, small.lab.len());
     let step = |i: usize, j: usize| (small.lab[i] - small.lab[j]).norm_squared();

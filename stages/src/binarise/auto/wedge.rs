@@ -1,16 +1,18 @@
-//! Wedges of ground between sleeve and side, or between two legs, that are closed at their wide end: where a cuff touches the
-//! hem, the ground behind it is a hole of the mask, and holes are filled.
+//! Wedges of ground between sleeve and side, or between two legs, that are closed at their wide
+//! end: where a cuff touches the hem, the ground behind it is a hole of the mask, and holes are
+//! filled.
 //!
-//! A hole is such a wedge where it is long, lies on one side of the garment's axis, and comes near the outside at one place
-//! only. A print crosses the axis or lies far from the outline; a stripe across a sleeve comes near it at both ends. The wedge
-//! is opened by a slit at the place where it comes nearest to the outside.
+//! A hole is such a wedge where it is long, lies on one side of the garment's axis, and comes near
+//! the outside at one place only. A print crosses the axis or lies far from the outline; a stripe
+//! across a sleeve comes near it at both ends. The wedge is opened by a slit at the place where it
+//! comes nearest to the outside.
 //!
-//! A wedge that is open at its wide end is filled from its tip on where it is narrower than what a clean-up closes
-//! ([`with_inlets`]), and in the photo itself up to its tip ([`follow`]). What tapers away from the outside is such a wedge; a stripe that
-//! ends at the hem does not taper.
+//! A wedge that is open at its wide end is filled from its tip on where it is narrower than what a
+//! clean-up closes ([`with_inlets`]), and in the photo itself up to its tip ([`follow`]). What
+//! tapers away from the outside is such a wedge; a stripe that ends at the hem does not taper.
 //!
-//! Cost: one labelling of the mask and a symmetry axis; an inlet one labelling. Limits: a wedge on the axis, between two legs that touch at
-//! their feet, stays filled.
+//! Cost: one labelling of the mask and a symmetry axis; an inlet one labelling. Limits: a wedge on
+//! the axis, between two legs that touch at their feet, stays filled.
 
 use super::super::morphology::dilate;
 use super::super::regions::Regions;
@@ -33,19 +35,19 @@ const ONE_PLACE: f64 = 0.5;
 
 /// An inlet holds at least this share of the garment.
 const LEAST_INLET: f64 = 0.0005;
-/// The middle of an inlet lies nearer to its mouth than this, as a share of its length: a third where it is a triangle, a half where it is a
-/// stripe.
+/// The middle of an inlet lies nearer to its mouth than this, as a share of its length: a third
+/// where it is a triangle, a half where it is a stripe.
 const TAPERS: f64 = 0.42;
 
-/// Half the side of the square in which an inlet is followed to its tip, as a share of the photo's longer side; and of the one from which its
-/// colours are taken.
+/// Half the side of the square in which an inlet is followed to its tip, as a share of the photo's
+/// longer side; and of the one from which its colours are taken.
 const FOLLOWED: f64 = 0.08;
 const BESIDE: f64 = 0.02;
 /// An inlet goes on within this of where it ends, as a share of the longer side.
 const GOES_ON: f64 = 0.012;
 
-/// The mask with the inlets of ground opened that a clean-up has closed from their tips on, and where they end. `raw` is the mask by colours and
-/// edges alone, both of `w` pixels across.
+/// The mask with the inlets of ground opened that a clean-up has closed from their tips on, and
+/// where they end. `raw` is the mask by colours and edges alone, both of `w` pixels across.
 pub(super) fn with_inlets(mask: &[bool], raw: &[bool], w: usize) -> (Vec<bool>, Vec<[usize; 2]>) {
     let (mut open, mut ends) = (mask.to_vec(), Vec::new());
     let h = mask.len() / w.max(1);
@@ -67,8 +69,9 @@ pub(super) fn with_inlets(mask: &[bool], raw: &[bool], w: usize) -> (Vec<bool>, 
     (open, ends)
 }
 
-/// Follows an inlet from where it ends, at `end`, to its tip in the photo: what hangs together with its ground, and whose colour is nearer to that of
-/// the ground than of the garment there, where it is long.
+/// Follows an inlet from where it ends, at `end`, to its tip in the photo: what hangs together with
+/// its ground, and whose colour is nearer to that of the ground than of the garment there, where it
+/// is long.
 pub(super) fn follow(mask: &mut GrayImage, photo: &Photo, end: [u32; 2]) {
     let (w, h) = mask.dimensions();
     let side = f64::from(w.max(h));
@@ -135,8 +138,8 @@ fn is_inlet(pixels: &[usize], beside: &[bool], w: usize) -> bool {
         && (a[0] - b[0]).hypot(a[1] - b[1]) <= TAPERS * length
 }
 
-/// The mask with its wedges opened. `solid` is the mask with its holes filled, `raw` the mask with its holes, both of `w` pixels
-/// across.
+/// The mask with its wedges opened. `solid` is the mask with its holes filled, `raw` the mask with
+/// its holes, both of `w` pixels across.
 pub(super) fn with_wedges(solid: &[bool], raw: &[bool], w: usize) -> Vec<bool> {
     let mut mask = solid.to_vec();
     let h = solid.len() / w.max(1);

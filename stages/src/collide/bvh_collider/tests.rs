@@ -101,7 +101,8 @@ fn a_bridge_needs_armpits_and_keeps_cloth_out_of_the_gap() {
     let way = |(p, q): (&Point3, &Point3)| (*p, q - p);
     let ways = skin.iter().zip(&over_skin).map(way);
     let (from, by) = ways.max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();
-    // Half-way up from the crease to the skin that is led over it: outside the body, and nowhere for cloth.
+    // Half-way up from the crease to the skin that is led over it: outside the body, and nowhere
+    // for cloth.
     let halfway = from + 0.5 * by;
     let far = |c: &Arc<dyn Collide>| {
         let mut contacts = Vec::new();

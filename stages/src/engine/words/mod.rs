@@ -1,7 +1,8 @@
-//! What the engine refuses or does not reach, in the words of people who have a photo, a pattern or a scene.
+//! What the engine refuses or does not reach, in the words of people who have a photo, a pattern or
+//! a scene.
 //!
-//! The main sentence names pieces, seams and places; the help is what this user can type or do; what the engine itself says (forces,
-//! counts, coordinates) becomes the detail of the error.
+//! The main sentence names pieces, seams and places; the help is what this user can type or do;
+//! what the engine itself says (forces, counts, coordinates) becomes the detail of the error.
 
 mod motion;
 mod numbers;
@@ -48,7 +49,8 @@ fn panel(engine: &str) -> &str {
     engine.strip_prefix("panel ").unwrap_or(engine)
 }
 
-/// Two panels as the subject of a sentence about each other, with its verb: "'a' and 'b' came through each other", "'a' came through itself".
+/// Two panels as the subject of a sentence about each other, with its verb: "'a' and 'b' came
+/// through each other", "'a' came through itself".
 fn both([a, b]: &[String; 2], many: &str, one: &str) -> String {
     match a == b {
         true => format!("{} {one} itself", panel(a)),

@@ -11,7 +11,8 @@ const AT: f64 = 0.12;
 const MIDDLE: f64 = 0.03;
 
 impl Words<'_> {
-    /// A place: "at the left armpit, 1.27 m above the floor"; its coordinates where there is no body.
+    /// A place: "at the left armpit, 1.27 m above the floor"; its coordinates where there is no
+    /// body.
     pub(super) fn place(&self, at: &Vector3<f64>) -> String {
         let surface = self.scheme.and_then(|s| s.surface());
         let Some(surface) = surface.filter(|s| !s.positions.is_empty()) else {
@@ -47,7 +48,8 @@ impl Words<'_> {
     }
 }
 
-/// A landmark's name in words: `armpit_left` is the left armpit, `waist_front` the front of the waist.
+/// A landmark's name in words: `armpit_left` is the left armpit, `waist_front` the front of the
+/// waist.
 fn landmark(name: &str) -> String {
     let words = |name: &str| name.replace('_', " ");
     match name.rsplit_once('_') {

@@ -19,7 +19,8 @@ pub(crate) struct Rests<'a> {
     pub(crate) time_limit: f64,
 }
 
-/// A first mesh this many times finer, and no coarser than so many vertices, may do what a coarser one does not.
+/// A first mesh this many times finer, and no coarser than so many vertices, may do what a coarser
+/// one does not.
 const FINER: (usize, usize) = (3, 2000);
 
 impl Words<'_> {
@@ -96,7 +97,8 @@ impl Words<'_> {
         Self::error(code, message, error).hint(help)
     }
 
-    /// What is told of a garment that still moves, without the remedy; `of` is the panel with the greatest force left over.
+    /// What is told of a garment that still moves, without the remedy; `of` is the panel with the
+    /// greatest force left over.
     fn unrest(&self, state: &Equilibrium, of: &str) -> String {
         let cause = match state.unbalanced.meets {
             Meets::Cloth => "where cloth lies on cloth",

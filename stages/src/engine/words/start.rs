@@ -8,7 +8,8 @@ use toile_core::{ErrorCode, StageError};
 const MOVED_OUT: f64 = 0.05;
 
 impl Words<'_> {
-    /// `through` is how this user lets cloth pass through what lies in its way, where that can be asked for.
+    /// `through` is how this user lets cloth pass through what lies in its way, where that can be
+    /// asked for.
     pub(super) fn start(&self, error: &StartError, through: Option<String>) -> StageError {
         let or_through = |remedy: String| match &through {
             Some(through) => format!("{remedy}, or {through}"),

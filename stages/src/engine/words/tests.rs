@@ -1,4 +1,5 @@
-//! Every error of the engine as people read it: the whole text, and none of the engine's own words in it.
+//! Every error of the engine as people read it: the whole text, and none of the engine's own words
+//! in it.
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
 use super::{Motions, Rests, Words};
@@ -14,7 +15,8 @@ use toile_cloth::statics::start::StartError;
 use toile_core::{Context, StageError};
 use toile_geometry::volume::Aabb;
 
-/// What only who knows the engine understands. A parameter's name stands in backticks, and may be one of them.
+/// What only who knows the engine understands. A parameter's name stands in backticks, and may be
+/// one of them.
 const ENGINE_WORDS: [&str; 18] = [
     " lay,",
     "smoother lay",

@@ -1,4 +1,5 @@
-//! The numbers of a GLB's lists, whatever they are stored as: 32-bit floats, or whole numbers (`KHR_mesh_quantization`, Khronos, 2020).
+//! The numbers of a GLB's lists, whatever they are stored as: 32-bit floats, or whole numbers
+//! (`KHR_mesh_quantization`, Khronos, 2020).
 //!
 //! Cost: one pass over a list. Limit: sparse lists are refused by name.
 

@@ -1,7 +1,7 @@
 //! What of a file is the garment: its objects without the body, buttons and what else stands there.
 //!
-//! Of a file of this program the cloth is taken by its names. From any file the objects go that the user names, and what is closed all around beside
-//! open cloth. Cloth with a thickness is refused.
+//! Of a file of this program the cloth is taken by its names. From any file the objects go that the
+//! user names, and what is closed all around beside open cloth. Cloth with a thickness is refused.
 
 use super::closed::{Whole, list, wholes};
 use super::raw::{Mended, RawMesh};
@@ -76,7 +76,8 @@ pub(in crate::flat) fn leave_out(raw: &mut RawMesh, names: &[String], file: &str
     Ok(())
 }
 
-/// Refuses cloth with a thickness, drops what is closed beside open cloth, and asks about what else is no garment.
+/// Refuses cloth with a thickness, drops what is closed beside open cloth, and asks about what else
+/// is no garment.
 pub(in crate::flat) fn open_cloth(mended: &mut Mended, file: &str, cx: &Context) -> Result<(), StageError> {
     let all = wholes(&mended.mesh);
     let thick: Vec<(&Whole, f64)> = all.iter().filter_map(|w| Some((w, w.thickness()?))).collect();

@@ -1,8 +1,11 @@
-//! Parts of a mesh that are closed all around: bodies, buttons, and cloth that was exported with its thickness.
+//! Parts of a mesh that are closed all around: bodies, buttons, and cloth that was exported with
+//! its thickness.
 //!
-//! Method: a part hangs together by its joined vertices; it is closed where its triangles run along each edge as often one way as the other.
-//! The volume of a closed part (divergence theorem) over half of its area is the mean distance between its two sides: some millimetres for cloth
-//! with a thickness, centimetres for a body. Cost: a sort of the edges. Limit: a part whose triangles face at random counts as open.
+//! Method: a part hangs together by its joined vertices; it is closed where its triangles run along
+//! each edge as often one way as the other. The volume of a closed part (divergence theorem) over
+//! half of its area is the mean distance between its two sides: some millimetres for cloth with a
+//! thickness, centimetres for a body. Cost: a sort of the edges. Limit: a part whose triangles face
+//! at random counts as open.
 
 use super::raw::RawMesh;
 use toile_geometry::components::{groups, links};
@@ -83,7 +86,8 @@ fn name(mesh: &RawMesh, triangles: &[u32]) -> String {
     runs.fold(("", 0), |best, run| if run.len() > best.1 { (run[0], run.len()) } else { best }).0.to_owned()
 }
 
-/// Names for people, each once and at most three of them: `"front", "back" and 2 more`; what has no name is counted.
+/// Names for people, each once and at most three of them: `"front", "back" and 2 more`; what has no
+/// name is counted.
 pub(in crate::flat) fn list<'a>(names: impl Iterator<Item = &'a str>) -> String {
     const NAMED: usize = 3;
     let (mut shown, mut more): (Vec<String>, usize) = (Vec::new(), 0);

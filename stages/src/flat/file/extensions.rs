@@ -1,4 +1,5 @@
-//! Extensions of glTF that a file needs: those that change no mesh are passed over, all others are refused by name, with what to do.
+//! Extensions of glTF that a file needs: those that change no mesh are passed over, all others are
+//! refused by name, with what to do.
 
 use serde_json::Value;
 
@@ -39,7 +40,8 @@ pub(in crate::flat) fn unread(root: &Value) -> Option<(String, &'static str)> {
         all.filter_map(Value::as_str).collect::<Vec<_>>()
     };
     let required = names("extensionsRequired");
-    // A file that names a compression and does not say that it needs it has the plain numbers, too, unless its lists have no place in the file.
+    // A file that names a compression and does not say that it needs it has the plain numbers, too,
+    // unless its lists have no place in the file.
     let is_needed = |name: &str| {
         required.contains(&name) || names("extensionsUsed").contains(&name) && has_bare_lists(root)
     };
@@ -58,7 +60,8 @@ fn has_bare_lists(root: &Value) -> bool {
     lists.into_iter().flatten().any(|a| a.get("bufferView").is_none() && a.get("sparse").is_none())
 }
 
-/// Takes off what does not change a mesh: its library knows not every extension of looks, and refuses files for them.
+/// Takes off what does not change a mesh: its library knows not every extension of looks, and
+/// refuses files for them.
 pub(in crate::flat) fn geometry_only(root: &mut Value) {
     let Some(all) = root.as_object_mut() else { return };
     for list in [

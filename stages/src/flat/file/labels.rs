@@ -1,4 +1,5 @@
-//! Where a mesh from a file is cut into pieces: one label for each side of each edge; sides of equal labels stay together.
+//! Where a mesh from a file is cut into pieces: one label for each side of each edge; sides of
+//! equal labels stay together.
 
 use super::raw::{Mended, NO_POINT};
 use std::collections::BTreeMap;
@@ -9,16 +10,18 @@ use toile_flatten::islands::weld_uv;
 #[choice]
 #[derive(Copy, Eq)]
 pub enum PiecesBy {
-    /// Texture islands where all triangles have texture points, else groups where there are two or more, else materials, else marked
-    /// seams, else parts.
+    /// Texture islands where all triangles have texture points, else groups where there are two or
+    /// more, else materials, else marked seams, else parts.
     Auto,
-    /// Islands of the texture: the mesh is cut where the two sides of an edge have different texture points.
+    /// Islands of the texture: the mesh is cut where the two sides of an edge have different
+    /// texture points.
     Uv,
     /// Groups and objects (`g`, `o`; in a GLB each node).
     Groups,
     /// Materials (`usemtl`).
     Materials,
-    /// Edges that are marked as lines (`l`; in a GLB line primitives). A line may end inside a piece: a dart.
+    /// Edges that are marked as lines (`l`; in a GLB line primitives). A line may end inside a
+    /// piece: a dart.
     Seams,
     /// What hangs together by the file's own vertices.
     Parts,
@@ -50,7 +53,8 @@ impl PiecesBy {
         let has_uv = mesh.corners.iter().flatten().all(|c| *c != NO_POINT);
         let several = |of: &[u32]| of.windows(2).any(|w| w[0] != w[1]);
         match self {
-            // Its own files have a mesh a panel; their texture may be a cloth that runs on over a seam or a dart.
+            // Its own files have a mesh a panel; their texture may be a cloth that runs on over a
+            // seam or a dart.
             PiecesBy::Auto if mesh.is_ours && mesh.has_own_vertices => Ok(PiecesBy::Parts),
             PiecesBy::Auto if has_uv => Ok(PiecesBy::Uv),
             PiecesBy::Auto if several(&mesh.groups) => Ok(PiecesBy::Groups),
@@ -71,7 +75,8 @@ impl PiecesBy {
 /// A label that no other side has.
 const ALONE: u32 = u32::MAX;
 
-/// The labels of all half-edges, and at how many edges of three triangles or more a piece had to be cut.
+/// The labels of all half-edges, and at how many edges of three triangles or more a piece had to be
+/// cut.
 pub(in crate::flat) fn labels(mended: &Mended, by: PiecesBy) -> (Vec<[u32; 2]>, usize) {
     let mesh = &mended.mesh;
     let by_corners = |corners: &[[u32; 3]]| of_corners(&mesh.triangles, corners);
@@ -90,7 +95,8 @@ pub(in crate::flat) fn labels(mended: &Mended, by: PiecesBy) -> (Vec<[u32; 2]>, 
     (labels, cut)
 }
 
-/// Texture points by the first at their place: most programs repeat them at every corner. In a file of this program panels share none.
+/// Texture points by the first at their place: most programs repeat them at every corner. In a file
+/// of this program panels share none.
 fn joined_points(mended: &Mended) -> Vec<[u32; 3]> {
     let mesh = &mended.mesh;
     let first = weld_uv(&mesh.uv, 0.0);
@@ -103,7 +109,8 @@ fn joined_points(mended: &Mended) -> Vec<[u32; 3]> {
     mesh.corners.iter().zip(&mesh.groups).map(|(t, group)| t.map(|c| of(c, *group))).collect()
 }
 
-/// The labels of half-edges by what stands at their ends, in the order of the vertices, so that both sides compare alike.
+/// The labels of half-edges by what stands at their ends, in the order of the vertices, so that
+/// both sides compare alike.
 pub(in crate::flat) fn of_corners(triangles: &[[u32; 3]], corners: &[[u32; 3]]) -> Vec<[u32; 2]> {
     let label = |(t, c): (&[u32; 3], &[u32; 3])| {
         [0, 1, 2].map(|k| {
@@ -119,7 +126,8 @@ fn key(t: &[u32; 3], k: usize) -> [u32; 2] {
     [a.min(b), a.max(b)]
 }
 
-/// Gives each side of these edges a label of its own; returns nothing for edges that there are none of.
+/// Gives each side of these edges a label of its own; returns nothing for edges that there are none
+/// of.
 pub(in crate::flat) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], labels: &mut [[u32; 2]]) {
     let mut marked: Vec<[u32; 2]> = edges.iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
     marked.sort_unstable();
@@ -130,7 +138,8 @@ pub(in crate::flat) fn cut_along(triangles: &[[u32; 3]], edges: &[[u32; 2]], lab
     }
 }
 
-/// Gives the sides of edges at which three or more would stay together labels of their own; returns how many edges.
+/// Gives the sides of edges at which three or more would stay together labels of their own; returns
+/// how many edges.
 fn part_crowded(triangles: &[[u32; 3]], labels: &mut [[u32; 2]]) -> usize {
     let mut sides: Vec<([u32; 2], [u32; 2], u32)> =
         (0..labels.len()).map(|h| (key(&triangles[h / 3], h % 3), labels[h], h as u32)).collect();

@@ -1,4 +1,5 @@
-//! 3D files of garments: what they hold (`read_glb`, `read_obj`), what of it is the garment (`chosen`), its repair (`raw`), and where it is cut (`labels`).
+//! 3D files of garments: what they hold (`read_glb`, `read_obj`), what of it is the garment
+//! (`chosen`), its repair (`raw`), and where it is cut (`labels`).
 
 mod accessor;
 mod chosen;

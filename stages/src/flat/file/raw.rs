@@ -1,7 +1,8 @@
 //! The mesh of a 3D file as it stands there, before it is cut into pieces, and its repair.
 //!
-//! Vertices at one place are joined, triangles without area and triangles that repeat others go; each is counted. What the file says of
-//! texture points, groups and materials stays with its triangle. Cost: O(n log n).
+//! Vertices at one place are joined, triangles without area and triangles that repeat others go;
+//! each is counted. What the file says of texture points, groups and materials stays with its
+//! triangle. Cost: O(n log n).
 
 use super::raw_words::tell;
 use std::collections::BTreeSet;
@@ -68,7 +69,8 @@ pub(in crate::flat) struct Repairs {
 }
 
 impl Repairs {
-    /// Damage in words, none where there was none; joined vertices are no damage, since most programs split them along seams.
+    /// Damage in words, none where there was none; joined vertices are no damage, since most
+    /// programs split them along seams.
     pub(in crate::flat) fn words(&self) -> Option<String> {
         let all = [
             tell(self.without_area, "triangle without area is removed", "triangles without area are removed"),

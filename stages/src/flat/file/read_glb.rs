@@ -1,7 +1,9 @@
 //! A garment from a binary glTF file (GLB).
 //!
-//! Every triangle primitive of every node of the scene is read where the node puts it; a node's mesh is a group, line primitives mark seams.
-//! Limits: everything must stand in the one file, without compression and sparse accessors; of animated or skinned meshes the shape at rest is read.
+//! Every triangle primitive of every node of the scene is read where the node puts it; a node's
+//! mesh is a group, line primitives mark seams. Limits: everything must stand in the one file,
+//! without compression and sparse accessors; of animated or skinned meshes the shape at rest is
+//! read.
 
 use super::accessor::{CORNERS, MOST, PLACES, TEXTURE, is_sound, numbers};
 use super::extensions::{geometry_only, unread};

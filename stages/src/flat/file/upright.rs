@@ -1,7 +1,8 @@
 //! Whether a garment stands, or lies as one whose file has another axis up.
 //!
-//! Hems, waists and necks lie level on a garment that stands. Where the openings of a mesh face forwards instead, and it is less tall than it is deep, its
-//! file has the other axis up. Cost: one pass over the open edges.
+//! Hems, waists and necks lie level on a garment that stands. Where the openings of a mesh face
+//! forwards instead, and it is less tall than it is deep, its file has the other axis up. Cost: one
+//! pass over the open edges.
 
 use super::raw::RawMesh;
 use std::collections::BTreeMap;

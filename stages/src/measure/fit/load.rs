@@ -1,12 +1,15 @@
 //! What the cloth carries, and how hard it presses on the body.
 //!
-//! Strain of a yarn direction is `e = |f| - 1`, f the image of its flat unit vector; tension is what the fabric's curve gives for it, N per
-//! metre of cut width. A garment at rest is in equilibrium: what membrane, elastic bands and weight leave over at a vertex is what the body
-//! holds. Its part along the body's normal, by the area around the vertex, is the pressure; on a tube around a cylinder it is Laplace's
-//! `p = T / r`. Source: Woven law of the cloth engine (see `docs/reference/solver.md`); Laplace 1806.
+//! Strain of a yarn direction is `e = |f| - 1`, f the image of its flat unit vector; tension is
+//! what the fabric's curve gives for it, N per metre of cut width. A garment at rest is in
+//! equilibrium: what membrane, elastic bands and weight leave over at a vertex is what the body
+//! holds. Its part along the body's normal, by the area around the vertex, is the pressure; on a
+//! tube around a cylinder it is Laplace's `p = T / r`. Source: Woven law of the cloth engine (see
+//! `docs/reference/solver.md`); Laplace 1806.
 //!
-//! Limits: bending is left out; weight is that of the Earth, whatever the solver was told; of layers that lie on each other each has its
-//! own pressure; cloth that is not at rest, or whose flat shape is not known, has no true figures.
+//! Limits: bending is left out; weight is that of the Earth, whatever the solver was told; of
+//! layers that lie on each other each has its own pressure; cloth that is not at rest, or whose
+//! flat shape is not known, has no true figures.
 
 use crate::engine::{cloth_error, engine_fabric};
 use nalgebra::{Matrix2, Matrix3x2};
@@ -135,11 +138,13 @@ fn together<T: Copy + std::ops::AddAssign>(garment: &Garment, values: &[T]) -> V
     garment.weld.iter().map(|&w| sums[w as usize]).collect()
 }
 
-/// Rounds in which forces and areas are shared with neighbours: after five, the meshes of the tests give Laplace's pressure within 1 %.
+/// Rounds in which forces and areas are shared with neighbours: after five, the meshes of the tests
+/// give Laplace's pressure within 1 %.
 const ROUNDS: usize = 5;
 
-/// Pressure at each vertex on the body. A mesh gives one vertex more than its share and the next one less, so forces and areas are first
-/// shared out among neighbours on the body, which keeps their sums.
+/// Pressure at each vertex on the body. A mesh gives one vertex more than its share and the next
+/// one less, so forces and areas are first shared out among neighbours on the body, which keeps
+/// their sums.
 fn pressure(
     garment: &Garment,
     collider: Option<&Collider>,
@@ -174,7 +179,8 @@ fn joined_edges(garment: &Garment) -> Vec<[usize; 2]> {
     edges
 }
 
-/// Each vertex keeps an equal part of what it holds, and gives one to each neighbour that holds something.
+/// Each vertex keeps an equal part of what it holds, and gives one to each neighbour that holds
+/// something.
 fn share(edges: &[[usize; 2]], held: &mut [Option<[f64; 2]>]) {
     let both = |held: &[Option<[f64; 2]>], [a, b]: [usize; 2]| held[a].is_some() && held[b].is_some();
     let mut parts = vec![1.0; held.len()];

@@ -1,7 +1,8 @@
 //! Values on the cloth as colours, seen from the front and the back, with a legend.
 //!
-//! Scales that colour-blind readers tell apart: cividis (Nunez, Anderton, Renslow 2018) for values from zero on, purple to orange
-//! (ColorBrewer's PuOr: Harrower, Brewer 2003) for values of both signs. No light falls on the cloth, so a colour is the legend's.
+//! Scales that colour-blind readers tell apart: cividis (Nunez, Anderton, Renslow 2018) for values
+//! from zero on, purple to orange (ColorBrewer's PuOr: Harrower, Brewer 2003) for values of both
+//! signs. No light falls on the cloth, so a colour is the legend's.
 
 use crate::render::{Form, Scene, View, jpeg};
 use crate::texture::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};

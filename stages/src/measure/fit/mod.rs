@@ -20,10 +20,12 @@ use std::collections::BTreeMap;
 use toile_core::artifact::{GirthFigures, quantile};
 use toile_core::prelude::*;
 
-/// Writes how the garment sits: ease, strain and tension along warp and weft, pressure on the body, finished measures.
+/// Writes how the garment sits: ease, strain and tension along warp and weft, pressure on the body,
+/// finished measures.
 ///
-/// `fit.json` has lengths in metres, tensions in N per metre of cut width, pressures in kPa. A picture of each map is an SVG with its legend.
-/// Where the cloth presses harder than `comfort` over more than `over`, a warning says where. The garment must be at rest.
+/// `fit.json` has lengths in metres, tensions in N per metre of cut width, pressures in kPa. A
+/// picture of each map is an SVG with its legend. Where the cloth presses harder than `comfort`
+/// over more than `over`, a warning says where. The garment must be at rest.
 #[stage(
     role = Writer,
     source = "pressure: Laplace 1806; comfort: Denton 1972",

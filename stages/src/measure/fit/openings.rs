@@ -1,9 +1,11 @@
-//! The openings of a sewn garment (neckline, hem, cuffs, waist), and the measures that a tailor takes along them.
+//! The openings of a sewn garment (neckline, hem, cuffs, waist), and the measures that a tailor
+//! takes along them.
 
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{Body, Garment, GarmentPanel, Point2, Point3};
 
-/// The middle of an armhole, a cuff or a leg is farther than this from the middle of the body, metres.
+/// The middle of an armhole, a cuff or a leg is farther than this from the middle of the body,
+/// metres.
 const BESIDE: f64 = 0.05;
 
 /// A closed line of edges that nothing is sewn to.
@@ -80,9 +82,10 @@ fn follow(garment: &Garment, next: &mut BTreeMap<u32, Vec<[u32; 2]>>, start: u32
     (at == start && points.len() > 2).then_some(Opening { vertices, points, length, height })
 }
 
-/// Finished measures of a garment, metres, by name: `length` from its highest point straight down to the hem, `hem`, `opening` of neck or
-/// waist, `sleeve_left` from its highest point to the cuff, `cuff_left`, or `armhole_left` of a garment without sleeves, `leg_left` and
-/// `leg_opening_left` of trousers; and the same of the right.
+/// Finished measures of a garment, metres, by name: `length` from its highest point straight down
+/// to the hem, `hem`, `opening` of neck or waist, `sleeve_left` from its highest point to the cuff,
+/// `cuff_left`, or `armhole_left` of a garment without sleeves, `leg_left` and `leg_opening_left`
+/// of trousers; and the same of the right.
 pub(super) fn finished(
     garment: &Garment,
     body: Option<&Body>,
@@ -120,7 +123,8 @@ pub(super) fn finished(
     all
 }
 
-/// Where the trunk is at an opening's height: under the waist's landmarks, or the opening's own middle where no body tells.
+/// Where the trunk is at an opening's height: under the waist's landmarks, or the opening's own
+/// middle where no body tells.
 fn centre(opening: &Opening, axis: f64, body: Option<&Body>) -> Point2 {
     let z =
         body.and_then(|b| Some((b.landmarks.get("waist_front")?.z + b.landmarks.get("waist_back")?.z) / 2.0));

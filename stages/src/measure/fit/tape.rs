@@ -1,7 +1,9 @@
-//! Ease: the tape around the cloth less the tape around the body, at the places where a tailor holds it.
+//! Ease: the tape around the cloth less the tape around the body, at the places where a tailor
+//! holds it.
 //!
-//! Bust, waist and hip as for `Measure`. Biceps: across the upper arm, halfway from armpit to elbow. Thigh: 5 cm below the crotch. Neck: the
-//! garment's opening around the neck beside the girth of the neck.
+//! Bust, waist and hip as for `Measure`. Biceps: across the upper arm, halfway from armpit to
+//! elbow. Thigh: 5 cm below the crotch. Neck: the garment's opening around the neck beside the
+//! girth of the neck.
 
 use super::openings::Opening;
 use crate::body::{slice, trunk};
@@ -16,7 +18,8 @@ const BELOW_CROTCH: f64 = 0.05;
 const AROUND_ARM: f64 = 3.0;
 /// Above the neck's base, metres: where a tape around the neck lies, if the body brings no measure.
 const ABOVE_BASE: f64 = 0.03;
-/// An opening around the neck is no longer than so many times the neck: beyond it is a boat or a strapless top.
+/// An opening around the neck is no longer than so many times the neck: beyond it is a boat or a
+/// strapless top.
 const AROUND_NECK: f64 = 3.0;
 
 /// The girths of a garment where it closes around its body.

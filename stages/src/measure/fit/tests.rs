@@ -16,7 +16,8 @@ fn polygon(radius: f64) -> f64 {
     2.0 * COLUMNS as f64 * radius * (TAU / 2.0 / COLUMNS as f64).sin()
 }
 
-/// A tube around the y axis, of that radius, sewn of cloth that is shorter by `strain`; 40 cm high, without weight.
+/// A tube around the y axis, of that radius, sewn of cloth that is shorter by `strain`; 40 cm high,
+/// without weight.
 fn tube(radius: f64, strain: f64) -> Garment {
     let around = polygon(radius) / (1.0 + strain);
     let grid = Grid { columns: COLUMNS, rows: 12, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) };

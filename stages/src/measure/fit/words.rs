@@ -31,7 +31,8 @@ impl Tight {
     }
 }
 
-/// Parts of the body that more than `over` square metres of cloth press with more than `limit`, Pa; the tightest first.
+/// Parts of the body that more than `over` square metres of cloth press with more than `limit`, Pa;
+/// the tightest first.
 pub(super) fn tight(
     garment: &Garment,
     body: Option<&Body>,

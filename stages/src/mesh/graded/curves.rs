@@ -1,10 +1,11 @@
 //! Where an outline asks for short edges: where it curves, and where the cloth is narrow.
 //!
-//! Method: at points along each stretch the longest chord is found, of a ladder of lengths, that leaves the curve no
-//! farther than meshers are allowed (as gauges do for whole edges). Where the other side of the cloth is near, straight
-//! across, edges are a share of the way there (the local feature size of Ruppert 1995, of sides that do not meet nearby).
-//! Cost: points of the outline times the points under a chord; samples times their neighbours within reach.
-//! Limits: inner lines ask for short edges where they curve, not where they run near something.
+//! Method: at points along each stretch the longest chord is found, of a ladder of lengths, that
+//! leaves the curve no farther than meshers are allowed (as gauges do for whole edges). Where the
+//! other side of the cloth is near, straight across, edges are a share of the way there (the local
+//! feature size of Ruppert 1995, of sides that do not meet nearby). Cost: points of the outline
+//! times the points under a chord; samples times their neighbours within reach. Limits: inner lines
+//! ask for short edges where they curve, not where they run near something.
 
 use super::super::layout::Layout;
 use super::super::polyline::Polyline;
@@ -15,7 +16,8 @@ use toile_core::{Context, StageError};
 
 /// From a chord to the next shorter one.
 const RATIO: f64 = 1.15;
-/// Chords shorter than this share of the longest edge are a matter of a missed corner, not of the curve.
+/// Chords shorter than this share of the longest edge are a matter of a missed corner, not of the
+/// curve.
 const LEAST_SHARE: f64 = 1.0 / 8.0;
 /// Samples to an edge of the shortest length.
 const SAMPLES_AN_EDGE: f64 = 2.0;
@@ -25,10 +27,12 @@ const ACROSS: f64 = 3.0;
 const FACING: f64 = 0.7;
 /// Samples between two looks at the stop flag.
 const CHECK_EVERY: usize = 200;
-/// Sides meet nearby where the way along the outline is no longer than so many times the way across.
+/// Sides meet nearby where the way along the outline is no longer than so many times the way
+/// across.
 const MEETS: f64 = 4.0;
 
-/// Lowers the field along everything that a mesh must follow; [`SizeField::spread`] is for the caller.
+/// Lowers the field along everything that a mesh must follow; [`SizeField::spread`] is for the
+/// caller.
 pub(crate) fn lower_along(
     field: &mut SizeField,
     layout: &Layout<'_>,
@@ -59,7 +63,8 @@ pub(crate) fn samples(line: &Polyline, fine: f64) -> impl Iterator<Item = f64> +
     (0..=n).map(move |k| length * (k as f64 / n as f64))
 }
 
-/// The longest chord about a point of a line that stays true, metres; marks are corners, across which no chord runs.
+/// The longest chord about a point of a line that stays true, metres; marks are corners, across
+/// which no chord runs.
 fn chord_at(line: &Polyline, marks: &[f64], arc: f64, range: Range) -> f64 {
     let k = marks.partition_point(|m| *m <= arc);
     let from = if k > 0 { marks[k - 1] } else { 0.0 };
@@ -67,7 +72,8 @@ fn chord_at(line: &Polyline, marks: &[f64], arc: f64, range: Range) -> f64 {
     let allowed = 0.5 * CHORD_TOLERANCE * range.edge;
     let least = range.fine.min(LEAST_SHARE * range.edge);
     let mut chord = range.edge;
-    // Near a corner the chord begins there, so that the curve's end is judged by whole chords as well.
+    // Near a corner the chord begins there, so that the curve's end is judged by whole chords as
+    // well.
     let sag = |chord: f64| {
         let start = (arc - chord / 2.0).min(to - chord).max(from);
         line.sag(start, (start + chord).min(to))
@@ -85,7 +91,8 @@ struct Sample {
     arc: f64,
 }
 
-/// Samples along a loop that has the cloth on its left, in the middle between the samples of [`samples`].
+/// Samples along a loop that has the cloth on its left, in the middle between the samples of
+/// [`samples`].
 fn rim<'a>(lines: impl Iterator<Item = &'a Polyline>, fine: f64) -> Vec<Sample> {
     let mut out = Vec::new();
     let mut before = 0.0;
@@ -129,7 +136,8 @@ fn narrow(border: &[Vec<Sample>], range: Range, cx: &Context) -> Result<Vec<(Poi
     Ok(sized)
 }
 
-/// The way through the cloth from one sample to another that faces it; `round` is the length of the loop that both are on.
+/// The way through the cloth from one sample to another that faces it; `round` is the length of the
+/// loop that both are on.
 fn way_across(from: &Sample, to: &Sample, round: Option<f64>) -> Option<f64> {
     let way = to.at - from.at;
     let far = way.norm();
@@ -159,7 +167,8 @@ mod tests {
 
     #[test]
     fn a_circle_asks_for_the_chord_that_its_radius_allows() {
-        // sag = s^2 / 8 r, allowed is a hundredth of the longest edge; one rung of the ladder more or less.
+        // sag = s^2 / 8 r, allowed is a hundredth of the longest edge; one rung of the ladder more
+        // or less.
         let wanted = (8.0 * 0.2 * 0.01 * RANGE.edge).sqrt();
         let found = sized(&disc()).at(p(0.2, 0.0));
         assert!(found <= wanted * 1.08 && found > wanted / RATIO / 1.08, "{found} for {wanted}");

@@ -1,10 +1,11 @@
 //! How the stretches of all panels are cut, the two sides of a seam alike.
 //!
-//! Method: sides that are sewn together are one *tie*: along it, by share of the length, edges are as long as the panel with the shorter
-//! ones allows. What one panel asks of another so goes into the other's field, grows from there, and may reach another
-//! seam; this is repeated until nothing changes. A tie is then cut into parts of equal weight, the integral of one over the
-//! length of its edges, once for all its sides.
-//! Cost: samples times rounds. Limits: seams of edges that no panel has are left to the stage that sews.
+//! Method: sides that are sewn together are one *tie*: along it, by share of the length, edges are
+//! as long as the panel with the shorter ones allows. What one panel asks of another so goes into
+//! the other's field, grows from there, and may reach another seam; this is repeated until nothing
+//! changes. A tie is then cut into parts of equal weight, the integral of one over the length of
+//! its edges, once for all its sides. Cost: samples times rounds. Limits: seams of edges that no
+//! panel has are left to the stage that sews.
 
 use super::super::divide::Cuts;
 use super::super::layout::Layout;
@@ -32,7 +33,8 @@ pub(crate) struct Sized<'a> {
     pub field: SizeField,
 }
 
-/// A stretch (numbered loop by loop) or, after these, an inner line of a panel; whether it runs against its tie.
+/// A stretch (numbered loop by loop) or, after these, an inner line of a panel; whether it runs
+/// against its tie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Side {
     panel: usize,
@@ -192,8 +194,8 @@ fn lower_both(panels: &mut [Sized<'_>], tie: &[Side]) -> f64 {
     fell
 }
 
-/// The shares of a tie's length at which it is cut: parts of equal weight, as many as the sizes ask for, more where a
-/// side's chords would else leave it.
+/// The shares of a tie's length at which it is cut: parts of equal weight, as many as the sizes ask
+/// for, more where a side's chords would else leave it.
 fn shares(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
     let (sizes, length) = (profile(panels, tie), length(panels, tie));
     let weights = weights(&sizes, length);
@@ -219,7 +221,8 @@ fn shares(panels: &[Sized<'_>], tie: &[Side]) -> Vec<f64> {
     }
 }
 
-/// The integral of one over the size from the start to every sample: about how many edges there are up to it.
+/// The integral of one over the size from the start to every sample: about how many edges there are
+/// up to it.
 fn weights(sizes: &[f64], length: f64) -> Vec<f64> {
     let step = length / (sizes.len() - 1) as f64;
     let mut sum = 0.0;

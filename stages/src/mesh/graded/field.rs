@@ -1,10 +1,10 @@
 //! How long edges should be at each place of a panel.
 //!
-//! Method: sizes stand on a raster over the panel's box. Places that ask for short edges lower it; then growth away
-//! from them is limited to a share of the way (Persson 2006), by two passes of a 5 by 5 chamfer (Borgefors 1986), whose
-//! distances are too long by 2.8 % at most.
-//! Cost: linear in the raster's nodes, which stand half of the shortest edge apart.
-//! Limits: at most a million nodes; on panels of more the raster is coarser, and what lies between two nodes is averaged.
+//! Method: sizes stand on a raster over the panel's box. Places that ask for short edges lower it;
+//! then growth away from them is limited to a share of the way (Persson 2006), by two passes of a 5
+//! by 5 chamfer (Borgefors 1986), whose distances are too long by 2.8 % at most. Cost: linear in
+//! the raster's nodes, which stand half of the shortest edge apart. Limits: at most a million
+//! nodes; on panels of more the raster is coarser, and what lies between two nodes is averaged.
 
 use toile_core::artifact::Point2;
 
@@ -55,7 +55,8 @@ impl SizeField {
         self.range
     }
 
-    /// Asks for edges no longer than `size` at `p`; takes effect elsewhere with [`spread`](Self::spread).
+    /// Asks for edges no longer than `size` at `p`; takes effect elsewhere with
+    /// [`spread`](Self::spread).
     pub(crate) fn lower(&mut self, p: Point2, size: f64) {
         let (i, j, _, _) = self.place(p);
         for k in [0, 1, self.columns, self.columns + 1].map(|step| j * self.columns + i + step) {
@@ -113,12 +114,14 @@ impl SizeField {
         Point2::new(self.low.x + i as f64 * self.cell, self.low.y + j as f64 * self.cell)
     }
 
-    /// The raster for whoever asks which of its nodes lie inside an outline: origin, distance and counts of nodes.
+    /// The raster for whoever asks which of its nodes lie inside an outline: origin, distance and
+    /// counts of nodes.
     pub(crate) fn raster(&self) -> (Point2, f64, usize, usize) {
         (self.low, self.cell, self.columns, self.rows)
     }
 
-    /// About how many triangles of these sizes fill the nodes for which `inside` is true: equilateral ones.
+    /// About how many triangles of these sizes fill the nodes for which `inside` is true:
+    /// equilateral ones.
     pub(crate) fn triangles(&self, inside: &[bool]) -> f64 {
         let of = |h: &f64| 4.0 / 3f64.sqrt() * (self.cell / h).powi(2);
         self.sizes.iter().zip(inside).filter(|(_, inside)| **inside).map(|(h, _)| of(h)).sum()

@@ -1,9 +1,10 @@
 //! Fills a divided outline with triangles of given sizes.
 //!
-//! Method: the corners of a quadtree's cells stand inside; the constrained Delaunay triangulation of these and the outline's
-//! vertices is mended where angles fall short (see `refine`), and the diagonals of squares alternate. Angles are at least
-//! 26.6 degrees where a cell meets two of half its side, 45 among equal cells; along the outline the figure `least_angle` tells.
-//! Cost: n log n. Limits: segments are never split.
+//! Method: the corners of a quadtree's cells stand inside; the constrained Delaunay triangulation
+//! of these and the outline's vertices is mended where angles fall short (see `refine`), and the
+//! diagonals of squares alternate. Angles are at least 26.6 degrees where a cell meets two of half
+//! its side, 45 among equal cells; along the outline the figure `least_angle` tells. Cost: n log n.
+//! Limits: segments are never split.
 
 use super::super::assemble::Meshed;
 use super::super::divide::Division;
@@ -55,7 +56,8 @@ fn alternate(mesh: &mut TriMesh, tree: &Quadtree) {
     }
 }
 
-/// Whether the diagonal from the second to the fourth corner of a rectangle along the threads runs the wrong way.
+/// Whether the diagonal from the second to the fourth corner of a rectangle along the threads runs
+/// the wrong way.
 fn turned([a, b, c, d]: [Point2; 4], tree: &Quadtree) -> bool {
     let (low, high) = (a.inf(&b).inf(&c).inf(&d), a.sup(&b).sup(&c).sup(&d));
     let size = high - low;

@@ -1,10 +1,10 @@
 //! Where a draped garment asks for short edges: where it is bent.
 //!
-//! Method: the shape operator of each triangle from the angles to its neighbours (Grinspun et al. 2006), in the panel's own
-//! flat coordinates; neighbours across a closed seam count as well. An edge of length h leaves a surface of curvature k by
-//! h^2 k / 8 (Narain, Samii, O'Brien 2012, with the flat pattern as the metric), so h = sqrt(8 tolerance / k).
-//! Cost: linear in the garment's triangles.
-//! Limits: what the drape's own mesh is too coarse to show is not seen.
+//! Method: the shape operator of each triangle from the angles to its neighbours (Grinspun et al.
+//! 2006), in the panel's own flat coordinates; neighbours across a closed seam count as well. An
+//! edge of length h leaves a surface of curvature k by h^2 k / 8 (Narain, Samii, O'Brien 2012, with
+//! the flat pattern as the metric), so h = sqrt(8 tolerance / k). Cost: linear in the garment's
+//! triangles. Limits: what the drape's own mesh is too coarse to show is not seen.
 
 use super::field::SizeField;
 use nalgebra::Matrix2;
@@ -44,7 +44,8 @@ fn sides(garment: &Garment) -> Vec<Side> {
     (0..garment.triangles.len()).flat_map(|t| (0..3).map(move |k| side(t, k))).collect()
 }
 
-/// The angle between two triangles that share a side, radians; positive where the garment is bent outwards.
+/// The angle between two triangles that share a side, radians; positive where the garment is bent
+/// outwards.
 fn turn(garment: &Garment, s: usize, t: usize, (a, b): (u32, u32)) -> f64 {
     let (m, n) = (normal(garment, s), normal(garment, t));
     let along = garment.positions[b as usize] - garment.positions[a as usize];
@@ -62,7 +63,8 @@ fn centre(garment: &Garment, t: usize) -> Vector3 {
     garment.triangles[t].map(|v| garment.positions[v as usize].coords).iter().sum::<Vector3>() / 3.0
 }
 
-/// Adds what a bent side contributes to its triangle: angle times length over twice the area, across the side.
+/// Adds what a bent side contributes to its triangle: angle times length over twice the area,
+/// across the side.
 fn add(bend: &mut [Matrix2<f64>], garment: &Garment, side: &Side, angle: f64) {
     let (t, k) = (side.1, side.2);
     let [a, b, c] = garment.triangles[t].map(|v| garment.rest[v as usize]);
@@ -76,7 +78,8 @@ fn add(bend: &mut [Matrix2<f64>], garment: &Garment, side: &Side, angle: f64) {
     }
 }
 
-/// Lowers a panel's field where the drape of that panel is bent so that edges would leave it by more than `tolerance` (metres).
+/// Lowers a panel's field where the drape of that panel is bent so that edges would leave it by
+/// more than `tolerance` (metres).
 pub(crate) fn lower_at_folds(
     field: &mut SizeField,
     garment: &Garment,

@@ -29,10 +29,11 @@ const FINE_SHARE: f64 = 1.0 / 3.0;
 
 /// Fills panels with triangles that are small where it matters.
 ///
-/// Edges are as short as `fine` where the outline curves (neck, armhole), where the cloth is narrow (a strap) and, behind a
-/// first, coarse drape of the same pattern in the pipeline, where that is bent (folds); from there they grow
-/// by `grading` of the way up to `edge`. The two sides of a seam are cut alike: all panels are meshed
-/// at once, and each asks no more of a seam than both can have. Darts, pleats and folds lie on mesh edges.
+/// Edges are as short as `fine` where the outline curves (neck, armhole), where the cloth is narrow
+/// (a strap) and, behind a first, coarse drape of the same pattern in the pipeline, where that is
+/// bent (folds); from there they grow by `grading` of the way up to `edge`. The two sides of a seam
+/// are cut alike: all panels are meshed at once, and each asks no more of a seam than both can
+/// have. Darts, pleats and folds lie on mesh edges.
 #[stage(
     role = Mesher,
     source = "sizes: Persson 2006; Narain, Samii, O'Brien 2012; triangles: Yerry, Shephard 1983",
@@ -43,14 +44,15 @@ pub struct GradedMesher {
     /// Length of the triangles' edges where nothing curves.
     #[param(default = Length::mm(24.0), min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) edge: Length,
-    /// Shortest length, where outline or cloth curve most; a third of `edge` where it is not given. An outline that asks
-    /// for less is still followed.
+    /// Shortest length, where outline or cloth curve most; a third of `edge` where it is not given.
+    /// An outline that asks for less is still followed.
     #[param(default = None, min = 0.0001, max = 1.0, trades, finer = "less")]
     pub(crate) fine: Option<Length>,
     /// How fast edges grow away from where they are short, length by length.
     #[param(default = 0.3, min = 0.05, max = 1.0, trades)]
     pub(crate) grading: f64,
-    /// Edges at folds of a first drape are so short that they leave its surface by no more than this.
+    /// Edges at folds of a first drape are so short that they leave its surface by no more than
+    /// this.
     #[param(default = Length::mm(1.0), min = 1e-6, max = 1.0, trades, finer = "less")]
     pub(crate) tolerance: Length,
 }

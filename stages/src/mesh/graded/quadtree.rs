@@ -1,10 +1,11 @@
 //! Inner vertices at the corners of squares that are as small as the sizes ask.
 //!
-//! Method: a grid along warp and weft with cells of about the longest edge; a cell that is too large for the size in it is cut
-//! into four, and neighbours differ by one such cut at most (Yerry, Shephard 1983). Grain counts: a woven cloth hardly stretches along
-//! its threads and shears with ease, and triangles whose sides run along the threads can do so, while slanted ones
-//! of the same size are too stiff. Cost: linear in the cells.
-//! Limits: sizes come in halves of the longest; one in between gets the nearer by ratio.
+//! Method: a grid along warp and weft with cells of about the longest edge; a cell that is too
+//! large for the size in it is cut into four, and neighbours differ by one such cut at most (Yerry,
+//! Shephard 1983). Grain counts: a woven cloth hardly stretches along its threads and shears with
+//! ease, and triangles whose sides run along the threads can do so, while slanted ones of the same
+//! size are too stiff. Cost: linear in the cells. Limits: sizes come in halves of the longest; one
+//! in between gets the nearer by ratio.
 
 use super::super::divide::Division;
 use super::super::predicates::distance_to_segment;
@@ -13,9 +14,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use toile_core::artifact::{Point2, Vector2};
 use toile_core::{Context, StageError};
 
-/// A cell is cut where the size in it is below this share of its side: half-way, by ratio, to its half.
+/// A cell is cut where the size in it is below this share of its side: half-way, by ratio, to its
+/// half.
 const CUT: f64 = std::f64::consts::FRAC_1_SQRT_2;
-/// A corner nearer to the outline than this share of the size is left out: the outline's own vertices stand for it.
+/// A corner nearer to the outline than this share of the size is left out: the outline's own
+/// vertices stand for it.
 const LEAST_DISTANCE: f64 = 0.5;
 /// Most cuts of a cell, one in the other.
 const MOST_CUTS: usize = 12;
@@ -157,8 +160,9 @@ impl Quadtree {
         }
     }
 
-    /// Which way the diagonal of a square of this lowest corner and side runs, so that diagonals alternate like a chequer board; none
-    /// for what is no cell. True from the lowest corner to the highest.
+    /// Which way the diagonal of a square of this lowest corner and side runs, so that diagonals
+    /// alternate like a chequer board; none for what is no cell. True from the lowest corner to the
+    /// highest.
     pub(crate) fn rises(&self, corner: Point2, side: f64) -> Option<bool> {
         let level = (self.side.x / side).log2().round();
         if !(0.0..=MOST_CUTS as f64).contains(&level) {
@@ -176,7 +180,8 @@ fn children((j, i): (i64, i64)) -> [(i64, i64); 4] {
     [(2 * j, 2 * i), (2 * j, 2 * i + 1), (2 * j + 1, 2 * i), (2 * j + 1, 2 * i + 1)]
 }
 
-/// Where a row crosses the outline, ascending; half-open in y, so that a row through a vertex counts once.
+/// Where a row crosses the outline, ascending; half-open in y, so that a row through a vertex
+/// counts once.
 fn crossings(division: &Division, loops: &[[u32; 2]], y: f64) -> Vec<f64> {
     let cross = |s: &[u32; 2]| {
         let [a, b] = s.map(|v| division.points[v as usize]);

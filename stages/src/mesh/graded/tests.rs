@@ -159,7 +159,8 @@ fn the_legs_of_a_dart_are_cut_alike_from_its_tip() {
     assert!(down.iter().zip(up.iter().rev()).all(|(a, b)| (a - (1.0 - b)).abs() < 1e-9));
 }
 
-/// A flat sheet 40 by 30 cm of one panel, rolled about `x = 0.2` onto a cylinder of the given radius, flat elsewhere.
+/// A flat sheet 40 by 30 cm of one panel, rolled about `x = 0.2` onto a cylinder of the given
+/// radius, flat elsewhere.
 fn rolled(radius: f64, half: f64) -> Garment {
     let (columns, rows) = (40u32, 30u32);
     let mut rest = Vec::new();
@@ -295,7 +296,8 @@ proptest! {
         slope in 0.0..1.0f64, waves in 1..6u32, tall in 0.1..0.5f64, edge in 0.015..0.06f64, finer in 1.0..5.0f64,
         reversed in proptest::bool::ANY,
     ) {
-        // The side leaves the vertical by 45 degrees at most: a panel with a corner as sharp as a thorn has a triangle as sharp.
+        // The side leaves the vertical by 45 degrees at most: a panel with a corner as sharp as a
+        // thorn has a triangle as sharp.
         let wave = slope * tall / (std::f64::consts::PI * f64::from(waves));
         let curve = |k: u32| {
             let t = f64::from(k) / 200.0;

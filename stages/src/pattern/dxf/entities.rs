@@ -1,8 +1,9 @@
 //! The blocks of a DXF file with what is drawn in them, of the kinds that patterns use.
 //!
-//! Layers are told by their numbers (AAMA, ASTM D6673): 1 boundary, 4 notches (and 80 to 83), 6 mirror line, 7 grain, 8
-//! internal lines, 11 cut-outs, 13 drill holes, 14 sew line, 84 the boundary drawn finely. Lines are LINE, POLYLINE and LWPOLYLINE with their
-//! bulges, ARC, CIRCLE, ELLIPSE and SPLINE; what else is drawn is kept by its name, to be told.
+//! Layers are told by their numbers (AAMA, ASTM D6673): 1 boundary, 4 notches (and 80 to 83), 6
+//! mirror line, 7 grain, 8 internal lines, 11 cut-outs, 13 drill holes, 14 sew line, 84 the
+//! boundary drawn finely. Lines are LINE, POLYLINE and LWPOLYLINE with their bulges, ARC, CIRCLE,
+//! ELLIPSE and SPLINE; what else is drawn is kept by its name, to be told.
 
 use super::damage::Damage;
 use super::spline::Spline;
@@ -380,7 +381,8 @@ impl Block {
         })
     }
 
-    /// The points on any of these layers, with their depths; a block that is placed there is a point.
+    /// The points on any of these layers, with their depths; a block that is placed there is a
+    /// point.
     pub(super) fn points(&self, layers: &[i32]) -> impl Iterator<Item = (Point2, f64)> {
         self.entities.iter().filter(move |e| layers.contains(&e.layer)).filter_map(|e| match &e.shape {
             Shape::Point { at, depth } => Some((*at, *depth)),

@@ -1,7 +1,9 @@
-//! `DxfPattern`: pieces of a garment from a DXF of AAMA or ASTM D6673, as CAD programs exchange them.
+//! `DxfPattern`: pieces of a garment from a DXF of AAMA or ASTM D6673, as CAD programs exchange
+//! them.
 //!
-//! A block is a piece in one size. [`tags`] and [`entities`] read the file, [`pieces`] makes pieces of blocks. DXF knows no
-//! seams: they come from a file beside it, or are proposed. Cost: some milliseconds a piece.
+//! A block is a piece in one size. [`tags`] and [`entities`] read the file, [`pieces`] makes pieces
+//! of blocks. DXF knows no seams: they come from a file beside it, or are proposed. Cost: some
+//! milliseconds a piece.
 
 mod damage;
 mod decode;
@@ -33,11 +35,13 @@ const MOST_TOLD: usize = 6;
 
 /// Reads the pieces of a garment from a DXF of AAMA or ASTM, in one size.
 ///
-/// Takes the place of photos, outlines and a style. Half pieces are unfolded at their mirror line, pieces are turned so that
-/// the grain runs up, and cut as often as their quantity says, the second of a pair mirrored. DXF knows no seams: give them in a
-/// file, or take those that `seams.ron` proposes and you have looked through. Nothing is sewn that nobody confirmed.
+/// Takes the place of photos, outlines and a style. Half pieces are unfolded at their mirror line,
+/// pieces are turned so that the grain runs up, and cut as often as their quantity says, the second
+/// of a pair mirrored. DXF knows no seams: give them in a file, or take those that `seams.ron`
+/// proposes and you have looked through. Nothing is sewn that nobody confirmed.
 ///
-/// The names of pieces are read in the code page that the file names. A garment of a size that no one wears is refused with the `unit` that fits.
+/// The names of pieces are read in the code page that the file names. A garment of a size that no
+/// one wears is refused with the `unit` that fits.
 #[stage(
     role = Reader,
     source = "AAMA DXF; ASTM D6673",
@@ -92,8 +96,9 @@ struct Drawn<'a> {
     size: String,
 }
 
-/// The blocks that draw pieces, each with its name and size: by its texts, else by its name at the last underscore, if what stands behind that is
-/// the size of another piece, too, or another size of the same.
+/// The blocks that draw pieces, each with its name and size: by its texts, else by its name at the
+/// last underscore, if what stands behind that is the size of another piece, too, or another size
+/// of the same.
 fn drawn<'a>(blocks: &'a [Block], asked: &str) -> Vec<Drawn<'a>> {
     let has_outline = |b: &&Block| b.lines(1).next().is_some() || b.lines(14).next().is_some();
     let all: Vec<&Block> = blocks.iter().filter(|b| !b.is_layout()).filter(has_outline).collect();
@@ -257,7 +262,8 @@ fn left_out(blocks: &[Block], outside: &Block, chosen: &[&Drawn<'_>], told: &mut
     }
 }
 
-/// How often a piece is cut as drawn and mirrored: `2` is a pair, the second mirrored, as is `1 pair`; `1,1` is one as drawn and one mirrored.
+/// How often a piece is cut as drawn and mirrored: `2` is a pair, the second mirrored, as is
+/// `1 pair`; `1,1` is one as drawn and one mirrored.
 ///
 /// Errors: what is no number of these.
 fn cut(quantity: Option<&str>) -> Result<(usize, usize), String> {

@@ -1,9 +1,11 @@
 //! A block as a piece of the pattern.
 //!
-//! Method: the boundary's polylines are chained into a loop, each of them an edge (CAD programs split the boundary where seams
-//! end); a boundary in one line is split at its turn points. The grain is turned to y, a half piece unfolded at its mirror line,
-//! and everything drawn on it goes along. Where a sew line (layer 14) closes, it is the outline: the boundary is then the cut
-//! line, with the seam allowance. Limits: points of a polyline are joined by straight lines, those of layer 84 where they are given.
+//! Method: the boundary's polylines are chained into a loop, each of them an edge (CAD programs
+//! split the boundary where seams end); a boundary in one line is split at its turn points. The
+//! grain is turned to y, a half piece unfolded at its mirror line, and everything drawn on it goes
+//! along. Where a sew line (layer 14) closes, it is the outline: the boundary is then the cut line,
+//! with the seam allowance. Limits: points of a polyline are joined by straight lines, those of
+//! layer 84 where they are given.
 
 use super::super::chain::{HAIR, JOINT, chained};
 use super::super::marks::{hole, notched};
@@ -214,7 +216,8 @@ impl Place<'_> {
         }
     }
 
-    /// The quality curve (layer 84) that runs from end to end of a boundary line; the line itself where there is none.
+    /// The quality curve (layer 84) that runs from end to end of a boundary line; the line itself
+    /// where there is none.
     fn finer(&self, layer: i32, stroke: &Stroke) -> Stroke {
         let points = stroke.corners();
         let near = |a: &Point2, b: &Point2| (a - b).norm() * self.unit <= JOINT;

@@ -1,9 +1,11 @@
 //! SPLINE entities as curves.
 //!
-//! Method: a B-spline's Bézier points between two knots are values of its blossom, by de Boor's algorithm with another number in each
-//! round (Ramshaw 1989); so curves of up to the third degree are kept as they are. What is rational or of a higher degree is followed by points.
-//! Of a spline that has points to go through alone, a cubic curve with continuous curvature goes through them, parametrised by chords, its ends
-//! free or in the directions that it says. Cost: linear in the knots.
+//! Method: a B-spline's Bézier points between two knots are values of its blossom, by de Boor's
+//! algorithm with another number in each round (Ramshaw 1989); so curves of up to the third degree
+//! are kept as they are. What is rational or of a higher degree is followed by points. Of a spline
+//! that has points to go through alone, a cubic curve with continuous curvature goes through them,
+//! parametrised by chords, its ends free or in the directions that it says. Cost: linear in the
+//! knots.
 
 use toile_core::prelude::*;
 

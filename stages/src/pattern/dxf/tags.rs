@@ -1,6 +1,7 @@
 //! DXF as pairs of a group code and a value, with the line of each.
 //!
-//! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB. [`super::decode`] finds the letters.
+//! Cost: linear. Limits: text form alone (the binary form is refused by name); 32 MB.
+//! [`super::decode`] finds the letters.
 
 use super::damage::Damage;
 use super::{decode, words};

@@ -1,4 +1,5 @@
-//! Files of our own making: a tank of two half pieces, a pair of legs with a waistband; every refusal word for word.
+//! Files of our own making: a tank of two half pieces, a pair of legs with a waistband; every
+//! refusal word for word.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use super::super::propose;
@@ -65,7 +66,8 @@ impl Dxf {
     }
 }
 
-/// The right half of a piece lying on its side, grain along x: neck at the right, hem at the left, its middle above.
+/// The right half of a piece lying on its side, grain along x: neck at the right, hem at the left,
+/// its middle above.
 fn half(d: &mut Dxf, name: &str, size: &str, scale: f64, neck: f64) {
     let s = |x: f64, y: f64| [x * scale, y * scale];
     d.block(name, size, (size == "M").then_some("1"));
@@ -92,7 +94,8 @@ fn tank() -> Dxf {
     d
 }
 
-/// The pieces and what is told of them, warnings first; of several faults the first. The unit is not looked at.
+/// The pieces and what is told of them, warnings first; of several faults the first. The unit is
+/// not looked at.
 fn read(bytes: &[u8], size: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(bytes, size, DrawingUnit::Millimetres, &mut told);
@@ -157,7 +160,8 @@ fn units_and_sizes_that_are_not_given_are_found_and_told() {
     half(&mut d, "FRONT", "M", 1.0 / 25.4, 150.0);
     let (inches, told) = in_own_unit(&d.bytes(Some("English"))).unwrap();
     assert_eq!(told.notes[0], "the file says that its units are ENGLISH, which are inches");
-    // A header says it, too; what says METRIC and is drawn in centimetres is refused with what helps.
+    // A header says it, too; what says METRIC and is drawn in centimetres is refused with what
+    // helps.
     let mut d = Dxf::default();
     half(&mut d, "FRONT", "M", 0.1, 150.0);
     let text = String::from_utf8(d.bytes(None)).unwrap();
@@ -180,7 +184,8 @@ fn units_and_sizes_that_are_not_given_are_found_and_told() {
     assert!((length(&asked) - length(&pieces)).abs() < 1e-9);
 }
 
-/// A leg, cut twice, and a waistband in two halves; lengths to a tenth of a millimetre as CAD programs write them.
+/// A leg, cut twice, and a waistband in two halves; lengths to a tenth of a millimetre as CAD
+/// programs write them.
 fn leggings() -> Dxf {
     let mut d = Dxf::default();
     d.block("LEG", "M", Some("1,1"));
@@ -223,7 +228,8 @@ fn pairs_are_cut_as_often_as_the_quantity_says() {
     assert_eq!(told, ["piece \"LEG\" (line 5): the quantity \"many\" is no number: cut once"]);
 }
 
-/// A rectangle of 300 by 200 whose right end is a half circle, drawn by a change of the usual boundary.
+/// A rectangle of 300 by 200 whose right end is a half circle, drawn by a change of the usual
+/// boundary.
 fn rounded(change: &dyn Fn(&mut Dxf)) -> Result<(Vec<Piece>, Vec<String>), Damage> {
     let mut d = Dxf::default();
     d.block("TAB", "M", None);

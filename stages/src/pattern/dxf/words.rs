@@ -37,7 +37,8 @@ fn mif(text: &str) -> Option<(String, usize)> {
     (!wrong).then(|| (letter.into_owned(), 8))
 }
 
-/// A TEXT: `%%d` is a degree, `%%c` a diameter, `%%p` plus and minus, `%%nnn` a letter by its number; `%%u` and `%%o` draw lines.
+/// A TEXT: `%%d` is a degree, `%%c` a diameter, `%%p` plus and minus, `%%nnn` a letter by its
+/// number; `%%u` and `%%o` draw lines.
 pub(super) fn line(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     let mut rest = raw;

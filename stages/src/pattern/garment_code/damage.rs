@@ -1,4 +1,5 @@
-//! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what to do.
+//! What may be wrong with a GarmentCode file beyond repair: one list, each with its place and what
+//! to do.
 
 use super::super::faults::Fault;
 use thiserror::Error;

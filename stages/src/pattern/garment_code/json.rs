@@ -87,7 +87,8 @@ impl Json {
     }
 }
 
-/// Why a text is no JSON, with its place; numbers that Python writes and JSON does not know are told apart.
+/// Why a text is no JSON, with its place; numbers that Python writes and JSON does not know are
+/// told apart.
 fn syntax(bytes: &[u8], e: &serde_json::Error) -> Damage {
     let (line, column) = (e.line(), e.column());
     let row = bytes.split(|b| *b == b'\n').nth(line.saturating_sub(1)).unwrap_or_default();

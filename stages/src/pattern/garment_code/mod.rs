@@ -1,8 +1,9 @@
-//! `GarmentCode`: a pattern file of GarmentCode (`*_specification.json`) and of its forerunner's templates.
+//! `GarmentCode`: a pattern file of GarmentCode (`*_specification.json`) and of its forerunner's
+//! templates.
 //!
-//! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its specification. [`read`] takes the
-//! fields, [`units`] finds the scale, [`panel`] makes pieces, [`stitches`] seams; what is beyond repair is a [`damage`].
-//! Cost: some milliseconds a panel.
+//! The format has no schema; pygarment 2.0 (Korosteleva and Sorkine-Hornung 2023) is its
+//! specification. [`read`] takes the fields, [`units`] finds the scale, [`panel`] makes pieces,
+//! [`stitches`] seams; what is beyond repair is a [`damage`]. Cost: some milliseconds a panel.
 
 mod damage;
 mod json;
@@ -24,12 +25,14 @@ use toile_core::Remarks;
 use toile_core::artifact::Artifact;
 use toile_core::prelude::*;
 
-/// Reads a sewing pattern of GarmentCode: panels, stitches, and where the panels stand around the body.
+/// Reads a sewing pattern of GarmentCode: panels, stitches, and where the panels stand around the
+/// body.
 ///
-/// Takes the place of photos, outlines and a style. Every panel becomes a piece as seen from outside the wearer; edges are
-/// called by the file's labels, or `edge_0`, `edge_1`, ... by their place in the file. Small damage is repaired where the
-/// intent is certain, and every repair is told: a loop open by a hair, a stitch that runs the wrong way or stands twice, units
-/// that cannot be. Other damage is refused by panel, edge and place, all of it at once.
+/// Takes the place of photos, outlines and a style. Every panel becomes a piece as seen from
+/// outside the wearer; edges are called by the file's labels, or `edge_0`, `edge_1`, ... by their
+/// place in the file. Small damage is repaired where the intent is certain, and every repair is
+/// told: a loop open by a hair, a stitch that runs the wrong way or stands twice, units that cannot
+/// be. Other damage is refused by panel, edge and place, all of it at once.
 #[stage(
     role = Reader,
     source = "Korosteleva and Sorkine-Hornung 2023, pygarment 2.0",
@@ -64,7 +67,8 @@ impl GarmentCode {
         super::named(&self.file, "shirt_specification.json")
     }
 
-    /// Whether the file is there; what stands in it is read by the run, at once: patterns come first.
+    /// Whether the file is there; what stands in it is read by the run, at once: patterns come
+    /// first.
     fn precheck(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let there = self.named().and_then(|()| placed.cx.look(&self.file));
         there.map_err(|e| e.at("file")).err().into_iter().collect()

@@ -1,9 +1,10 @@
 //! A panel of the file as a piece of the pattern.
 //!
-//! Method: the edges are put in a loop by their vertices; a gap of a hair is closed; the loop becomes metres. A loop that runs
-//! clockwise is seen from inside the wearer: its x is mirrored and its pose accordingly, so that every piece is seen from
-//! outside. Rotation and translation are `Rz Ry Rx (x, y, 0) + translation`.
-//! Limits: edges must stand in the file in the order of the loop; some may run against it.
+//! Method: the edges are put in a loop by their vertices; a gap of a hair is closed; the loop
+//! becomes metres. A loop that runs clockwise is seen from inside the wearer: its x is mirrored and
+//! its pose accordingly, so that every piece is seen from outside. Rotation and translation are
+//! `Rz Ry Rx (x, y, 0) + translation`. Limits: edges must stand in the file in the order of the
+//! loop; some may run against it.
 
 use super::damage::Damage;
 use super::read::{RawCurve, RawEdge, RawPanel};
@@ -18,7 +19,8 @@ const HAIR: f64 = 5e-3;
 const HAIR_SHARE: f64 = 0.25;
 /// A shorter edge has no length, metres.
 const SPECK: f64 = 1e-4;
-/// A control point lies no farther from its edge than so many times the edge's length; in 55 files of GarmentCode 2 is the most.
+/// A control point lies no farther from its edge than so many times the edge's length; in 55 files
+/// of GarmentCode 2 is the most.
 const OVERSHOOT: f64 = 10.0;
 /// A panel of less area is none, square metres.
 const LEAST_AREA: f64 = 1e-7;
@@ -27,7 +29,8 @@ const LEAST_AREA: f64 = 1e-7;
 #[derive(Debug)]
 pub(super) struct Made {
     pub piece: Piece,
-    /// For each edge of the file, where it has length: the number of the piece's edge, and whether that runs the other way.
+    /// For each edge of the file, where it has length: the number of the piece's edge, and whether
+    /// that runs the other way.
     pub edges: Vec<Option<(usize, bool)>>,
     /// Start and end of each edge of the file, in space, metres.
     pub ends: Vec<[Point3; 2]>,

@@ -1,4 +1,5 @@
-//! The fields of a GarmentCode file, each of its type and within its bounds; what they mean is not looked at yet.
+//! The fields of a GarmentCode file, each of its type and within its bounds; what they mean is not
+//! looked at yet.
 
 use super::damage::Damage;
 use super::json::Json;
@@ -19,11 +20,13 @@ const FARTHEST: f64 = 1e6;
 pub(super) struct RawFile {
     /// Units in a metre, where the file says.
     pub units: Option<f64>,
-    /// Whether control points are given in the panel's coordinates, not relative to the edge's chord.
+    /// Whether control points are given in the panel's coordinates, not relative to the edge's
+    /// chord.
     pub absolute: bool,
     pub panels: Vec<RawPanel>,
     pub stitches: Vec<RawStitch>,
-    /// What is wrong, in the order of the file; panels and stitches at fault are not among the others, nor stitches of such panels.
+    /// What is wrong, in the order of the file; panels and stitches at fault are not among the
+    /// others, nor stitches of such panels.
     pub faults: Vec<Damage>,
 }
 
@@ -43,7 +46,8 @@ pub(super) struct RawEdge {
     /// The vertices at its start and end.
     pub ends: [usize; 2],
     pub curve: RawCurve,
-    /// What it is called: by its label, or where the format's own label would say something else, by its name.
+    /// What it is called: by its label, or where the format's own label would say something else,
+    /// by its name.
     pub label: Option<String>,
 }
 

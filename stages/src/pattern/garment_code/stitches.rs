@@ -1,10 +1,13 @@
-//! Stitches of the file as seams of the pattern: which ends meet, what is stitched twice, what runs the wrong way.
+//! Stitches of the file as seams of the pattern: which ends meet, what is stitched twice, what runs
+//! the wrong way.
 //!
-//! The start of the first edge meets the end of the second, both as the file gives them, unless `right_wrong` stands with the
-//! stitch. A stitch certainly runs the wrong way where
+//! The start of the first edge meets the end of the second, both as the file gives them, unless
+//! `right_wrong` stands with the stitch. A stitch certainly runs the wrong way where
 //! - its edges share a vertex of their panel and would not meet there: the legs of a dart;
-//! - its mirror image in the file runs the other way, and the placed edges side clearly with that; where they do not, both are refused;
-//! - it has no mirror image, and its placed edges run clearly side by side where they should run against each other.
+//! - its mirror image in the file runs the other way, and the placed edges side clearly with that;
+//!   where they do not, both are refused;
+//! - it has no mirror image, and its placed edges run clearly side by side where they should run
+//!   against each other.
 //!
 //! In 55 files of GarmentCode and its forerunner none of the 1519 stitches is one of these.
 //! Cost: stitches squared.
@@ -142,7 +145,8 @@ fn is_dart(s: &RawStitch, made: &[Made]) -> bool {
 
 /// For each stitch whether it certainly runs the wrong way.
 ///
-/// Errors: two mirror images that run in opposite ways, of which the placed edges do not tell the wrong one.
+/// Errors: two mirror images that run in opposite ways, of which the placed edges do not tell the
+/// wrong one.
 fn wrong_ways(stitches: &[Stitch<'_>], panels: &[RawPanel], made: &[Made]) -> Result<Vec<bool>, Damage> {
     let leans: Vec<f64> = stitches.iter().map(|s| leaning(s, made)).collect();
     let images: Vec<Option<(usize, bool)>> = (0..stitches.len()).map(|i| image(i, stitches, made)).collect();
@@ -178,7 +182,8 @@ fn unturned(stitches: &[Stitch<'_>], turned: &[bool], panels: &[RawPanel]) -> Re
     }
 }
 
-/// For neighbouring edges of one panel whether they meet there start to end; none for others, and for both ends.
+/// For neighbouring edges of one panel whether they meet there start to end; none for others, and
+/// for both ends.
 fn meets_at_corner(s: &RawStitch, panels: &[RawPanel]) -> Option<bool> {
     let [(p, a), (q, b)] = s.sides;
     if p != q {
@@ -192,8 +197,8 @@ fn meets_at_corner(s: &RawStitch, panels: &[RawPanel]) -> Option<bool> {
     }
 }
 
-/// How far the two sides run against the way in which they are sewn, by their chords in space: -1 where every thread has the
-/// same length, 1 where they cross most.
+/// How far the two sides run against the way in which they are sewn, by their chords in space: -1
+/// where every thread has the same length, 1 where they cross most.
 fn leaning(s: &Stitch<'_>, made: &[Made]) -> f64 {
     let [a, b] = s.raw.sides.map(|(p, e)| made[p].ends[e][1] - made[p].ends[e][0]);
     let cosine = a.dot(&b) / (a.norm() * b.norm()).max(f64::MIN_POSITIVE);
@@ -205,7 +210,8 @@ fn shortest(s: &RawStitch, made: &[Made]) -> f64 {
     length(s.sides[0]).min(length(s.sides[1]))
 }
 
-/// Another stitch that is this one's mirror image about the middle of the body, and whether it runs the same way.
+/// Another stitch that is this one's mirror image about the middle of the body, and whether it runs
+/// the same way.
 fn image(i: usize, stitches: &[Stitch<'_>], made: &[Made]) -> Option<(usize, bool)> {
     let ends = |k: usize| stitches[k].raw.sides.map(|(p, e)| made[p].ends[e]);
     let mirrored = ends(i).map(|side| side.map(|q| Point3::new(-q.x, q.y, q.z)));

@@ -11,7 +11,8 @@ fn straight(ends: &[[usize; 2]]) -> Value {
     ends.iter().map(|e| json!({ "endpoints": e })).collect()
 }
 
-/// A rectangle, counter-clockwise from its lower left corner: edges 0 below, 1 right, 2 above, 3 left.
+/// A rectangle, counter-clockwise from its lower left corner: edges 0 below, 1 right, 2 above, 3
+/// left.
 fn rectangle(w: f64, h: f64, at: [f64; 3]) -> Value {
     json!({
         "translation": at, "rotation": [0, 0, 0], "label": "body",
@@ -20,7 +21,8 @@ fn rectangle(w: f64, h: f64, at: [f64; 3]) -> Value {
     })
 }
 
-/// The same, clockwise as a panel behind the body: edges 0 left, 1 above, 2 right, 3 below, as seen from the front.
+/// The same, clockwise as a panel behind the body: edges 0 left, 1 above, 2 right, 3 below, as seen
+/// from the front.
 fn back(w: f64, h: f64, at: [f64; 3]) -> Value {
     json!({
         "translation": at, "rotation": [0, 0, 0], "label": "body",
@@ -62,7 +64,8 @@ fn lengths(p: &Piece) -> Vec<f64> {
 
 #[test]
 fn every_kind_of_curve_has_the_length_of_its_closed_form_in_any_unit() {
-    // A parabola over its chord: control half a chord below its middle, as y = x^2 over [-1/2, 1/2].
+    // A parabola over its chord: control half a chord below its middle, as y = x^2 over [-1/2,
+    // 1/2].
     let parabola = 2.0_f64.sqrt() / 2.0 + 1.0_f64.asinh() / 2.0;
     let third = 1.0 / 3.0;
     for units in [100.0, 300.0] {
@@ -227,7 +230,8 @@ fn a_stitch_against_its_mirror_image_or_its_place_is_turned() {
 
 #[test]
 fn stitches_of_which_the_wrong_one_is_not_certain_are_refused() {
-    // The front lies flat: its sides run across those of the back, and nothing tells which of the two is meant.
+    // The front lies flat: its sides run across those of the back, and nothing tells which of the
+    // two is meant.
     refused(
         |f| {
             f["pattern"]["panels"]["front"]["rotation"] = json!([90, 0, 0]);

@@ -1,8 +1,9 @@
 //! How many of the file's units make a metre.
 //!
-//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A file that says so is believed. Where it says
-//! nothing, or something with which no panel is of that size, the first of the usual units is taken with which one is; that is
-//! told. Limit: a file for a doll that says so is taken for a wrong one.
+//! Method: the largest panel of a garment for people is between 15 cm and 5 m. A file that says so
+//! is believed. Where it says nothing, or something with which no panel is of that size, the first
+//! of the usual units is taken with which one is; that is told. Limit: a file for a doll that says
+//! so is taken for a wrong one.
 
 use super::damage::Damage;
 use super::read::RawFile;
@@ -13,8 +14,8 @@ use toile_core::artifact::Point2;
 const PLAUSIBLE: (f64, f64) = (0.15, 5.0);
 /// And where the unit is guessed.
 const LIKELY: (f64, f64) = (0.25, 2.5);
-/// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's templates, millimetres,
-/// inches, metres.
+/// Units in a metre: centimetres as GarmentCode writes, a third of that as some of its forerunner's
+/// templates, millimetres, inches, metres.
 const USUAL: [f64; 5] = [100.0, 300.0, 1000.0, 1000.0 / 25.4, 1.0];
 /// What GarmentCode writes.
 const DEFAULT: f64 = 100.0;

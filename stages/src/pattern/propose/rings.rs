@@ -1,10 +1,12 @@
 //! Proposes what is sewn into a ring of edges: a sleeve into an armhole, a band along a waist.
 //!
-//! Method: the free edges that meet end to end once the seams before are sewn form rings: an edge is followed by the next of its piece, across
-//! a seam by the next of the other piece. A tube's ring of one edge (the cap of a sleeve) is sewn into a ring of several; it begins where
-//! the tube's own seam ends, there at the lowest corner. Which of two armholes it is tells the notches. A long edge of a band is sewn along a ring
-//! that is no hem. Lengths differ by the ease that tailors give. Cost: rings squared. Limits: tubes of one piece; a band around an open
-//! front is not found.
+//! Method: the free edges that meet end to end once the seams before are sewn form rings: an edge
+//! is followed by the next of its piece, across a seam by the next of the other piece. A tube's
+//! ring of one edge (the cap of a sleeve) is sewn into a ring of several; it begins where the
+//! tube's own seam ends, there at the lowest corner. Which of two armholes it is tells the notches.
+//! A long edge of a band is sewn along a ring that is no hem. Lengths differ by the ease that
+//! tailors give. Cost: rings squared. Limits: tubes of one piece; a band around an open front is
+//! not found.
 
 use super::{Candidate, End, candidate};
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,7 +24,8 @@ const NOTCHES: f64 = 0.03;
 /// An edge: the numbers of its piece and of it.
 type At = (usize, usize);
 
-/// A ring of free edges, counter-clockwise in each piece, and whether it crosses a seam before each of them.
+/// A ring of free edges, counter-clockwise in each piece, and whether it crosses a seam before each
+/// of them.
 struct Ring {
     edges: Vec<At>,
     hops: Vec<bool>,
@@ -122,7 +125,8 @@ fn rings(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> Vec<Ring> {
     out
 }
 
-/// For every sewn edge with which a side of a seam begins, the edge with which the other side ends; none for the other sewn edges.
+/// For every sewn edge with which a side of a seam begins, the edge with which the other side ends;
+/// none for the other sewn edges.
 fn partners(pieces: &[Piece], sewn: &[(PatternSeam, String)]) -> BTreeMap<At, Option<At>> {
     let at = |u: &EdgeUse| {
         let i = pieces.iter().position(|p| p.name == u.edge.panel)?;
@@ -174,8 +178,8 @@ fn opening(pieces: &[Piece], ring: &Ring) -> Vec<At> {
     from(ring, hops().find(twins).or_else(|| hops().find(apart)).unwrap_or(0))
 }
 
-/// The mean distance between the notches of an edge and those of a ring that is sewn to it, both from their start; none where they have
-/// not as many.
+/// The mean distance between the notches of an edge and those of a ring that is sewn to it, both
+/// from their start; none where they have not as many.
 fn notches(pieces: &[Piece], edge: At, ring: &[At]) -> Option<f64> {
     let along = |(i, k): At| {
         let p = &pieces[i];

@@ -1,8 +1,9 @@
 //! What is drawn in a file: lines with their roles, groups and texts, in metres, y up.
 //!
-//! Method: the tree is walked with its transforms; `use` is followed. What is hidden, defined but not used, or drawn by pixels is left
-//! out. Cost: linear in what is drawn. Limits: 100,000 elements after clones are followed, groups 100 deep; of style sheets only rules
-//! of a single class or id that hide.
+//! Method: the tree is walked with its transforms; `use` is followed. What is hidden, defined but
+//! not used, or drawn by pixels is left out. Cost: linear in what is drawn. Limits: 100,000
+//! elements after clones are followed, groups 100 deep; of style sheets only rules of a single
+//! class or id that hide.
 
 use super::damage::Damage;
 use super::path::{Line, ellipse, path, polyline, rectangle};
@@ -105,7 +106,8 @@ pub(super) fn drawing<'t>(root: Node<'t, 't>, unit: f64) -> Result<Drawing<'t>, 
 }
 
 impl Drawing<'_> {
-    /// Leaves out the arrows of dimensions, and the marks that lead straight to an end of one in their group.
+    /// Leaves out the arrows of dimensions, and the marks that lead straight to an end of one in
+    /// their group.
     fn without_dimensions(&mut self) {
         let is = |s: &&Shape<'_>| s.role == Some(Role::Dimension);
         let ends = |s: &Shape<'_>| s.lines.iter().flat_map(|l| [l.start, l.end()]).collect::<Vec<_>>();
@@ -344,7 +346,8 @@ impl<'t> Walk<'t> {
     }
 }
 
-/// A number that an attribute gives as a length in the file's units; `least` bounds it. None where it depends on the page.
+/// A number that an attribute gives as a length in the file's units; `least` bounds it. None where
+/// it depends on the page.
 fn length(node: Node<'_, '_>, attribute: &'static str, least: f64) -> Result<Option<f64>, Damage> {
     let Some(value) = node.attribute(attribute) else { return Ok(Some(0.0)) };
     let bad = || Damage::Attribute { place: place(node), attribute, value: short(value) };

@@ -1,7 +1,9 @@
-//! `SvgPattern`: pieces of a garment from an SVG, as FreeSewing drafts them or a drawing program saves them.
+//! `SvgPattern`: pieces of a garment from an SVG, as FreeSewing drafts them or a drawing program
+//! saves them.
 //!
-//! [`source`] reads the text, [`units`] finds the length of its unit, [`drawing`] walks what is drawn ([`path`] its lines, [`role`] what they
-//! are for), [`pieces`] makes pieces of it. Cost: some milliseconds a piece.
+//! [`source`] reads the text, [`units`] finds the length of its unit, [`drawing`] walks what is
+//! drawn ([`path`] its lines, [`role`] what they are for), [`pieces`] makes pieces of it. Cost:
+//! some milliseconds a piece.
 
 mod damage;
 mod drawing;
@@ -23,13 +25,16 @@ use toile_core::prelude::*;
 
 /// Reads the pieces of a garment from an SVG: of FreeSewing, Inkscape, Illustrator.
 ///
-/// Takes the place of photos, outlines and a style. A piece is a closed line in a group of its own, or lines that meet end to end; lines called
-/// `grain`, `fold`, `notch`, `drill`, `hole` and `seam allowance` are what they say. Half pieces are unfolded at their fold, and cut as often
-/// as a text in them says (`cut 2` is a pair, the second mirrored). SVG knows no seams: give them in a file, or take those that
-/// `seams.ron` proposes and you have looked through. Nothing is sewn that nobody confirmed.
+/// Takes the place of photos, outlines and a style. A piece is a closed line in a group of its own,
+/// or lines that meet end to end; lines called `grain`, `fold`, `notch`, `drill`, `hole` and
+/// `seam allowance` are what they say. Half pieces are unfolded at their fold, and cut as often as
+/// a text in them says (`cut 2` is a pair, the second mirrored). SVG knows no seams: give them in a
+/// file, or take those that `seams.ron` proposes and you have looked through. Nothing is sewn that
+/// nobody confirmed.
 ///
-/// Edges run counter-clockwise around their piece, whichever way it is drawn; the pictures of `--keep` show them with arrows. A garment of a size
-/// that no one wears is refused with the `unit` that fits.
+/// Edges run counter-clockwise around their piece, whichever way it is drawn; the pictures of
+/// `--keep` show them with arrows. A garment of a size that no one wears is refused with the `unit`
+/// that fits.
 #[stage(
     role = Reader,
     source = "SVG 1.1; FreeSewing 4",

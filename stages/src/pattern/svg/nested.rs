@@ -1,9 +1,11 @@
 //! Which of the closed lines of a group are outlines of pieces, and which lie on one.
 //!
-//! Method: in a group of one piece every line that begins within a larger one lies on it. Where a group, a layer or the whole file holds several
-//! pieces, they may touch and overlap: there a line lies on another if it lies wholly within it, and is not filled like it, as what is drawn over
-//! something else is. A rectangle around all other lines, of which several are outlines, is a frame. Cost: lines squared, times the points of
-//! [`SAMPLES`]. Limits: a piece that lies wholly within another and is not filled is taken for a line on it, which the caller tells.
+//! Method: in a group of one piece every line that begins within a larger one lies on it. Where a
+//! group, a layer or the whole file holds several pieces, they may touch and overlap: there a line
+//! lies on another if it lies wholly within it, and is not filled like it, as what is drawn over
+//! something else is. A rectangle around all other lines, of which several are outlines, is a
+//! frame. Cost: lines squared, times the points of [`SAMPLES`]. Limits: a piece that lies wholly
+//! within another and is not filled is taken for a line on it, which the caller tells.
 
 use super::outlined::Outlined;
 use crate::mesh::predicates::inside;

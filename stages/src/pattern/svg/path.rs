@@ -43,7 +43,8 @@ struct Pen {
     done: Vec<Line>,
     line: Option<Line>,
     at: Point2,
-    /// The last control point of the curve before, for curves that go on smoothly: of a cubic, of a quadratic one.
+    /// The last control point of the curve before, for curves that go on smoothly: of a cubic, of a
+    /// quadratic one.
     cubic: Option<Point2>,
     quadratic: Option<Point2>,
 }

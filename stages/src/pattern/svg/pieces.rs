@@ -1,9 +1,11 @@
 //! Pieces of what is drawn: which line is an outline, what belongs to it, how often it is cut.
 //!
-//! Method: a group that FreeSewing calls a part is a piece. Elsewhere a closed line is one: alone in its group under the group's name, else under
-//! its own. A line called a seam or an outline goes before others; of lines within each other the outermost is the outline ([`nested`]). Lines
-//! that meet end to end are chained where a group has no closed one. Marks belong to the piece of their group, else to the piece that they lie on.
-//! What is left out is told with its place. Cost: shapes times pieces. Limits: a piece is larger than [`LEAST`].
+//! Method: a group that FreeSewing calls a part is a piece. Elsewhere a closed line is one: alone
+//! in its group under the group's name, else under its own. A line called a seam or an outline goes
+//! before others; of lines within each other the outermost is the outline ([`nested`]). Lines that
+//! meet end to end are chained where a group has no closed one. Marks belong to the piece of their
+//! group, else to the piece that they lie on. What is left out is told with its place. Cost: shapes
+//! times pieces. Limits: a piece is larger than [`LEAST`].
 
 use super::super::chain::{JOINT, chained};
 use super::super::copies::{MOST_COPIES, copies};
@@ -192,7 +194,8 @@ fn is_loose(shape: &Shape<'_>) -> bool {
     shape.lines.iter().all(open) && shape.lines.iter().map(length).sum::<f64>() > SHORT
 }
 
-/// The closed lines of a shape that may be outlines, the largest first; those that lie within one are its holes.
+/// The closed lines of a shape that may be outlines, the largest first; those that lie within one
+/// are its holes.
 fn closed<'d, 't>(shape: &'d Shape<'t>) -> Vec<Outlined<'d, 't>> {
     let ends = |l: &&Line| l.closed || (l.end() - l.start).norm() <= JOINT;
     let mut loops: Vec<(f64, Vec<Side>, Vec<Point2>)> = Vec::new();
@@ -215,7 +218,8 @@ fn closed<'d, 't>(shape: &'d Shape<'t>) -> Vec<Outlined<'d, 't>> {
     out
 }
 
-/// The curves of a closed line that have a length; a line from its end to its start where there is a gap.
+/// The curves of a closed line that have a length; a line from its end to its start where there is
+/// a gap.
 fn around(line: &Line) -> Vec<(EdgeCurve, Point2)> {
     let mut parts = drawn(line);
     let gap = (line.end() - line.start).norm();
@@ -247,8 +251,8 @@ fn own_name(shape: &Shape<'_>) -> Option<String> {
     name.map(|n| n.text.clone())
 }
 
-/// The lines of a group that may be chained to one outline: those that are called so, else those that are called nothing. A fold may be the
-/// one that is missing.
+/// The lines of a group that may be chained to one outline: those that are called so, else those
+/// that are called nothing. A fold may be the one that is missing.
 fn open<'d, 't>(shapes: &[&'d Shape<'t>], folded: bool) -> Option<Outlined<'d, 't>> {
     let says = shapes.iter().any(|s| s.role == Some(Role::Outline));
     let mine = || shapes.iter().filter(move |s| !says || s.role == Some(Role::Outline));
@@ -363,7 +367,8 @@ fn middle(s: &Shape<'_>) -> Point2 {
     nalgebra::center(&lo, &hi)
 }
 
-/// From where to where a line runs: between the ends of an open one, along the longest way through a closed one.
+/// From where to where a line runs: between the ends of an open one, along the longest way through
+/// a closed one.
 fn ends(line: &Line) -> (Point2, Point2) {
     if !line.closed && (line.end() - line.start).norm() > JOINT {
         return (line.start, line.end());
@@ -435,7 +440,8 @@ impl Drawn<'_> {
         })
     }
 
-    /// The lines at which the piece is cut on the fold, the longest first, and where they stand in the file.
+    /// The lines at which the piece is cut on the fold, the longest first, and where they stand in
+    /// the file.
     fn folds(&self, mine: &[&Shape<'_>]) -> Result<Vec<(Fold, Place)>, Damage> {
         let is_fold = |s: &&&Shape<'_>| matches!(s.role, Some(Role::Fold | Role::Grain { fold: true }));
         let lines = mine.iter().filter(is_fold).flat_map(|s| s.lines.iter().map(move |l| (ends(l), *s)));
@@ -522,7 +528,8 @@ fn longest<'d, 't>(mine: &[&'d Shape<'t>], is: impl Fn(Role) -> bool) -> Option<
     lines.filter(|(l, _)| long(l) > 1e-4).max_by(|a, b| long(a.0).total_cmp(&long(b.0)))
 }
 
-/// Sine and cosine by which the grain is turned up: by the lesser angle, as it is drawn where it lies level.
+/// Sine and cosine by which the grain is turned up: by the lesser angle, as it is drawn where it
+/// lies level.
 fn turn(grain: Option<(Point2, Point2)>) -> Vector2 {
     let way = grain.and_then(|(a, b)| (b - a).try_normalize(1e-9));
     let upwards = way.map(|d| if d.y < -LEVEL { -d } else { d });

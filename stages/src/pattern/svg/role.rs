@@ -63,7 +63,8 @@ pub(super) fn of_group<'a>(names: impl IntoIterator<Item = &'a str>) -> Option<R
     role(names.into_iter().filter(alone))
 }
 
-/// How often a piece is cut, as a text says: as drawn, and mirrored. `by_word` where pairs are mirrored only if the text says so.
+/// How often a piece is cut, as a text says: as drawn, and mirrored. `by_word` where pairs are
+/// mirrored only if the text says so.
 pub(super) fn cut(text: &str, by_word: bool, most: usize) -> Option<(usize, usize)> {
     let small = text.to_lowercase();
     let parts: Vec<&str> = small.split(|c: char| !c.is_alphanumeric()).filter(|w| !w.is_empty()).collect();

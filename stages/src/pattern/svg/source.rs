@@ -1,7 +1,8 @@
 //! The bytes of a file as a tree of elements, bounded in size.
 //!
-//! Cost: linear. Limits: UTF-8; 32 MB; a million nodes. Entities of the document's own type declaration are expanded, as Illustrator
-//! writes some; depth and number of their expansions are bounded by `roxmltree`, external ones are not read.
+//! Cost: linear. Limits: UTF-8; 32 MB; a million nodes. Entities of the document's own type
+//! declaration are expanded, as Illustrator writes some; depth and number of their expansions are
+//! bounded by `roxmltree`, external ones are not read.
 
 use super::damage::{Damage, Place};
 use roxmltree::{Document, Node, ParsingOptions};

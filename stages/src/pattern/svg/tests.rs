@@ -1,4 +1,5 @@
-//! Drawings of our own making, as FreeSewing and drawing programs save them; every refusal word for word.
+//! Drawings of our own making, as FreeSewing and drawing programs save them; every refusal word for
+//! word.
 #![allow(clippy::unwrap_used)]
 
 use super::super::propose;
@@ -16,7 +17,8 @@ fn page(inside: &str) -> String {
     )
 }
 
-/// The pieces and what is told of them, warnings first; of several faults the first. A unit is a millimetre, whatever the page says.
+/// The pieces and what is told of them, warnings first; of several faults the first. A unit is a
+/// millimetre, whatever the page says.
 fn read(svg: &str) -> Result<(Vec<Piece>, Vec<String>), Damage> {
     let mut told = Remarks::default();
     let pieces = pieces_of(svg.as_bytes(), DrawingUnit::Millimetres, &mut told);
@@ -48,7 +50,8 @@ fn names(pieces: &[Piece]) -> Vec<&str> {
     pieces.iter().map(|p| p.name.as_str()).collect()
 }
 
-/// A T-shirt in FreeSewing's form: halves on the fold, a sleeve that is cut twice, notches as clones, seam allowance.
+/// A T-shirt in FreeSewing's form: halves on the fold, a sleeve that is cut twice, notches as
+/// clones, seam allowance.
 fn tee() -> String {
     let part = |name: &str, inside: &str| {
         format!(
@@ -91,7 +94,8 @@ fn parts_of_freesewing_are_unfolded_named_and_cut_as_often_as_they_say() {
         ]
     );
     let front = &pieces[0];
-    // Hem and neck run through the middle; side, armhole and shoulder are two each: the armhole is one edge of two curves.
+    // Hem and neck run through the middle; side, armhole and shoulder are two each: the armhole is
+    // one edge of two curves.
     assert_eq!(front.outer.edges.len(), 8);
     assert!((front.grain.unwrap()[1].y - front.grain.unwrap()[0].y - 0.42).abs() < 1e-12);
     assert_eq!((front.notches.len(), front.lines.len()), (2, 2));
@@ -115,7 +119,8 @@ fn sides_shoulders_and_sleeves_are_proposed_and_no_hem() {
             s.sides[0].len() == 1 && s.sides[0][0].edge.to_string().starts_with(cap) && s.sides[1].len() == 2
         };
         let seam = found.iter().map(|(s, _)| s).find(into).unwrap();
-        // Seen from outside, the front of a right sleeve is at its right: its cap begins at the front.
+        // Seen from outside, the front of a right sleeve is at its right: its cap begins at the
+        // front.
         let first = &seam.sides[1][0].edge.panel;
         assert_eq!(first == "front", cap == "sleeve.", "{}", seam.name);
     }
@@ -251,13 +256,15 @@ fn outlines_without_groups_may_touch_and_overlap() {
         (pieces.len(), told.into_iter().filter(|t| t.contains("left out")).collect::<Vec<_>>())
     };
     let none = Vec::<String>::new();
-    // Two halves that share an edge; a triangle that lies partly in the notch of a skirt and partly on it; one that fills a notch.
+    // Two halves that share an edge; a triangle that lies partly in the notch of a skirt and partly
+    // on it; one that fills a notch.
     let halves = "<path d=\"M100 0 H300 V300 H100 Z\"/><path d=\"M300 0 H500 V300 H300 Z\"/>";
     assert_eq!(pieces(halves), (2, none.clone()));
     let skirt = "<path d=\"M0 0 H400 V300 H300 L250 150 L200 300 H0 Z\"/>";
     assert_eq!(pieces(&format!("{skirt}<path d=\"M170 300 L210 200 L270 300 Z\"/>")), (2, none.clone()));
     assert_eq!(pieces(&format!("{skirt}<path d=\"M300 300 L250 150 L200 300 Z\"/>")), (2, none.clone()));
-    // What lies wholly on another and is filled like it is a piece; else it is left out, with its place.
+    // What lies wholly on another and is filled like it is a piece; else it is left out, with its
+    // place.
     let filled = "<path fill=\"#eee\" d=\"M0 0 H400 V300 H0 Z\"/><path fill=\"#eee\" d=\"M100 100 H200 V200 H100 Z\"/>";
     assert_eq!(pieces(filled), (2, none.clone()));
     assert_eq!(

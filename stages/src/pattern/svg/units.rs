@@ -1,7 +1,8 @@
 //! The length of the file's own unit.
 //!
-//! `width` and `height` say how large the page is, `viewBox` how many units that is. Lengths in pixels are those of CSS, of which an inch has
-//! 96; Illustrator's have 72. They say how large a page is on a screen, which need not be how large the garment is.
+//! `width` and `height` say how large the page is, `viewBox` how many units that is. Lengths in
+//! pixels are those of CSS, of which an inch has 96; Illustrator's have 72. They say how large a
+//! page is on a screen, which need not be how large the garment is.
 
 use super::super::unit::{By, DrawingUnit, Taken};
 use super::damage::Damage;

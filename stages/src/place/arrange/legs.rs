@@ -1,7 +1,8 @@
 //! Flat halves of legs that stand beside the body's legs.
 //!
-//! Trousers lie with their legs more or less spread, the body stands with its own. A half whose rows miss the leg would be sewn beside it. Below the
-//! fork its rows are moved sideways, so that the middle of each is before (or behind) the middle of the leg.
+//! Trousers lie with their legs more or less spread, the body stands with its own. A half whose
+//! rows miss the leg would be sewn beside it. Below the fork its rows are moved sideways, so that
+//! the middle of each is before (or behind) the middle of the leg.
 
 use crate::body::slice;
 use std::collections::BTreeMap;
@@ -78,7 +79,8 @@ fn leg_at(body: &Body, y: f64, hand: f64) -> Option<f64> {
     Some(leg.centre().x)
 }
 
-/// The move at a height, in rows, between those of the next row below and above; that of the last row beyond it.
+/// The move at a height, in rows, between those of the next row below and above; that of the last
+/// row beyond it.
 fn between(away: &BTreeMap<i64, f64>, at: f64) -> f64 {
     // A row's middle lies half a row above its number.
     let at = at - 0.5;
@@ -101,7 +103,8 @@ mod tests {
         crate::body::tests::mannequin(lengths).unwrap()
     }
 
-    /// The half of a left leg from waist to ankle, 20 cm wide, that leaves the middle by so much a metre.
+    /// The half of a left leg from waist to ankle, 20 cm wide, that leaves the middle by so much a
+    /// metre.
     fn half(spread: f64) -> (Pattern, BTreeMap<String, Vec<Point3>>) {
         let row = |k: usize| {
             let y = 0.105 + 0.02 * k as f64;

@@ -5,7 +5,8 @@ use toile_core::prelude::*;
 /// Vertices farther than this from the axis are of another part of the body, metres.
 const REACH: f64 = 0.13;
 
-/// So far along the axis the shoulder still counts with the arm, and would make it too thick, metres.
+/// So far along the axis the shoulder still counts with the arm, and would make it too thick,
+/// metres.
 const ROOT: f64 = 0.065;
 
 /// An arm: its axis from the shoulder to the wrist, and which way is up and forward around it.
@@ -60,7 +61,8 @@ impl Limb {
         p.x * self.root.x > 0.0
     }
 
-    /// The greatest distance of the skin from the axis over a stretch of it, metres; the root counts for what lies above it.
+    /// The greatest distance of the skin from the axis over a stretch of it, metres; the root
+    /// counts for what lies above it.
     pub(super) fn radius(&self, from: f64, to: f64) -> f64 {
         let (from, to) = (from.max(ROOT), to.max(2.0 * ROOT));
         let over = self.skin.iter().filter(|(s, _)| (from..=to).contains(s));

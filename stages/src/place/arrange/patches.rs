@@ -1,8 +1,9 @@
 //! Pieces that are sewn onto another: laid on it where their seam says.
 //!
-//! Method: the flat piece is turned and moved so that its sewn edge lies on the line of the other piece as nearly as a rigid move can bring
-//! it (Kabsch 1976, in the plane); each of its points then stands a little outside of the point of the other piece that it covers.
-//! Cost: linear in vertices. Limits: a patch on a patch follows the order of the seams.
+//! Method: the flat piece is turned and moved so that its sewn edge lies on the line of the other
+//! piece as nearly as a rigid move can bring it (Kabsch 1976, in the plane); each of its points
+//! then stands a little outside of the point of the other piece that it covers. Cost: linear in
+//! vertices. Limits: a patch on a patch follows the order of the seams.
 
 use super::unknown;
 use crate::place::sew::Offsets;
@@ -118,7 +119,8 @@ fn fitted(from: &[Point2], to: &[Point2]) -> Isometry2<f64> {
     Isometry2::new(b - turn * a, turn.angle())
 }
 
-/// The direction outwards at each vertex of a placed panel; what is turned over by a fold looks inwards.
+/// The direction outwards at each vertex of a placed panel; what is turned over by a fold looks
+/// inwards.
 pub(super) fn outsides(panel: &Panel, places: &[Point3]) -> Vec<Vector3> {
     let mut outside = vec![Vector3::zeros(); places.len()];
     for t in &panel.triangles {

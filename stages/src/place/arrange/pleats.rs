@@ -1,9 +1,11 @@
 //! Pieces folded along their pleats before they are placed.
 //!
-//! Method: a pleat's two lines and the fold lines between them (the middle; of a box pleat the quarter points) divide the piece into zones,
-//! and each zone is turned over about the fold that it lies behind, as paper is folded; what lies beyond a pleat moves with its last zone.
-//! Each layer starts a little behind the one before it. Lines count as straight, from their first point to their last, and as going on
-//! over the whole piece. Cost: linear in vertices times pleats. Limits: pleats of one piece may not cross.
+//! Method: a pleat's two lines and the fold lines between them (the middle; of a box pleat the
+//! quarter points) divide the piece into zones, and each zone is turned over about the fold that it
+//! lies behind, as paper is folded; what lies beyond a pleat moves with its last zone. Each layer
+//! starts a little behind the one before it. Lines count as straight, from their first point to
+//! their last, and as going on over the whole piece. Cost: linear in vertices times pleats. Limits:
+//! pleats of one piece may not cross.
 
 use super::patches::outsides;
 use crate::place::sew::Offsets;

@@ -1,10 +1,12 @@
 //! Where on the body each piece is worn, for patterns that do not say.
 //!
-//! Method: words of the piece's name first (a table of English words and of the short forms of CAD programs; words that all pieces
-//! have in common are the garment's), then its seams: a piece that is sewn to itself and to its mirror image is a leg, fronts and
-//! backs that meet at their upper ends have shoulders, a long narrow piece at the upper end of others is a waistband. Which half is
-//! left comes from where the seam in the middle lies; which arm a sleeve is for, from the armhole that it is sewn into. Cost: edges of seams.
-//! Limits: sleeves of several pieces, collars, cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
+//! Method: words of the piece's name first (a table of English words and of the short forms of CAD
+//! programs; words that all pieces have in common are the garment's), then its seams: a piece that
+//! is sewn to itself and to its mirror image is a leg, fronts and backs that meet at their upper
+//! ends have shoulders, a long narrow piece at the upper end of others is a waistband. Which half
+//! is left comes from where the seam in the middle lies; which arm a sleeve is for, from the
+//! armhole that it is sewn into. Cost: edges of seams. Limits: sleeves of several pieces, collars,
+//! cuffs, hoods and yokes are not placed; a piece without a word needs one of the seams above.
 
 use std::collections::BTreeSet;
 use toile_core::prelude::*;
@@ -76,7 +78,8 @@ pub(super) struct Joint {
     pub(super) share: f64,
 }
 
-/// An edge in a side of a seam: of which piece, and from where to where it runs as shares of the side.
+/// An edge in a side of a seam: of which piece, and from where to where it runs as shares of the
+/// side.
 struct Stretch {
     piece: usize,
     edge: usize,
@@ -330,7 +333,8 @@ fn half_hand(i: usize, j: &Joint, pieces: &[Piece], side: Side) -> f64 {
     if at_left == (side == Side::Front) { 1.0 } else { -1.0 }
 }
 
-/// The hand of a leg in one piece: the rise is longer behind, and behind is at the right of a left leg seen from outside.
+/// The hand of a leg in one piece: the rise is longer behind, and behind is at the right of a left
+/// leg seen from outside.
 fn leg_hand(i: usize, pieces: &[Piece], joints: &[Joint]) -> Option<f64> {
     let mut rises: Vec<(f64, f64)> = Vec::new();
     for j in joints.iter().filter(|j| j.pieces[0] != j.pieces[1] && twins(pieces, j.pieces)) {

@@ -1,9 +1,12 @@
 //! Where pieces without a pose stand, once their regions are known.
 //!
-//! Method: fronts stand flat before the body and backs behind it, hung by the middle of their shoulder seams on the line from neck
-//! to shoulder, or by their upper edges from the waist. Legs in one piece are bent around the leg, open to the inside; a waistband
-//! is bent around the waist, turned so that its seams lie nearest to what they are sewn to. Sleeves stand flat before their arm, the middle of the
-//! cap where the arm begins, and are bent around it as those with a pose are. Bent pieces keep every length along their cylinder. Cost: some milliseconds. Limits: the levels are those of a standing body with landmarks.
+//! Method: fronts stand flat before the body and backs behind it, hung by the middle of their
+//! shoulder seams on the line from neck to shoulder, or by their upper edges from the waist. Legs
+//! in one piece are bent around the leg, open to the inside; a waistband is bent around the waist,
+//! turned so that its seams lie nearest to what they are sewn to. Sleeves stand flat before their
+//! arm, the middle of the cap where the arm begins, and are bent around it as those with a pose
+//! are. Bent pieces keep every length along their cylinder. Cost: some milliseconds. Limits: the
+//! levels are those of a standing body with landmarks.
 
 use super::limb::Limb;
 use super::region::{Decided, Joint, Region, Side, bounds, joints, middle};
@@ -92,7 +95,8 @@ impl Figure {
         self.neck[1] + share.clamp(0.0, 1.0) * (self.shoulder[1] - self.neck[1])
     }
 
-    /// The greatest distance of the skin from a vertical axis between two heights; arms and head do not count.
+    /// The greatest distance of the skin from a vertical axis between two heights; arms and head do
+    /// not count.
     fn reach(&self, body: &Body, [x, z]: [f64; 2], (low, high): (f64, f64)) -> f64 {
         let counts =
             |p: &&Point3| p.y > low && p.y < high && p.x.abs() < self.shoulder[0] && p.y < TRUNK.1 * self.top;
@@ -141,8 +145,9 @@ enum Hung {
     Round(Round),
 }
 
-/// A bent piece. Its direction `across` goes around, to the right as seen from outside; what lies at `middle` along it looks in the
-/// direction `facing`, an angle from straight ahead to the wearer's left. `axis` is x and z, `rise` the height of its origin.
+/// A bent piece. Its direction `across` goes around, to the right as seen from outside; what lies
+/// at `middle` along it looks in the direction `facing`, an angle from straight ahead to the
+/// wearer's left. `axis` is x and z, `rise` the height of its origin.
 struct Round {
     across: Vector2,
     middle: f64,
@@ -226,7 +231,8 @@ fn ends(i: usize, joints: &[Joint]) -> impl Iterator<Item = &Vec<usize>> {
     joints.iter().flat_map(move |j| (0..2).filter(move |k| j.pieces[*k] == i).map(move |k| &j.edges[k]))
 }
 
-/// The height in the piece of what lies at the waist: of its seam with a band, else its highest point.
+/// The height in the piece of what lies at the waist: of its seam with a band, else its highest
+/// point.
 fn top_of(i: usize, pattern: &Pattern, joints: &[Joint]) -> f64 {
     let piece = &pattern.pieces[i];
     let (lo, hi) = bounds(piece);
@@ -265,7 +271,8 @@ fn leg(
     (Hung::Round(round), words)
 }
 
-/// A sleeve before its arm, ready to be bent around it: what is sewn into the armhole at the arm's root, its front to the front.
+/// A sleeve before its arm, ready to be bent around it: what is sewn into the armhole at the arm's
+/// root, its front to the front.
 fn sleeve(
     i: usize,
     pattern: &Pattern,
@@ -287,8 +294,9 @@ fn sleeve(
     Ok((Hung::Flat(Pose { origin, across, along }), format!("goes around the {}", limb.name)))
 }
 
-/// Radii around a leg, a step of height each. Above the fork only the outside of the hip counts: the inside stays open.
-/// Changes with height are held to [`SLOPE`], so that the bent piece is stretched little.
+/// Radii around a leg, a step of height each. Above the fork only the outside of the hip counts:
+/// the inside stays open. Changes with height are held to [`SLOPE`], so that the bent piece is
+/// stretched little.
 fn leg_radii(
     body: &Body,
     f: &Figure,

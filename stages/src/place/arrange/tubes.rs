@@ -132,7 +132,8 @@ fn tubes(
     tubes.into_values().collect()
 }
 
-/// The direction of the arm that the pieces were placed for: that of the seams which join front and back.
+/// The direction of the arm that the pieces were placed for: that of the seams which join front and
+/// back.
 fn file_axis(
     limb: &Limb,
     tube: &[String],

@@ -189,7 +189,8 @@ fn sleeves_go_around_the_arm_whose_armhole_they_are_sewn_into() {
             let all = panel.vertices.clone();
             all.max_by(|a, b| far(g.rest[*a]).total_cmp(&far(g.rest[*b]))).unwrap()
         };
-        // The top of the cap is over the arm, the hem farther out; the left sleeve's left half is before the arm.
+        // The top of the cap is over the arm, the hem farther out; the left sleeve's left half is
+        // before the arm.
         let (top, hem, at_left) =
             (of(&|p| p.y), of(&|p| -p.y - p.x.abs()), of(&|p| 0.1 - (p.x + 0.1).abs() - (p.y - 0.1).abs()));
         let at = |v: usize| g.positions[v];

@@ -1,4 +1,5 @@
-//! Panels with their edges cut: the numbers of all vertices, what these have, and the triangles between them.
+//! Panels with their edges cut: the numbers of all vertices, what these have, and the triangles
+//! between them.
 
 use super::edges::Edges;
 use nalgebra::SVector;
@@ -8,7 +9,8 @@ use toile_core::prelude::*;
 /// Triangles between two looks at the stop flag.
 const CHECK_EVERY: usize = 1000;
 
-/// The vertices of the cut garment: of each panel the old ones, then those on its edges, then those in its triangles.
+/// The vertices of the cut garment: of each panel the old ones, then those on its edges, then those
+/// in its triangles.
 pub(super) struct Cut<'a> {
     old: &'a Garment,
     edges: &'a Edges,
@@ -168,7 +170,8 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// The vertices within a triangle, in parts from its first corner towards the second and the third, row by row.
+/// The vertices within a triangle, in parts from its first corner towards the second and the third,
+/// row by row.
 fn inner(parts: usize) -> impl Iterator<Item = (usize, usize)> {
     (1..parts).flat_map(move |j| (1..parts - j).map(move |i| (i, j)))
 }

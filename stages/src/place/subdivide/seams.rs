@@ -90,8 +90,8 @@ impl Sides<'_> {
         both.chain(first).chain(onward(b).map(move |wb| [(a, None), wb]))
     }
 
-    /// The seam follows these edges from its pair `i`: they are borders, or the pairs are neighbours in it. Elsewhere an
-    /// edge cuts the corner of the seam.
+    /// The seam follows these edges from its pair `i`: they are borders, or the pairs are
+    /// neighbours in it. Elsewhere an edge cuts the corner of the seam.
     fn runs_along(&self, i: usize, to: [u32; 2], ways: [Way; 2]) -> bool {
         let near = |k: Option<usize>| k.and_then(|k| self.pairs.get(k)) == Some(&to);
         near(i.checked_add(1)) || near(i.checked_sub(1)) || self.are_borders(ways)
@@ -117,7 +117,8 @@ impl Sides<'_> {
     }
 }
 
-/// Joins the pairs of closed seams: new vertices lie where the least old one does, or else the least new one.
+/// Joins the pairs of closed seams: new vertices lie where the least old one does, or else the
+/// least new one.
 pub(super) fn join(fine: &mut Garment, cut: &Cut<'_>) {
     let closed = fine.seams.iter().filter(|s| s.state == SeamState::Closed);
     join_pairs(&mut fine.weld, closed.flat_map(|s| &s.pairs));

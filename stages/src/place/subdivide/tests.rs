@@ -58,7 +58,8 @@ fn square(columns: usize, rows: usize) -> Grid {
     Grid { columns, rows, flat: Point2::new, lift: |p| Point3::new(p.x, p.y, 0.0) }
 }
 
-/// Grids of these columns and rows, sewn by one open seam; vertices of the second count from its own first.
+/// Grids of these columns and rows, sewn by one open seam; vertices of the second count from its
+/// own first.
 fn sewn(grids: &[(usize, usize)], pairs: &[[u32; 2]], shift: bool) -> Garment {
     let grids: Vec<Grid> = grids.iter().map(|&(c, r)| square(c, r)).collect();
     let named: Vec<(&str, &Grid)> = ["first", "second"].into_iter().zip(&grids).collect();
@@ -230,7 +231,8 @@ fn twice_in_two_is_once_in_four() {
 
 #[test]
 fn no_corner_that_an_edge_cuts_is_sewn() {
-    // Squares of two triangles, sewn along two sides; the edge between the ends of these is in both.
+    // Squares of two triangles, sewn along two sides; the edge between the ends of these is in
+    // both.
     let coarse = sewn(&[(1, 1), (1, 1)], &[[0, 0], [1, 1], [3, 3]], true);
     let fine = refined(&coarse, 2);
     assert_eq!(new_pairs(&coarse, &fine), [[[0.5, 0.0]; 2], [[1.0, 0.5]; 2]]);

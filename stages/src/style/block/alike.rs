@@ -1,8 +1,11 @@
-//! Both halves of a fitted template made alike: a garment is its own mirror image, however its sleeves and legs lie in the photo.
+//! Both halves of a fitted template made alike: a garment is its own mirror image, however its
+//! sleeves and legs lie in the photo.
 //!
-//! Corners of trunk, waist and legs become the mean of both sides. Sleeves, which lie as they fall and may lie folded, are taken from one side:
-//! the one that the template fits better, and where both fit alike, the one with the wider cuff, since a fold only narrows it. One that is nearly
-//! twice as wide is none: there a side of the sleeve was taken for its cuff, and the other one is right.
+//! Corners of trunk, waist and legs become the mean of both sides. Sleeves, which lie as they fall
+//! and may lie folded, are taken from one side: the one that the template fits better, and where
+//! both fit alike, the one with the wider cuff, since a fold only narrows it. One that is nearly
+//! twice as wide is none: there a side of the sleeve was taken for its cuff, and the other one is
+//! right.
 
 use super::bow::Bow;
 use super::fit::Fit;
@@ -28,7 +31,8 @@ pub enum Sides {
     AsTheyLie,
 }
 
-/// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves of each side.
+/// Makes both sides of a fit alike. `misses` is how far the outline strays from the sleeves of each
+/// side.
 pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
     let is_sleeve = |k: &usize| form.edges[*k].own_end && form.underarm().is_some_and(|arm| *k >= arm);
     let own: Vec<usize> = (0..form.edges.len()).filter(is_sleeve).collect();
@@ -46,7 +50,8 @@ pub(super) fn alike(fit: &mut Fit, form: &Form, misses: [f64; 2]) {
     fit.sides = [edges.clone(), edges];
 }
 
-/// Whether what lies as it falls is so different on both sides that one of them cannot be what it was taken for.
+/// Whether what lies as it falls is so different on both sides that one of them cannot be what it
+/// was taken for.
 pub(super) fn differ(fit: &Fit, form: &Form, size: f64) -> bool {
     let lengths = |k: usize| [0, 1].map(|side: usize| fit.sides[side][k].length());
     let own = (0..form.edges.len()).filter(|k| form.edges[*k].own_end);

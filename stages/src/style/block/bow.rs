@@ -1,7 +1,8 @@
 //! An edge of a template: a cubic that bows from its chord.
 //!
-//! Its point at `t` stands `3 t (1 - t) (b0 (1 - t) + b1 t)` chord lengths to the left of the chord. That is the Bézier curve whose inner
-//! controls stand over the thirds of the chord, so that a pattern takes it as it is.
+//! Its point at `t` stands `3 t (1 - t) (b0 (1 - t) + b1 t)` chord lengths to the left of the
+//! chord. That is the Bézier curve whose inner controls stand over the thirds of the chord, so that
+//! a pattern takes it as it is.
 
 use toile_core::artifact::{Point2, Vector2};
 

@@ -1,8 +1,9 @@
 //! A garment that the frame cuts on one side, completed by the other side's mirror image.
 //!
-//! Points of the outline that lie along the photo's frame are not the garment's own. They draw no template; what they leave open the
-//! symmetry of the template closes. Where the scale comes from the garment's stated width, the outline, which is narrower than the
-//! garment, is scaled anew once the template shows how wide the garment is.
+//! Points of the outline that lie along the photo's frame are not the garment's own. They draw no
+//! template; what they leave open the symmetry of the template closes. Where the scale comes from
+//! the garment's stated width, the outline, which is narrower than the garment, is scaled anew once
+//! the template shows how wide the garment is.
 
 use super::fit::Fit;
 use super::halves::Upright;
@@ -29,7 +30,8 @@ impl Complete {
     }
 }
 
-/// Points nearer to the frame than this share of the photo's shorter side lie on it: the outline is smoothed there.
+/// Points nearer to the frame than this share of the photo's shorter side lie on it: the outline is
+/// smoothed there.
 const ON_FRAME: f64 = 0.008;
 /// And at least so many pixels.
 const LEAST: f64 = 3.0;

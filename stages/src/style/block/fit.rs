@@ -1,11 +1,14 @@
 //! A form's template fitted to a whole outline by least squares.
 //!
-//! Method: the template is symmetric about an axis whose tilt and place are sought with it, as far as the outline lets it: corners of both sides are
-//! believed to mirror each other to 2 % of the size, but those of sleeves and legs, which lie as they fall. It
-//! starts from the cuts of both halves ([`super::segment`]), or, where they differ, from each alone. Then every point of the outline is drawn to the nearest place of the template, and
-//! places of the template to the outline, along the distance between them (point to line: Chen and Medioni 1992), by damped Gauss-Newton
-//! steps. Far-off points count less (Geman and McClure 1985), so that a fold or a rag moves no edge. Cost: some milliseconds a form.
-//! Limits: a fold along the whole of a side is taken for the side.
+//! Method: the template is symmetric about an axis whose tilt and place are sought with it, as far
+//! as the outline lets it: corners of both sides are believed to mirror each other to 2 % of the
+//! size, but those of sleeves and legs, which lie as they fall. It starts from the cuts of both
+//! halves ([`super::segment`]), or, where they differ, from each alone. Then every point of the
+//! outline is drawn to the nearest place of the template, and places of the template to the
+//! outline, along the distance between them (point to line: Chen and Medioni 1992), by damped
+//! Gauss-Newton steps. Far-off points count less (Geman and McClure 1985), so that a fold or a rag
+//! moves no edge. Cost: some milliseconds a form. Limits: a fold along the whole of a side is taken
+//! for the side.
 
 use super::bow::Bow;
 use super::form::{EdgeForm, Form};
@@ -29,14 +32,16 @@ const PLACES: usize = 8;
 const PULL: f64 = 0.5;
 /// Squared spreads that a point adds to the score at most.
 const MOST: f64 = 16.0;
-/// What the sum of squares of the cut adds to the score, for each of its points; and what every corner adds, since more corners fit better.
+/// What the sum of squares of the cut adds to the score, for each of its points; and what every
+/// corner adds, since more corners fit better.
 const UNUSUAL: f64 = 0.5;
 const CORNER: f64 = 0.1;
 /// What a half that reaches farther from the axis by the garment's size is worth.
 const REACH: f64 = 3.0;
 /// A fit of this score is taken from its first start.
 const WELL: f64 = 1.0;
-/// A step that moves every corner by less than this share of the size is the last, once far points have their last weight.
+/// A step that moves every corner by less than this share of the size is the last, once far points
+/// have their last weight.
 const LAST: f64 = 2e-5;
 /// Share of the steps in which far points come to their last weight.
 const SETTLES: f64 = 0.4;
@@ -48,21 +53,25 @@ const DIFFERENCE: f64 = 1e-6;
 pub(super) enum Halves {
     /// Both; sleeves and legs lie as they fall.
     Both,
-    /// Both, as each other's mirror image, and judged by the half that it fits better: the other may be folded, or hidden in part.
+    /// Both, as each other's mirror image, and judged by the half that it fits better: the other
+    /// may be folded, or hidden in part.
     Better,
 }
 
 /// A fitted template.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
-    /// The edges of the half at positive u, and of the other in a mirror; each in the frame of the fitted axis.
+    /// The edges of the half at positive u, and of the other in a mirror; each in the frame of the
+    /// fitted axis.
     pub sides: [Vec<Bow>; 2],
-    /// How far the axis is turned, counter-clockwise, radians, and where it stands, from the upright outline's.
+    /// How far the axis is turned, counter-clockwise, radians, and where it stands, from the
+    /// upright outline's.
     pub turn: f64,
     pub shift: f64,
     /// Distances of the outline's points from the template, by edges, metres.
     pub misses: Vec<Vec<f64>>,
-    /// What the template leaves over: mean squared spreads of points and places, and how unusual it is.
+    /// What the template leaves over: mean squared spreads of points and places, and how unusual it
+    /// is.
     pub score: f64,
     /// The half that it is judged by; none where both count.
     pub judged: Option<usize>,
@@ -74,7 +83,8 @@ impl Fit {
         Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
     }
 
-    /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since legs may flare. `None` for what has no hip.
+    /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since
+    /// legs may flare. `None` for what has no hip.
     pub(super) fn hip(&self, form: &Form) -> Option<f64> {
         let edges = || form.edges.iter().enumerate().filter(|(_, e)| e.name == "hip" || e.name == "outseam");
         edges().next()?;
@@ -85,7 +95,8 @@ impl Fit {
         Some(2.0 * self.sides.iter().map(widest).sum::<f64>())
     }
 
-    /// How far the outline strays from the sleeves or legs of each side: the mean distance of their points, metres.
+    /// How far the outline strays from the sleeves or legs of each side: the mean distance of their
+    /// points, metres.
     pub(super) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
         let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let mut sums = [(0.0, 0.0); 2];
@@ -99,7 +110,8 @@ impl Fit {
         sums.map(|(sum, count)| sum / f64::max(count, 1.0))
     }
 
-    /// The share of the outline's points on a side that lie nearer to the template than `reach`, metres.
+    /// The share of the outline's points on a side that lie nearer to the template than `reach`,
+    /// metres.
     pub(super) fn near(&self, upright: &Upright, side: usize, reach: f64) -> f64 {
         let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
         let (mut near, mut all) = (0.0, 0.0);
@@ -111,8 +123,8 @@ impl Fit {
         near / f64::max(all, 1.0)
     }
 
-    /// Around the garment at the armpits, as it lies: where sleeves are cut in one with it, where its sides are narrowest. `None` for what hangs
-    /// from the waist.
+    /// Around the garment at the armpits, as it lies: where sleeves are cut in one with it, where
+    /// its sides are narrowest. `None` for what hangs from the waist.
     pub(super) fn chest(&self, form: &Form) -> Option<f64> {
         let sides = || self.sides.iter();
         if let Some(k) = form.armpit() {
@@ -340,7 +352,8 @@ fn unit(off: Vector2, direction: Vector2) -> Vector2 {
     off.try_normalize(1e-7).or_else(|| left.try_normalize(1e-12)).unwrap_or_else(Vector2::y)
 }
 
-/// Side, edge and parameter of the template's place nearest to a point, and the way from it to the point.
+/// Side, edge and parameter of the template's place nearest to a point, and the way from it to the
+/// point.
 fn nearest(m: &Model, p: Point2) -> (usize, usize, f64, Vector2) {
     let mut best = (0, 0, 0.0, Vector2::repeat(f64::INFINITY));
     for (side, edges) in m.sides.iter().enumerate() {
@@ -376,7 +389,8 @@ fn own(edges: &[EdgeForm], k: usize) -> bool {
     edges[k].own_end || (k > 0 && edges[k - 1].own_end)
 }
 
-/// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of each side.
+/// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of
+/// each side.
 fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
     let last = form.edges.len() - 1;
     let mean = |a: f64, b: f64| 0.5 * (a + b);

@@ -1,9 +1,12 @@
 //! `Fitting`: a mannequin that the photographed garment fits.
 //!
-//! Method: the block that is cut is fitted to the outline ([`super::fit`]) and measured as a tailor measures a garment that lies flat. Of the sizes of a
-//! table, from a child of 80 cm to an adult, the one is taken whose girths, with the usual ease, and whose height, with the usual length of such a garment,
-//! lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of skirts,
-//! shorts and vests tell little, so that a short garment with few girths may fit several sizes; the body is a woman's or a child's.
+//! Method: the block that is cut is fitted to the outline ([`super::fit`]) and measured as a tailor
+//! measures a garment that lies flat. Of the sizes of a table, from a child of 80 cm to an adult,
+//! the one is taken whose girths, with the usual ease, and whose height, with the usual length of
+//! such a garment, lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block,
+//! a tenth of a second a form, and a mannequin. Limits: lengths of skirts, shorts and vests tell
+//! little, so that a short garment with few girths may fit several sizes; the body is a woman's or
+//! a child's.
 
 use super::complete::Complete;
 use super::fit::Fit;
@@ -14,7 +17,8 @@ use toile_core::param::ron_options;
 use toile_core::prelude::*;
 use toile_core::{Node, StageMeta};
 
-/// Height, bust, waist and hip, cm: children by EN 13402-3, adults in its steps of 4 to 6 cm of bust.
+/// Height, bust, waist and hip, cm: children by EN 13402-3, adults in its steps of 4 to 6 cm of
+/// bust.
 pub(super) const SIZES: [[f64; 4]; 26] = [
     [80.0, 49.0, 47.0, 49.0],
     [86.0, 51.0, 48.5, 51.0],
@@ -44,42 +48,51 @@ pub(super) const SIZES: [[f64; 4]; 26] = [
     [170.0, 134.0, 118.0, 137.0],
 ];
 
-/// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest, waist and hip. Skirts and trousers may be as wide
-/// at the hip as they like: there only what is narrower counts.
+/// Usual share of a girth of the body by which a garment is wider there, and its spread: at chest,
+/// waist and hip. Skirts and trousers may be as wide at the hip as they like: there only what is
+/// narrower counts.
 const EASE: [[f64; 2]; 3] = [[0.09, 0.06], [0.04, 0.06], [0.03, 0.06]];
 const HIP: usize = 2;
-/// Hips of people of one size differ by this share: trousers are worn by one whose hips are so much wider where they are cut for them.
+/// Hips of people of one size differ by this share: trousers are worn by one whose hips are so much
+/// wider where they are cut for them.
 const HIPS: f64 = 0.05;
-/// A height that is likely, cm, and its spread: it decides where a garment fits a child and an adult.
+/// A height that is likely, cm, and its spread: it decides where a garment fits a child and an
+/// adult.
 const LIKELY: [f64; 2] = [165.0, 60.0];
-/// Usual length of a garment from neck or waist to hem, of one-pieces from neck to fork, as a share of the body's height, and its spread.
+/// Usual length of a garment from neck or waist to hem, of one-pieces from neck to fork, as a share
+/// of the body's height, and its spread.
 const TOP: [f64; 2] = [0.39, 0.05];
 const TRUNK: [f64; 2] = [0.47, 0.02];
 const DRESS: [f64; 2] = [0.56, 0.1];
 const LEGS: [f64; 2] = [0.60, 0.04];
-/// Legs whose inseam is shorter than this share of their outseam are shorts, whose length tells little.
+/// Legs whose inseam is shorter than this share of their outseam are shorts, whose length tells
+/// little.
 const SHORTS: f64 = 0.55;
-/// A sleeve's length along its top from the neck, as a share of the height, where it reaches the wrist.
+/// A sleeve's length along its top from the neck, as a share of the height, where it reaches the
+/// wrist.
 const SLEEVE: [f64; 2] = [0.44, 0.04];
 /// What a single figure adds at most.
 const MOST: f64 = 9.0;
 /// A mean square beyond this is told: no body of the table wears it as usual.
 const ODD: f64 = 5.0;
-/// No garment is wider around chest or waist, or longer, metres: half as much again as the largest sizes that are sold.
+/// No garment is wider around chest or waist, or longer, metres: half as much again as the largest
+/// sizes that are sold.
 const LARGEST: [f64; 2] = [3.0, 2.5];
-/// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the vertical.
+/// Arms where nothing tells how they lie, and the angles that a mannequin has, degrees from the
+/// vertical.
 const ARMS: f64 = 45.0;
 const REACH: (f64, f64) = (30.0, 75.0);
-/// A trunk that lies flat is half its girth wide; worn, it is an ellipse about 0.7 times as deep as wide, and its armpits lie nearer to the axis by
-/// this share.
+/// A trunk that lies flat is half its girth wide; worn, it is an ellipse about 0.7 times as deep as
+/// wide, and its armpits lie nearer to the axis by this share.
 const CLOSED: f64 = 0.26;
 /// Arms that touch the trunk are spread by so much more, degrees.
 const SPREAD: f64 = 4.0;
 
-/// A mannequin that the photographed garment fits: child or adult, its arms spread as the sleeves hang.
+/// A mannequin that the photographed garment fits: child or adult, its arms spread as the sleeves
+/// hang.
 ///
-/// Takes the outline of the photo `front` and its scale. The size that is taken is told, with what it was taken for. State a body of your own where you
-/// know the wearer.
+/// Takes the outline of the photo `front` and its scale. The size that is taken is told, with what
+/// it was taken for. State a body of your own where you know the wearer.
 #[stage(
     role = Body,
     version = 7,
@@ -124,7 +137,8 @@ impl Fitting {
             Complete::Nothing => Complete::Mirror,
             Complete::Mirror => Complete::Nothing,
         };
-        // What is measured is what is cut. Whether the garment is what it is taken for is the style's affair: what it would refuse is measured all the same.
+        // What is measured is what is cut. Whether the garment is what it is taken for is the
+        // style's affair: what it would refuse is measured all the same.
         let as_cut = Block::default().stray;
         let (_, form, Fitted { fit, .. }) = fitted(as_cut, self.complete)
             .or_else(|_| fitted(as_cut, other))
@@ -186,7 +200,8 @@ impl Fitting {
 /// Under these names a body that was chosen for a garment keeps what that measures.
 pub(super) const KEPT: [&str; 3] = ["garment_chest", "garment_waist", "garment_hip"];
 
-/// A mannequin of that height and girths, metres. Arms that hang near a wide trunk touch it: then they are spread further than `arms`, degrees.
+/// A mannequin of that height and girths, metres. Arms that hang near a wide trunk touch it: then
+/// they are spread further than `arms`, degrees.
 pub(super) fn mannequin(
     height: f64,
     girths: [f64; 3],
@@ -278,7 +293,8 @@ impl Tape {
             .hint("the photo's `width` gives the scale: it is the garment's own, from its leftmost to its rightmost point, such as \"76 cm\""))
     }
 
-    /// The garment's measures as figures, cm: around chest, waist and hip, its length, and from the neck to the wrist.
+    /// The garment's measures as figures, cm: around chest, waist and hip, its length, and from the
+    /// neck to the wrist.
     fn tell(&self, cx: &Context) {
         let girths = ["chest", "waist", "hip"].into_iter().zip(self.girths);
         let lengths = [("length", self.length.map(|(l, _)| l)), ("sleeve", self.sleeve)];
@@ -303,7 +319,8 @@ impl Tape {
     }
 }
 
-/// The angle from the vertical at which arms leave cuffs of grown-on sleeves: square to them; degrees.
+/// The angle from the vertical at which arms leave cuffs of grown-on sleeves: square to them;
+/// degrees.
 fn out(fit: &Fit, cuff: usize) -> f64 {
     let angle = |s: &Vec<super::bow::Bow>| {
         let along = s[cuff].b - s[cuff].a;
@@ -312,8 +329,9 @@ fn out(fit: &Fit, cuff: usize) -> f64 {
     0.5 * fit.sides.iter().map(angle).sum::<f64>()
 }
 
-/// The angle of the arms from the vertical at which the sleeves hang: the mean of both, from cap to cuff; degrees. As the trunk takes its depth, its
-/// armpits come inwards and the points of its shoulders do not: caps turn, and sleeves hang lower than they lie.
+/// The angle of the arms from the vertical at which the sleeves hang: the mean of both, from cap to
+/// cuff; degrees. As the trunk takes its depth, its armpits come inwards and the points of its
+/// shoulders do not: caps turn, and sleeves hang lower than they lie.
 fn arms(form: &Form, fit: &Fit) -> f64 {
     let Some(k) = form.underarm() else {
         return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k));

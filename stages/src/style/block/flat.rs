@@ -134,7 +134,8 @@ impl Layer {
     }
 }
 
-/// One side of a template: its edges by name, as they lie (the second side's are mirrored back), each from below to above.
+/// One side of a template: its edges by name, as they lie (the second side's are mirrored back),
+/// each from below to above.
 pub(super) struct Side {
     pub edges: Vec<(&'static str, Curve)>,
     pub mirrored: bool,

@@ -1,7 +1,8 @@
 //! The forms of garments: which edges a half of the flat garment has, and how they usually run.
 //!
-//! A half runs counter-clockwise from the axis below to the axis above. Directions and bows are beliefs with a spread: they choose between
-//! ways to lay a template over an outline, and weigh little against the outline itself. They were set by the proportions of basic blocks (Aldrich,
+//! A half runs counter-clockwise from the axis below to the axis above. Directions and bows are
+//! beliefs with a spread: they choose between ways to lay a template over an outline, and weigh
+//! little against the outline itself. They were set by the proportions of basic blocks (Aldrich,
 //! Metric Pattern Cutting, 2008) and not by the photos that are measured.
 
 /// An edge of a form.
@@ -11,9 +12,11 @@ pub(super) struct EdgeForm {
     pub name: &'static str,
     /// Direction of its chord, degrees from across, counter-clockwise; and the spread.
     pub way: [f64; 2],
-    /// How far it usually stands to the left of its chord (into the garment), in chord lengths; and the spread.
+    /// How far it usually stands to the left of its chord (into the garment), in chord lengths; and
+    /// the spread.
     pub bow: [f64; 2],
-    /// Least and greatest length of its chord, as shares of the garment's size (the root of its area).
+    /// Least and greatest length of its chord, as shares of the garment's size (the root of its
+    /// area).
     pub chord: [f64; 2],
     /// Whether each half has its own end of it: sleeves lie as they fall.
     pub own_end: bool,
@@ -32,7 +35,8 @@ pub(super) enum Mark {
     Level(usize, f64, &'static str),
     /// The first edge reaches from side to side by no more than so much of the second.
     Narrower(usize, usize, f64, &'static str),
-    /// An edge ends as far from the axis as the one before it comes near to it, times this number, or further.
+    /// An edge ends as far from the axis as the one before it comes near to it, times this number,
+    /// or further.
     Beyond(usize, f64, &'static str),
     /// An edge rises by no more than so many degrees from across.
     Below(usize, f64, &'static str),
@@ -147,7 +151,8 @@ pub(super) const LONG: Form = Form {
     ],
 };
 
-/// Sleeves cut in one with front and back, without an armpit: batwing, and cap sleeves so short that the outline hardly shows them.
+/// Sleeves cut in one with front and back, without an armpit: batwing, and cap sleeves so short
+/// that the outline hardly shows them.
 pub(super) const GROWN: Form = Form {
     word: "a top with grown-on sleeves",
     marks: &[

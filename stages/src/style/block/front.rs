@@ -11,7 +11,8 @@ use toile_core::prelude::*;
 pub(crate) enum Front {
     /// In one piece.
     Whole,
-    /// In two halves, closed along the middle edge to edge: shirts, blouses and jackets that are buttoned or zipped.
+    /// In two halves, closed along the middle edge to edge: shirts, blouses and jackets that are
+    /// buttoned or zipped.
     Halves,
 }
 

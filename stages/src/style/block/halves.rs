@@ -15,7 +15,8 @@ const ROWS: usize = 60;
 pub(super) struct Upright {
     /// The outline: the points of both halves.
     pub points: Vec<Point2>,
-    /// Each half from the axis below to the axis above, counter-clockwise, the left one seen in a mirror.
+    /// Each half from the axis below to the axis above, counter-clockwise, the left one seen in a
+    /// mirror.
     pub halves: [Vec<Point2>; 2],
     /// The root of the area, metres.
     pub size: f64,
@@ -39,8 +40,9 @@ impl Upright {
         Some(Upright { points, halves, size: shape.size, tilt: shape.tilt, centre: shape.centre, unseen })
     }
 
-    /// The same outline about the axis through the middles of most of its rows, which a sleeve that is hidden on one side does not move: the median
-    /// of their places and slopes (Theil 1950, Sen 1968). `None` where that axis does not cut it.
+    /// The same outline about the axis through the middles of most of its rows, which a sleeve that
+    /// is hidden on one side does not move: the median of their places and slopes (Theil 1950, Sen
+    /// 1968). `None` where that axis does not cut it.
     pub(super) fn about_its_rows(&self) -> Option<Upright> {
         let middles = middles(&self.points);
         let slopes = middles.iter().enumerate().flat_map(|(i, p)| {

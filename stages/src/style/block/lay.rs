@@ -80,8 +80,9 @@ pub(super) fn pattern(
 struct Lying {
     frame: PhotoFrame,
     piece: Piece,
-    /// Where the piece's origin lies and how far it is turned, in the frame of the garment's axis, for a sleeve of the half that the photo does not show
-    /// well: it is seen in the other one, mirrored.
+    /// Where the piece's origin lies and how far it is turned, in the frame of the garment's axis,
+    /// for a sleeve of the half that the photo does not show well: it is seen in the other one,
+    /// mirrored.
     mirrored: Option<(Point2, f64)>,
 }
 
@@ -93,7 +94,8 @@ impl Lying {
         Lying { frame: frame(photo, fitted, flat), piece: flat.piece(), mirrored }
     }
 
-    /// Where the points of the piece's outline lie: on the same edges as it lies, at the same shares of their lengths. Nothing where it lies as it is cut.
+    /// Where the points of the piece's outline lie: on the same edges as it lies, at the same
+    /// shares of their lengths. Nothing where it lies as it is cut.
     fn lies(&self, outline: &Outline) -> Vec<Point2> {
         let n = outline.outer.points.len();
         let mut found = vec![None; n];

@@ -1,9 +1,11 @@
-//! What of a garment its template does not explain: a hood above the neck, a bodice above a skirt, a bag in front.
+//! What of a garment its template does not explain: a hood above the neck, a bodice above a skirt,
+//! a bag in front.
 //!
-//! Outline and template are painted, and what only one of them covers is opened, so that the thin strips of an uneven border do not count. Of what is
-//! left the largest piece is looked at: how large it is and where. A template can also reach where no garment of its kind does: an upper border
-//! that stands far above the shoulders is a hood and no neckline. Cost: two pictures of 200 pixels, a millisecond.
-//! Limits: what lies within the template (a pocket, a belt) is not seen.
+//! Outline and template are painted, and what only one of them covers is opened, so that the thin
+//! strips of an uneven border do not count. Of what is left the largest piece is looked at: how
+//! large it is and where. A template can also reach where no garment of its kind does: an upper
+//! border that stands far above the shoulders is a hood and no neckline. Cost: two pictures of 200
+//! pixels, a millisecond. Limits: what lies within the template (a pocket, a belt) is not seen.
 
 use super::fit::Fit;
 use super::form::Form;
@@ -21,10 +23,12 @@ const SIDE: f64 = 200.0;
 /// What is thinner than twice this share of the garment's size is its uneven border.
 const THIN: f64 = 0.025;
 
-/// A neckline stands no higher above its ends than this share of the garment's size: what does is a hood. From the lesser one on it is a collar that stands.
+/// A neckline stands no higher above its ends than this share of the garment's size: what does is a
+/// hood. From the lesser one on it is a collar that stands.
 const HOOD: f64 = 0.16;
 const COLLAR: f64 = 0.1;
-/// A piece of this share of the garment's area is more than a fold; under `Auto` it is refused. From the lesser one on it is told.
+/// A piece of this share of the garment's area is more than a fold; under `Auto` it is refused.
+/// From the lesser one on it is told.
 const PART: f64 = 0.06;
 const FOLD: f64 = 0.03;
 
@@ -37,7 +41,8 @@ pub(super) struct Leftover {
     pub lacking: f64,
     /// Where the first of them lies.
     pub place: &'static str,
-    /// How far the upper border stands above its ends in the middle, negative where it dips: of a neck or a waist.
+    /// How far the upper border stands above its ends in the middle, negative where it dips: of a
+    /// neck or a waist.
     pub rise: f64,
 }
 
@@ -49,7 +54,8 @@ impl Leftover {
         cx.figure(&format!("rise_{panel}"), 100.0 * self.rise, "% of its size");
     }
 
-    /// Refuses what no garment of this kind has, and tells what is odd in one. `auto`: nobody has said what the garment is.
+    /// Refuses what no garment of this kind has, and tells what is odd in one. `auto`: nobody has
+    /// said what the garment is.
     pub(super) fn judge(
         &self,
         panel: &str,

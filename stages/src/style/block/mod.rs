@@ -1,7 +1,11 @@
-//! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a sewing pattern.
+//! `Block`: a garment template fitted to the outline of a flat garment, cut into the pieces of a
+//! sewing pattern.
 //!
-//! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline, [`fit`] lays the whole template over the whole
-//! outline, [`stance`] stands spread legs under the hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]), [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
+//! [`form`] says which edges a garment has, [`segment`] finds them on each half of the outline,
+//! [`fit`] lays the whole template over the whole outline, [`stance`] stands spread legs under the
+//! hips, [`pieces`] cuts it, [`waist`] gathers a skirt to a band or lays it in pleats ([`pleat`]),
+//! [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one
+//! can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
 mod alike;
 mod bow;
@@ -46,13 +50,15 @@ use tell::at_95;
 use toile_core::prelude::*;
 pub use waist::Waist;
 
-/// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves lie against it looks a little like a skirt.
+/// The share of the limit for a garment of which nobody has said what it is: a top whose sleeves
+/// lie against it looks a little like a skirt.
 const UNSAID: f64 = 0.5;
 
 /// And for a template that is judged by one half: there is less to tell it by.
 const HALF: f64 = 0.7;
 
-/// The share of the points of a half that must lie at the mirror image of the other, where the template is judged by that one.
+/// The share of the points of a half that must lie at the mirror image of the other, where the
+/// template is judged by that one.
 const OTHER: f64 = 0.5;
 
 /// What the garment is.
@@ -117,10 +123,12 @@ impl BlockStyle {
 
 /// Cuts a sewing pattern to the outline of a garment that lies flat.
 ///
-/// A template with a garment's landmarks (a block) is fitted to the whole outline by least squares, as symmetric about its own axis as
-/// the outline lets it be, so that rags and small folds do little and a garment that lies askew is straightened. The pieces are front and back,
-/// and sleeves that are set into armholes of their caps' length. How far the outline strays from the template is told by edges. Needs
-/// the photo `front`; without one of the back, the back is cut as the front is. `Arrange` puts the pieces around the body.
+/// A template with a garment's landmarks (a block) is fitted to the whole outline by least squares,
+/// as symmetric about its own axis as the outline lets it be, so that rags and small folds do
+/// little and a garment that lies askew is straightened. The pieces are front and back, and sleeves
+/// that are set into armholes of their caps' length. How far the outline strays from the template
+/// is told by edges. Needs the photo `front`; without one of the back, the back is cut as the front
+/// is. `Arrange` puts the pieces around the body.
 #[stage(
     role = Style,
     version = 8,
@@ -132,14 +140,17 @@ pub struct Block {
     /// What the garment is.
     #[param(default = BlockStyle::Auto)]
     style: BlockStyle,
-    /// How far the outline may stray from the template, as a share of the garment's size (the root of its area); 19 of 20 of its points lie nearer.
-    /// Half of it where the outline alone tells what the garment is.
+    /// How far the outline may stray from the template, as a share of the garment's size (the root
+    /// of its area); 19 of 20 of its points lie nearer. Half of it where the outline alone tells
+    /// what the garment is.
     #[param(default = 0.05, min = 0.001, max = 0.5)]
     stray: f64,
-    /// Whether the half that the frame cuts is completed by the mirror image of the other. The binariser must let the garment touch the frame for it.
+    /// Whether the half that the frame cuts is completed by the mirror image of the other. The
+    /// binariser must let the garment touch the frame for it.
     #[param(default = Complete::Nothing)]
     complete: Complete,
-    /// Whether both halves are cut as each other's mirror image, sleeves as the one that lies better, or each as it lies.
+    /// Whether both halves are cut as each other's mirror image, sleeves as the one that lies
+    /// better, or each as it lies.
     #[param(default = Sides::Alike)]
     sides: Sides,
     /// How a skirt is held at the waist.
@@ -190,7 +201,8 @@ impl Block {
 }
 
 impl Block {
-    /// The best of the forms, fitted; to the outline at another scale where the frame cut its width.
+    /// The best of the forms, fitted; to the outline at another scale where the frame cut its
+    /// width.
     fn fitted(
         &self,
         panel: &str,

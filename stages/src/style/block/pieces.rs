@@ -1,10 +1,12 @@
 //! From a fitted template to the pieces of a pattern, as they lie flat.
 //!
-//! Method: what the photo shows is kept edge by edge. A garment that is laid flat is two equal layers, so front and back are cut along the template's outline. Sleeves are
-//! cut off along the armhole, which runs from armpit to shoulder point and is the sleeve's cap as well: both have one length. Each
-//! layer of a sleeve is a piece, so that each shows its own photo. The shoulder point, which a flat shirt does not show, lies where the shoulder of a
-//! block does: at 88 % of the chest's half (Aldrich 2008). So do the points of a fork, which lie folded (`leg`). Limits: a raglan sleeve is cut as a
-//! set-in one.
+//! Method: what the photo shows is kept edge by edge. A garment that is laid flat is two equal
+//! layers, so front and back are cut along the template's outline. Sleeves are cut off along the
+//! armhole, which runs from armpit to shoulder point and is the sleeve's cap as well: both have one
+//! length. Each layer of a sleeve is a piece, so that each shows its own photo. The shoulder point,
+//! which a flat shirt does not show, lies where the shoulder of a block does: at 88 % of the
+//! chest's half (Aldrich 2008). So do the points of a fork, which lie folded (`leg`). Limits: a
+//! raglan sleeve is cut as a set-in one.
 
 use super::curve::Curve;
 use super::fit::Fit;
@@ -21,9 +23,11 @@ const SHOULDER: f64 = 0.88;
 const ALONG: [f64; 2] = [0.2, 0.75];
 /// A sleeve lies folded at the armpit where it is so many times as wide below it.
 const FOLDED: f64 = 1.08;
-/// The template's own corner is the shoulder point where it lies so near to that distance, as a share of it.
+/// The template's own corner is the shoulder point where it lies so near to that distance, as a
+/// share of it.
 const CORNER: f64 = 0.1;
-/// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up above.
+/// Controls of an armhole, to the left of its chord, in chord lengths: it runs in below and up
+/// above.
 const ARMHOLE: [f64; 2] = [0.18, 0.08];
 /// The seat's height above the fork, as a share of the rise.
 pub(super) const SEAT: f64 = 0.35;
@@ -33,8 +37,8 @@ const FORK: f64 = 0.15;
 const LONG: f64 = 6.0;
 /// The point behind lies no lower than this share of the way from hem to fork.
 const LEAST_DROP: f64 = 0.7;
-/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is there, of the point; and of the inseam below the
-/// point.
+/// Controls of the rise: how far down it is straight, as a share of it, and how far out it is
+/// there, of the point; and of the inseam below the point.
 const STRAIGHT: f64 = 0.7;
 const HOLLOW: f64 = 0.15;
 const INNER: f64 = 0.15;
@@ -118,8 +122,8 @@ impl Cutting {
     }
 }
 
-/// The underarm of a sleeve that hangs beside the body, opened at the armpit, where the sleeve lies folded: it is as wide there as it is widest
-/// below. Nothing where it is so as it lies.
+/// The underarm of a sleeve that hangs beside the body, opened at the armpit, where the sleeve lies
+/// folded: it is as wide there as it is widest below. Nothing where it is so as it lies.
 fn opened(underarm: &Curve, top: &[Curve]) -> Option<Curve> {
     let above: Vec<Point2> = top.iter().flat_map(|c| c.points(PARTS)).collect();
     let nearest = |p: Point2| above.iter().copied().min_by(|a, b| (a - p).norm().total_cmp(&(b - p).norm()));
@@ -134,7 +138,8 @@ fn opened(underarm: &Curve, top: &[Curve]) -> Option<Curve> {
     Some(Curve([opened, opened + (cuff - opened) / 3.0, control, cuff]))
 }
 
-/// The upper border from cuff to neck, parted at the shoulder point; `armpit` is the armpit's distance from the axis.
+/// The upper border from cuff to neck, parted at the shoulder point; `armpit` is the armpit's
+/// distance from the axis.
 fn parted(upper: &[Curve], armpit: f64) -> [Vec<Curve>; 2] {
     let at = |s: f64| {
         let k = (s as usize).min(upper.len() - 1);
@@ -187,8 +192,9 @@ fn sleeve(side: &Side, edges: &[(&'static str, Run)], layer: Layer) -> Option<Fl
 
 /// The layer of a leg: inseam, hem, outseam, waist, and the rise along the middle of the garment.
 ///
-/// Trousers that lie flat hide what goes between the legs: the points of the fork lie folded under the other leg. A block gives them 15 % of the
-/// seat's girth, a third of it before and two behind (Aldrich 2008); what the fork shows beyond the seat's width is part of it.
+/// Trousers that lie flat hide what goes between the legs: the points of the fork lie folded under
+/// the other leg. A block gives them 15 % of the seat's girth, a third of it before and two behind
+/// (Aldrich 2008); what the fork shows beyond the seat's width is part of it.
 fn leg(side: &Side, layer: Layer) -> Flat {
     let edge = |name: &str| side.edges.iter().find(|e| e.0 == name).map(|e| e.1);
     let (low, high) = (side.edges[0].1.0[0], side.edges[side.edges.len() - 1].1.0[3]);

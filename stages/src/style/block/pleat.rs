@@ -1,8 +1,10 @@
-//! Pleats of a skirt that a photo shows laid: strips of cloth let into the piece from waist to hem, and the lines that are laid on each other.
+//! Pleats of a skirt that a photo shows laid: strips of cloth let into the piece from waist to hem,
+//! and the lines that are laid on each other.
 //!
-//! Waist and hem are parted at equal shares of their lengths; what lies beyond is moved out by the cloth of a pleat, so that every pleat is as wide
-//! below as above. The photo is laid over the piece as it lies: it is drawn apart over the pleats' cloth, as over gathers. Limit: a pattern in the photo is
-//! drawn apart as well.
+//! Waist and hem are parted at equal shares of their lengths; what lies beyond is moved out by the
+//! cloth of a pleat, so that every pleat is as wide below as above. The photo is laid over the
+//! piece as it lies: it is drawn apart over the pleats' cloth, as over gathers. Limit: a pattern in
+//! the photo is drawn apart as well.
 
 use super::curve::Curve;
 use super::flat::{Flat, Run, straight};
@@ -42,7 +44,8 @@ pub(super) struct Pleats {
 }
 
 impl Pleats {
-    /// The piece with its pleats; it has one edge `waist`, that runs towards negative u, and one `hem`, that runs back.
+    /// The piece with its pleats; it has one edge `waist`, that runs towards negative u, and one
+    /// `hem`, that runs back.
     pub(super) fn let_into(self, flat: Flat) -> Flat {
         let half = 0.5 * f64::from(self.count) * self.cloth;
         let (mut tops, mut feet) = (Vec::new(), Vec::new());
@@ -71,7 +74,8 @@ impl Pleats {
         Flat { lines: lines.collect(), edges, ..flat }
     }
 
-    /// The lines of a pleat: those that are sewn, and the edges at which the cloth is folded, down to the hem.
+    /// The lines of a pleat: those that are sewn, and the edges at which the cloth is folded, down
+    /// to the hem.
     fn lines(self, number: usize, tops: [Point2; 2], feet: [Point2; 2]) -> Vec<(String, [Point2; 2])> {
         let at = |[a, b]: [Point2; 2], share: f64| a + (b - a) * share;
         let length = (feet[0] - tops[0]).norm().max(f64::MIN_POSITIVE);
@@ -107,7 +111,8 @@ impl Pleats {
         lines
     }
 
-    /// A run whose parts are moved by `first`, and by `more` beyond each pleat, with the ends of the strips between them.
+    /// A run whose parts are moved by `first`, and by `more` beyond each pleat, with the ends of
+    /// the strips between them.
     fn parted(self, run: &Run, first: f64, more: f64) -> (Run, Vec<[Point2; 2]>) {
         let curves = run.curves();
         let lengths: Vec<f64> = curves.iter().map(Curve::length).collect();

@@ -84,7 +84,8 @@ fn rise(layer: &str) -> PatternSeam {
     seam("rise", [&leg("left"), "rise"], [&leg("right"), "rise"])
 }
 
-/// Two edges that run counter-clockwise and meet face to face: one of them is walked against its direction.
+/// Two edges that run counter-clockwise and meet face to face: one of them is walked against its
+/// direction.
 fn seam(word: &str, a: [&str; 2], b: [&str; 2]) -> PatternSeam {
     let one = |[panel, edge]: [&str; 2], reversed: bool| {
         vec![EdgeUse { edge: EdgeRef { panel: panel.to_owned(), edge: edge.to_owned() }, reversed }]

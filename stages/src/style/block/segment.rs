@@ -1,9 +1,11 @@
 //! Where the edges of a form begin and end on one half of an outline.
 //!
-//! Method: of all ways to cut the half into the form's edges, in their order, that with the least sum of squares is found by dynamic programming
-//! (Bellman 1961): each edge is the cubic bow that fits its stretch best, and what it misses and how unusual it is count. Far-off points count
-//! no more than three spreads, so that folds and rags shift no corner. Cost: the square of the number of points, a
-//! few milliseconds. Limits: corners lie on points of the outline; the fit to the whole moves them.
+//! Method: of all ways to cut the half into the form's edges, in their order, that with the least
+//! sum of squares is found by dynamic programming (Bellman 1961): each edge is the cubic bow that
+//! fits its stretch best, and what it misses and how unusual it is count. Far-off points count no
+//! more than three spreads, so that folds and rags shift no corner. Cost: the square of the number
+//! of points, a few milliseconds. Limits: corners lie on points of the outline; the fit to the
+//! whole moves them.
 
 use super::bow::{Bow, basis};
 use super::form::{EdgeForm, Form};
@@ -27,7 +29,8 @@ pub(super) struct Cut {
     pub cost: f64,
 }
 
-/// The best cut of a half whose points are evenly spaced; `size` is the garment's. `None` where the form's edges do not fit at all.
+/// The best cut of a half whose points are evenly spaced; `size` is the garment's. `None` where the
+/// form's edges do not fit at all.
 pub(super) fn cut(points: &[Point2], form: &Form, size: f64) -> Option<Cut> {
     let (n, edges) = (points.len(), form.edges.len());
     let mut best = vec![vec![(NEVER, 0_usize); n]; edges + 1];

@@ -1,8 +1,11 @@
-//! Legs that lie spread, stood under the hips: trousers are cut for legs that stand, however far apart they lie in the photo.
+//! Legs that lie spread, stood under the hips: trousers are cut for legs that stand, however far
+//! apart they lie in the photo.
 //!
-//! Method: below the seat, each height of a leg is moved towards the axis by as much as the leg leans out there: by the lesser slope of its
-//! middle line and its outseam, so that shorts and flared legs stay as they are. The hem is levelled with it. Heights stay, so that rise, inseam and outseam keep their lengths to a part in a hundred. Limit: how
-//! the cloth folds at the fork of spread legs is not known.
+//! Method: below the seat, each height of a leg is moved towards the axis by as much as the leg
+//! leans out there: by the lesser slope of its middle line and its outseam, so that shorts and
+//! flared legs stay as they are. The hem is levelled with it. Heights stay, so that rise, inseam
+//! and outseam keep their lengths to a part in a hundred. Limit: how the cloth folds at the fork of
+//! spread legs is not known.
 
 use super::bow::Bow;
 use super::fit::Fit;
@@ -11,7 +14,8 @@ use super::pieces::SEAT;
 use nalgebra::Rotation2;
 use toile_core::artifact::Point2;
 
-/// Trousers are so many times as wide at the fork as at the seat; what is wider there is cloth of the fork, which lies open between spread legs.
+/// Trousers are so many times as wide at the fork as at the seat; what is wider there is cloth of
+/// the fork, which lies open between spread legs.
 const WIDER: f64 = 1.03;
 
 /// Stands the legs of a fit under its hips; nothing for what has none.

@@ -1,4 +1,5 @@
-//! Where the pieces of a block stand around a body: as they lie, front before it and back behind it.
+//! Where the pieces of a block stand around a body: as they lie, front before it and back behind
+//! it.
 
 use super::flat::{Flat, Layer};
 use nalgebra::Rotation2;
@@ -19,7 +20,8 @@ pub(super) struct Stand {
 }
 
 impl Stand {
-    /// `top` is the height of neck or waist in the garment's frame, `landmark` that of the body which it hangs at.
+    /// `top` is the height of neck or waist in the garment's frame, `landmark` that of the body
+    /// which it hangs at.
     pub(super) fn of(body: &Body, landmark: &str, top: f64) -> Result<Stand, StageError> {
         let at = body.landmarks.get(landmark).ok_or_else(|| {
             StageError::invalid(format!(

@@ -1,4 +1,5 @@
-//! What is told of a fit: how far the outline strays from the template, and how unevenly the garment lies.
+//! What is told of a fit: how far the outline strays from the template, and how unevenly the
+//! garment lies.
 
 use super::Sides;
 use super::fit::Fit;
@@ -49,7 +50,8 @@ fn and(words: &[String]) -> String {
     }
 }
 
-/// Tells that one half alone looks like the garment; side 0 lies to the right as one looks at the photo.
+/// Tells that one half alone looks like the garment; side 0 lies to the right as one looks at the
+/// photo.
 pub(super) fn one_half(panel: &str, form: &Form, side: usize, cx: &Context) {
     let [seen, other] = if side == 0 { ["right", "left"] } else { ["left", "right"] };
     cx.warn(format!(

@@ -9,7 +9,8 @@ use proptest::prelude::*;
 mod halves;
 mod made_up;
 
-/// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below to above.
+/// A closed polygon, a point each 5 mm or so, from the corners of its right half in mm, from below
+/// to above.
 fn garment(half: &[[f64; 2]]) -> Vec<Point2> {
     let right = half.iter().map(|p| Point2::new(p[0] / 1e3, p[1] / 1e3));
     let left = half.iter().rev().filter(|p| p[0] > 0.0).map(|p| Point2::new(-p[0] / 1e3, p[1] / 1e3));
@@ -122,7 +123,8 @@ fn a_shirt_gets_pieces_of_its_own_lengths() {
         near(sleeve, "underarm", between(TEE, 2));
         near(sleeve, "cuff", between(TEE, 3));
     }
-    // The upper border as a whole; where shoulder and neck meet at a blunt corner, one may be longer and the other shorter by a centimetre.
+    // The upper border as a whole; where shoulder and neck meet at a blunt corner, one may be
+    // longer and the other shorter by a centimetre.
     let parts = [("left_sleeve_front", "top", 1.0), ("front", "shoulder_left", 1.0), ("front", "neck", 0.5)];
     let border: f64 = parts.iter().map(|(piece, edge, share)| share * length(&pattern, piece, edge)).sum();
     let want = between(TEE, 4) + between(TEE, 5) + between(TEE, 6);
@@ -162,7 +164,8 @@ fn pieces_know_their_place_in_the_photo() {
             assert!(miss < 5.0, "{name} {edge}: {miss:.1} px of a millimetre each");
         }
     }
-    // What no photo shows is the front seen in a mirror: the wearer's left sleeve lies where the photo has it.
+    // What no photo shows is the front seen in a mirror: the wearer's left sleeve lies where the
+    // photo has it.
     let middle = |name: &str| {
         let o = outlines.get(name).unwrap();
         let (lo, hi) = o.bounds();
@@ -259,7 +262,8 @@ fn trousers_are_closed_in_their_middle() {
     let names: Vec<&str> = pattern.pieces.iter().map(|p| p.name.as_str()).collect();
     assert_eq!(names, ["left_leg_front", "right_leg_front", "right_leg_back", "left_leg_back"]);
     assert_eq!(plan.seams.len(), 8);
-    // The points of the fork, which lie folded: 15 % of 4 x 228 mm around the seat, less what the fork is wider than the seat, twice 11 mm.
+    // The points of the fork, which lie folded: 15 % of 4 x 228 mm around the seat, less what the
+    // fork is wider than the seat, twice 11 mm.
     for (name, point) in names.into_iter().zip([38.0, 38.0, 76.0, 76.0]) {
         let corners = &pattern.piece(name).unwrap().outer.corners;
         let xs = corners.iter().map(|p| 1e3 * p.x);
@@ -378,7 +382,8 @@ proptest! {
     }
 }
 
-/// The mannequin that a garment is fitted to: its height and bust in cm, and what is told, notes first.
+/// The mannequin that a garment is fitted to: its height and bust in cm, and what is told, notes
+/// first.
 fn fitted_to(points: Vec<Point2>, style: BlockStyle) -> ([f64; 2], Vec<String>) {
     let cx = Context::quiet();
     let front = [("front".to_owned(), outline(points))].into_iter().collect();
@@ -429,7 +434,8 @@ fn arms_are_spread_as_the_sleeves_hang() {
     let mut level: Vec<[f64; 2]> = TEE.to_vec();
     (level[3], level[4]) = ([400.0, 420.0], [420.0, 580.0]);
     assert!(at(garment(&level)) > at(garment(TEE)) + 10.0, "{} {}", at(garment(&level)), at(garment(TEE)));
-    // The sleeves lie 58 degrees from the vertical; around a trunk with depth they hang 17 degrees lower.
+    // The sleeves lie 58 degrees from the vertical; around a trunk with depth they hang 17 degrees
+    // lower.
     assert!((at(garment(TEE)) - 41.0).abs() < 6.0, "{}", at(garment(TEE)));
 }
 

@@ -1,8 +1,9 @@
 //! The waist of a skirt: as its outline, gathered to a band, or laid in pleats.
 //!
-//! A gathered skirt that lies flat shows how long it is, and how wide at waist and hem; how much cloth its gathers hold it does not show. That is
-//! stated: `fullness` times the waist. The hem is as wide as the photo shows it, or as the gathered edge, if that is wider. The photo is laid over the
-//! skirt as it lies, so that its gathers are drawn apart.
+//! A gathered skirt that lies flat shows how long it is, and how wide at waist and hem; how much
+//! cloth its gathers hold it does not show. That is stated: `fullness` times the waist. The hem is
+//! as wide as the photo shows it, or as the gathered edge, if that is wider. The photo is laid over
+//! the skirt as it lies, so that its gathers are drawn apart.
 
 use super::curve::Curve;
 use super::flat::{Flat, Layer, Run, Side, straight};
@@ -133,7 +134,8 @@ struct Half {
     side: Run,
     /// From the side to the middle.
     top: Curve,
-    /// The band's lower edge, from the middle to its end; its end; its upper edge back to the middle.
+    /// The band's lower edge, from the middle to its end; its end; its upper edge back to the
+    /// middle.
     lower: Curve,
     end: Curve,
     upper: Curve,

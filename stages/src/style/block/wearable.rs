@@ -1,7 +1,7 @@
 //! Whether a body can wear the garment: known before anything is sewn.
 //!
-//! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at its armpits, its waist and hip, and its
-//! cuffs; what a closure would open is not known.
+//! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
+//! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
 use super::fit::Fit;
 use super::fitting::KEPT;
@@ -11,7 +11,8 @@ use toile_core::prelude::*;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
 const NARROWEST: f64 = 0.8;
-/// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin may lie, metres.
+/// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin
+/// may lie, metres.
 const SLICE: f64 = 0.012;
 const REACH: f64 = 0.08;
 /// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
@@ -87,7 +88,8 @@ fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
     found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
 }
 
-/// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is long.
+/// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is
+/// long.
 fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
     let cuff = form.underarm()? + 1;
     let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();

@@ -4,7 +4,8 @@ use super::super::finish::{Finish, Kind};
 use std::collections::{BTreeMap, BTreeSet};
 use toile_core::prelude::*;
 
-/// The finished edges of each panel of the garment; `ribs` and `stitches` are widths by an edge's name, alone or after that of its panel.
+/// The finished edges of each panel of the garment; `ribs` and `stitches` are widths by an edge's
+/// name, alone or after that of its panel.
 ///
 /// A name that no edge has is warned of: it costs the look of an edge, not the garment.
 ///

@@ -1,7 +1,8 @@
 //! `FabricTexturer`: cloth of a weave and a colour, for garments without photos.
 //!
-//! Every panel is covered by a small picture of cloth that repeats, upright along the panel's grain. Cost: one picture of `size` squared
-//! pixels a kind of cloth. Limit: stripes and checks of two panels do not meet at their seam; each panel's begin at its own origin.
+//! Every panel is covered by a small picture of cloth that repeats, upright along the panel's
+//! grain. Cost: one picture of `size` squared pixels a kind of cloth. Limit: stripes and checks of
+//! two panels do not meet at their seam; each panel's begin at its own origin.
 
 mod edges;
 #[cfg(test)]
@@ -50,8 +51,9 @@ pub enum FabricTexture {
 
 /// Dresses every panel in cloth of a weave and a colour.
 ///
-/// For patterns, which come without photos. The cloth lies along the grain: the y axis of the flat panel. Its picture repeats, so texture
-/// coordinates go beyond 0 to 1. A panel with a rib or a stitched hem has a picture of its own, in which nothing is smaller than 0.4 mm.
+/// For patterns, which come without photos. The cloth lies along the grain: the y axis of the flat
+/// panel. Its picture repeats, so texture coordinates go beyond 0 to 1. A panel with a rib or a
+/// stitched hem has a picture of its own, in which nothing is smaller than 0.4 mm.
 #[stage(
     role = Texturer,
     version = 4,
@@ -63,11 +65,12 @@ pub struct FabricTexturer {
     /// What the cloth looks like.
     #[param(default = FabricTexture::Auto)]
     texture: FabricTexture,
-    /// Colour of the cloth, of denim's warp or of the first band, as `#rrggbb` (sRGB); indigo for denim, else natural white where it is not
-    /// given.
+    /// Colour of the cloth, of denim's warp or of the first band, as `#rrggbb` (sRGB); indigo for
+    /// denim, else natural white where it is not given.
     #[param(default = None)]
     colour: Option<String>,
-    /// Colour of denim's weft or of the second band, as `#rrggbb` (sRGB); white where it is not given.
+    /// Colour of denim's weft or of the second band, as `#rrggbb` (sRGB); white where it is not
+    /// given.
     #[param(default = None)]
     second: Option<String>,
     /// Width of both bands of a check or a stripe together; 2 cm where it is not given.
@@ -79,10 +82,12 @@ pub struct FabricTexturer {
     /// Thickness of open edges, as of a hem, neckline or cuff that is turned under; 0 for none.
     #[param(default = Length::mm(2.0), min = 0.0, max = 0.02)]
     edge: Length,
-    /// Edges that are bound with a knitted rib, by their names in the pattern, and its width: `{"neck": "20 mm", "left_cuff.wrist": "6 cm"}`.
+    /// Edges that are bound with a knitted rib, by their names in the pattern, and its width:
+    /// `{"neck": "20 mm", "left_cuff.wrist": "6 cm"}`.
     #[param(default = BTreeMap::new(), min = 0.002, max = 0.3)]
     ribs: BTreeMap<String, Length>,
-    /// Edges that are turned under and stitched, by their names in the pattern, and the distance of the stitches: `{"hem": "25 mm"}`.
+    /// Edges that are turned under and stitched, by their names in the pattern, and the distance of
+    /// the stitches: `{"hem": "25 mm"}`.
     #[param(default = BTreeMap::new(), min = 0.002, max = 0.3)]
     stitches: BTreeMap<String, Length>,
     /// Whether the body stands in the model.
@@ -97,7 +102,8 @@ pub struct FabricTexturer {
     /// The soft shine of fibres at grazing angles, as a share of white.
     #[param(default = parts::SHEEN, min = 0.0, max = 1.0)]
     sheen: f64,
-    /// Further looks of the model by name, each with its `colour`: `{"red": "#a03028"}`. The look without them is then named `original`.
+    /// Further looks of the model by name, each with its `colour`: `{"red": "#a03028"}`. The look
+    /// without them is then named `original`.
     #[param(default = BTreeMap::new())]
     variants: BTreeMap<String, String>,
 }
@@ -155,7 +161,8 @@ impl FabricTexturer {
         self.fault().into_iter().collect()
     }
 
-    /// Names of edges that the pattern's file lacks, where a file makes the outlines: reading it is quick.
+    /// Names of edges that the pattern's file lacks, where a file makes the outlines: reading it is
+    /// quick.
     fn warnings(&self, placed: &Placed<'_>) -> Vec<StageError> {
         let makes_outlines = |n: &&toile_core::Node| n.card.outputs.iter().any(|o| o.kind == Outline::KIND);
         let is_reader = |n: &&toile_core::Node| n.card.inputs.is_empty();
@@ -181,7 +188,8 @@ impl FabricTexturer {
 }
 
 impl FabricTexturer {
-    /// What is seen: a picture of each kind of cloth that repeats, then one of each panel with finished edges.
+    /// What is seen: a picture of each kind of cloth that repeats, then one of each panel with
+    /// finished edges.
     fn pictures(
         &self,
         dress: &Dress<'_>,

@@ -50,7 +50,8 @@ impl Buffer {
         self.accessor(accessor)
     }
 
-    /// Appends positions of 16 bits a coordinate, each row filled up to eight bytes; returns the accessor's index.
+    /// Appends positions of 16 bits a coordinate, each row filled up to eight bytes; returns the
+    /// accessor's index.
     pub(super) fn shorts(&mut self, rows: Vec<[i16; 3]>) -> usize {
         let row = |[x, y, z]: &[i16; 3]| [*x, *y, *z, 0];
         let bytes: Vec<u8> = rows.iter().flat_map(row).flat_map(i16::to_le_bytes).collect();
@@ -61,7 +62,8 @@ impl Buffer {
         }))
     }
 
-    /// Appends vectors of 8 bits a coordinate, each row filled up to four bytes; returns the accessor's index.
+    /// Appends vectors of 8 bits a coordinate, each row filled up to four bytes; returns the
+    /// accessor's index.
     pub(super) fn bytes_of_vectors<const N: usize>(&mut self, rows: Vec<[i8; N]>, kind: &str) -> usize {
         let row = |r: &[i8; N]| -> [i8; 4] { std::array::from_fn(|k| r.get(k).copied().unwrap_or(0)) };
         let bytes: Vec<u8> = rows.iter().flat_map(row).flat_map(i8::to_le_bytes).collect();
@@ -77,7 +79,8 @@ impl Buffer {
         view
     }
 
-    /// Appends triangles; 16 bits suffice for up to 65,535 vertices (the last value restarts a strip).
+    /// Appends triangles; 16 bits suffice for up to 65,535 vertices (the last value restarts a
+    /// strip).
     pub(super) fn indices(&mut self, triangles: &[[u32; 3]], vertices: usize) -> usize {
         let flat = triangles.iter().flatten();
         let (bytes, kind): (Vec<u8>, u32) = match vertices <= usize::from(u16::MAX) {

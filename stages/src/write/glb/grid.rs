@@ -1,6 +1,7 @@
 //! Positions as whole numbers (`KHR_mesh_quantization`, Khronos, 2020).
 //!
-//! All meshes stand on one grid of 65,535 places to a side, so that seams stay closed; the nodes bring it back to metres.
+//! All meshes stand on one grid of 65,535 places to a side, so that seams stay closed; the nodes
+//! bring it back to metres.
 
 use toile_core::artifact::{Model, Point3};
 

@@ -1,10 +1,11 @@
 //! `Glb`: the model as binary glTF 2.0 (Khronos, 2017; ISO/IEC 12113).
 //!
-//! One node and one mesh a panel (two where its wrong side looks unlike the right one), one buffer; textures lie in the same file. Positions, normals and texture
-//! coordinates are 32-bit floats (or whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses, where they are needed,
-//! `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`, `KHR_materials_variants` and `KHR_mesh_quantization`. Tangents of normal
-//! maps are written, so that every viewer reads the map in the same frame.
-//! Cost: the encoding of the textures. Limit: 4 GiB, the format's own.
+//! One node and one mesh a panel (two where its wrong side looks unlike the right one), one buffer;
+//! textures lie in the same file. Positions, normals and texture coordinates are 32-bit floats (or
+//! whole numbers, [`grid`]), indices 16 or 32 bits. Of Khronos' extensions it uses, where they are
+//! needed, `KHR_materials_unlit` for *replace*, `KHR_materials_sheen`, `KHR_materials_variants` and
+//! `KHR_mesh_quantization`. Tangents of normal maps are written, so that every viewer reads the map
+//! in the same frame. Cost: the encoding of the textures. Limit: 4 GiB, the format's own.
 
 mod buffer;
 mod grid;
@@ -29,8 +30,9 @@ use toile_core::prelude::*;
 
 /// Writes the model as one GLB file that any glTF viewer opens.
 ///
-/// Metres, Y up, the wearer faces +Z. Textures are embedded, with normal maps and their tangents, sheen and variants where the model has
-/// them. `asset.extras` names the unit, the fabrics and the digest of the model.
+/// Metres, Y up, the wearer faces +Z. Textures are embedded, with normal maps and their tangents,
+/// sheen and variants where the model has them. `asset.extras` names the unit, the fabrics and the
+/// digest of the model.
 #[stage(
     role = Writer,
     version = 3,
@@ -51,12 +53,13 @@ pub struct Glb {
     /// Whether the body is written, where the model has one.
     #[param(default = true)]
     body: bool,
-    /// Whether both sides of textures are brought to powers of two, as old graphics cards want them: to the next one, or to the one below
-    /// where that takes off a fifth at most.
+    /// Whether both sides of textures are brought to powers of two, as old graphics cards want
+    /// them: to the next one, or to the one below where that takes off a fifth at most.
     #[param(default = true)]
     power_of_two: bool,
-    /// Whether positions, normals and tangents are written as whole numbers of 16 and 8 bits: a third of the size, to a 65,534th of the
-    /// model's largest side. Viewers without `KHR_mesh_quantization` do not open such a file.
+    /// Whether positions, normals and tangents are written as whole numbers of 16 and 8 bits: a
+    /// third of the size, to a 65,534th of the model's largest side. Viewers without
+    /// `KHR_mesh_quantization` do not open such a file.
     #[param(default = false)]
     quantise: bool,
     /// Who holds the rights to the file: `asset.copyright`.

@@ -1,9 +1,10 @@
 //! `Origin`: where every triangle of the garment comes from, for `toile why RESULT --face N`.
 //!
-//! Written beside the results as `origin.json`: for each panel its flat vertices, their pixels in the photo, the
-//! triangles, and the named edges of its outline. [`trace`] reads it back together with a result.
-//! Cost: one pass over the garment. Limit: the result's triangles must stand in the garment's order,
-//! as the writers of this crate leave them; where the counts say otherwise the trace is refused.
+//! Written beside the results as `origin.json`: for each panel its flat vertices, their pixels in
+//! the photo, the triangles, and the named edges of its outline. [`trace`] reads it back together
+//! with a result. Cost: one pass over the garment. Limit: the result's triangles must stand in the
+//! garment's order, as the writers of this crate leave them; where the counts say otherwise the
+//! trace is refused.
 
 mod result;
 mod trace;
@@ -19,7 +20,8 @@ pub const FILE: &str = "origin.json";
 
 /// Writes where every triangle comes from: panel, place in the panel, outline edge and photo pixel.
 ///
-/// Every pipeline that makes a garment has it; `toile why out/vest/garment.glb --face 100` reads it.
+/// Every pipeline that makes a garment has it; `toile why out/vest/garment.glb --face 100` reads
+/// it.
 #[stage(
     role = Writer,
     version = 2,
@@ -61,7 +63,8 @@ pub(super) struct PanelOrigin {
     /// Pixels in the photo, one a vertex, or none.
     pub(super) pixels: Vec<[f64; 2]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Named edges of the outline as chains of flat places, metres: the garment's mesh may be a finer one than the panel's.
+    /// Named edges of the outline as chains of flat places, metres: the garment's mesh may be a
+    /// finer one than the panel's.
     pub(super) edges: Vec<(String, Vec<[f64; 2]>)>,
 }
 
@@ -74,7 +77,8 @@ pub(super) struct PhotoOrigin {
     pub(super) mirrored: bool,
 }
 
-/// Rounds to a hundredth of a millimetre, or of a pixel: what is finer says nothing, and makes the file twice as long.
+/// Rounds to a hundredth of a millimetre, or of a pixel: what is finer says nothing, and makes the
+/// file twice as long.
 fn rounded(x: f64, unit: f64) -> f64 {
     (x / unit).round() / (1.0 / unit).round()
 }

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-/// A mesh of a GLB file or a group of an OBJ file: name and number of triangles, in the order of the file.
+/// A mesh of a GLB file or a group of an OBJ file: name and number of triangles, in the order of
+/// the file.
 pub(super) type Group = (String, usize);
 
 /// The groups of a file of that extension that hold triangles.

@@ -13,16 +13,18 @@ pub struct Trace {
     pub triangle: usize,
     /// Its centre in the flat panel, metres: x to the right, y up, as seen from outside the wearer.
     pub place: [f64; 2],
-    /// The nearest named edge of the outline and the distance to it, metres; none where no edge has a name.
+    /// The nearest named edge of the outline and the distance to it, metres; none where no edge has
+    /// a name.
     pub edge: Option<(String, f64)>,
-    /// The photo's file and the pixel of the centre, x to the right and y down; none without a photo.
+    /// The photo's file and the pixel of the centre, x to the right and y down; none without a
+    /// photo.
     pub photo: Option<(String, [f64; 2])>,
     /// True where the panel is the photo's mirror image.
     pub mirrored: bool,
 }
 
-/// Follows triangle `face` (from 0, in the order of the file) of a result back; `origin` is the content of the `origin.json`
-/// beside it, `extension` that of the result.
+/// Follows triangle `face` (from 0, in the order of the file) of a result back; `origin` is the
+/// content of the `origin.json` beside it, `extension` that of the result.
 ///
 /// Errors: what is wrong, one sentence.
 pub fn trace(origin: &[u8], result: &[u8], extension: &str, face: usize) -> Result<Trace, String> {

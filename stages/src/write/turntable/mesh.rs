@@ -1,4 +1,5 @@
-//! The model's mesh for the page: positions in 65,536 steps, triangles as differences of vertex numbers.
+//! The model's mesh for the page: positions in 65,536 steps, triangles as differences of vertex
+//! numbers.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

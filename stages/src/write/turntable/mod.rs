@@ -1,8 +1,9 @@
 //! `Turntable`: the model from all sides, in one page that any browser opens.
 //!
-//! Views around the model are rendered once; between them the page finds through the mesh which pixel of the nearest views each place is
-//! (view interpolation: Chen, Williams 1993; with a mesh in between: Buehler and others 2001), or moves the pixels of the nearest views along
-//! the flow that block matching finds between them (`flow`). What the page holds is set down in
+//! Views around the model are rendered once; between them the page finds through the mesh which
+//! pixel of the nearest views each place is (view interpolation: Chen, Williams 1993; with a mesh
+//! in between: Buehler and others 2001), or moves the pixels of the nearest views along the flow
+//! that block matching finds between them (`flow`). What the page holds is set down in
 //! `docs/reference/turntable.md`. Cost: one picture a view. Limits: 255 parts, 2040 px of width.
 
 mod flow;
@@ -51,15 +52,18 @@ const QUALITY_STEP: u8 = 5;
 pub enum Interpolation {
     /// The mesh says which pixels of the nearest views each place is.
     Depth,
-    /// Pixels of the nearest views move along the flow between them, found by block matching, and are blended: far outlines are double.
+    /// Pixels of the nearest views move along the flow between them, found by block matching, and
+    /// are blended: far outlines are double.
     Flow,
 }
 
-/// Writes one page that shows the model from all sides: drag to turn it, zoom into it; no network, no WebGL.
+/// Writes one page that shows the model from all sides: drag to turn it, zoom into it; no network,
+/// no WebGL.
 ///
-/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the nearest views do. `interpolate: Flow` moves
-/// pixels from view to view instead, without the mesh: a larger page, made in about twice the time, and less exact. A click on the model
-/// dispatches the event `toile:pick` with part, triangle and barycentric coordinates.
+/// The page holds the mesh and rendered views; between views it shows each place of the mesh as the
+/// nearest views do. `interpolate: Flow` moves pixels from view to view instead, without the mesh:
+/// a larger page, made in about twice the time, and less exact. A click on the model dispatches the
+/// event `toile:pick` with part, triangle and barycentric coordinates.
 #[stage(
     role = Writer,
     version = 3,
@@ -86,7 +90,8 @@ pub struct Turntable {
     /// The page's size that the quality is lowered for, at most to 30.
     #[param(default = 2000, min = 50, max = 100_000, unit = "kB")]
     page: usize,
-    /// A panorama that surrounds the model and lights it: a picture twice as wide as high, of which the middle is seen behind the wearer.
+    /// A panorama that surrounds the model and lights it: a picture twice as wide as high, of which
+    /// the middle is seen behind the wearer.
     #[param(default = None)]
     panorama: Option<String>,
     /// How the page shows what lies between two views.

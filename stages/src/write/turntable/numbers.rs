@@ -1,6 +1,7 @@
 //! Whole numbers in few bytes while they are small.
 
-/// Adds a number with its sign in the lowest bit (zigzag), seven bits a byte, low bits first (LEB128).
+/// Adds a number with its sign in the lowest bit (zigzag), seven bits a byte, low bits first
+/// (LEB128).
 pub(super) fn push(bytes: &mut Vec<u8>, number: i64) {
     let mut z = ((number << 1) ^ (number >> 63)) as u64;
     while z > 127 {

@@ -1,7 +1,8 @@
-//! Rendered views as image sheets: of each view only the blocks of 8 x 8 px that the model is in, one after the other.
+//! Rendered views as image sheets: of each view only the blocks of 8 x 8 px that the model is in,
+//! one after the other.
 //!
-//! A page that has the mesh needs no transparency: beyond the model's outline its colours go on, so that neither JPEG nor reading between
-//! pixels mixes them with a background.
+//! A page that has the mesh needs no transparency: beyond the model's outline its colours go on, so
+//! that neither JPEG nor reading between pixels mixes them with a background.
 
 use image::codecs::jpeg::JpegEncoder;
 use image::{ImageBuffer, PixelWithColorType, Rgb, RgbImage, RgbaImage};
@@ -11,7 +12,8 @@ use toile_core::StageError;
 pub(super) const BLOCK: u32 = 8;
 /// Blocks in a row of a sheet.
 pub(super) const SHEET_BLOCKS: u32 = 64;
-/// Blocks this near to the model are kept as well, px: reading between pixels reaches beyond its outline.
+/// Blocks this near to the model are kept as well, px: reading between pixels reaches beyond its
+/// outline.
 const AROUND: u32 = 3;
 /// How far colours are spread softly beyond the outline, px; farther out a row goes on as it is.
 const SPREAD: u32 = 8;

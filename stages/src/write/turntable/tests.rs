@@ -33,7 +33,8 @@ fn all_of_the_garment_is_in_every_view() {
     let model = dress::model();
     let orbit = Orbit::around(&model, 72, 96, TIERS[2]);
     for view in Scene::draft(&model).cut_outs(&orbit, 0.3, &[0.0]) {
-        // The suite's mannequin runs out of the picture, its garment does not: nothing of it is at the sides.
+        // The suite's mannequin runs out of the picture, its garment does not: nothing of it is at
+        // the sides.
         assert!((0..96).all(|y| view.get_pixel(0, y).0[3] == 0 && view.get_pixel(71, y).0[3] == 0));
         assert!(view.pixels().any(|p| p.0[3] == 255));
     }
@@ -76,7 +77,8 @@ fn flow_brings_vectors_for_all_neighbours_and_the_script_that_reads_them() {
     let found = data(&flow);
     assert_eq!(found["covers"].as_array().unwrap().len(), 1);
     assert_eq!((found["flow"]["block"].as_u64(), found["flow"]["parts"].as_u64()), (Some(16), Some(4)));
-    // Right, left and one more: each of 8 views has three fields, of all blocks that the spans touch.
+    // Right, left and one more: each of 8 views has three fields, of all blocks that the spans
+    // touch.
     let spans = STANDARD.decode(found["spans"].as_str().unwrap()).unwrap();
     let blocks = |view: &[u8]| -> usize {
         let rows = view.as_chunks::<4>().0;

@@ -1,7 +1,9 @@
-//! `Usdz`: the model as USDZ, a scene of Universal Scene Description with its textures in one archive (Pixar, 2018).
+//! `Usdz`: the model as USDZ, a scene of Universal Scene Description with its textures in one
+//! archive (Pixar, 2018).
 //!
-//! The scene is written as text (USDA), the surfaces as `UsdPreviewSurface`. Cost: the encoding of the textures and some 60 bytes of text
-//! a vertex. Limits: 4 GiB; `UsdPreviewSurface` has no sheen, and *replace* becomes light of the surface's own.
+//! The scene is written as text (USDA), the surfaces as `UsdPreviewSurface`. Cost: the encoding of
+//! the textures and some 60 bytes of text a vertex. Limits: 4 GiB; `UsdPreviewSurface` has no
+//! sheen, and *replace* becomes light of the surface's own.
 
 mod materials;
 mod scene;
@@ -22,7 +24,8 @@ use toile_core::prelude::*;
 
 /// Writes the model as one USDZ file, which phones and USD programs open.
 ///
-/// Metres, Y up, the wearer faces +Z. The scene and its textures lie in an archive without compression; normal maps and variants are kept.
+/// Metres, Y up, the wearer faces +Z. The scene and its textures lie in an archive without
+/// compression; normal maps and variants are kept.
 #[stage(
     role = Writer,
     source = "Pixar, Usdz file format specification, 2018",

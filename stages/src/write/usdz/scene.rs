@@ -13,7 +13,8 @@ pub(super) struct About<'a> {
     pub(super) digest: String,
 }
 
-/// Decimals of metres and of texture coordinates: a thousandth of a millimetre, a fiftieth of a texel.
+/// Decimals of metres and of texture coordinates: a thousandth of a millimetre, a fiftieth of a
+/// texel.
 const METRES: usize = 6;
 const TEXTURE: usize = 5;
 

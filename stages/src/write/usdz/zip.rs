@@ -1,7 +1,9 @@
-//! A ZIP archive without compression, as USDZ asks for (Pixar, *Usdz file format specification*, 2018; PKWARE, *APPNOTE*, 6.3).
+//! A ZIP archive without compression, as USDZ asks for (Pixar, *Usdz file format specification*,
+//! 2018; PKWARE, *APPNOTE*, 6.3).
 //!
-//! The data of each file begins at a multiple of 64 bytes, so that programs map it into memory as it is: the extra field of its header is
-//! filled up. Times are those of no clock (1 January 1980). Limits: 4 GiB, and 65,535 files.
+//! The data of each file begins at a multiple of 64 bytes, so that programs map it into memory as
+//! it is: the extra field of its header is filled up. Times are those of no clock (1 January 1980).
+//! Limits: 4 GiB, and 65,535 files.
 
 use toile_core::StageError;
 
@@ -62,7 +64,8 @@ fn shared_fields(path: &str, data: &[u8], size: u32) -> Vec<u8> {
     [short, long, (path.len() as u16).to_le_bytes().to_vec()].concat()
 }
 
-/// An extra field after which the data, which would begin at `at`, is aligned; empty where it is without one.
+/// An extra field after which the data, which would begin at `at`, is aligned; empty where it is
+/// without one.
 fn filling(at: usize) -> Vec<u8> {
     let missing = at.next_multiple_of(ALIGNMENT) - at;
     if missing == 0 {

@@ -110,7 +110,8 @@ pub(crate) struct MapArgs {
     /// Values of the time step and of the stiffness [default: 9]
     #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=60))]
     pub(crate) cells: Option<usize>,
-    /// Edges along the side of 10 cm, about; may be given again [default: 2, 6 and 14: edges of 29, 14 and 7 mm]
+    /// Edges along the side of 10 cm, about; may be given again [default: 2, 6 and 14: edges of 29,
+    /// 14 and 7 mm]
     #[arg(long, value_name = "COUNT", requires = "map", value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=64))]
     pub(crate) along: Vec<usize>,
     /// The error that the quickest cell keeps, in lengths of the sheet [default: 0.001]

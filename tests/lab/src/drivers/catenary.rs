@@ -1,4 +1,5 @@
-//! A strip between two level edges, let go near its state of rest and damped about critically: length 1, gravity 1, density 1.
+//! A strip between two level edges, let go near its state of rest and damped about critically:
+//! length 1, gravity 1, density 1.
 
 use super::way::Way;
 use super::{Options, Ran, Run, Solve, go_on};

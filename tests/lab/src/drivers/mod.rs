@@ -1,10 +1,13 @@
-//! The two drivers of cost that Fan et al. (1999) and the improved spring-mass model of 2003 name: the number of particles and the time
-//! step, each against processor time and error, for every solver and for springs beside finite elements.
+//! The two drivers of cost that Fan et al. (1999) and the improved spring-mass model of 2003 name:
+//! the number of particles and the time step, each against processor time and error, for every
+//! solver and for springs beside finite elements.
 //!
-//! Two scenes with exact references: a hanging strip's slowest swing ([`hanging_swing`](super::reference::hanging_swing)), where the error
-//! is that of a motion over one period, and a strip between two supports ([`catenary`](super::reference::catenary())), where it is that of
-//! the state of rest. One driver is turned while the other stays: particles at a fixed step, steps at a fixed mesh. Powers are
-//! fitted by least squares in the logarithms; a power near 0 says that the other driver holds the error.
+//! Two scenes with exact references: a hanging strip's slowest swing
+//! ([`hanging_swing`](super::reference::hanging_swing)), where the error is that of a motion over
+//! one period, and a strip between two supports ([`catenary`](super::reference::catenary())), where
+//! it is that of the state of rest. One driver is turned while the other stays: particles at a
+//! fixed step, steps at a fixed mesh. Powers are fitted by least squares in the logarithms; a power
+//! near 0 says that the other driver holds the error.
 
 mod catenary;
 mod fit;
@@ -39,7 +42,8 @@ const SHORT: f64 = 0.2;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Scene {
-    /// One period of the slowest swing of a hanging strip; error: greatest root mean square distance over the swing's.
+    /// One period of the slowest swing of a hanging strip; error: greatest root mean square
+    /// distance over the swing's.
     Swing,
     /// A strip that sags between two supports; error: of its sag, in lengths.
     Catenary,

@@ -1,4 +1,5 @@
-//! One period of the slowest swing of a strip that hangs from its upper edge: length 1, gravity 1, density 1.
+//! One period of the slowest swing of a strip that hangs from its upper edge: length 1, gravity 1,
+//! density 1.
 
 use super::way::Way;
 use super::{Options, Ran, Run, Solve, go_on};

@@ -15,7 +15,8 @@ const LONG_STEP: f64 = 0.016;
 pub struct Way {
     /// The solver; none for static Newton.
     pub scheme: Option<Scheme>,
-    /// Woven finite elements, or springs; XPBD, projective dynamics and `StaticEquilibrium` have their own.
+    /// Woven finite elements, or springs; XPBD, projective dynamics and `StaticEquilibrium` have
+    /// their own.
     pub membrane: Membrane,
 }
 

@@ -24,7 +24,8 @@ const LAST: f64 = 0.1;
 const BLOWN: f64 = 100.0;
 /// A long time step still gets so many steps.
 const LEAST_STEPS: f64 = 40.0;
-/// The clock ends a cell after so many times its nominal time: Newton's method may need many iterations.
+/// The clock ends a cell after so many times its nominal time: Newton's method may need many
+/// iterations.
 const PATIENCE: f64 = 10.0;
 
 /// How a cell ended.
@@ -66,7 +67,8 @@ pub struct Cell {
     /// How it ended.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// Greatest distance from the converged answer, in lengths of the sheet; none where nothing came out.
+    /// Greatest distance from the converged answer, in lengths of the sheet; none where nothing
+    /// came out.
     pub error: Option<f64>,
     /// Greatest speed in the last tenth of the time, m/s.
     pub speed: Option<f64>,

@@ -11,7 +11,8 @@ use toile_cloth::solver::{CentralDifferences, Model, Solver, State, Static};
 
 /// Side of the sheet, m.
 pub const SIDE: f64 = 0.1;
-/// Time that a cell runs, in times of one radian of the slowest swing; motion then has died to a few millionths.
+/// Time that a cell runs, in times of one radian of the slowest swing; motion then has died to a
+/// few millionths.
 pub const DECAY: f64 = 12.0;
 /// kg/m².
 const DENSITY: f64 = 0.15;

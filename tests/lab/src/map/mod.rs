@@ -1,12 +1,16 @@
-//! Where each solver holds: its time step against the cloth's stiffness and the mesh's edge length, on a hung sheet let go.
+//! Where each solver holds: its time step against the cloth's stiffness and the mesh's edge length,
+//! on a hung sheet let go.
 //!
-//! A sheet of [`SIDE`] hangs by its upper edge, is held out at an angle and let go; drag damps its slowest swing about
-//! critically, and [`DECAY`] times that swing's time later it must be at rest where [`Static`](toile_cloth::solver::Static) finds the
-//! equilibrium of the same mesh and models ([`Cell`] says what came of it). Explicit steps have a limit, `2 / omega_max` of the
-//! assembled stiffness and masses (Courant, Friedrichs, Lewy, 1928); it stands beside every cell, for the other solvers to be compared with.
+//! A sheet of [`SIDE`] hangs by its upper edge, is held out at an angle and let go; drag damps its
+//! slowest swing about critically, and [`DECAY`] times that swing's time later it must be at rest
+//! where [`Static`](toile_cloth::solver::Static) finds the equilibrium of the same mesh and models
+//! ([`Cell`] says what came of it). Explicit steps have a limit, `2 / omega_max` of the assembled
+//! stiffness and masses (Courant, Friedrichs, Lewy, 1928); it stands beside every cell, for the
+//! other solvers to be compared with.
 //!
-//! A cell's cost is bounded before it runs, by its steps, its triangles and what a step of the solver costs about ([`Scheme::price`]),
-//! and again by a clock while it runs. The grids are even in the logarithm.
+//! A cell's cost is bounded before it runs, by its steps, its triangles and what a step of the
+//! solver costs about ([`Scheme::price`]), and again by a clock while it runs. The grids are even
+//! in the logarithm.
 
 mod cell;
 mod csv;
@@ -44,7 +48,8 @@ pub struct Options {
     pub schemes: Vec<Scheme>,
     /// Values of the time step and of the stiffness, 2 or more.
     pub cells: usize,
-    /// Edges along the side of the sheet, about: one map each. Rows of nearly equilateral triangles may take some more.
+    /// Edges along the side of the sheet, about: one map each. Rows of nearly equilateral triangles
+    /// may take some more.
     pub along: Vec<usize>,
     /// The error that the quickest cell must keep, in lengths of the sheet.
     pub keep: f64,
@@ -126,7 +131,8 @@ pub fn map(options: &Options, progress: &mut Progress<'_>) -> Result<Map, ClothE
     Ok(map)
 }
 
-/// All solvers and steps on one sheet; `shares` are how much of the whole is done, and how much this is.
+/// All solvers and steps on one sheet; `shares` are how much of the whole is done, and how much
+/// this is.
 fn row(
     options: &Options,
     hung: &Hung,

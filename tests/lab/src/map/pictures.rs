@@ -1,4 +1,5 @@
-//! Stability maps: time step against stiffness, a panel an edge length, with the theoretical limit drawn over it.
+//! Stability maps: time step against stiffness, a panel an edge length, with the theoretical limit
+//! drawn over it.
 
 use super::{Cell, Map, Outcome, Scheme};
 use toile_trade::digits::to_digits;

@@ -103,7 +103,8 @@ impl Scheme {
         self != Self::Rest
     }
 
-    /// About what a step costs, s a triangle on one core of 2020: bounds how long a cell runs, the same on every machine.
+    /// About what a step costs, s a triangle on one core of 2020: bounds how long a cell runs, the
+    /// same on every machine.
     #[must_use]
     pub fn price(self) -> f64 {
         match self {
@@ -115,7 +116,8 @@ impl Scheme {
         }
     }
 
-    /// The solver for steps of `dt` (s), implicit ones to this largest force (N); none for `StaticEquilibrium`.
+    /// The solver for steps of `dt` (s), implicit ones to this largest force (N); none for
+    /// `StaticEquilibrium`.
     pub(crate) fn solver(
         self,
         cloth: &Cloth<'_>,

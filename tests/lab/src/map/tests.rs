@@ -30,7 +30,8 @@ fn explicit_steps_end_at_their_theoretical_limit() {
         for row in rows(&map, scheme) {
             let Some([last, first]) = border(row) else { continue };
             let limit = row[0].limit;
-            // The sheet stiffens a little in its swing, so the border may lie just under the limit of the start.
+            // The sheet stiffens a little in its swing, so the border may lie just under the limit
+            // of the start.
             assert!(
                 last < limit && limit < 1.1 * first,
                 "{scheme:?}: {last:e} to {first:e}, limit {limit:e}"

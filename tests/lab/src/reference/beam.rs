@@ -1,7 +1,8 @@
 //! The heavy elastica: a strip clamped level at one end, hanging under its own weight.
 //!
-//! With the angle phi from the vertical and u the arc length from the tip, `phi'' = Gamma u sin phi`, `phi'(0) = 0`,
-//! `phi(1) = pi/2`. Shooting from the tip is monotone in the logarithm of phi(0), so bisection finds it for any load.
+//! With the angle phi from the vertical and u the arc length from the tip,
+//! `phi'' = Gamma u sin phi`, `phi'(0) = 0`, `phi(1) = pi/2`. Shooting from the tip is monotone in
+//! the logarithm of phi(0), so bisection finds it for any load.
 
 use super::root;
 
@@ -29,7 +30,8 @@ pub fn cantilever(gamma: f64) -> Elastica {
     Elastica { drop, reach, tip_angle: half_pi - start }
 }
 
-/// Integrates (phi, phi', integral of cos phi, integral of sin phi) from the tip to the clamp; stops turning past 2 rad.
+/// Integrates (phi, phi', integral of cos phi, integral of sin phi) from the tip to the clamp;
+/// stops turning past 2 rad.
 fn shoot(gamma: f64, start: f64) -> [f64; 4] {
     let rate = |u: f64, y: &[f64; 4]| [y[1], gamma * u * y[0].sin(), y[0].cos(), y[0].sin()];
     let h = 1.0 / STEPS as f64;

@@ -1,4 +1,5 @@
-//! The elastic catenary: a strip of rest length 1 and weight 1 held at two level edges (Irvine, 1981).
+//! The elastic catenary: a strip of rest length 1 and weight 1 held at two level edges (Irvine,
+//! 1981).
 
 use super::root;
 
@@ -13,7 +14,8 @@ pub struct Catenary {
     pub support: f64,
 }
 
-/// For supports `span` apart (below 1, or at any distance if `beta > 0`), `beta` = weight over stiffness; linear law of engineering strain.
+/// For supports `span` apart (below 1, or at any distance if `beta > 0`), `beta` = weight over
+/// stiffness; linear law of engineering strain.
 #[must_use]
 pub fn catenary(span: f64, beta: f64) -> Catenary {
     let miss = |h: f64| h * beta + 2.0 * h * (0.5 / h).asinh() - span;

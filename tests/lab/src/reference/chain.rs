@@ -1,8 +1,10 @@
-//! A hanging cantilever as a chain: rigid links with an elastic joint between each two, half a link from the clamp to the first.
+//! A hanging cantilever as a chain: rigid links with an elastic joint between each two, half a link
+//! from the clamp to the first.
 //!
-//! What a row of cells of the same length can do at best: no direction across, no stretch, no grain. Solved exactly, so what a sheet
-//! errs beyond it is the sheet's own. Joints `D / h` between links and `2 D / h` at the clamp, half of each link's weight at either
-//! end; second order in `h = 1 / links`.
+//! What a row of cells of the same length can do at best: no direction across, no stretch, no
+//! grain. Solved exactly, so what a sheet errs beyond it is the sheet's own. Joints `D / h` between
+//! links and `2 D / h` at the clamp, half of each link's weight at either end; second order in
+//! `h = 1 / links`.
 
 use super::root;
 
@@ -15,7 +17,8 @@ pub fn chain(gamma: f64, links: usize) -> f64 {
     fold(gamma, links, log.exp()).1
 }
 
-/// Slope at the clamp (from the vertical) and drop, from the slope of the last link on; stops turning past 2 rad.
+/// Slope at the clamp (from the vertical) and drop, from the slope of the last link on; stops
+/// turning past 2 rad.
 fn fold(gamma: f64, links: usize, start: f64) -> (f64, f64) {
     let h = 1.0 / links as f64;
     let (mut slope, mut moment, mut drop) = (start, 0.0, 0.0);

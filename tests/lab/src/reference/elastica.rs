@@ -1,4 +1,5 @@
-//! Bent strips held at both ends: the heart loop under its weight, and the column whose foot stands on the ground.
+//! Bent strips held at both ends: the heart loop under its weight, and the column whose foot stands
+//! on the ground.
 
 use super::root;
 
@@ -14,7 +15,8 @@ pub struct Curve {
     pub places: Vec<[f64; 2]>,
 }
 
-/// Integrates (angle, curvature, x, y) over `length` from `start`; the rate of curvature is `bend(s, angle)`.
+/// Integrates (angle, curvature, x, y) over `length` from `start`; the rate of curvature is
+/// `bend(s, angle)`.
 fn integrate(start: [f64; 4], length: f64, bend: impl Fn(f64, f64) -> f64) -> Vec<[f64; 4]> {
     let h = length / STEPS as f64;
     let rate = |s: f64, y: &[f64; 4]| [y[1], bend(s, y[0]), y[0].cos(), y[0].sin()];
@@ -33,11 +35,13 @@ fn integrate(start: [f64; 4], length: f64, bend: impl Fn(f64, f64) -> f64) -> Ve
     all
 }
 
-/// Peirce's heart loop (1930): both ends clamped together pointing down, the strip rises, turns out and hangs;
-/// `gamma = rho g L³ / D`. The value is the height from the lowest point to the clamp: 0.13386 without weight.
+/// Peirce's heart loop (1930): both ends clamped together pointing down, the strip rises, turns out
+/// and hangs; `gamma = rho g L³ / D`. The value is the height from the lowest point to the clamp:
+/// 0.13386 without weight.
 #[must_use]
 pub fn heart_loop(gamma: f64) -> Curve {
-    // Half of it, from the lowest point: curvature there and level force are looked for, from the weightless ones on.
+    // Half of it, from the lowest point: curvature there and level force are looked for, from the
+    // weightless ones on.
     let half = |p: [f64; 2], g: f64| {
         integrate([0.0, p[0], 0.0, 0.0], 0.5, move |s, a| p[1] * a.sin() - g * s * a.cos())
     };
@@ -73,15 +77,18 @@ fn newton(p: [f64; 2], f: impl Fn([f64; 2]) -> [f64; 2]) -> [f64; 2] {
     }
 }
 
-/// A weightless strip clamped upright above its own foot, which is pressed nearer by the share `shortening` of its length. The
-/// value is the horizontal over the vertical force at the foot: with less friction than that it slips. Places run from the clamp at
-/// the origin, where the strip points along +x.
+/// A weightless strip clamped upright above its own foot, which is pressed nearer by the share
+/// `shortening` of its length. The value is the horizontal over the vertical force at the foot:
+/// with less friction than that it slips. Places run from the clamp at the origin, where the strip
+/// points along +x.
 #[must_use]
 pub fn pressed_column(shortening: f64) -> Curve {
-    // With the axes along the force: angle'' = -force sin(angle), from the foot, where the strip ends without moment.
+    // With the axes along the force: angle'' = -force sin(angle), from the foot, where the strip
+    // ends without moment.
     let curve = |start: f64, force: f64| integrate([start, 0.0, 0.0, 0.0], 1.0, move |_, a| -force * a.sin());
     let chord = |end: &[f64; 4]| end[3].atan2(end[2]);
-    // The clamp points along the line from foot to clamp: the first buckle of a clamped and pinned column (20.19) or beyond.
+    // The clamp points along the line from foot to clamp: the first buckle of a clamped and pinned
+    // column (20.19) or beyond.
     let force = |start: f64| {
         root(12.0, 32.0, |f| {
             let end = curve(start, f)[STEPS];
@@ -113,7 +120,8 @@ impl Curve {
     }
 }
 
-/// Period of a plate of length L that swings as a whole from its edge, over sqrt(L/g), from this greatest angle.
+/// Period of a plate of length L that swings as a whole from its edge, over sqrt(L/g), from this
+/// greatest angle.
 #[must_use]
 pub fn plate_pendulum(amplitude: f64) -> f64 {
     // Complete elliptic integral by the arithmetic-geometric mean.
@@ -124,8 +132,8 @@ pub fn plate_pendulum(amplitude: f64) -> f64 {
     2.0 * std::f64::consts::PI * (2.0_f64 / 3.0).sqrt() / a
 }
 
-/// `rho g L³ / D` at which a narrow strip on edge, clamped at one end, buckles sideways (Prandtl, 1899): 12.85 times the mean of bending and
-/// twisting stiffness, `sqrt(2 (1 - nu))` of D.
+/// `rho g L³ / D` at which a narrow strip on edge, clamped at one end, buckles sideways (Prandtl,
+/// 1899): 12.85 times the mean of bending and twisting stiffness, `sqrt(2 (1 - nu))` of D.
 #[must_use]
 pub fn lateral_buckling(poisson: f64) -> f64 {
     12.85 * (2.0 * (1.0 - poisson)).sqrt()

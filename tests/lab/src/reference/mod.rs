@@ -1,4 +1,5 @@
-//! Exact solutions, independent of the engine: elastica, elastic catenary, hanging strips, plates, vibrations, friction.
+//! Exact solutions, independent of the engine: elastica, elastic catenary, hanging strips, plates,
+//! vibrations, friction.
 //!
 //! Each function's limit cases are tested in `tests`. All quantities of a sheet are per unit width.
 

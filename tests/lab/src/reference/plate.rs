@@ -19,7 +19,8 @@ pub fn supported_plate() -> f64 {
     16.0 / pi.powi(6) * odd().flat_map(|m| odd().map(move |n| (m, n))).map(|(m, n)| term(m, n)).sum::<f64>()
 }
 
-/// C of a plate clamped on all sides: finite differences of the biharmonic equation on two grids, extrapolated.
+/// C of a plate clamped on all sides: finite differences of the biharmonic equation on two grids,
+/// extrapolated.
 ///
 /// # Errors
 /// Does not fail; the type is that of the linear solver.

@@ -15,7 +15,8 @@ pub fn hanging_stvk(alpha: f64) -> f64 {
     integral(0.0, 1.0, 2000, |x| stretch(alpha * (1.0 - x)) - 1.0)
 }
 
-/// The same for a piecewise-linear curve through the origin: `points` are (strain, N/m), `weight = rho g` in N/m² , `length` in m.
+/// The same for a piecewise-linear curve through the origin: `points` are (strain, N/m),
+/// `weight = rho g` in N/m² , `length` in m.
 #[must_use]
 pub fn hanging_piecewise(points: &[[f64; 2]], weight: f64, length: f64) -> f64 {
     let top = weight * length;

@@ -11,7 +11,8 @@ pub fn bessel_zero(n: usize) -> f64 {
     root(guess - 0.5, guess + 0.5, j0)
 }
 
-/// Angular frequency times sqrt(L/g) of the `n`-th transverse swing of a sheet that hangs from an edge.
+/// Angular frequency times sqrt(L/g) of the `n`-th transverse swing of a sheet that hangs from an
+/// edge.
 #[must_use]
 pub fn hanging_omega(n: usize) -> f64 {
     0.5 * bessel_zero(n)
@@ -22,12 +23,14 @@ pub fn hanging_omega(n: usize) -> f64 {
 pub struct HangingSwing {
     /// Angular frequency times sqrt(L/g).
     pub omega: f64,
-    /// Displacement across the plane at even distances of rest length from the free end (the first) to the held one; 1 at the free end.
+    /// Displacement across the plane at even distances of rest length from the free end (the first)
+    /// to the held one; 1 at the free end.
     pub shape: Vec<f64>,
 }
 
 impl HangingSwing {
-    /// Displacement at this share of the rest length from the free end, by lines between the samples.
+    /// Displacement at this share of the rest length from the free end, by lines between the
+    /// samples.
     #[must_use]
     pub fn at(&self, share: f64) -> f64 {
         let place = share.clamp(0.0, 1.0) * (self.shape.len() - 1) as f64;
@@ -40,8 +43,9 @@ impl HangingSwing {
 /// Samples of a swing: their lines are right to seven digits.
 const SAMPLES: usize = 2000;
 
-/// For `alpha` = weight over stiffness, linear law of engineering strain: at rest length s from the free end the tension is s
-/// weights and the stretch 1 + alpha s, so small motion u solves `(s u' / (1 + alpha s))' + omega² u = 0`.
+/// For `alpha` = weight over stiffness, linear law of engineering strain: at rest length s from the
+/// free end the tension is s weights and the stretch 1 + alpha s, so small motion u solves
+/// `(s u' / (1 + alpha s))' + omega² u = 0`.
 #[must_use]
 pub fn hanging_swing(alpha: f64) -> HangingSwing {
     let held = |omega: f64| swung(alpha, omega).last().copied().unwrap_or(0.0);
@@ -49,7 +53,8 @@ pub fn hanging_swing(alpha: f64) -> HangingSwing {
     HangingSwing { omega, shape: swung(alpha, omega) }
 }
 
-/// The motion that is 1 at the free end, by Runge and Kutta's fourth-order steps on u and the pull `s u' / (1 + alpha s)`.
+/// The motion that is 1 at the free end, by Runge and Kutta's fourth-order steps on u and the pull
+/// `s u' / (1 + alpha s)`.
 fn swung(alpha: f64, omega: f64) -> Vec<f64> {
     let (square, h) = (omega * omega, 1.0 / SAMPLES as f64);
     let slope = |s: f64, [u, pull]: [f64; 2]| {

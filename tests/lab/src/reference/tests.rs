@@ -76,7 +76,8 @@ fn frequencies_of_the_books() {
 #[test]
 fn heart_loop_of_peirce() {
     close(heart_loop(0.0).value, 0.133860372, 1e-7);
-    // Peirce's formula: with t = 32.85 degrees (l - l0) / l0 the bending length is l0 (cos t / tan t)^(1/3).
+    // Peirce's formula: with t = 32.85 degrees (l - l0) / l0 the bending length is l0 (cos t / tan
+    // t)^(1/3).
     for gamma in [5.0, 20.0, 80.0] {
         let loops = heart_loop(gamma);
         let t = (32.85 * (loops.value - 0.1337) / 0.1337_f64).to_radians();
@@ -88,7 +89,8 @@ fn heart_loop_of_peirce() {
 
 #[test]
 fn columns_slip_where_the_books_say() {
-    // Little pressed: tan k = k, and with m the ratio of forces y = m (x - sin(k x) / (k cos k)), shortening = integral of y'²/2.
+    // Little pressed: tan k = k, and with m the ratio of forces y = m (x - sin(k x) / (k cos k)),
+    // shortening = integral of y'²/2.
     let (small, k) = (pressed_column(1e-3), 4.493409457909064_f64);
     let slope =
         |m: f64| super::integral(0.0, 1.0, 400, |x| 0.5 * (m * (1.0 - (k * x).cos() / k.cos())).powi(2));
@@ -113,7 +115,8 @@ fn a_swing_without_stretch_is_bessels() {
         let wanted = j0(bessel_zero(1) * s.sqrt());
         assert!((stiff.at(s) - wanted).abs() < 1e-5, "{s}: {} against {wanted}", stiff.at(s));
     }
-    // Soft cloth hangs lower and swings slower, at first by what Rayleigh's quotient of the stiff shape tells.
+    // Soft cloth hangs lower and swings slower, at first by what Rayleigh's quotient of the stiff
+    // shape tells.
     let mode = |s: f64| j0(bessel_zero(1) * s.sqrt());
     let rise = |s: f64| (mode(s + 1e-4) - mode(s - 1e-4)) / 2e-4;
     let loss = integral(1e-3, 1.0, 100, |s| s * s * rise(s).powi(2))

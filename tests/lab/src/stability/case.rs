@@ -1,6 +1,7 @@
 //! The extremes: each value of each axis alone, and all pairs of extremes, on a hanging square.
 //!
-//! A case must converge, stay finite and gain no energy, or be refused with a typed error. Nothing else is allowed.
+//! A case must converge, stay finite and gain no energy, or be refused with a typed error. Nothing
+//! else is allowed.
 
 use super::{Check, Must, Verdict};
 use toile_cloth::energy::{Cloth, Models, Vec3};
@@ -119,7 +120,8 @@ impl Case {
         )
     }
 
-    /// Hangs a square of `cells` x `cells` by its upper edge, nudged out of its plane, for some steps.
+    /// Hangs a square of `cells` x `cells` by its upper edge, nudged out of its plane, for some
+    /// steps.
     ///
     /// # Errors
     /// The typed error of whatever refuses the case.

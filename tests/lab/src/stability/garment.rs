@@ -1,4 +1,5 @@
-//! Extremes of whole scenes through `StaticEquilibrium`: gaps, bodies in the way, seams, stacks, scenes that are none.
+//! Extremes of whole scenes through `StaticEquilibrium`: gaps, bodies in the way, seams, stacks,
+//! scenes that are none.
 
 use std::ops::ControlFlow;
 
@@ -108,7 +109,8 @@ fn doubled() -> Scene {
     scene
 }
 
-/// The state with what to say of it: at rest, or still moving where an axis asks for no more than freedom from faults.
+/// The state with what to say of it: at rest, or still moving where an axis asks for no more than
+/// freedom from faults.
 fn state(solved: Result<Equilibrium, StaticsError>) -> Result<(Equilibrium, &'static str), Verdict> {
     match solved {
         Ok(state) => Ok((state, "at rest")),

@@ -1,7 +1,8 @@
-//! The extremes as one call: each value of each axis alone, and all pairs of ends if asked, against the outcome that is required.
+//! The extremes as one call: each value of each axis alone, and all pairs of ends if asked, against
+//! the outcome that is required.
 //!
-//! A check either meets its criterion, or is refused by the typed error that its axis names, or fails. Nothing else is allowed: no NaN, no
-//! hang, no silent wrong answer.
+//! A check either meets its criterion, or is refused by the typed error that its axis names, or
+//! fails. Nothing else is allowed: no NaN, no hang, no silent wrong answer.
 
 mod case;
 mod garment;

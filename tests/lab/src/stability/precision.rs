@@ -59,7 +59,8 @@ fn rounded() -> Result<(bool, String), ClothError> {
     Ok((apart < ROUNDED, format!("rounding the input to f32 moves the answer by {apart:.0e} lengths")))
 }
 
-/// What single precision of factors changes in the answer of `StaticEquilibrium`: a strip held level that falls and hangs.
+/// What single precision of factors changes in the answer of `StaticEquilibrium`: a strip held
+/// level that falls and hangs.
 fn factors() -> Result<(bool, String), StaticsError> {
     let mesh = strip();
     let level: Vec<Vec3> = mesh.uv.iter().map(|p| Vec3::new(p.x, 0.0, p.y)).collect();

@@ -1,4 +1,5 @@
-//! Extremes of one sheet against exact answers: hanging strips, cantilevers, thin triangles, weightless and lone pieces.
+//! Extremes of one sheet against exact answers: hanging strips, cantilevers, thin triangles,
+//! weightless and lone pieces.
 
 use nalgebra::Vector2;
 
@@ -75,7 +76,8 @@ fn cloth(sheet: &Sheet, fabric: &Fabric) -> Result<Model, ClothError> {
     Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[fabric]))
 }
 
-/// Tip displacement over length of a strip of 0.2 m under its own weight, with the sheet and the state.
+/// Tip displacement over length of a strip of 0.2 m under its own weight, with the sheet and the
+/// state.
 fn hang(k: f64, edge: f64, gravity: f64) -> Result<(f64, Sheet, State), ClothError> {
     let mesh = Rectangle::new(Layout::Alternating, 4.0 * edge, 0.2, (0.2 / edge).round() as usize);
     let sheet = mesh.sheet(DENSITY)?;
@@ -197,7 +199,8 @@ fn still() -> Result<(bool, String), ClothError> {
     Ok((farthest < 1e-9, format!("moved {farthest:.0e} m")))
 }
 
-/// Free fall of one triangle with every solver that steps; or its free corner falls while two are held.
+/// Free fall of one triangle with every solver that steps; or its free corner falls while two are
+/// held.
 fn one_triangle(held: bool) -> Result<(bool, String), ClothError> {
     let mesh = [[0.0, 0.0], [0.1, 0.0], [0.0, 0.1]].map(|p| Vector2::new(p[0], p[1]));
     let sheet = Sheet::flat(&mesh, &[[0, 1, 2]], DENSITY)?;

@@ -18,7 +18,8 @@ const FRAME: f64 = 1.0 / 60.0;
 const MOST_SLOPE: f64 = 1.2;
 /// Bytes a vertex.
 const MOST_MEMORY: f64 = 1024.0;
-/// Small steps of which the fastest counts, for other work on the machine only slows: so many, but for more than a second only the least.
+/// Small steps of which the fastest counts, for other work on the machine only slows: so many, but
+/// for more than a second only the least.
 const TIMED: usize = 60;
 const LEAST_TIMED: usize = 5;
 
@@ -50,7 +51,8 @@ fn cloth(sheet: &Sheet) -> Result<Model, ClothError> {
     Model::of(sheet).made_of(Models::DEFAULT, &Cloth::of(sheet, &[&fabric()]))
 }
 
-/// A square thrown at a ball: no vertex may get into it or past it, with any solver that knows obstacles.
+/// A square thrown at a ball: no vertex may get into it or past it, with any solver that knows
+/// obstacles.
 fn thrown(speed: f64) -> Result<(bool, String), ClothError> {
     let mesh = Rectangle::new(Layout::Alternating, 0.3, 0.3, 10);
     let sheet = mesh.sheet(DENSITY)?;

@@ -53,7 +53,8 @@ fn what_was_pruned_is_made_again_without_a_word() {
     let bench = Bench::new("pruned", STAGES);
     bench.run(&[]).0.unwrap();
     let usage = bench.cache().usage().unwrap();
-    // Bytes2 stands twice: under its key, and under its key with its files. Equal photos are stored once.
+    // Bytes2 stands twice: under its key, and under its key with its files. Equal photos are stored
+    // once.
     assert_eq!((usage.runs, usage.artifacts), (6, 4));
     assert_eq!(bench.cache().prune(usage.bytes).unwrap(), 0);
     for path in bench.files("blobs") {

@@ -1,15 +1,18 @@
-//! Old pipeline files: what was renamed or removed since they were written, and how a file is brought up to date.
+//! Old pipeline files: what was renamed or removed since they were written, and how a file is
+//! brought up to date.
 //!
-//! A stage's crate lists every such change beside its registration, `registry.migrate(Migration::renamed(...))`,
-//! for good: the number of changes is the version of the stage's parameters. A parameter whose meaning changes gets a new
-//! name, so that a file needs no version of its own: an old name says what it meant.
+//! A stage's crate lists every such change beside its registration,
+//! `registry.migrate(Migration::renamed(...))`, for good: the number of changes is the version of
+//! the stage's parameters. A parameter whose meaning changes gets a new name, so that a file needs
+//! no version of its own: an old name says what it meant.
 //!
-//! A file is rewritten by edits of its text at the places that the syntax tree knows, so that comments, order and
-//! layout stay. The settings of its named qualities are rewritten as well (`qualities`). Cost: linear in the text
-//! for each rewritten argument. Limits: a value is converted as text; what a change cannot convert is left, and the load
-//! names it.
+//! A file is rewritten by edits of its text at the places that the syntax tree knows, so that
+//! comments, order and layout stay. The settings of its named qualities are rewritten as well
+//! (`qualities`). Cost: linear in the text for each rewritten argument. Limits: a value is
+//! converted as text; what a change cannot convert is left, and the load names it.
 //!
-//! - [`Migration`](toile_core::Migration): what a crate lists; `old_name` (beside this): what the load says; `rewrite`, `qualities`: what becomes of the text.
+//! - [`Migration`](toile_core::Migration): what a crate lists; `old_name` (beside this): what the
+//!   load says; `rewrite`, `qualities`: what becomes of the text.
 
 mod qualities;
 mod rewrite;

@@ -1,8 +1,9 @@
 //! The settings of a file's named qualities, brought up to date with the stages that they set.
 //!
-//! A setting is text in the form of `--set`: its path names a stage by its id, which changes with the stage's name where the file
-//! gives none, and a parameter; its value may be a whole stage. Limit: a path into the parts of a value follows the
-//! parameter's new name, but what it points at is left.
+//! A setting is text in the form of `--set`: its path names a stage by its id, which changes with
+//! the stage's name where the file gives none, and a parameter; its value may be a whole stage.
+//! Limit: a path into the parts of a value follows the parameter's new name, but what it points at
+//! is left.
 
 use super::super::draft::Draft;
 use super::super::qualities::{Quality, named};
@@ -83,8 +84,8 @@ impl Migrator<'_> {
         if new == *o { Set::Same } else { Set::Changed(new) }
     }
 
-    /// The stage of the file that a path leads to: one of the list by its id, or a section. An id that the file has not may be
-    /// that of a stage which an earlier setting puts there.
+    /// The stage of the file that a path leads to: one of the list by its id, or a section. An id
+    /// that the file has not may be that of a stage which an earlier setting puts there.
     fn target(&self, segments: &[&str], tree: &Tree, drafts: &Read) -> Option<Target> {
         if segments.first() == Some(&"stages") {
             let id = *segments.get(1)?;

@@ -112,7 +112,8 @@ impl Migrator<'_> {
         }
     }
 
-    /// The place of an argument with its comma and the white space that only it needed; comments stay.
+    /// The place of an argument with its comma and the white space that only it needed; comments
+    /// stay.
     pub(super) fn whole(&self, entries: &[Entry], i: usize) -> Range<usize> {
         let entry = &entries[i];
         let mut start = entry.key.as_ref().map_or(entry.value.span.start, |k| k.start);

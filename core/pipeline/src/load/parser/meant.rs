@@ -112,8 +112,8 @@ impl Parser<'_> {
         }
     }
 
-    /// Where a bracket that was never closed probably ends: before the first entry on a later line that is of another form than
-    /// those before it.
+    /// Where a bracket that was never closed probably ends: before the first entry on a later line
+    /// that is of another form than those before it.
     fn early_end(&self, opened: &Range<usize>, entries: &[Entry]) -> Option<usize> {
         let start = |e: &Entry| e.key.as_ref().map_or(e.value.span.start, |k| k.start);
         let form = |e: &Entry| match &e.key {
@@ -151,8 +151,9 @@ impl Parser<'_> {
         }
     }
 
-    /// A backslash before the parser begins no escape, in a text that begins at `from` with its content at `inside`: the text ends at its closing
-    /// quote, or at the first quote at all, as a folder's path of Windows does.
+    /// A backslash before the parser begins no escape, in a text that begins at `from` with its
+    /// content at `inside`: the text ends at its closing quote, or at the first quote at all, as a
+    /// folder's path of Windows does.
     pub(super) fn no_escape(&self, from: usize, inside: usize, close: char) -> SyntaxFault {
         let at = self.at - 1;
         let content = self.text.get(inside..).unwrap_or("");
@@ -193,7 +194,8 @@ impl Parser<'_> {
         runs_on.then_some(text)
     }
 
-    /// Where a text that lacks its closing quote probably ends: before the comma or bracket behind it, on its own line.
+    /// Where a text that lacks its closing quote probably ends: before the comma or bracket behind
+    /// it, on its own line.
     pub(super) fn text_end(&self, from: usize) -> usize {
         let line = self.text.get(from..).unwrap_or("").split('\n').next().unwrap_or("");
         from + line.find([',', ')', ']', '}']).unwrap_or(line.trim_end().len())

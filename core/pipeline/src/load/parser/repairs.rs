@@ -18,7 +18,8 @@ pub(in crate::load) struct SyntaxFault {
     pub(in crate::load) meant: Vec<Meant>,
 }
 
-/// One thing that may have been meant: how the text is to be read, and what is to be said of it then.
+/// One thing that may have been meant: how the text is to be read, and what is to be said of it
+/// then.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::load) struct Meant {
     pub(in crate::load) repair: Repair,

@@ -1,17 +1,19 @@
 //! What a quality's measurement rests on, as a digest.
 //!
-//! A claim of 2 mm holds for the pipeline that it was measured on: another mesher, fabric, photo or setting makes another garment. So
-//! a quality keeps a digest of all that the draped garment depends on, taken from the pipeline with the quality's own
-//! settings: what the quality sets counts as it sets it, whatever the file has there itself.
+//! A claim of 2 mm holds for the pipeline that it was measured on: another mesher, fabric, photo or
+//! setting makes another garment. So a quality keeps a digest of all that the draped garment
+//! depends on, taken from the pipeline with the quality's own settings: what the quality sets
+//! counts as it sets it, whatever the file has there itself.
 //!
-//! In the digest are the stages that lead to the last garment, each with its role, all its parameters and what feeds it, and the
-//! **content** of the files that they name or look at (photos, scenes, bodies): a file that is moved or renamed is the same
-//! file. Not in it are comments, white space, names and ids, the order of the file, and stages that the garment does not
-//! need: textures, writers, reports. A second digest holds the versions of the stages' algorithms, so that a newer program is
-//! told apart from another pipeline.
+//! In the digest are the stages that lead to the last garment, each with its role, all its
+//! parameters and what feeds it, and the **content** of the files that they name or look at
+//! (photos, scenes, bodies): a file that is moved or renamed is the same file. Not in it are
+//! comments, white space, names and ids, the order of the file, and stages that the garment does
+//! not need: textures, writers, reports. A second digest holds the versions of the stages'
+//! algorithms, so that a newer program is told apart from another pipeline.
 //!
-//! Cost: reading the files once. Limit: a file that a stage reads without naming it in its parameters counts only where the
-//! stage looks at it beforehand (`foresee`).
+//! Cost: reading the files once. Limit: a file that a stage reads without naming it in its
+//! parameters counts only where the stage looks at it beforehand (`foresee`).
 
 use super::Quality;
 use crate::cache::file_hash;
@@ -85,7 +87,8 @@ impl Basis {
         let mut of_nodes: Vec<[u8; 32]> = Vec::new();
         let mut versions = BTreeSet::new();
         for (node, needed) in pipeline.nodes.iter().zip(&needed) {
-            // Those before it in the file stand in the list already; what nothing needs has an empty place.
+            // Those before it in the file stand in the list already; what nothing needs has an
+            // empty place.
             of_nodes.push(if *needed { digest(pipeline, node, &of_nodes) } else { [0; 32] });
             if *needed {
                 let plugin = node.card.plugin.map(|p| p.digest.hex()).unwrap_or_default();
@@ -105,7 +108,8 @@ impl Basis {
     }
 }
 
-/// The stages whose results are claimed: the last that gives a garment; in a pipeline without one, all that give no files.
+/// The stages whose results are claimed: the last that gives a garment; in a pipeline without one,
+/// all that give no files.
 fn results(pipeline: &Pipeline) -> Vec<usize> {
     let gives = |node: &Node, kind| node.card.outputs.iter().any(|o| o.kind == kind);
     match pipeline.nodes.iter().rposition(|n| gives(n, Garment::KIND)) {
@@ -155,7 +159,8 @@ fn by_content(params: &str, base: &Path) -> String {
     text
 }
 
-/// The contents of the files that a stage looks at before it runs: those that its own files name, such as a scene's body.
+/// The contents of the files that a stage looks at before it runs: those that its own files name,
+/// such as a scene's body.
 fn looked_at(pipeline: &Pipeline, node: &Node) -> BTreeSet<String> {
     let cx = Context::new(&node.id, &pipeline.base, Cancel::new(), Arc::new(()));
     let _ = catch_unwind(AssertUnwindSafe(|| node.stage.sizes(&Size::new(), &cx)));

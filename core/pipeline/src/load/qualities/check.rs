@@ -10,8 +10,9 @@ use toile_core::Registry;
 /// Fields of a file that no quality sets: it would change itself, or what program runs.
 const FIXED: [&str; 2] = ["qualities", "plugins"];
 
-/// The faults that each quality's settings bring into the file, at their places in it. Where the file has faults of its own,
-/// only those that lie in what is set: a path may lead nowhere because of them.
+/// The faults that each quality's settings bring into the file, at their places in it. Where the
+/// file has faults of its own, only those that lie in what is set: a path may lead nowhere because
+/// of them.
 pub(in crate::load) fn settings(text: &str, registry: &Registry) -> Vec<Fault> {
     let qualities = named(text);
     if qualities.is_empty() {

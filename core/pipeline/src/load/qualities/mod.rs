@@ -9,14 +9,16 @@
 //! ],
 //! ```
 //!
-//! A quality promises a measured error, of the pipeline that it was measured for, and nothing else; `toile tune PIPELINE --quality NAME=LENGTH` measures and writes it. Its
-//! settings are overrides in the form of `--set`. Every load of the file checks each of them against the file as it stands,
-//! so that a quality never fails first when somebody asks for it.
+//! A quality promises a measured error, of the pipeline that it was measured for, and nothing else;
+//! `toile tune PIPELINE --quality NAME=LENGTH` measures and writes it. Its settings are overrides
+//! in the form of `--set`. Every load of the file checks each of them against the file as it
+//! stands, so that a quality never fails first when somebody asks for it.
 //!
-//! - `read`: the field's entries; `check`: their settings; `write`: the field put into a file's text; `basis`: what a claim was
-//!   measured for, and whether that is the pipeline at hand.
+//! - `read`: the field's entries; `check`: their settings; `write`: the field put into a file's
+//!   text; `basis`: what a claim was measured for, and whether that is the pipeline at hand.
 //!
-//! Cost: one more check of the pipeline for each quality. Limits: [`MAX_QUALITIES`], [`MAX_SETTINGS`].
+//! Cost: one more check of the pipeline for each quality. Limits: [`MAX_QUALITIES`],
+//! [`MAX_SETTINGS`].
 
 mod basis;
 mod check;
@@ -74,13 +76,15 @@ impl Quality {
         &self.places
     }
 
-    /// In words with what its claim is worth: `Draft (10 mm)`, `Fine (2 mm, measured for another pipeline)`.
+    /// In words with what its claim is worth: `Draft (10 mm)`,
+    /// `Fine (2 mm, measured for another pipeline)`.
     pub fn words(&self, standing: Standing) -> String {
         let doubt = standing.words().map_or_else(String::new, |words| format!(", {words}"));
         format!("{} ({}{doubt})", self.name, self.max_error)
     }
 
-    /// Whether a text may be the name of one: 1 to 64 letters, digits, `_`, `-` and spaces between them.
+    /// Whether a text may be the name of one: 1 to 64 letters, digits, `_`, `-` and spaces between
+    /// them.
     pub fn is_name(text: &str) -> bool {
         let fit = |c: char| c.is_alphanumeric() || matches!(c, '_' | '-' | ' ');
         !text.is_empty() && text.chars().count() <= 64 && text.chars().all(fit) && text.trim() == text

@@ -8,7 +8,8 @@ use crate::load::tree::{Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::param::ron_text;
 
-/// The text with qualities in its field: those of a name that is there take its place, others follow, in their order.
+/// The text with qualities in its field: those of a name that is there take its place, others
+/// follow, in their order.
 ///
 /// Errors: the text is no RON, or no pipeline file.
 pub fn fill(text: &str, qualities: &[Quality]) -> Result<String, Box<Fault>> {
@@ -91,7 +92,8 @@ fn written(quality: &Quality) -> String {
     lines.join("\n") + "),"
 }
 
-/// Puts whole lines last into a group, before its closing bracket, with a comma behind what stands before.
+/// Puts whole lines last into a group, before its closing bracket, with a comma behind what stands
+/// before.
 fn last_in(text: &str, group: &Tree, entries: &[Entry], lines: &str) -> String {
     let close = group.span.end.saturating_sub(1);
     let comma = entries.last().map(|e| e.value.span.end).filter(|end| comma_after(text, *end).is_none());

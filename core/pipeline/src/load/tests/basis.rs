@@ -3,7 +3,8 @@
 use super::super::{Basis, Changes, Quality, Standing, load_with};
 use super::*;
 
-/// The vest with a quality that was measured for it as it stands, between its qualities and its stages.
+/// The vest with a quality that was measured for it as it stands, between its qualities and its
+/// stages.
 const SET: &str = "stages.GridMesher.edge=\"24 mm\"";
 
 fn with(text: &str, entry: &str) -> String {

@@ -130,7 +130,8 @@ fn size_has_limits() {
     assert!(found.render(false).len() < 100_000);
 }
 
-/// The vest with a slip in it, and the faults that come of it: no others, and the rest of the file is read.
+/// The vest with a slip in it, and the faults that come of it: no others, and the rest of the file
+/// is read.
 #[track_caller]
 fn slip(from: &str, to: &str, expected: &str) {
     assert!(kit::VEST.contains(from), "{from}");

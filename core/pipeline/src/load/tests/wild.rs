@@ -136,8 +136,8 @@ proptest! {
         sound(kit::VEST, &overrides);
     }
 
-    /// Our parser takes all that `ron` takes. Beyond ASCII the two differ in what is a letter: `ron`
-    /// takes some characters for letters that are assigned to nothing, such as U+3D000.
+    /// Our parser takes all that `ron` takes. Beyond ASCII the two differ in what is a letter:
+    /// `ron` takes some characters for letters that are assigned to nothing, such as U+3D000.
     #[test]
     fn what_ron_accepts_the_parser_accepts(text in mutated()) {
         let text: String = text.chars().filter(|c| c.is_ascii() || "é\u{1f9f5}".contains(*c)).collect();

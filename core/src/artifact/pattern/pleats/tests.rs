@@ -58,7 +58,8 @@ fn sides(pattern: &Pattern, name: &str) -> Vec<Vec<String>> {
 
 #[test]
 fn the_three_layers_of_a_knife_pleat_are_sewn_into_the_waist() {
-    // The waist runs from right to left, so that the lines end on it at 0.3 and 0.2 m from its start.
+    // The waist runs from right to left, so that the lines end on it at 0.3 and 0.2 m from its
+    // start.
     let made = skirt(&[0.3, 0.4], &[(PleatFold::Knife, 0, 1)]).pleated().unwrap();
     let lengths: Vec<f64> =
         (1..=5).map(|k| made.pieces[0].path(&format!("waist_{k}")).unwrap().length()).collect();

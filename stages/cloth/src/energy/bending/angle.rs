@@ -1,15 +1,17 @@
 //! The angle between two triangles over their common edge, with exact first and second derivatives.
 //!
-//! Over the edge a -> b with the left triangle's tip p and the right one's tip q, the angle is zero for a flat sheet and positive
-//! where the sheet folds away from its normal's side. Each triangle contributes on its own: with n its normal, the derivative by
-//! its tip is `-|e| n / |n|²`, and the edge's ends share the opposite by the tip's place along the edge. Second derivatives follow
-//! by the product rule (after Tamstorf and Grinspun, 2013).
+//! Over the edge a -> b with the left triangle's tip p and the right one's tip q, the angle is zero
+//! for a flat sheet and positive where the sheet folds away from its normal's side. Each triangle
+//! contributes on its own: with n its normal, the derivative by its tip is `-|e| n / |n|²`, and the
+//! edge's ends share the opposite by the tip's place along the edge. Second derivatives follow by
+//! the product rule (after Tamstorf and Grinspun, 2013).
 
 use nalgebra::Matrix3;
 
 use crate::energy::Vec3;
 
-/// A triangle's normal is taken at least this long (share of the squared edge): keeps a collapsed triangle finite.
+/// A triangle's normal is taken at least this long (share of the squared edge): keeps a collapsed
+/// triangle finite.
 const LEAST_NORMAL: f64 = 1e-9;
 
 /// Signed angle between the triangles (a, b, p) and (b, a, q), in radians, -pi to pi.
@@ -33,7 +35,8 @@ pub(super) struct Leaf {
 }
 
 impl Leaf {
-    /// The triangle on edge a -> b with tip p; `right` for the triangle whose normal is the other way round.
+    /// The triangle on edge a -> b with tip p; `right` for the triangle whose normal is the other
+    /// way round.
     pub(super) fn new(a: &Vec3, b: &Vec3, p: &Vec3, right: bool) -> Self {
         let (edge, to_a, to_b) = (b - a, p - a, p - b);
         let normal = edge.cross(&to_a);

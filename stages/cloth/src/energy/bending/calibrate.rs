@@ -1,11 +1,13 @@
 //! What a bending mesh really is, against the sheet it stands for.
 //!
-//! Load the free rest mesh of each panel with constant moments along its border (along x, along y, twist): the exact sheet answers
-//! with constant curvature. The quadratic that fits the mesh's answer best has a curvature as well, and so gives a compliance tensor C. Coupled
-//! hinges asked for rigidity D are built with `D C D` in place of it: right to second order in what is wrong. Lone hinges are multiplied
-//! by one factor, that of the mean over all directions of a cylinder. Letting the vertices give way matters: held on a quadratic surface an
-//! irregular mesh of coupled hinges has exactly the right energy, and 3 % of it is gone in equilibrium. Cost: one
-//! sparse factor of a number a vertex pair, some 3 % of a Newton step, once a mesh.
+//! Load the free rest mesh of each panel with constant moments along its border (along x, along y,
+//! twist): the exact sheet answers with constant curvature. The quadratic that fits the mesh's
+//! answer best has a curvature as well, and so gives a compliance tensor C. Coupled hinges asked
+//! for rigidity D are built with `D C D` in place of it: right to second order in what is wrong.
+//! Lone hinges are multiplied by one factor, that of the mean over all directions of a cylinder.
+//! Letting the vertices give way matters: held on a quadratic surface an irregular mesh of coupled
+//! hinges has exactly the right energy, and 3 % of it is gone in equilibrium. Cost: one sparse
+//! factor of a number a vertex pair, some 3 % of a Newton step, once a mesh.
 
 use nalgebra::{Matrix3, Vector2};
 
@@ -21,7 +23,8 @@ const SAME_FRAME: f64 = 1e-9;
 /// A mesh that asks for more correction than this (either way) is too small to judge.
 const LARGEST_FACTOR: f64 = 2.0;
 
-/// Hinges that lean with the square of their direction's cosine change the two stiffnesses by two thirds of it (mean over directions).
+/// Hinges that lean with the square of their direction's cosine change the two stiffnesses by two
+/// thirds of it (mean over directions).
 const LEAN_PER_DIFFERENCE: f64 = 1.5;
 /// More grain than this is the mesh's layout, not chance, and stays.
 const LARGEST_LEAN: f64 = 0.3;
@@ -33,7 +36,8 @@ pub(crate) struct Calibration {
     pub factor: f64,
     /// Poisson's ratio of its bending, about -1/3.
     pub poisson: f64,
-    /// How much more the hinges across x need than those across y, as a share of the mean: an irregular mesh has a grain of some per cent.
+    /// How much more the hinges across x need than those across y, as a share of the mean: an
+    /// irregular mesh has a grain of some per cent.
     pub lean: f64,
 }
 
@@ -148,7 +152,8 @@ fn find(parent: &mut [usize], mut t: usize) -> usize {
     t
 }
 
-/// Rigidity by (kxx, kyy, kxy) to build the coupled hinges of each triangle with, so that its panel has the rigidity asked for.
+/// Rigidity by (kxx, kyy, kxy) to build the coupled hinges of each triangle with, so that its panel
+/// has the rigidity asked for.
 pub(super) fn calibrated(sheet: &Sheet, rigidities: &[Rigidity]) -> Vec<Matrix3<f64>> {
     let size = rigidities.iter().map(|r| r.warp.max(r.weft)).fold(0.0, f64::max);
     let mut wanted: Vec<Matrix3<f64>> = rigidities.iter().map(Rigidity::tensor).collect();
@@ -225,7 +230,8 @@ fn coupled_matrix(sheet: &Sheet, flaps: &[Flap], panels: &Panels, d: &[Matrix3<f
 }
 
 impl Panels {
-    /// Mean curvature (along x, along y, twist) of each panel under each unit moment; none for a panel too small to tell.
+    /// Mean curvature (along x, along y, twist) of each panel under each unit moment; none for a
+    /// panel too small to tell.
     fn answers(
         &self,
         sheet: &Sheet,
@@ -248,7 +254,8 @@ impl Panels {
     }
 }
 
-/// Column j: the curvatures (along x, along y, twist) of the quadratic that fits component j of the lifts best.
+/// Column j: the curvatures (along x, along y, twist) of the quadratic that fits component j of the
+/// lifts best.
 fn curvatures(places: &[Vector2<f64>], lifts: &[Vec3]) -> Option<Matrix3<f64>> {
     let centre = places.iter().sum::<Vector2<f64>>() / places.len() as f64;
     let size = places.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);

@@ -1,8 +1,10 @@
-//! A held slope along a boundary edge: the sheet is continued beyond the edge by its own mirror image in a fixed plane.
+//! A held slope along a boundary edge: the sheet is continued beyond the edge by its own mirror
+//! image in a fixed plane.
 //!
-//! The mirrored half takes half the energy of a fold of twice the angle, so `E = k theta² / 2` with `k = f D |e|² / A`, theta the
-//! angle between the edge's triangle and the plane, f the calibration of the hinges. Pinning a second row of vertices in place of this
-//! makes the sheet half a triangle too long; the mirror image does not. [`super::Hinge`] has clamps of its own.
+//! The mirrored half takes half the energy of a fold of twice the angle, so `E = k theta² / 2` with
+//! `k = f D |e|² / A`, theta the angle between the edge's triangle and the plane, f the calibration
+//! of the hinges. Pinning a second row of vertices in place of this makes the sheet half a triangle
+//! too long; the mirror image does not. [`super::Hinge`] has clamps of its own.
 
 use super::angle::{Leaf, angle};
 use super::flap::leaf;
@@ -44,7 +46,8 @@ impl Held {
         angle(&x[0], &x[1], &x[2], &(x[0] + self.outward))
     }
 
-    /// The plane is fixed in space: its tip moves with the edge, so its own turning must be taken back.
+    /// The plane is fixed in space: its tip moves with the edge, so its own turning must be taken
+    /// back.
     fn leaves(&self, x: &[Vec3; 3]) -> (Leaf, Leaf) {
         (Leaf::new(&x[0], &x[1], &x[2], false), Leaf::new(&x[0], &x[1], &(x[0] + self.outward), true))
     }

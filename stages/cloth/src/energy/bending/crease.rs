@@ -1,10 +1,12 @@
 //! Seams that are pressed to stay folded.
 //!
-//! A hinge of the quadratic isometric model (Bergou et al. 2006) measures the sum c of the two unit directions that lead from its edge into
-//! its triangles; folded by an angle `a` that sum is `2 sin(a / 2)` long and lies along the mean n of their normals. A crease wants that
-//! vector to be `m n` where plain cloth wants none: `k / 2 |c - m n|²`, of which this energy is what it adds to plain cloth. While the
-//! sheet hardly stretches, `c` lies along `n`, so that the turning of `n` is left out of the derivatives, as it is for friction between
-//! yarns (see `hysteresis`); the second derivative stays that of plain cloth. Cost: a few operations a hinge of the seam.
+//! A hinge of the quadratic isometric model (Bergou et al. 2006) measures the sum c of the two unit
+//! directions that lead from its edge into its triangles; folded by an angle `a` that sum is
+//! `2 sin(a / 2)` long and lies along the mean n of their normals. A crease wants that vector to be
+//! `m n` where plain cloth wants none: `k / 2 |c - m n|²`, of which this energy is what it adds to
+//! plain cloth. While the sheet hardly stretches, `c` lies along `n`, so that the turning of `n` is
+//! left out of the derivatives, as it is for friction between yarns (see `hysteresis`); the second
+//! derivative stays that of plain cloth. Cost: a few operations a hinge of the seam.
 
 use super::quadratic::{Fold, folds};
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
@@ -24,7 +26,8 @@ struct Crease {
 pub struct Creases(Vec<Crease>);
 
 impl Creases {
-    /// The numbers of hinges among the sheet's inner edges, and the angle between the outsides of each hinge's sheets at rest, radians.
+    /// The numbers of hinges among the sheet's inner edges, and the angle between the outsides of
+    /// each hinge's sheets at rest, radians.
     #[must_use]
     pub fn new(cloth: &Cloth<'_>, pressed: &[(usize, f64)]) -> Assembled<4, Self> {
         let folds = if pressed.is_empty() { Vec::new() } else { folds(cloth) };

@@ -1,4 +1,5 @@
-//! Two neighbouring triangles at rest, unfolded: how a small lift of their four vertices turns into a fold.
+//! Two neighbouring triangles at rest, unfolded: how a small lift of their four vertices turns into
+//! a fold.
 
 use nalgebra::Vector2;
 
@@ -41,8 +42,9 @@ pub(crate) fn flaps(sheet: &Sheet) -> Vec<Flap> {
 fn flap(sheet: &Sheet, e: &Edge) -> Option<Flap> {
     let (left, right) = (e.sides.0, e.sides.1?);
     let (l, mut r) = (leaf_of(sheet, &left), leaf_of(sheet, &right));
-    // The right triangle runs through the edge backwards, so its share along the edge counts from the other end; but where a seam sews
-    // the right side of one sheet to the wrong side of the other.
+    // The right triangle runs through the edge backwards, so its share along the edge counts from
+    // the other end; but where a seam sews the right side of one sheet to the wrong side of the
+    // other.
     let (t, k) = (sheet.triangles()[right.triangle as usize], right.corner as usize);
     if t[(k + 1) % 3] == e.vertices[0] {
         r.along = 1.0 - r.along;

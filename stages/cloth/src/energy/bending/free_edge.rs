@@ -1,13 +1,15 @@
 //! Takes the quadratic hinges' false Poisson's ratio out of free edges, as a quadratic form.
 //!
-//! Hinges on equilateral triangles bend with Poisson's ratio -1/3: a narrow strip, free to curl across, is 11 % too soft, although a
-//! plate is right. The part of the bending energy that carries the ratio is `-(1 - nu) D` times the integral of Gaussian curvature,
-//! and by Gauss and Bonnet that integral is the sum of the corner angles along the border, up to a constant. So raising the ratio to 0
-//! charges that sum. To second order in the lifts of a flat sheet an angle theta between sides of lengths l1 and l2 grows by
-//! `(-a b + cos(theta) (a.a + b.b) / 2) / sin(theta)`, a and b the lifts along the sides over their lengths. As in the hinge, the lift
-//! is replaced by the position in space: over a closed border the form is zero for every affine image of the rest shape, so it neither
-//! moves nor stretches a flat sheet, and its matrix never changes. Alone it is indefinite; with the hinges it is the bending energy
-//! of a plate of Poisson's ratio 0.
+//! Hinges on equilateral triangles bend with Poisson's ratio -1/3: a narrow strip, free to curl
+//! across, is 11 % too soft, although a plate is right. The part of the bending energy that carries
+//! the ratio is `-(1 - nu) D` times the integral of Gaussian curvature, and by Gauss and Bonnet
+//! that integral is the sum of the corner angles along the border, up to a constant. So raising the
+//! ratio to 0 charges that sum. To second order in the lifts of a flat sheet an angle theta between
+//! sides of lengths l1 and l2 grows by `(-a b + cos(theta) (a.a + b.b) / 2) / sin(theta)`, a and b
+//! the lifts along the sides over their lengths. As in the hinge, the lift is replaced by the
+//! position in space: over a closed border the form is zero for every affine image of the rest
+//! shape, so it neither moves nor stretches a flat sheet, and its matrix never changes. Alone it is
+//! indefinite; with the hinges it is the bending energy of a plate of Poisson's ratio 0.
 
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
 use nalgebra::Matrix3;
@@ -31,7 +33,8 @@ pub struct FreeEdge {
 }
 
 impl FreeEdge {
-    /// For quadratic hinges of the same cloth. Where a border node is fixed its Gauss-Bonnet sum is held as well, and it is left out.
+    /// For quadratic hinges of the same cloth. Where a border node is fixed its Gauss-Bonnet sum is
+    /// held as well, and it is left out.
     #[must_use]
     pub fn new(cloth: &Cloth<'_>) -> Assembled<3, Self> {
         let (sheet, calibration) = (cloth.sheet, cloth.calibration());

@@ -1,11 +1,15 @@
-//! The hinge: the sheet resists the fold angles over the three edges of each triangle together, `E = (theta - rest) . K (theta - rest) / 2`.
+//! The hinge: the sheet resists the fold angles over the three edges of each triangle together,
+//! `E = (theta - rest) . K (theta - rest) / 2`.
 //!
-//! K turns the three angles into the curvature that shows in them (see `patch`) and that into energy by the plate's own tensor, here with
-//! Poisson's ratio 0. So every quadratic surface costs what it should on every mesh, in every direction, and free edges need
-//! nothing of their own. The angles are those of the folded sheet, at any fold (Grinspun, Hirani, Desbrun, Schroeder, 2003, coupled after Grinspun,
-//! Gingold, Reisman, Zorin, 2006). Vertices of an irregular mesh give way a little when they may, 3 % alike in all directions;
-//! `calibrate` takes that out. Cost: three angles a triangle, and a matrix with half as many entries again as lone hinges have.
-//! Limit: squares with alternating diagonals, whose vertices of two kinds give way by a quarter, stay 20 % too soft.
+//! K turns the three angles into the curvature that shows in them (see `patch`) and that into
+//! energy by the plate's own tensor, here with Poisson's ratio 0. So every quadratic surface costs
+//! what it should on every mesh, in every direction, and free edges need nothing of their own. The
+//! angles are those of the folded sheet, at any fold (Grinspun, Hirani, Desbrun, Schroeder, 2003,
+//! coupled after Grinspun, Gingold, Reisman, Zorin, 2006). Vertices of an irregular mesh give way a
+//! little when they may, 3 % alike in all directions; `calibrate` takes that out. Cost: three
+//! angles a triangle, and a matrix with half as many entries again as lone hinges have. Limit:
+//! squares with alternating diagonals, whose vertices of two kinds give way by a quarter, stay 20 %
+//! too soft.
 
 use super::angle::{Leaf, angle};
 use super::calibrate::calibrated;
@@ -45,7 +49,8 @@ impl Hinge {
         Assembled(Self { triangles: patches.into_iter().zip(&d).map(bend).collect() })
     }
 
-    /// Takes the fold angles at `x` as the unstressed ones: a pressed crease, a cuff rolled on its form.
+    /// Takes the fold angles at `x` as the unstressed ones: a pressed crease, a cuff rolled on its
+    /// form.
     pub fn rest_at(&mut self, x: &[Vec3]) {
         for b in &mut self.triangles {
             let x = b.nodes.map(|v| x[v as usize]);
@@ -54,7 +59,8 @@ impl Hinge {
     }
 }
 
-/// One fold of a patch: its angle, the two triangles, and where their (start, end, tip) stand in the patch.
+/// One fold of a patch: its angle, the two triangles, and where their (start, end, tip) stand in
+/// the patch.
 struct Fold {
     angle: f64,
     leaves: [(Leaf, [usize; 3]); 2],

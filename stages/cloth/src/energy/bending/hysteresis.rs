@@ -1,10 +1,13 @@
-//! Friction between yarns, which holds folds (bending hysteresis): cloth bent and let go keeps part of its curvature.
+//! Friction between yarns, which holds folds (bending hysteresis): cloth bent and let go keeps part
+//! of its curvature.
 //!
-//! A measured moment is `B k` plus or minus a frictional couple (Grosberg 1966; half of Kawabata's hysteresis 2HB), so that a
-//! strip's folds rest anywhere within that couple over B of where stiffness alone would put them. Here each hinge is held
-//! near an angle by a potential like that of friction on the body: a spring where it has hardly turned, the couple where it turns on;
-//! while the cloth moves fast the angle is dragged along. The angle is the fold's share along the hinge's normal; that the normal
-//! turns with the sheet is left out of the derivatives, for a sheet that hardly stretches curves along its normal alone.
+//! A measured moment is `B k` plus or minus a frictional couple (Grosberg 1966; half of Kawabata's
+//! hysteresis 2HB), so that a strip's folds rest anywhere within that couple over B of where
+//! stiffness alone would put them. Here each hinge is held near an angle by a potential like that
+//! of friction on the body: a spring where it has hardly turned, the couple where it turns on;
+//! while the cloth moves fast the angle is dragged along. The angle is the fold's share along the
+//! hinge's normal; that the normal turns with the sheet is left out of the derivatives, for a sheet
+//! that hardly stretches curves along its normal alone.
 
 use super::quadratic::{Fold, folds};
 use crate::energy::{Assembled, Cloth, Element, Projection, Subset, Vec3};
@@ -13,11 +16,13 @@ use crate::mesh::{Edge, Side};
 use nalgebra::{Matrix3, Vector2};
 use rayon::prelude::*;
 
-/// The curvature over which friction comes up, as a share of the couple over the rigidity: at this way it is 0.7 of the
-/// couple, and a small fold is 1 / `SOFT` times stiffer on top of its rigidity.
+/// The curvature over which friction comes up, as a share of the couple over the rigidity: at this
+/// way it is 0.7 of the couple, and a small fold is 1 / `SOFT` times stiffer on top of its
+/// rigidity.
 const SLIP_TOLERANCE: f64 = 0.4;
 
-/// How far behind an angle is dragged, in soft ways: friction is then half of its couple, as on the body.
+/// How far behind an angle is dragged, in soft ways: friction is then half of its couple, as on the
+/// body.
 const SLIP_RETURN: f64 = 0.577;
 
 /// Hinges of one task.

@@ -7,8 +7,8 @@
 //! | [`DiscreteShell`] | rigidity D on the mean of all directions, and never folds through itself | one angle an edge |
 //! | [`SkipOne`] | the classic spring over every second vertex: nothing against a small fold | one square root an edge |
 //!
-//! Beside them: [`FreeEdge`] for the borders of quadratic hinges, [`ClampedEdge`] for a slope that is held, [`Creases`] for pressed
-//! folds, [`Hysteresis`] for the friction between yarns.
+//! Beside them: [`FreeEdge`] for the borders of quadratic hinges, [`ClampedEdge`] for a slope that
+//! is held, [`Creases`] for pressed folds, [`Hysteresis`] for the friction between yarns.
 
 mod angle;
 mod calibrate;

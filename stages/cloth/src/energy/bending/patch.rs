@@ -1,9 +1,12 @@
-//! A triangle and the three triangles around it at rest, unfolded: how a curvature of the sheet shows in the three fold angles.
+//! A triangle and the three triangles around it at rest, unfolded: how a curvature of the sheet
+//! shows in the three fold angles.
 //!
-//! Lifted by a quadratic surface of curvature (kxx, kyy, kxy), the small fold angle over edge k is `rows[k] . curvature`, exactly. Three
-//! angles so give the curvature (the quadratic through six vertices; Grinspun, Gingold, Reisman, Zorin, 2006), and with it the energy
-//! `A curvature . D curvature / 2` as a quadratic form of the angles. Where an edge has no neighbour its angle is left to itself: the curvature of
-//! least energy that shows the known angles, which is a free edge without moment.
+//! Lifted by a quadratic surface of curvature (kxx, kyy, kxy), the small fold angle over edge k is
+//! `rows[k] . curvature`, exactly. Three angles so give the curvature (the quadratic through six
+//! vertices; Grinspun, Gingold, Reisman, Zorin, 2006), and with it the energy
+//! `A curvature . D curvature / 2` as a quadratic form of the angles. Where an edge has no
+//! neighbour its angle is left to itself: the curvature of least energy that shows the known
+//! angles, which is a free edge without moment.
 
 use nalgebra::{Matrix3, Vector2, Vector3};
 
@@ -12,8 +15,9 @@ use crate::energy::Vec3;
 use crate::fabric::Rigidity;
 use crate::mesh::Sheet;
 
-/// Six vertices near a conic leave a curvature that hardly shows in the angles; its compliance counts at least this share of the
-/// largest, or such a triangle would lock. Irregular meshes of garments stay above 0.02.
+/// Six vertices near a conic leave a curvature that hardly shows in the angles; its compliance
+/// counts at least this share of the largest, or such a triangle would lock. Irregular meshes of
+/// garments stay above 0.02.
 const LEAST_COMPLIANCE: f64 = 1e-3;
 /// The softer direction counts at least this share of the stiffer.
 const LEAST_RIGIDITY: f64 = 1e-6;
@@ -104,7 +108,8 @@ impl Patch {
         self.rows[k] = row;
     }
 
-    /// Stiffness between the three angles for a rigidity `d` of (kxx, kyy, kxy): energy = `angles . K angles / 2`.
+    /// Stiffness between the three angles for a rigidity `d` of (kxx, kyy, kxy): energy =
+    /// `angles . K angles / 2`.
     pub(super) fn stiffness(&self, d: &Matrix3<f64>) -> Matrix3<f64> {
         let Some(inverse) = d.try_inverse() else { return Matrix3::zeros() };
         let b = Matrix3::from_rows(&self.rows.map(|r| r.transpose()));
@@ -124,7 +129,8 @@ fn bend(p: &Vector2<f64>) -> Vector3<f64> {
 }
 
 impl Rigidity {
-    /// By (kxx, kyy, kxy), Poisson's ratio 0, twist so that a cylinder along (x, y) has `weft x² + warp y²`.
+    /// By (kxx, kyy, kxy), Poisson's ratio 0, twist so that a cylinder along (x, y) has
+    /// `weft x² + warp y²`.
     pub(super) fn tensor(&self) -> Matrix3<f64> {
         let least = LEAST_RIGIDITY * self.warp.max(self.weft);
         let (weft, warp) = (self.weft.max(least), self.warp.max(least));

@@ -1,11 +1,14 @@
-//! Quadratic bending for sheets that hardly stretch: a fold angle is replaced by the vector `c = sum w_i x_i`, which for a flat sheet
-//! is the angle times the normal, so the energy `k |c|² / 2` is a quadratic form with a constant matrix (Bergou, Wardetzky, Harmon,
-//! Zorin, Grinspun, 2006).
+//! Quadratic bending for sheets that hardly stretch: a fold angle is replaced by the vector
+//! `c = sum w_i x_i`, which for a flat sheet is the angle times the normal, so the energy
+//! `k |c|² / 2` is a quadratic form with a constant matrix (Bergou, Wardetzky, Harmon, Zorin,
+//! Grinspun, 2006).
 //!
-//! One hinge an inner edge, `k = f D |e|² / (A1 + A2)`: the weight that makes a sheet of equilateral triangles bend with rigidity D in
-//! every direction, times a factor f that takes out what the mesh makes of it (see `calibrate`). Such hinges bend with Poisson's ratio
-//! -1/3; [`super::FreeEdge`] takes that out of free edges. Cost: a few products an edge; the matrix is summed once a pattern. Limits: flat
-//! at rest; the angle counts as 2 sin(theta/2); stretching counts as bending to second order.
+//! One hinge an inner edge, `k = f D |e|² / (A1 + A2)`: the weight that makes a sheet of
+//! equilateral triangles bend with rigidity D in every direction, times a factor f that takes out
+//! what the mesh makes of it (see `calibrate`). Such hinges bend with Poisson's ratio -1/3;
+//! [`super::FreeEdge`] takes that out of free edges. Cost: a few products an edge; the matrix is
+//! summed once a pattern. Limits: flat at rest; the angle counts as 2 sin(theta/2); stretching
+//! counts as bending to second order.
 
 use super::angle::{Leaf, angle};
 use super::calibrate::Calibration;

@@ -1,10 +1,12 @@
-//! Discrete shells: every inner edge resists its own fold angle, `E = k psi² / 2`, `psi = 2 tan(theta / 2)` (Grinspun, Hirani, Desbrun,
-//! Schroeder, 2003, with the measure of an angle of Tamstorf and Grinspun, 2013).
+//! Discrete shells: every inner edge resists its own fold angle, `E = k psi² / 2`,
+//! `psi = 2 tan(theta / 2)` (Grinspun, Hirani, Desbrun, Schroeder, 2003, with the measure of an
+//! angle of Tamstorf and Grinspun, 2013).
 //!
-//! The measure is the angle for small folds and grows without bound towards a flat fold, so that a sheet never folds through
-//! itself. The stiffness k is that of the quadratic hinges, calibrated for the mesh (see `quadratic`); the free edges' correction goes
-//! with it. Cost: one angle an edge. Limits: flat at rest; hinges each by itself are stiffer across the grain of a mesh than along it,
-//! by up to 4 % on irregular meshes; a fold within 0.03 degrees of flat counts as that.
+//! The measure is the angle for small folds and grows without bound towards a flat fold, so that a
+//! sheet never folds through itself. The stiffness k is that of the quadratic hinges, calibrated
+//! for the mesh (see `quadratic`); the free edges' correction goes with it. Cost: one angle an
+//! edge. Limits: flat at rest; hinges each by itself are stiffer across the grain of a mesh than
+//! along it, by up to 4 % on irregular meshes; a fold within 0.03 degrees of flat counts as that.
 
 use super::quadratic::{Fold, folds};
 use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3, add_block_of};

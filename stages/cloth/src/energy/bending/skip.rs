@@ -1,8 +1,10 @@
-//! Skip-one springs: between the two tips over every inner edge, as the classic mass-spring cloth has them.
+//! Skip-one springs: between the two tips over every inner edge, as the classic mass-spring cloth
+//! has them.
 //!
-//! A small fold shortens the span by its square only, so a flat sheet has no rigidity at all against small bending; the spring acts once
-//! the fold is large. Stiffness `D / span² * width`: the force that a strip of rigidity D would need to buckle by about half.
-//! Kept because the classic systems had it, and to measure how far it is off.
+//! A small fold shortens the span by its square only, so a flat sheet has no rigidity at all
+//! against small bending; the spring acts once the fold is large. Stiffness `D / span² * width`:
+//! the force that a strip of rigidity D would need to buckle by about half. Kept because the
+//! classic systems had it, and to measure how far it is off.
 
 use super::flap::{Flap, flaps};
 use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3, add_block_of};

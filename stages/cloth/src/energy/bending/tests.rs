@@ -117,7 +117,8 @@ fn calibration_does_not_see_seams() {
     assert!(sewn.1.iter().zip(&apart.1).all(|(a, b)| (a - b).norm() < 1e-9));
 }
 
-/// The cylinder's energy per area, rows counted without the border, must be D kappa²/2 whatever its direction.
+/// The cylinder's energy per area, rows counted without the border, must be D kappa²/2 whatever its
+/// direction.
 #[test]
 fn cylinder_costs_the_same_in_every_direction() {
     let (s, kappa) = (equilateral(24), 1e-3);
@@ -146,7 +147,8 @@ fn cylinder_costs_the_same_in_every_direction() {
     }
 }
 
-/// A sheet bent to a quadratic surface, of small slopes, costs what the plate costs, triangle by triangle, before calibration.
+/// A sheet bent to a quadratic surface, of small slopes, costs what the plate costs, triangle by
+/// triangle, before calibration.
 #[test]
 fn a_quadratic_surface_has_its_energy_on_any_mesh() {
     use crate::mesh::layout::{Layout, Rectangle};

@@ -1,9 +1,11 @@
-//! Springs along the mesh edges, by family: structural (near warp or weft) and shear (the diagonals).
+//! Springs along the mesh edges, by family: structural (near warp or weft) and shear (the
+//! diagonals).
 //!
-//! A spring's stiffness is that of the cloth it stands for, `k A / l²` (van Gelder, 1998), A the area of its triangles; a shear
-//! spring takes 4 G in place of k, which is exact for squares with one diagonal. Piecewise-linear stiffness as in
-//! Fan et al., 1999. Cost: one square root an edge. Limit: exact for stretch along mesh lines only; Poisson's ratio and the
-//! stiffness off the mesh lines are what the mesh makes of them.
+//! A spring's stiffness is that of the cloth it stands for, `k A / l²` (van Gelder, 1998), A the
+//! area of its triangles; a shear spring takes 4 G in place of k, which is exact for squares with
+//! one diagonal. Piecewise-linear stiffness as in Fan et al., 1999. Cost: one square root an edge.
+//! Limit: exact for stretch along mesh lines only; Poisson's ratio and the stiffness off the mesh
+//! lines are what the mesh makes of them.
 
 use nalgebra::{Matrix3, Vector2};
 
@@ -11,7 +13,8 @@ use crate::energy::{Assembled, Blocks, Cloth, Element, Projection, Subset, Vec3,
 use crate::fabric::{Curve, Fabric};
 use crate::mesh::Edge;
 
-/// An edge within this angle of warp or weft (radians) is structural: half way between the axes and the diagonal of a square.
+/// An edge within this angle of warp or weft (radians) is structural: half way between the axes and
+/// the diagonal of a square.
 const STRUCTURAL_ANGLE: f64 = std::f64::consts::FRAC_PI_8;
 
 /// Which measured curve a spring follows.
@@ -42,7 +45,8 @@ pub struct Springs {
 }
 
 impl Springs {
-    /// Structural and shear springs on every edge; an edge between two fabrics is of its first triangle's.
+    /// Structural and shear springs on every edge; an edge between two fabrics is of its first
+    /// triangle's.
     #[must_use]
     pub fn new(cloth: &Cloth<'_>) -> Assembled<2, Self> {
         let springs = cloth.sheet.edges().iter().map(|e| spring(cloth, e)).collect();
@@ -131,7 +135,8 @@ impl Element<2> for Springs {
     }
 }
 
-/// Length and direction; the direction of a spring without length is zero, so that it pulls nowhere.
+/// Length and direction; the direction of a spring without length is zero, so that it pulls
+/// nowhere.
 fn direction(x: &[Vec3; 2]) -> (f64, Vec3) {
     let d = x[1] - x[0];
     let length = d.norm();

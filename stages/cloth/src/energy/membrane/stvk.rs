@@ -1,7 +1,8 @@
-//! St Venant-Kirchhoff in plane stress: linear elasticity of Green's strain, `S = lambda tr(E) I + 2 mu E`.
+//! St Venant-Kirchhoff in plane stress: linear elasticity of Green's strain,
+//! `S = lambda tr(E) I + 2 mu E`.
 //!
-//! Exact for small strain at any rotation; stiffens in tension, softens in compression, and is not meant for compression below about
-//! 0.6. Cost: a few dozen products a triangle.
+//! Exact for small strain at any rotation; stiffens in tension, softens in compression, and is not
+//! meant for compression below about 0.6. Cost: a few dozen products a triangle.
 
 use super::triangles::{Law, Response};
 use crate::error::{ClothError, check_parameter};

@@ -64,7 +64,8 @@ fn woven_equals_linear_elasticity_in_small_strain() {
     }
 }
 
-/// A yarn pressed to 0.48 of its length: the law keeps its slopes from there on, and is the slope of its own energy.
+/// A yarn pressed to 0.48 of its length: the law keeps its slopes from there on, and is the slope
+/// of its own energy.
 #[test]
 fn beyond_the_limit_of_the_law_the_stress_is_still_the_slope_of_the_energy() {
     let law = Woven::new(&fabric()).unwrap();

@@ -1,11 +1,13 @@
 //! Constant-strain triangles: from a law of the metric to forces on the corners.
 //!
-//! The images u and v of the rest axes are linear in the corners (linear shape functions). A law gives the energy per rest area by
-//! their squares and their product, the second Piola-Kirchhoff stress S and its tangent C by Green's strain, `E11 = (u.u - 1) / 2` and
-//! its like. The second derivative falls into a part of C and a part of S that are each made positive semi-definite on their own: C by the
-//! law, S by clamping its two principal values at zero, which costs two square roots (the tension field of Choi and Ko, 2002, put
-//! into Newton's matrix). A stress that the last step predicted stands in for that of the new places, whose strain has an error of
-//! second order times a great stiffness (the mixed form of Magisano, Leonetti, Garcea, 2017).
+//! The images u and v of the rest axes are linear in the corners (linear shape functions). A law
+//! gives the energy per rest area by their squares and their product, the second Piola-Kirchhoff
+//! stress S and its tangent C by Green's strain, `E11 = (u.u - 1) / 2` and its like. The second
+//! derivative falls into a part of C and a part of S that are each made positive semi-definite on
+//! their own: C by the law, S by clamping its two principal values at zero, which costs two square
+//! roots (the tension field of Choi and Ko, 2002, put into Newton's matrix). A stress that the last
+//! step predicted stands in for that of the new places, whose strain has an error of second order
+//! times a great stiffness (the mixed form of Magisano, Leonetti, Garcea, 2017).
 
 use crate::energy::{Assembled, Element, Projection, Subset, Vec3};
 use crate::mesh::Sheet;
@@ -15,7 +17,8 @@ use rayon::prelude::*;
 /// Elements of one task.
 const TASK: usize = 2048;
 
-/// Stress and tangent by (weft, warp, shear) strain, N/m; the third strain is u.v, twice Green's shear strain.
+/// Stress and tangent by (weft, warp, shear) strain, N/m; the third strain is u.v, twice Green's
+/// shear strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
     /// S11, S22, S12.
@@ -24,7 +27,8 @@ pub struct Response {
     pub tangent: [f64; 6],
 }
 
-/// A hyperelastic law of a sheet, by `[u.u, v.v, u.v]`, u and v the images of the rest x axis (weft) and y axis (warp).
+/// A hyperelastic law of a sheet, by `[u.u, v.v, u.v]`, u and v the images of the rest x axis
+/// (weft) and y axis (warp).
 pub trait Law: Clone + Send + Sync + 'static {
     /// What it is called in reports.
     fn name(&self) -> &'static str;
@@ -54,7 +58,8 @@ struct Triangle {
 pub struct Triangles<L> {
     laws: Vec<L>,
     triangles: Vec<Triangle>,
-    /// Stress of each triangle as the last step predicted it: weft, warp, shear, N/m. Empty before the first.
+    /// Stress of each triangle as the last step predicted it: weft, warp, shear, N/m. Empty before
+    /// the first.
     predicted: Vec<[f64; 3]>,
 }
 
@@ -190,7 +195,8 @@ impl<L: Law> Element<3> for Triangles<L> {
 }
 
 impl Deformed {
-    /// Adds the block of two corners, of which `p` and `q` are the derivatives of the deformation gradient's columns.
+    /// Adds the block of two corners, of which `p` and `q` are the derivatives of the deformation
+    /// gradient's columns.
     #[inline]
     fn add_block(&self, p: &Vector2<f64>, q: &Vector2<f64>, sum: &mut Matrix3<f64>) {
         let [c11, c22, c33, c12, c13, c23] = self.tangent;

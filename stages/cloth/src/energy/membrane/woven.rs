@@ -1,10 +1,13 @@
-//! A woven sheet: tension along warp and weft and shear of the angle between them, each with a measured curve.
+//! A woven sheet: tension along warp and weft and shear of the angle between them, each with a
+//! measured curve.
 //!
-//! The strains are what the instruments measure: engineering strain of each yarn direction, `e = |f| - 1`, and the shear angle
-//! `gamma = asin(f1.f2 / |f1||f2|)`, f1 and f2 the images of the weft and warp axes. Energy per area:
-//! `W(e1) + W(e2) + c e1 e2 + G(gamma)`. With straight curves and small strain this is exactly the orthotropic plate with the
-//! engineering constants E1, E2, nu12, G. Poisson's ratio couples the linear range only. Cost: three square roots and an arc sine.
-//! Limits: a yarn pressed shorter than half its length and yarns sheared beyond 72 degrees keep the slopes that they have there.
+//! The strains are what the instruments measure: engineering strain of each yarn direction,
+//! `e = |f| - 1`, and the shear angle `gamma = asin(f1.f2 / |f1||f2|)`, f1 and f2 the images of the
+//! weft and warp axes. Energy per area: `W(e1) + W(e2) + c e1 e2 + G(gamma)`. With straight curves
+//! and small strain this is exactly the orthotropic plate with the engineering constants E1, E2,
+//! nu12, G. Poisson's ratio couples the linear range only. Cost: three square roots and an arc
+//! sine. Limits: a yarn pressed shorter than half its length and yarns sheared beyond 72 degrees
+//! keep the slopes that they have there.
 
 use super::triangles::{Law, Response};
 use crate::energy::Vec3;
@@ -13,17 +16,20 @@ use crate::fabric::{Curve, Fabric};
 use crate::scene::StrainLimit;
 use nalgebra::{Matrix3, Vector3};
 
-/// Length of a yarn direction below which strains no longer follow it: its derivatives would grow without bound.
+/// Length of a yarn direction below which strains no longer follow it: its derivatives would grow
+/// without bound.
 const SHORTEST: f64 = 0.5;
 
-/// Sine of the shear angle above which the angle goes on in a straight line: no cloth shears so far, but a start may.
+/// Sine of the shear angle above which the angle goes on in a straight line: no cloth shears so
+/// far, but a start may.
 const GREATEST_SINE: f64 = 0.95;
 
-/// Share of a strain limit from which cloth stiffens: later is truer to the curve below, earlier is easier to solve.
+/// Share of a strain limit from which cloth stiffens: later is truer to the curve below, earlier is
+/// easier to solve.
 const STOP_FROM: f64 = 0.8;
 
-/// What a yarn carries at its limit beyond its curve, in strains of the curve's stiffness: ten times what seams pull with, and more
-/// than any weight.
+/// What a yarn carries at its limit beyond its curve, in strains of the curve's stiffness: ten
+/// times what seams pull with, and more than any weight.
 const STOP_STRAIN: f64 = 0.5;
 
 /// The law. Weft along the rest x axis, warp along y.
@@ -134,7 +140,8 @@ impl Shape {
 }
 
 impl Woven {
-    /// From a fabric's curves: the measured tension is that of a free strip, so Poisson's ratio is taken out of it.
+    /// From a fabric's curves: the measured tension is that of a free strip, so Poisson's ratio is
+    /// taken out of it.
     ///
     /// # Errors
     /// What [`Fabric::check`] finds.
@@ -155,7 +162,8 @@ impl Woven {
         }
     }
 
-    /// Orthotropic with straight curves: stiffness along x (weft) and y (warp), nu = contraction of y under tension along x, shear.
+    /// Orthotropic with straight curves: stiffness along x (weft) and y (warp), nu = contraction of
+    /// y under tension along x, shear.
     ///
     /// # Errors
     /// What [`Fabric::check`] finds.
@@ -174,7 +182,8 @@ impl Woven {
         Matrix3::new(weft, c, 0.0, c, warp, 0.0, 0.0, 0.0, self.shear.slope(0.0))
     }
 
-    /// Weft strain, warp strain and shear angle of the images of the weft and warp axes, and the derivative of each by both.
+    /// Weft strain, warp strain and shear angle of the images of the weft and warp axes, and the
+    /// derivative of each by both.
     #[must_use]
     pub fn strains([u, v]: &[Vec3; 2]) -> (Vector3<f64>, [[Vec3; 2]; 3]) {
         let s = Shape::of([u.norm_squared(), v.norm_squared(), u.dot(v)]);

@@ -1,4 +1,5 @@
-//! Scenes of what sewing does beside plain seams: gathers, darts, pleats, elastic bands, folds, three sheets in one seam, patches.
+//! Scenes of what sewing does beside plain seams: gathers, darts, pleats, elastic bands, folds,
+//! three sheets in one seam, patches.
 
 use super::{cloth, patch};
 use crate::fabric::Fabric;
@@ -16,7 +17,8 @@ fn panel(nx: u32, ny: u32, width: f64, height: f64) -> (Vec<Vector2<f64>>, Vec<[
     (points.iter().map(|p| Vector2::new((p.x - 0.5) * width, (p.y - 1.0) * height)).collect(), triangles)
 }
 
-/// A frill of `nx` by `ny` cells, `ratio` times as wide as the strip of 0.3 m that it is gathered to; the strip is held at its upper edge.
+/// A frill of `nx` by `ny` cells, `ratio` times as wide as the strip of 0.3 m that it is gathered
+/// to; the strip is held at its upper edge.
 #[must_use]
 pub fn gathered(nx: u32, ny: u32, ratio: f64) -> Scene {
     let (strip, strip_cells) = panel(nx, 4, 0.3, 0.06);
@@ -36,7 +38,8 @@ pub fn gathered(nx: u32, ny: u32, ratio: f64) -> Scene {
     scene
 }
 
-/// A panel of `2 nx` by `ny` cells, held at its upper edge, with a dart from its lower edge half way up, 0.06 m wide.
+/// A panel of `2 nx` by `ny` cells, held at its upper edge, with a dart from its lower edge half
+/// way up, 0.06 m wide.
 #[must_use]
 pub fn dart(nx: u32, ny: u32) -> Scene {
     let (width, height, open) = (0.4, 0.4, 0.06);
@@ -72,8 +75,8 @@ pub fn dart(nx: u32, ny: u32) -> Scene {
     scene
 }
 
-/// A panel of `nx` by `ny` cells, folded to a knife pleat of `deep` cells in its middle, whose upper third is sewn down; held at its upper
-/// edge beside the pleat.
+/// A panel of `nx` by `ny` cells, folded to a knife pleat of `deep` cells in its middle, whose
+/// upper third is sewn down; held at its upper edge beside the pleat.
 #[must_use]
 pub fn pleat(nx: u32, ny: u32, deep: u32) -> Scene {
     let cell = 0.02;
@@ -102,7 +105,8 @@ pub fn pleat(nx: u32, ny: u32, deep: u32) -> Scene {
     scene
 }
 
-/// A panel of `nx` by `ny` cells and 0.4 m width, held at its upper edge; its lower edge has an elastic band of `ratio` its length.
+/// A panel of `nx` by `ny` cells and 0.4 m width, held at its upper edge; its lower edge has an
+/// elastic band of `ratio` its length.
 #[must_use]
 pub fn banded(nx: u32, ny: u32, ratio: f64) -> Scene {
     let (rest, triangles) = panel(nx, ny, 0.4, 0.3);
@@ -115,8 +119,8 @@ pub fn banded(nx: u32, ny: u32, ratio: f64) -> Scene {
     scene
 }
 
-/// Two square panels of 0.2 m sewn edge to edge, `n` by `n` cells each, the seam pressed to `angle` (radians) between their outsides; the
-/// first is held flat, the second is free.
+/// Two square panels of 0.2 m sewn edge to edge, `n` by `n` cells each, the seam pressed to `angle`
+/// (radians) between their outsides; the first is held flat, the second is free.
 #[must_use]
 pub fn folded(n: u32, angle: f64) -> Scene {
     let (rest, triangles) = panel(n, n, 0.2, 0.2);
@@ -131,7 +135,8 @@ pub fn folded(n: u32, angle: f64) -> Scene {
     scene
 }
 
-/// A strip held at its upper edge, to whose lower edge two panels of 0.3 m by 0.2 m are sewn by one seam each: three sheets at one line.
+/// A strip held at its upper edge, to whose lower edge two panels of 0.3 m by 0.2 m are sewn by one
+/// seam each: three sheets at one line.
 #[must_use]
 pub fn three_sheets(nx: u32, ny: u32) -> Scene {
     let (strip, strip_cells) = panel(nx, 4, 0.3, 0.06);
@@ -148,7 +153,8 @@ pub fn three_sheets(nx: u32, ny: u32) -> Scene {
     scene
 }
 
-/// A panel of `n` by `n` cells and 0.4 m, held at its upper edge, with a pocket of a quarter of its cells sewn onto it along three sides.
+/// A panel of `n` by `n` cells and 0.4 m, held at its upper edge, with a pocket of a quarter of its
+/// cells sewn onto it along three sides.
 #[must_use]
 pub fn pocket(n: u32) -> Scene {
     let (rest, triangles) = panel(n, n, 0.4, 0.4);

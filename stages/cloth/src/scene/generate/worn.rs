@@ -10,8 +10,9 @@ const ARM: f64 = 0.60;
 /// Radius of an arm at the hand and at the shoulder, m.
 const ARM_RADII: [f64; 2] = [0.032, 0.056];
 
-/// An arm that hangs down at 60 degrees from the vertical, and two panels of `nx` by `ny` cells 0.1 m above and below it, to be sewn at
-/// their long sides into a sleeve. Three vertices above the shoulder are held, as the rest of a shirt would.
+/// An arm that hangs down at 60 degrees from the vertical, and two panels of `nx` by `ny` cells 0.1
+/// m above and below it, to be sewn at their long sides into a sleeve. Three vertices above the
+/// shoulder are held, as the rest of a shirt would.
 #[must_use]
 pub fn sleeve(nx: u32, ny: u32) -> Scene {
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), 60.0_f64.to_radians());

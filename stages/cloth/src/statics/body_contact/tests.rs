@@ -10,7 +10,8 @@ use std::ops::ControlFlow;
 
 type Vec3 = Vector3<f64>;
 
-/// A square on top of a ball, its middle pressed down as by the weight of much cloth, brought to rest.
+/// A square on top of a ball, its middle pressed down as by the weight of much cloth, brought to
+/// rest.
 #[test]
 fn contact_carries_whatever_presses_on_one_node() {
     let mut scene = generate::drape(10);
@@ -57,7 +58,8 @@ fn press_the_middle(scene: &Scene, mut system: System<'_>, body: &Body) {
     assert!(height > 0.5 * offset && height < offset, "{height}");
 }
 
-/// A node in the ball, pulled in harder than its contact carries, and one beside it that rests outside.
+/// A node in the ball, pulled in harder than its contact carries, and one beside it that rests
+/// outside.
 #[test]
 fn contact_that_is_hard_brings_a_node_out_of_the_body() {
     let scene = generate::drape(10);

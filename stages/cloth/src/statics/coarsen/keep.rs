@@ -1,4 +1,5 @@
-//! Which vertices a coarser level keeps: a maximal independent set, corners and pins first, then outlines, then the inside.
+//! Which vertices a coarser level keeps: a maximal independent set, corners and pins first, then
+//! outlines, then the inside.
 
 use super::{Mesh, Pieces};
 

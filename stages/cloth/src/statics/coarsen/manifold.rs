@@ -1,8 +1,9 @@
 //! Collapses that keep the sewn sheet a surface.
 //!
-//! Two panels of like shape are two meshes and one surface: where both have an edge between the same two points of their
-//! seams, four triangles share it once it is sewn. So the triangles at the sewn edges are counted before a collapse (the
-//! link condition of Dey, Edelsbrunner, Guha and Nekhayev 1999, for the sewn sheet).
+//! Two panels of like shape are two meshes and one surface: where both have an edge between the
+//! same two points of their seams, four triangles share it once it is sewn. So the triangles at the
+//! sewn edges are counted before a collapse (the link condition of Dey, Edelsbrunner, Guha and
+//! Nekhayev 1999, for the sewn sheet).
 
 use super::{Mesh, Pieces};
 
@@ -10,8 +11,9 @@ use super::{Mesh, Pieces};
 const MOST: usize = 2;
 
 impl Mesh {
-    /// Whether edges of the sewn sheet keep two triangles at most when each vertex moves onto its other one; or as many as one of them
-    /// there has before, for a seam of three sheets is coarsened as one.
+    /// Whether edges of the sewn sheet keep two triangles at most when each vertex moves onto its
+    /// other one; or as many as one of them there has before, for a seam of three sheets is
+    /// coarsened as one.
     pub(super) fn stays_manifold(&self, moves: &[[u32; 2]], fine: &Pieces) -> bool {
         let Some(&ends) = moves.first() else { return true };
         if !self.nears_seam(ends, fine) {

@@ -75,8 +75,8 @@ fn a_skirt_follows_its_fabric_and_comes_to_rest() {
         let outcome = live.follow(3).unwrap();
         residuals.push(outcome.residual);
     }
-    // Nine states of ten leave a tenth of the garment's weight, some 0.6 N, on no vertex; a vertex that lands on the body
-    // may show more for one state.
+    // Nine states of ten leave a tenth of the garment's weight, some 0.6 N, on no vertex; a vertex
+    // that lands on the body may show more for one state.
     residuals.sort_by(f64::total_cmp);
     assert!(residuals[26] < 0.06, "{residuals:?}");
     let state = live.settle(&mut GO_ON.clone()).unwrap();

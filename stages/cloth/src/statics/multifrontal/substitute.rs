@@ -1,8 +1,9 @@
 //! The two halves of a solution with a factor at hand: up the tree of fronts, and down again.
 //!
-//! The numbers are kept in the order of elimination, where all below a front lies together: branches share nothing, so they run
-//! side by side. What a branch does to the nodes above it goes up as a vector over its border. Cost: each number of the factor
-//! is read twice, so the limit is memory.
+//! The numbers are kept in the order of elimination, where all below a front lies together:
+//! branches share nothing, so they run side by side. What a branch does to the nodes above it goes
+//! up as a vector over its border. Cost: each number of the factor is read twice, so the limit is
+//! memory.
 
 use super::{Front, Symbolic, TASK_UNKNOWNS};
 use crate::statics::dense::join_if;
@@ -73,7 +74,8 @@ impl Symbolic {
 }
 
 impl Front {
-    /// Solves for the own unknowns `y`; what the children left is in `rights`, what is left to the parent comes back.
+    /// Solves for the own unknowns `y`; what the children left is in `rights`, what is left to the
+    /// parent comes back.
     pub(super) fn forward<T: Real>(&self, columns: &[T], y: &mut [T], rights: &[Vec<T>]) -> Vec<T> {
         let own = self.own();
         let mut local = vec![T::ZERO; self.unknowns()];

@@ -3,7 +3,8 @@ use super::*;
 use crate::linear::add_at;
 use crate::statics::nested_dissection::smoothed;
 
-/// A sheet of `n` by `n` nodes, every cell's four nodes coupled, and a matrix that is positive definite.
+/// A sheet of `n` by `n` nodes, every cell's four nodes coupled, and a matrix that is positive
+/// definite.
 fn sheet(n: usize) -> (Pattern, Vec<Matrix3<f64>>, Vec<Vector3<f64>>) {
     let id = |i: usize, j: usize| (j * n + i) as u32;
     let cells: Vec<[u32; 4]> = (0..(n - 1) * (n - 1))
@@ -64,7 +65,8 @@ fn rows_out_of_line_cost_no_more() {
         let (pattern, _, layout) = sheet(n);
         let work = |layout: &[Vector3<f64>]| Symbolic::new(&pattern, layout).work();
         let straight = work(&layout);
-        // As no straight mesh stays when it is placed on a body. Cut through at the median, 73 rows cost 1.45 times as much.
+        // As no straight mesh stays when it is placed on a body. Cut through at the median, 73 rows
+        // cost 1.45 times as much.
         let little = work(&shaken(&layout, 0.14)) / straight;
         assert!(little < 1.02, "{n}: {little:.3}");
         // No row is left that could be told from the next by its places.
@@ -78,7 +80,8 @@ fn rows_out_of_line_cost_no_more() {
 #[test]
 fn places_drawn_out_do_not_mislead() {
     let (pattern, _, layout) = sheet(40);
-    // The same sheet drawn out along y, where cuts still meet the same 40 nodes: the places do not mislead.
+    // The same sheet drawn out along y, where cuts still meet the same 40 nodes: the places do not
+    // mislead.
     let drawn: Vec<Vector3<f64>> =
         layout.iter().map(|p| p.component_mul(&Vector3::new(1.0, 1.9, 1.0))).collect();
     let [even, drawn] = [layout, drawn].map(|l| Symbolic::new(&pattern, &l).work());
@@ -101,7 +104,8 @@ fn held_nodes_take_no_part() {
     let symbolic = Symbolic::new(&pattern, &layout);
     assert_eq!(symbolic.order.len(), 18);
     let factor = factored(&symbolic, &values).unwrap();
-    // Springs of 1 N/m between two held ends: a load of 1 N in the middle of eight of them bends down by (4 x 5) / 9.
+    // Springs of 1 N/m between two held ends: a load of 1 N in the middle of eight of them bends
+    // down by (4 x 5) / 9.
     let mut x = vec![Vector3::zeros(); n as usize];
     x[4] = Vector3::y();
     symbolic.solve(&factor, &mut x);

@@ -1,8 +1,9 @@
 //! Where some nodes are cut in two.
 //!
-//! Of all cuts across a side whose places lie about the middle, the number of nodes on either side that have a neighbour on the
-//! other is counted in one sweep; the smallest separator wins, and a crooked half must be worth it.
-//! Cost O(n) for n nodes, whose neighbours are few, and O(w log w) for the w of them about the middle.
+//! Of all cuts across a side whose places lie about the middle, the number of nodes on either side
+//! that have a neighbour on the other is counted in one sweep; the smallest separator wins, and a
+//! crooked half must be worth it. Cost O(n) for n nodes, whose neighbours are few, and O(w log w)
+//! for the w of them about the middle.
 
 use super::Neighbours;
 use nalgebra::Vector3;
@@ -14,7 +15,8 @@ const MIDDLE: f64 = 0.1;
 /// Sides shorter than this share of the longest are not cut across.
 const LEAST_SIDE: f64 = 0.5;
 
-/// How much a cut away from the middle adds to its separator, by the square of its distance as a share of half of the nodes.
+/// How much a cut away from the middle adds to its separator, by the square of its distance as a
+/// share of half of the nodes.
 const CROOKED: f64 = 2.0;
 
 /// Cuts sets of nodes in two.
@@ -42,7 +44,8 @@ impl<'h> Halves<'h> {
         Self { layout, neighbours, set: vec![0; layout.len()], sets: 0, rank: vec![0; layout.len()] }
     }
 
-    /// Both halves without the separator, and the separator; each in the order of the nodes' numbers.
+    /// Both halves without the separator, and the separator; each in the order of the nodes'
+    /// numbers.
     pub(super) fn of(&mut self, mut nodes: Vec<u32>) -> [Vec<u32>; 3] {
         let half = self.sort(&mut nodes);
         let mut high = nodes.split_off(half);
@@ -110,7 +113,8 @@ impl<'h> Halves<'h> {
 
     /// The size of the smaller separator of each cut with `from` to `to` nodes before it.
     fn separators(&self, nodes: &[u32], set: u32, from: usize, to: usize) -> Vec<u32> {
-        // How many nodes before a cut meet those behind it, and the other way round, more than at the cut before.
+        // How many nodes before a cut meet those behind it, and the other way round, more than at
+        // the cut before.
         let mut more = vec![[0i32; 2]; to - from + 2];
         let place = |rank: u32| rank as usize - from + 1;
         for &i in nodes {

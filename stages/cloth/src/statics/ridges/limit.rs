@@ -1,8 +1,9 @@
-//! Moves that would lead cloth past a sharp feature: the cloth gives way, and what still would pass ends before.
+//! Moves that would lead cloth past a sharp feature: the cloth gives way, and what still would pass
+//! ends before.
 //!
-//! As for cloth against cloth (see `contact/give_way` and `contact/limit`), with features that stand still. The distance of a pair is
-//! kept by additive continuous collision detection, so no step jumps over a blade. Cloth that the body passes through already
-//! is not held back.
+//! As for cloth against cloth (see `contact/give_way` and `contact/limit`), with features that
+//! stand still. The distance of a pair is kept by additive continuous collision detection, so no
+//! step jumps over a blade. Cloth that the body passes through already is not held back.
 
 use super::{Pair, Ridges};
 use nalgebra::Vector3;
@@ -18,17 +19,18 @@ const ROUNDS: usize = 4;
 /// Share of the time to impact that is used.
 const SAFETY: f64 = 0.9;
 
-/// Distance that a pair keeps which gives way, as a share of the thickness, or of its own where that is less; and the least share of its
-/// own that it keeps of a long way. A contact presses only from a thickness on: what would lose all of its way to a feature far away never
-/// came to lie on it.
+/// Distance that a pair keeps which gives way, as a share of the thickness, or of its own where
+/// that is less; and the least share of its own that it keeps of a long way. A contact presses only
+/// from a thickness on: what would lose all of its way to a feature far away never came to lie on
+/// it.
 const KEPT: (f64, f64) = (0.5, 0.15);
 
 /// Nearer than this the two sides of a feature are not told apart, m.
 const TOUCHING: f64 = 1e-9;
 
 impl Ridges {
-    /// Takes from `moves` what leads the closest points of pairs that would meet too near together, where nodes are not `held`; whose
-    /// moves have changed.
+    /// Takes from `moves` what leads the closest points of pairs that would meet too near together,
+    /// where nodes are not `held`; whose moves have changed.
     pub(in super::super) fn give_way(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
         let mut pushed = vec![false; x.len()];
         for _ in 0..ROUNDS {
@@ -104,7 +106,8 @@ impl Ridges {
         self.pairs.par_iter().with_min_len(256).filter_map(hit).collect()
     }
 
-    /// Whether the cloth of a pair is one that the body passes through: it must get past features to get out.
+    /// Whether the cloth of a pair is one that the body passes through: it must get past features
+    /// to get out.
     fn is_free(&self, pair: &Pair) -> bool {
         self.pierced.iter().any(|p| {
             let shared = p.nodes[..p.count()].iter().filter(|i| pair.nodes.contains(i)).count();

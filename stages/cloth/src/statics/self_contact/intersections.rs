@@ -1,4 +1,5 @@
-//! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have it, is pulled back out.
+//! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have
+//! it, is pulled back out.
 
 use super::{Contact, SelfContact};
 use crate::statics::contact_potential::ContactPotential;
@@ -9,12 +10,13 @@ use toile_geometry::pair::Pair;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth and more.
+/// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth
+/// and more.
 pub(in crate::statics) const MERGED: f64 = 0.02;
 
 impl SelfContact {
-    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled back to the other side. Cloth
-    /// that lies in cloth counts as tangled, too.
+    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled
+    /// back to the other side. Cloth that lies in cloth counts as tangled, too.
     pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
         let merged = self.merged(x);
         let free = crossings.is_empty() && merged.is_empty();
@@ -24,12 +26,14 @@ impl SelfContact {
         self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
     }
 
-    /// Pairs so near that the wall between them and the search for the first impact would hold them there for ever.
+    /// Pairs so near that the wall between them and the search for the first impact would hold them
+    /// there for ever.
     fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
         self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
     }
 
-    /// The nodes of each crossing and of each pair that lies in each other, an edge's or a vertex's own first.
+    /// The nodes of each crossing and of each pair that lies in each other, an edge's or a vertex's
+    /// own first.
     pub(in crate::statics) fn entangled(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
         self.tangles.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
     }
@@ -60,7 +64,8 @@ impl SelfContact {
         Some(Contact { nodes, weights, normal, stiffness, press })
     }
 
-    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing where they are one layer.
+    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing
+    /// where they are one layer.
     fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
         let of = |v: &u32| self.order.get(*v as usize).copied();
         let one = |nodes: &[u32]| {

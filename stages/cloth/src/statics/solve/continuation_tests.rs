@@ -14,7 +14,8 @@ fn graded(scene: &Scene) -> Equilibrium {
     }
 }
 
-/// How far, in the mean, four starts with every vertex moved by 1 mm end from where the scene's own does, m.
+/// How far, in the mean, four starts with every vertex moved by 1 mm end from where the scene's own
+/// does, m.
 fn spread(scene: &Scene, solve: impl Fn(&Scene) -> Equilibrium) -> Vec<f64> {
     let own = solve(scene).positions;
     let apart = |seed: u64| {

@@ -12,7 +12,8 @@ const BENT: f64 = 60.0;
 /// Rigidity, N m.
 const RIGIDITY: f64 = 1e-5;
 
-/// A strip without weight, bent to an arc and clamped at one end, of a cloth with that couple over its rigidity (1/m).
+/// A strip without weight, bent to an arc and clamped at one end, of a cloth with that couple over
+/// its rigidity (1/m).
 fn bent(layout: Layout, along: usize, ratio: f64) -> Scene {
     let strip = Rectangle::new(layout, 0.01, 0.04, along);
     let couple = ratio * RIGIDITY;
@@ -82,7 +83,8 @@ fn a_followed_strip_keeps_its_folds() {
     assert!(moved < 1e-4, "{moved}");
 }
 
-/// What friction held when a garment came to rest holds it in another run, on a body and against itself.
+/// What friction held when a garment came to rest holds it in another run, on a body and against
+/// itself.
 #[test]
 fn what_friction_held_holds_again() {
     let mut scene = crate::scene::generate::tube(34, 12);
@@ -106,7 +108,8 @@ fn what_friction_held_holds_again() {
     assert!(farthest < 5e-4, "{farthest}");
 }
 
-/// A garment that came to rest goes on from there: a skirt's folds are where they were, in a few steps.
+/// A garment that came to rest goes on from there: a skirt's folds are where they were, in a few
+/// steps.
 #[test]
 fn from_here_a_garment_at_rest_stays_where_it_is() {
     let mut scene = crate::scene::generate::tube(34, 12);

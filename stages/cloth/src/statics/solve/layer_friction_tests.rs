@@ -14,7 +14,8 @@ fn tilted(tangent: f64) -> Rotation3<f64> {
     Rotation3::from_axis_angle(&Vector3::z_axis(), tangent.atan())
 }
 
-/// Sheets on each other on a slope of that tangent, each with its friction; the lowest is larger and lies on a rough plate.
+/// Sheets on each other on a slope of that tangent, each with its friction; the lowest is larger
+/// and lies on a rough plate.
 fn piled(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
     let mut scene = Scene::new("pile", generate::cloth());
     for (k, friction) in frictions.iter().enumerate() {
@@ -109,7 +110,8 @@ fn a_garment_that_goes_on_remembers_what_holds_it() {
 
 #[test]
 fn edges_that_end_on_each_other_come_to_rest() {
-    // Both sheets' rows run the same way and some corners lie exactly over others: with every rounding edges meet there or do not.
+    // Both sheets' rows run the same way and some corners lie exactly over others: with every
+    // rounding edges meet there or do not.
     for k in 0..24 {
         let share = 0.5 + 0.02 * f64::from(k);
         let (way, rests) = slid(&piled(Layout::OneDiagonal, 0.3 * share, &[0.3, 0.3]), 1);

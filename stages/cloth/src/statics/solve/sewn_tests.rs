@@ -260,7 +260,8 @@ fn a_strain_limit_holds_or_is_named() {
     }
 }
 
-/// A skirt whose front panel starts through its back panel: beside the body a strip of it stands behind that.
+/// A skirt whose front panel starts through its back panel: beside the body a strip of it stands
+/// behind that.
 fn crossed() -> Scene {
     let mut scene = generate::tube(12, 16);
     let widest = scene.positions.iter().map(|p| p.x).fold(0.0, f64::max);
@@ -338,7 +339,8 @@ fn a_share_of_the_vertices_may_still_move() {
 
 #[test]
 fn a_seam_may_sew_a_right_side_to_a_wrong_side() {
-    // The dart's panel with one half mirrored: its triangles run the other way round where the two halves meet.
+    // The dart's panel with one half mirrored: its triangles run the other way round where the two
+    // halves meet.
     let mut scene = generate::gathered(8, 4, 1.0 + 1e-9);
     scene.seams.iter_mut().for_each(|s| s.gather = None);
     let frill = scene.panels[0].clone();

@@ -1,4 +1,5 @@
-//! Cloth on tables, plates and blades comes to rest, and no edge of either passes through the other.
+//! Cloth on tables, plates and blades comes to rest, and no edge of either passes through the
+//! other.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 use super::tests::*;
 use super::*;
@@ -69,7 +70,8 @@ fn what_hangs_over_a_blade_hangs_on_both_sides() {
         let own = state.positions.iter().filter(|p| p.x * side > 0.0);
         own.map(|p| p.y).fold(f64::INFINITY, f64::min)
     };
-    // Half a metre on each side, but for half of the cell that lies over the blade: cloth folds at its vertices.
+    // Half a metre on each side, but for half of the cell that lies over the blade: cloth folds at
+    // its vertices.
     assert!(
         [1.0, -1.0].iter().all(|s| (lowest(*s) + 0.5 * 10.0 / 11.0).abs() < 0.01),
         "{} {}",

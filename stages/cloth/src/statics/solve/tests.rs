@@ -119,7 +119,8 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(with(1), with(3));
 }
 
-/// A plate in the x-z plane whose top passes through the origin, turned by `slope` about z, half as wide as `half`.
+/// A plate in the x-z plane whose top passes through the origin, turned by `slope` about z, half as
+/// wide as `half`.
 pub(super) fn plate(slope: f64, half: f64) -> SceneBody {
     let corner = |k: usize| {
         let sign = |bit: usize| if k >> bit & 1 == 1 { 1.0 } else { -1.0 };
@@ -277,7 +278,8 @@ fn two_panel_strip(lower: Option<Fabric>, joined: bool) -> (Scene, f64) {
 fn each_panel_stretches_as_its_own_fabric_does() {
     let heavy = Fabric { density: 0.6, warp: crate::fabric::Curve::linear(100.0), ..generate::cloth() };
     let ends = [None, Some(heavy)].map(|m| two_panel_strip(m, true).1);
-    // Weight a metre of width over stiffness: the upper panel carries both, the lower one on average half of itself.
+    // Weight a metre of width over stiffness: the upper panel carries both, the lower one on
+    // average half of itself.
     let long = |lower: f64, k: f64| {
         let (g, l) = (9.81, 0.4);
         let top = l * (0.5 * 0.15 * l + lower * l) * g / 500.0;

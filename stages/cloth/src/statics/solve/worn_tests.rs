@@ -38,7 +38,8 @@ fn a_sleeve_is_sewn_around_an_arm_and_dips_into_it_nowhere() {
     }
 }
 
-/// The least height of the outer layer over the inner one, where a vertex of one lies within 2 cm of a triangle of the other, m.
+/// The least height of the outer layer over the inner one, where a vertex of one lies within 2 cm
+/// of a triangle of the other, m.
 fn least_height(scene: &Scene, x: &[Vec3]) -> f64 {
     let inner = scene.panels[2].triangles.start;
     let outer = scene.panels[2].vertices.start;

@@ -81,7 +81,8 @@ fn what_hangs_together_by_thread_is_one_cloth() {
             soft: 1e-3,
         }];
         assert_eq!(cloths(&system).1, 2);
-        // Sheet 1 lies lower than the middle of the other two, and comes first only where that is so.
+        // Sheet 1 lies lower than the middle of the other two, and comes first only where that is
+        // so.
         assert_eq!(order(&system, &x).len(), 2);
     });
 }
@@ -103,7 +104,8 @@ fn a_cloth_is_laid_on_what_holds_still() {
         assert_eq!(x[..NODES], below[..NODES]);
         assert!(last.at_rest && last.steps > 5 && last.steps < STEPS, "{last:?}");
         assert!(tree.crossings(&x).is_empty());
-        // It has come down as far as the first lets it, whose middle may dip between the nodes about it.
+        // It has come down as far as the first lets it, whose middle may dip between the nodes
+        // about it.
         let middle = NODES / 2;
         let gap = x[NODES + middle].y - x[middle].y;
         assert!(gap > 0.4e-3 && gap < 1.5e-3, "{gap}");

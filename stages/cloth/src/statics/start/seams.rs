@@ -1,9 +1,12 @@
-//! Seams that cannot be meant as they are: between pins at two places, or with pairs that run against each other.
+//! Seams that cannot be meant as they are: between pins at two places, or with pairs that run
+//! against each other.
 //!
-//! The threads of a seam are the lines between the two vertices of each of its pairs. Where the second side is turned round by mistake, they cross, and
-//! are longer than those of the opposite order. A seam that is twisted on purpose (a Möbius band) has crossing threads, too: one that is laid flat
-//! before it is sewn hardly longer ones, since a band is at least 1.7 times longer than it is wide (Schwartz 2023). So a
-//! seam is refused on a body alone, which no panel turns over on, and elsewhere named only if it does not close.
+//! The threads of a seam are the lines between the two vertices of each of its pairs. Where the
+//! second side is turned round by mistake, they cross, and are longer than those of the opposite
+//! order. A seam that is twisted on purpose (a Möbius band) has crossing threads, too: one that is
+//! laid flat before it is sewn hardly longer ones, since a band is at least 1.7 times longer than
+//! it is wide (Schwartz 2023). So a seam is refused on a body alone, which no panel turns over on,
+//! and elsewhere named only if it does not close.
 //!
 //! Cost: O(n log n) for the outlines; for a seam that goes all round the square of its pairs.
 
@@ -15,10 +18,12 @@ use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 
-/// How many times longer the threads of a reversed seam are at least. A band that is laid flat and sewn with a twist has at most 1.06.
+/// How many times longer the threads of a reversed seam are at least. A band that is laid flat and
+/// sewn with a twist has at most 1.06.
 const LONGER: f64 = 1.1;
 
-/// The same where it does not count how far the sides lie apart: edges at right angles may be sewn either way.
+/// The same where it does not count how far the sides lie apart: edges at right angles may be sewn
+/// either way.
 const TURNED: f64 = 1.25;
 
 /// The same of sides that are alike but for their order.
@@ -64,8 +69,9 @@ pub(crate) fn probably_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     scene.seams.iter().filter(is_turned).map(|s| s.name.clone()).collect()
 }
 
-/// Names of the seams whose sides lie like mirror images of what they are to be sewn to: as they start, and moved onto each other. One that is
-/// twisted on purpose, or whose sides start turned against each other, is not among them.
+/// Names of the seams whose sides lie like mirror images of what they are to be sewn to: as they
+/// start, and moved onto each other. One that is twisted on purpose, or whose sides start turned
+/// against each other, is not among them.
 #[must_use]
 pub fn surely_reversed(scene: &Scene, start: &[Vec3]) -> Vec<String> {
     let outlines = Outlines::of(scene);
@@ -86,8 +92,8 @@ struct Threads {
 }
 
 impl Threads {
-    /// Of a seam of two pairs or more; `laid` with its sides moved onto each other. Nothing where the order does not tell:
-    /// sides that run all round may be shifted along each other instead.
+    /// Of a seam of two pairs or more; `laid` with its sides moved onto each other. Nothing where
+    /// the order does not tell: sides that run all round may be shifted along each other instead.
     fn of(outlines: &Outlines, seam: &Seam, x: &[Vec3], laid: bool) -> Option<Self> {
         let (pairs, is_round) = outlines.in_order(seam);
         let n = pairs.len();
@@ -133,8 +139,8 @@ impl<'s> Outlines<'s> {
         Self { scene, next }
     }
 
-    /// The pairs of a seam in the order in which its first side runs along its outline, and whether it runs all round; as they are
-    /// listed where that side is not of one outline.
+    /// The pairs of a seam in the order in which its first side runs along its outline, and whether
+    /// it runs all round; as they are listed where that side is not of one outline.
     fn in_order(&self, seam: &Seam) -> (Vec<[u32; 2]>, bool) {
         let mut pairs = seam.pairs.clone();
         let along = pairs.first().and_then(|p| self.round(p[0]));
@@ -153,7 +159,8 @@ impl<'s> Outlines<'s> {
         (pairs, n > 3 && ways[first] < 2.0 * second)
     }
 
-    /// How far along the outline from `first` each of its vertices lies, and the length of all of it, m.
+    /// How far along the outline from `first` each of its vertices lies, and the length of all of
+    /// it, m.
     fn round(&self, first: u32) -> Option<(BTreeMap<u32, f64>, f64)> {
         let rest = |v: u32| self.scene.rest[v as usize];
         let (mut along, mut length, mut at) = (BTreeMap::new(), 0.0, first);

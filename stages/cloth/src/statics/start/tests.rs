@@ -30,7 +30,8 @@ fn sheets(count: usize, apart: f64) -> Scene {
     scene
 }
 
-/// A panel of `nx` by 2 cells whose points are placed by a function of how far along and across they are, 0 to 1, sewn end to end with a twist.
+/// A panel of `nx` by 2 cells whose points are placed by a function of how far along and across
+/// they are, 0 to 1, sewn end to end with a twist.
 fn twisted_band(place: impl Fn(f64, f64) -> Vec3) -> Scene {
     let (nx, width, length) = (20u32, 0.1, 1.0);
     let mut scene = Scene::new("band", generate::cloth());

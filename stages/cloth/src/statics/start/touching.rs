@@ -13,13 +13,15 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of a panel's area that may lie in cloth at the start: panels that touch along a line, or lap a little, come apart.
+/// Share of a panel's area that may lie in cloth at the start: panels that touch along a line, or
+/// lap a little, come apart.
 const MOST_LYING: f64 = 0.05;
 
 /// An edge and the triangle that it passes through.
 type Crossing = ([u32; 2], [u32; 3]);
 
-/// Crossings of a level before it is sewn that no order of layers resolves; none where they do not matter.
+/// Crossings of a level before it is sewn that no order of layers resolves; none where they do not
+/// matter.
 pub(in crate::statics) fn crossings_at_start(
     scene: &Scene,
     pieces: &Pieces,
@@ -36,11 +38,13 @@ pub(in crate::statics) fn crossings_at_start(
     Ok(found.into_iter().filter(|(e, t)| !layers.is_ordered(e, t)).collect())
 }
 
-/// How far panels are moved to look whether they cross where a vertex of one lies in another, m: more than lies in a plane by rounding.
+/// How far panels are moved to look whether they cross where a vertex of one lies in another, m:
+/// more than lies in a plane by rounding.
 const NUDGE: f64 = 1e-7;
 
-/// Crossings, those of panels included that pass through each other exactly at vertices or along edges, as panels of one grid do: these
-/// cross whichever way they are moved a little, where panels that touch come apart one way.
+/// Crossings, those of panels included that pass through each other exactly at vertices or along
+/// edges, as panels of one grid do: these cross whichever way they are moved a little, where panels
+/// that touch come apart one way.
 pub(crate) fn crossings(tree: &ClothTree, panel: &[u32], x: &[Vec3]) -> Vec<Crossing> {
     let found = tree.crossings(x);
     if !found.is_empty() || panel.iter().all(|p| *p == panel[0]) {
@@ -78,7 +82,8 @@ pub(crate) fn crossing(
     })
 }
 
-/// Refuses a panel of which more than a little is squeezed so narrow that its vertices lie in the edges opposite.
+/// Refuses a panel of which more than a little is squeezed so narrow that its vertices lie in the
+/// edges opposite.
 pub(super) fn check_squeezed(
     scene: &Scene,
     pieces: &Pieces,
@@ -118,8 +123,8 @@ fn area_and_height([a, b, c]: &[Vec3; 3]) -> (f64, f64) {
     (area, 2.0 * area / longest.max(f64::MIN_POSITIVE))
 }
 
-/// Refuses cloth of which more than a little lies in cloth: then neither the step that would part them nor a search for the
-/// first impact can tell which side each belongs to.
+/// Refuses cloth of which more than a little lies in cloth: then neither the step that would part
+/// them nor a search for the first impact can tell which side each belongs to.
 pub(super) fn check_lying(
     scene: &Scene,
     pieces: &Pieces,

@@ -7,7 +7,8 @@ use crate::statics::nearby::Nearby;
 use crate::statics::trial::on_its_body;
 use toile_geometry::cloth_tree::ClothTree;
 
-/// A square on a ball, creased, in contact with the ball and with itself; every third node is awake in the half of greater x.
+/// A square on a ball, creased, in contact with the ball and with itself; every third node is awake
+/// in the half of greater x.
 fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     let mut scene: Scene = generate::drape(14);
     scene.material.bending_friction_warp = 1e-6;
@@ -24,7 +25,8 @@ fn lay(
     let ball = scene.body.as_ref().unwrap();
     let flat = scene.positions.clone();
     let top = ball.vertices.iter().map(|p| p.y).fold(f64::NEG_INFINITY, f64::max);
-    // Two halves of the square lie on each other, less than a thickness apart; the lower one touches the ball's top.
+    // Two halves of the square lie on each other, less than a thickness apart; the lower one
+    // touches the ball's top.
     let fold = |p: &Vec3| {
         let upper = f64::from(u8::from(p.x > 0.0));
         let wave = 2e-4 * (40.0 * p.z).sin();

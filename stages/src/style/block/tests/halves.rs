@@ -31,7 +31,8 @@ fn a_sleeve_that_the_frame_cuts_is_the_other_ones_mirror_image() {
 fn a_stated_width_is_that_of_the_whole_garment() {
     let front: Set<Outline> = [("front".to_owned(), outline(cut_shirt()))].into_iter().collect();
     let stage = Block { complete: Complete::Mirror, ..of(BlockStyle::TShirt) };
-    // What is shown is 740 mm wide by the scale of its outline, and stated to be the whole: the shirt is smaller by 740 / 880.
+    // What is shown is 740 mm wide by the scale of its outline, and stated to be the whole: the
+    // shirt is smaller by 740 / 880.
     let photos = photo((800, 1000), Some(0.74));
     let (pattern, ..) = stage.run(front, &body(), Some(photos), &Context::quiet()).unwrap();
     let hem = length(&pattern, "front", "hem");

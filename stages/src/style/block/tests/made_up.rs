@@ -61,7 +61,8 @@ fn pleats_are_let_in_from_waist_to_hem_and_sewn_down() {
     near("pleat_1_b", 140.0 - 5.0);
     let pleats = plan.seams.iter().filter(|s| s.kind == SeamKind::Pleat(PleatFold::Box)).count();
     assert_eq!(pleats, 8);
-    // Both lines of a pleat are the pleat's cloth apart, above and below, and end inside of the piece.
+    // Both lines of a pleat are the pleat's cloth apart, above and below, and end inside of the
+    // piece.
     let front = pattern.piece("front").unwrap();
     for k in 1..=4 {
         let ends = |word: &str| {

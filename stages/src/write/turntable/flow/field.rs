@@ -29,7 +29,8 @@ impl Field {
         Field { vectors: (0..self.vectors.len()).map(calm).collect(), ..*self }
     }
 
-    /// The vectors carried on, ring by ring, to the blocks that have none; zero where no block has one.
+    /// The vectors carried on, ring by ring, to the blocks that have none; zero where no block has
+    /// one.
     pub(super) fn whole(mut self) -> Vec<Vector> {
         for _ in 0..self.columns.max(self.rows) {
             let ring =

@@ -1,9 +1,11 @@
 //! Block matching: where each block of a picture is in another one.
 //!
-//! Method: the displacement of a block is that of the least sum of absolute differences (Jain, Jain 1981), sought on halved pictures first,
-//! around whose vectors the next level searches (hierarchical block matching: Bierling 1988). Vectors that leave the coarser one cost more, and a
-//! median over the blocks around follows each level. Between pixels: the equiangular fit to three sums. Limit: motion of an eighth of
-//! the picture's height. Integers alone: the same bits on every machine.
+//! Method: the displacement of a block is that of the least sum of absolute differences (Jain, Jain
+//! 1981), sought on halved pictures first, around whose vectors the next level searches
+//! (hierarchical block matching: Bierling 1988). Vectors that leave the coarser one cost more, and
+//! a median over the blocks around follows each level. Between pixels: the equiangular fit to three
+//! sums. Limit: motion of an eighth of the picture's height. Integers alone: the same bits on every
+//! machine.
 
 use super::field::{Field, Vector};
 use super::level::{Level, Pyramid};
@@ -22,7 +24,8 @@ const REACH: usize = 8;
 const AROUND: usize = 4;
 /// Longest side of what is compared, px.
 const WINDOW: usize = BLOCK + 2 * BLOCK / AROUND;
-/// What a pixel of difference to the expected vector costs: grey levels a pixel of the window, one in so many.
+/// What a pixel of difference to the expected vector costs: grey levels a pixel of the window, one
+/// in so many.
 const STIFFNESS: u32 = 8;
 /// Around the coarser level's vector all vectors are tried so far on a reduction, px.
 const WIDE: i32 = 8;
@@ -98,9 +101,11 @@ impl Search<'_> {
         self.best(block, [0, 0], within([0, 0], reach))
     }
 
-    /// The best of the coarser level's vectors near a block and of those around its own, then of what is a few pixels from that.
+    /// The best of the coarser level's vectors near a block and of those around its own, then of
+    /// what is a few pixels from that.
     fn near(&self, x: usize, y: usize, coarser: &Field) -> Vector {
-        // The picture and its half have the same blocks; on a further reduction a block is twice as wide, which is as many px.
+        // The picture and its half have the same blocks; on a further reduction a block is twice as
+        // wide, which is as many px.
         let (column, row) = (x / BLOCK, y / BLOCK);
         let twice = |v: Vector| v.map(|c| 2 * c);
         let expected = coarser.vectors[row * coarser.columns + column].map_or([0, 0], twice);
@@ -130,7 +135,8 @@ impl Search<'_> {
         least.1
     }
 
-    /// The sum of absolute differences of brightness and coverage, and what leaving the expected vector costs. Summed only while it is below `most`.
+    /// The sum of absolute differences of brightness and coverage, and what leaving the expected
+    /// vector costs. Summed only while it is below `most`.
     fn cost(&self, block: &Block, v: Vector, most: u32) -> u32 {
         let off = v[0].abs_diff(block.expected[0]) + v[1].abs_diff(block.expected[1]);
         let mut sum = off * block.pixels.len() as u32 / STIFFNESS;
@@ -167,7 +173,8 @@ fn differences(a: &[u8], b: &[u8]) -> u32 {
     a.iter().zip(b).map(|(a, b)| u32::from(a.abs_diff(*b))).sum()
 }
 
-/// Where two lines of opposite slope through three sums meet, at most half a pixel from the middle one, in parts of a pixel.
+/// Where two lines of opposite slope through three sums meet, at most half a pixel from the middle
+/// one, in parts of a pixel.
 fn fit(before: u32, middle: u32, after: u32) -> i32 {
     let (before, middle, after) = (i64::from(before), i64::from(middle), i64::from(after));
     let rise = before.max(after) - middle;

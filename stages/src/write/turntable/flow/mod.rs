@@ -1,7 +1,8 @@
 //! The flow between neighbouring views, for a page that interpolates without depth.
 //!
-//! Each view has up to four neighbours: around on either side, above and below. What the page holds is set down in
-//! `docs/reference/turntable.md`. Cost: a field of blocks for each view and neighbour.
+//! Each view has up to four neighbours: around on either side, above and below. What the page holds
+//! is set down in `docs/reference/turntable.md`. Cost: a field of blocks for each view and
+//! neighbour.
 
 mod field;
 mod level;
@@ -17,7 +18,8 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use toile_core::{Context, StageError};
 
-/// Quality of the sheets that hold the coverage: what JPEG leaves beside an outline is cut off by the page.
+/// Quality of the sheets that hold the coverage: what JPEG leaves beside an outline is cut off by
+/// the page.
 const COVER_QUALITY: u8 = 30;
 /// Blocks of a sheet along a block of the flow.
 const PER_BLOCK: usize = matching::BLOCK / sheet::BLOCK as usize;
@@ -112,7 +114,8 @@ mod tests {
 
     #[test]
     fn only_blocks_of_the_sheets_have_vectors() {
-        // Two rows of sheet blocks a block: the second holds sheet block 3, so the second block is kept.
+        // Two rows of sheet blocks a block: the second holds sheet block 3, so the second block is
+        // kept.
         let mut bytes = Vec::new();
         encode(&[[9, 9], [3, -1], [9, 9], [4, 0], [4, 0], [4, 0]], 3, &[[0, 0], [3, 1], [0, 6]], &mut bytes);
         assert_eq!(bytes, [6, 1, 2, 2, 0, 0, 0, 0]);

@@ -61,7 +61,8 @@ fn a_fold_is_held_where_it_was_and_its_moment_nears_the_couple() {
     assert!(moment(&elastic, &uv, 0.0) < -0.5 * couple);
 }
 
-/// The couple of a hinge against its stiffness is that of the cloth: at the angle of a curvature of `RATIO` both are alike.
+/// The couple of a hinge against its stiffness is that of the cloth: at the angle of a curvature of
+/// `RATIO` both are alike.
 #[test]
 fn the_couple_is_what_stiffness_makes_of_its_curvature() {
     let (elastic, _) = square();

@@ -15,8 +15,8 @@ fn layers(pair: Pair, crowded: bool) -> SelfContact {
     }
 }
 
-/// An edge along x from 0 to 10 mm, and one half a millimetre over it, turned by `angle` about its middle, which is at `middle` of the
-/// first one's length.
+/// An edge along x from 0 to 10 mm, and one half a millimetre over it, turned by `angle` about its
+/// middle, which is at `middle` of the first one's length.
 fn edges(middle: f64, angle: f64) -> [Vec3; 4] {
     let (at, way) =
         (Vec3::new(0.01 * middle, 0.5 * THICK, 0.0), Vec3::new(angle.cos(), 0.0, angle.sin()) * 0.005);
@@ -56,7 +56,8 @@ fn in_a_pile_contacts_of_edges_fade_as_they_come_to_lie_along_each_other() {
     assert_eq!(across(&[Vec3::zeros(); 4]), 0.0);
 }
 
-/// A triangle, and a vertex over it or, by `beyond`, past its first corner, where other triangles may be nearer.
+/// A triangle, and a vertex over it or, by `beyond`, past its first corner, where other triangles
+/// may be nearer.
 fn over(beyond: f64) -> [Vec3; 4] {
     let p = Vec3::new(-beyond, 0.5 * THICK, -beyond);
     [p, Vec3::zeros(), Vec3::new(0.0, 0.0, 0.01), Vec3::new(0.01, 0.0, 0.0)]

@@ -89,7 +89,8 @@ proptest! {
         });
         let found = between(&noise(0), &noise(1));
         prop_assert_eq!(found.vectors.len(), (width.div_ceil(16) * height.div_ceil(16)) as usize);
-        // What each level adds to what the coarsest one reaches: a full search and steps, twice as much on the level below.
+        // What each level adds to what the coarsest one reaches: a full search and steps, twice as
+        // much on the level below.
         let reach = (height as i32 / 8 + 4 * (WIDE + STEPS as i32 + 1)) * PARTS;
         prop_assert!(found.vectors.iter().flatten().flatten().all(|c| c.abs() <= reach));
         let blocks = found.vectors.len();
