@@ -5,7 +5,7 @@
 use std::error::Error;
 use std::ops::ControlFlow;
 use toile_cloth::scene::generate;
-use toile_cloth::statics::solve::StaticEquilibrium;
+use toile_cloth::statics::drive::solve::StaticEquilibrium;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let cells: u32 = std::env::args().nth(1).map_or(Ok(24), |n| n.parse())?;

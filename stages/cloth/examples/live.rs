@@ -8,8 +8,8 @@ use std::time::Instant;
 use toile_cloth::contact::body::Body;
 use toile_cloth::fabric::{Curve, Fabric};
 use toile_cloth::scene::{self, Scene};
-use toile_cloth::statics::live::Live;
-use toile_cloth::statics::solve::{Collider, StaticEquilibrium};
+use toile_cloth::statics::drive::live::Live;
+use toile_cloth::statics::drive::solve::{Collider, StaticEquilibrium};
 
 /// Newton's steps for each state.
 const STEPS: usize = 2;

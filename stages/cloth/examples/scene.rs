@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use toile_cloth::scene;
-use toile_cloth::statics::not_at_rest::unrest;
-use toile_cloth::statics::solve::{Equilibrium, StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{Equilibrium, StaticEquilibrium, StaticsError};
+use toile_cloth::statics::report::not_at_rest::unrest;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let args: Vec<String> = std::env::args().skip(1).collect();

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use toile_cloth::scene::generate;
-use toile_cloth::statics::solve::{Equilibrium, LevelReport, StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{Equilibrium, LevelReport, StaticEquilibrium, StaticsError};
 
 const USAGE: &str = "stack SHEETS CELLS SECONDS [STATE.obj] [--trace]";
 

@@ -4,7 +4,7 @@
 use crate::body::grown;
 use toile_cloth::contact::body::Body as Solid;
 use toile_cloth::contact::past::Start;
-use toile_cloth::statics::solve::{Equilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{Equilibrium, StaticsError};
 use toile_core::prelude::*;
 
 /// Triangles may dip this deep into the body before it is said, m: the limit that vertices are
@@ -59,7 +59,7 @@ pub(super) fn thin_of(collider: &Collider) -> Vec<Solid> {
 mod tests {
     use super::*;
     use toile_cloth::contact::past::Fallen;
-    use toile_cloth::statics::unbalanced::{Meets, Unbalanced};
+    use toile_cloth::statics::report::unbalanced::{Meets, Unbalanced};
 
     fn state(dip: f64) -> Box<Equilibrium> {
         Box::new(Equilibrium {

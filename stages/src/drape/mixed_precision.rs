@@ -22,7 +22,7 @@ pub enum Precision {
     Double,
 }
 
-impl From<Precision> for toile_cloth::statics::solve::Precision {
+impl From<Precision> for toile_cloth::statics::drive::solve::Precision {
     fn from(precision: Precision) -> Self {
         match precision {
             Precision::Mixed => Self::Mixed,

@@ -10,7 +10,7 @@ use std::time::Duration;
 use toile_cloth::energy::{Air as EngineAir, Models};
 use toile_cloth::motion::{Method, Motion, Moved, Progress, Response, Until};
 use toile_cloth::scene::{Phase as ScenePhase, Scene};
-use toile_cloth::statics::solve::Collider as EngineCollider;
+use toile_cloth::statics::drive::solve::Collider as EngineCollider;
 use toile_cloth::stopper::Stopper;
 use toile_core::prelude::*;
 

@@ -18,10 +18,10 @@ use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use toile_cloth::contact::skin::CollisionSurface;
-use toile_cloth::statics::solve::{
+use toile_cloth::statics::drive::solve::{
     Collider as EngineCollider, Equilibrium, LevelReport, StaticEquilibrium as Solver, StaticsError,
 };
-use toile_cloth::statics::start::surely_reversed;
+use toile_cloth::statics::report::start::surely_reversed;
 use toile_cloth::stopper::Stopper;
 use toile_core::decide::{Decision, Known};
 use toile_core::prelude::*;

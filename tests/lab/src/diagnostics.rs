@@ -24,7 +24,7 @@ use toile_cloth::scene::{Scene, generate};
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Static, Xpbd,
 };
-use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{StaticEquilibrium, StaticsError};
 
 /// One figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -11,8 +11,8 @@ use toile_cloth::fabric::Fabric;
 use toile_cloth::linear::{BlockMatrix, Cholesky};
 use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::solver::Model;
-use toile_cloth::statics::multifrontal::{Factor, Symbolic};
-use toile_cloth::statics::scalar::Real;
+use toile_cloth::statics::factor::multifrontal::{Factor, Symbolic};
+use toile_cloth::statics::factor::scalar::Real;
 
 /// Edges along the side of a square sheet: about 2,000, 20,000 and 100,000 nodes.
 const SIDES: [usize; 3] = [42, 133, 297];

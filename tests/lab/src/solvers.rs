@@ -25,7 +25,7 @@ use toile_cloth::scene::Scene;
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, State, Static, Xpbd,
 };
-use toile_cloth::statics::solve::StaticEquilibrium;
+use toile_cloth::statics::drive::solve::StaticEquilibrium;
 
 /// Triangles along a strip.
 const ALONG: usize = 20;

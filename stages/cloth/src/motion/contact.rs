@@ -1,7 +1,7 @@
 //! What cloth meets on its way: the body, and itself.
 
 use crate::contact::limit::hold_apart;
-use crate::statics::solve::Collider;
+use crate::statics::drive::solve::Collider;
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;

@@ -3,8 +3,8 @@
 use crate::contact::past::Fallen;
 use crate::error::ClothError;
 use crate::scene::SceneError;
-use crate::statics::error::remedy;
-use crate::statics::start::StartError;
+use crate::statics::report::error::remedy;
+use crate::statics::report::start::StartError;
 
 /// Why a motion did not end.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

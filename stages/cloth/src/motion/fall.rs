@@ -4,10 +4,10 @@ use super::Vec3;
 use super::moving::Moving;
 use crate::contact::past::{BodyBox, Fallen, NO_PIECE};
 use crate::scene::Scene;
-use crate::statics::cloths::pieces_of_scene;
-use crate::statics::fallen::list_of;
-use crate::statics::pieces::Pieces;
-use crate::statics::solve::Collider;
+use crate::statics::drive::fallen::list_of;
+use crate::statics::drive::solve::Collider;
+use crate::statics::levels::cloths::pieces_of_scene;
+use crate::statics::levels::pieces::Pieces;
 
 /// What a fall is told by.
 pub(super) struct Falls {

@@ -10,10 +10,10 @@ use crate::error::ClothError;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::solver::{Model, Report, Solver, State};
-use crate::statics::assemble::cloths;
-use crate::statics::clearance::clearance;
-use crate::statics::solve::Collider;
-use crate::statics::start::{check_lying, crossing, crossings};
+use crate::statics::drive::solve::Collider;
+use crate::statics::forces::clearance::clearance;
+use crate::statics::levels::assemble::cloths;
+use crate::statics::report::start::{check_lying, crossing, crossings};
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::signed_distance::Nearest;
 

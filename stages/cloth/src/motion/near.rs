@@ -1,7 +1,7 @@
 //! What is near cloth, found once and good for the small steps of a while.
 
 use super::Vec3;
-use crate::statics::solve::Collider;
+use crate::statics::drive::solve::Collider;
 use toile_geometry::cloth_tree::ClothTree;
 use toile_geometry::pair::Pair;
 use toile_geometry::signed_distance::Nearest;

@@ -1,7 +1,7 @@
 //! Seams that close at a set speed, as if by hands.
 
 use crate::scene::Scene;
-use crate::statics::pieces::Pieces;
+use crate::statics::levels::pieces::Pieces;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;

@@ -3,7 +3,7 @@ use super::{Method, Motion, MotionError, Moved, Response, Until};
 use crate::contact::body::Body;
 use crate::energy::Air;
 use crate::scene::{Phase, Scene, generate};
-use crate::statics::solve::{Collider, StaticEquilibrium};
+use crate::statics::drive::solve::{Collider, StaticEquilibrium};
 use crate::stopper::Stopper;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;

@@ -4,7 +4,7 @@
 use super::held::figures;
 use super::{Held, Panel, Phase, Scene, Seam};
 use crate::fabric::{Curve, Fabric};
-use crate::statics::friction_history::FrictionContact;
+use crate::statics::forces::friction_history::FrictionContact;
 use serde_json::{Value, json};
 use toile_geometry::obj;
 

@@ -1,62 +1,11 @@
 //! Straight to static equilibrium, coarse to fine.
+//!
+//! Rooms in the order in which they depend on each other: `forces`, `factor`, `levels`, `newton`,
+//! `report`, `drive`. `drive::solve` is where a scene goes in.
 
-mod active_subset;
-pub(crate) mod assemble;
-mod bending_continuation;
-pub mod body_contact;
-mod buckle;
-pub mod clearance;
-pub(crate) mod cloths;
-pub mod coarsen;
-mod contact;
-pub mod contact_potential;
-mod contour;
-mod coulomb;
-mod dense;
-mod drape;
-pub mod elastic;
-mod equilibrium;
-pub(crate) mod error;
-pub(crate) mod fallen;
-pub mod friction_history;
-mod front;
-pub mod height_springs;
-mod held;
-mod initial;
-mod intersecting;
-mod levels;
-mod line_search;
-mod linear;
-pub mod live;
-mod load;
-mod mesh_level;
-mod mixed;
-pub mod multifrontal;
-mod nearby;
-pub mod nested_dissection;
+pub mod drive;
+pub mod factor;
+pub mod forces;
+pub mod levels;
 pub mod newton;
-mod non_manifold;
-pub mod not_at_rest;
-mod patience;
-mod penetration;
-pub mod pieces;
-mod plan;
-pub mod ridges;
-pub mod scalar;
-pub mod seam_force;
-pub mod self_contact;
-mod settings;
-mod sew;
-pub mod solve;
-mod stack;
-pub mod start;
-mod state;
-mod subdomain;
-pub mod system;
-#[cfg(test)]
-mod trial;
-pub mod unbalanced;
-mod unknot;
-pub(crate) mod words;
-
-pub(crate) use dense::probe_factor;
+pub mod report;

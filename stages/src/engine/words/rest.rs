@@ -3,9 +3,9 @@
 use super::numbers::BEYOND_CLOTH;
 use super::{Words, both, length, panel, seam, turn_round};
 use crate::engine::{scene_error, split};
-use toile_cloth::statics::not_at_rest::unrest;
-use toile_cloth::statics::solve::{Equilibrium, StaticsError, Unsolvable};
-use toile_cloth::statics::unbalanced::Meets;
+use toile_cloth::statics::drive::solve::{Equilibrium, StaticsError, Unsolvable};
+use toile_cloth::statics::report::not_at_rest::unrest;
+use toile_cloth::statics::report::unbalanced::Meets;
 use toile_core::{ErrorCode, StageError};
 
 /// What a user can change of `StaticEquilibrium`.

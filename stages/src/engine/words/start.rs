@@ -1,7 +1,7 @@
 //! What is wrong with where a garment starts.
 
 use super::{Words, both, length, panel, seam, turn_round};
-use toile_cloth::statics::start::StartError;
+use toile_cloth::statics::report::start::StartError;
 use toile_core::{ErrorCode, StageError};
 
 /// What less of it lies in the body is moved out by a solver, metres.

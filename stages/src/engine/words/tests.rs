@@ -9,9 +9,9 @@ use nalgebra::Vector3;
 use toile_cloth::contact::past::{Fallen, Start};
 use toile_cloth::error::ClothError;
 use toile_cloth::motion::MotionError;
-use toile_cloth::statics::multifrontal::NotPositive;
-use toile_cloth::statics::solve::{Load, StaticsError, Unsolvable};
-use toile_cloth::statics::start::StartError;
+use toile_cloth::statics::drive::solve::{Load, StaticsError, Unsolvable};
+use toile_cloth::statics::factor::multifrontal::NotPositive;
+use toile_cloth::statics::report::start::StartError;
 use toile_core::{Context, StageError};
 use toile_geometry::volume::Aabb;
 

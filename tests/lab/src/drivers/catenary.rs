@@ -12,7 +12,7 @@ use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::Sheet;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
-use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{StaticEquilibrium, StaticsError};
 
 const WIDTH: f64 = 0.3;
 /// Between the supports, in lengths.

@@ -10,7 +10,7 @@ use toile_cloth::energy::Vec3;
 use toile_cloth::error::ClothError;
 use toile_cloth::scene::Scene;
 use toile_cloth::solver::{Solver, State};
-use toile_cloth::statics::solve::{StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{StaticEquilibrium, StaticsError};
 
 /// Force that implicit steps may leave, in weights of the sheet.
 const TOLERANCE: f64 = 1e-6;

@@ -9,7 +9,7 @@ use super::{Check, Must, Verdict};
 use toile_cloth::contact::body::Body;
 use toile_cloth::mesh::Sheet;
 use toile_cloth::scene::{Scene, SceneError, Seam, generate};
-use toile_cloth::statics::solve::{Equilibrium, StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{Equilibrium, StaticEquilibrium, StaticsError};
 use toile_geometry::cloth_tree::ClothTree;
 
 /// Widest seam at the end, m.

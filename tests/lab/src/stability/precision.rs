@@ -9,7 +9,7 @@ use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::scene::Scene;
 use toile_cloth::solver::{Model, Solver, State, Static};
-use toile_cloth::statics::solve::{Precision, StaticEquilibrium, StaticsError};
+use toile_cloth::statics::drive::solve::{Precision, StaticEquilibrium, StaticsError};
 
 const DENSITY: f64 = 0.15;
 /// Length of the strip, m.

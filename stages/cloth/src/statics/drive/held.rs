@@ -1,0 +1,40 @@
+//! A garment goes on from what friction held when it came to rest.
+
+use crate::scene::Held;
+use crate::statics::forces::friction_history::FrictionContact;
+use crate::statics::forces::system::System;
+use crate::statics::levels::pieces::Pieces;
+use crate::statics::report::equilibrium::Equilibrium;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+impl Equilibrium {
+    /// What friction holds in this state.
+    #[must_use]
+    pub fn held(&self) -> Held {
+        Held {
+            slides: self.slides.clone(),
+            offsets: self.offsets.clone(),
+            folds: self.folds.clone(),
+            contacts: self.friction_contacts.clone(),
+        }
+    }
+}
+
+/// Has the nodes of the finest level at `x` held as a solver left them.
+pub(crate) fn hold_as(held: &Held, system: &mut System<'_>, pieces: &Pieces, x: &[Vec3]) {
+    let vertices = pieces.rest.len();
+    if held.slides.len() == vertices {
+        system.slides = pieces.sew(&held.slides, &vec![1.0; vertices]);
+    }
+    if let Some(s) = system.support.as_mut().filter(|_| held.offsets.len() == vertices) {
+        pieces.node.iter().zip(&held.offsets).for_each(|(&n, o)| s.offsets[n as usize] = *o);
+    }
+    if let Some(layers) = &mut system.layers {
+        let known = |c: &&FrictionContact| c.nodes.iter().all(|&i| (i as usize) < x.len());
+        layers.friction_contacts = held.contacts.iter().filter(known).copied().collect();
+    }
+    system.elastic.hold(x, false);
+    system.elastic.hold_at(&held.folds);
+}

@@ -1,0 +1,124 @@
+//! Cloth clear of the body between its vertices, too.
+//!
+//! Vertices rest a thickness outside; on a curved body the triangle between them hangs nearer, by
+//! the square of its length over eight radii, and dips in where the mesh is coarse. Here triangles
+//! near the body are looked at on a lattice of points, and what each lacks is handed to its
+//! corners, which then stand off farther. Where the body shows its triangles, what passes through
+//! these between the points is found as well: an edge between two facets is finer than the lattice.
+//! Cost: a distance a lattice point and a look at the body's tree a triangle, once the cloth is at
+//! rest. Limits: features finer than the lattice of a body that shows no triangles.
+
+use crate::contact::skin::CollisionSurface;
+use crate::mesh::Sheet;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use toile_geometry::facets::Facets;
+
+type Vec3 = Vector3<f64>;
+
+/// Spacing of the lattice, m: over a limb of 2 cm radius the surface between its points rises by
+/// less than [`GAP`] and a half.
+const SPACING: f64 = 0.006;
+
+/// Most points along an edge.
+const MOST: usize = 8;
+
+/// Triangles that one task looks after.
+const CHUNK: usize = 64;
+
+/// Places at which a triangle passes through facets that are looked at, with the middles between
+/// them.
+const MOST_PLACES: usize = 12;
+
+/// The least distance that lattice points must keep, m.
+pub const GAP: f64 = 2e-4;
+
+/// Least radius of the body whose bulge between vertices is looked for, m.
+pub(crate) const LEAST_RADIUS: f64 = 0.02;
+
+/// What a look at the triangles found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clearance {
+    /// How much farther out each node must stand, m.
+    pub lacks: Vec<f64>,
+    /// The deepest point inside the body, m; 0 where none is.
+    pub depth: f64,
+    /// How many dips there are: triangles that dip in, and such as pass through facets.
+    pub triangles: usize,
+}
+
+/// Looks at every triangle that may dip into the body.
+#[must_use]
+pub fn clearance(sheet: &Sheet, body: &dyn CollisionSurface, x: &[Vec3]) -> Clearance {
+    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+    let reach = GAP + longest * longest / (8.0 * LEAST_RADIUS);
+    let near: Vec<bool> = body.nearest(x, &vec![reach; x.len()]).iter().map(Option::is_some).collect();
+    let mut points = Vec::new();
+    let mut of = Vec::new();
+    for (t, nodes) in sheet.triangles().iter().enumerate() {
+        if nodes.iter().any(|&v| near[v as usize]) {
+            let corners = nodes.map(|v| x[v as usize]);
+            lattice(&corners, |p| {
+                points.push(p);
+                of.push(t);
+            });
+        }
+    }
+    let found = body.nearest(&points, &vec![GAP + reach; points.len()]);
+    let mut out = Clearance { lacks: vec![0.0; x.len()], depth: 0.0, triangles: 0 };
+    let mut last = usize::MAX;
+    for (&t, distance) in of.iter().zip(found).filter_map(|(t, n)| Some((t, n?.distance))) {
+        if distance < GAP {
+            for &v in &sheet.triangles()[t] {
+                out.lacks[v as usize] = out.lacks[v as usize].max(GAP - distance);
+            }
+        }
+        out.depth = out.depth.max(-distance);
+        if distance < 0.0 && t != last {
+            (out.triangles, last) = (out.triangles + 1, t);
+        }
+    }
+    if let Some(facets) = body.facets() {
+        add_crossings(sheet, body, facets, x, &near, &mut out);
+    }
+    out
+}
+
+/// Adds what triangles with a node `near` the body lack that pass through its facets: as deep as
+/// the middles lie between the places where they do.
+fn add_crossings(
+    sheet: &Sheet,
+    body: &dyn CollisionSurface,
+    facets: &Facets,
+    x: &[Vec3],
+    near: &[bool],
+    out: &mut Clearance,
+) {
+    let asked: Vec<&[u32; 3]> =
+        sheet.triangles().iter().filter(|t| t.iter().any(|&v| near[v as usize])).collect();
+    let places: Vec<Vec<Vec3>> =
+        asked.par_iter().with_min_len(CHUNK).map(|t| facets.crossings(&t.map(|v| x[v as usize]))).collect();
+    for (t, places) in asked.iter().zip(&places).filter(|(_, p)| !p.is_empty()) {
+        let places = &places[..places.len().min(MOST_PLACES)];
+        let middles: Vec<Vec3> =
+            (0..places.len()).flat_map(|i| places[..=i].iter().map(move |p| (places[i] + p) * 0.5)).collect();
+        let deep = body.nearest(&middles, &vec![f64::INFINITY; middles.len()]);
+        let depth = deep.into_iter().flatten().map(|n| -n.distance).fold(0.0, f64::max);
+        for &v in *t {
+            out.lacks[v as usize] = out.lacks[v as usize].max(GAP + depth);
+        }
+        (out.triangles, out.depth) = (out.triangles + 1, out.depth.max(depth));
+    }
+}
+
+/// Hands the lattice's points but the corners to `visit`.
+pub(crate) fn lattice([a, b, c]: &[Vec3; 3], mut visit: impl FnMut(Vec3)) {
+    let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
+    let n = ((longest / SPACING).ceil() as usize).clamp(2, MOST);
+    for i in 0..=n {
+        for j in (0..=n - i).filter(|&j| i < n && j < n && i + j > 0) {
+            let (s, t) = (i as f64 / n as f64, j as f64 / n as f64);
+            visit(a * (1.0 - s - t) + b * s + c * t);
+        }
+    }
+}

@@ -1,0 +1,575 @@
+//! Cloth against the body's sharp edges and corners: edges of the cloth against edges of the body,
+//! corners against triangles.
+//!
+//! A contact is a place where the distance of cloth and feature is a local minimum: inside both
+//! edges, or inside the triangle (or on one of its sides, where no triangle of the side is nearer),
+//! on the outer side of the feature (the pairs that Chen et al. 2025 name feasible). It presses as
+//! cloth presses on cloth (see `contact_potential`), so that no load brings the two together, and
+//! rubs by Coulomb's law with what it has slid remembered from step to step. Moves end before cloth
+//! passes a feature (`ridges/limit`). Cloth that a body passes through all the same, as what a
+//! coarser mesh left may, is pushed back out over the feature that it is the least way behind.
+//!
+//! Cost: a look for pairs where the cloth has moved by more than a thickness; none for a body
+//! without sharp features.
+
+use crate::energy::Subset;
+use crate::linear::{Pattern, add_at};
+use crate::mesh::Sheet;
+use crate::statics::forces::body_contact::{BodyContact, NUDGE};
+use crate::statics::forces::contact_potential::ContactPotential;
+use crate::statics::forces::coulomb::{Coulomb, SLIP_TOLERANCE};
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+use std::sync::Arc;
+use toile_geometry::pair::Kind;
+use toile_geometry::sharp::{Sharp, Side};
+
+mod limit;
+
+type Vec3 = Vector3<f64>;
+
+/// How far beyond a thickness pairs are looked for, in thicknesses: they hold until the cloth has
+/// moved that far.
+const SLACK: f64 = 1.5;
+
+/// Cloth that is farther than this from every feature is not looked at again until it has moved
+/// that far, m.
+const FAR: f64 = 0.03;
+
+/// Edges or triangles that one task looks after.
+const CHUNK: usize = 512;
+
+/// Cloth may be this share of its longest edge behind a feature and is still pushed back over it.
+const DEEPEST: f64 = 0.5;
+
+/// An edge of the cloth, or a triangle of it, and a feature.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Pair {
+    /// Which feature.
+    feature: u32,
+    /// Nodes; of an edge the last one twice.
+    nodes: [u32; 3],
+}
+
+/// Where the two come nearest.
+#[derive(Debug, Clone, Copy)]
+struct Near {
+    /// From the feature to the cloth.
+    off: Vec3,
+    distance: f64,
+    /// Weights of the nodes in the cloth's closest point.
+    weights: [f64; 3],
+    /// Whether it lies inside both.
+    inside: bool,
+}
+
+/// What presses on the cloth.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    pair: Pair,
+    weights: [f64; 3],
+    /// Unit direction in which the feature presses.
+    normal: Vec3,
+    press: ContactPotential,
+    /// Where friction holds the closest point, and how far it had slid at the step's start.
+    anchor: Vec3,
+    slid: Vec3,
+    /// The force that limits friction: the mean over the last steps, N.
+    load: f64,
+    friction: f64,
+}
+
+/// The sharp features and the cloth about them.
+#[derive(Debug, Clone)]
+pub struct Ridges {
+    sharp: Arc<Sharp>,
+    edges: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    /// Distance at which contact begins, m.
+    thickness: f64,
+    /// Longest edge, m.
+    longest: f64,
+    /// Stiffness at each node, N/m.
+    stiffness: Vec<f64>,
+    /// Coefficient of friction at each node, and what is taken away of it for a while.
+    friction: Vec<f64>,
+    away: Vec<f64>,
+    /// Pairs that may touch, sorted.
+    pairs: Vec<Pair>,
+    /// Edges of the cloth among them, sorted.
+    bridges: Vec<[u32; 2]>,
+    /// Where the nodes were when the pairs were sought; nothing where they hold for one step alone.
+    at: Option<Vec<Vec3>>,
+    /// How far they may move from there, m.
+    slack: f64,
+    /// Pairs whose cloth the body passes through, sorted.
+    pierced: Vec<Pair>,
+    contacts: Vec<Contact>,
+}
+
+/// What of cloth and body a pair is about that is pushed out over one feature only: an edge of the
+/// cloth, or a corner of the body.
+type Part = [u32; 3];
+
+impl Pair {
+    fn part(&self) -> Part {
+        if self.count() == 2 { self.nodes } else { [u32::MAX, u32::MAX, self.feature] }
+    }
+
+    fn count(&self) -> usize {
+        if self.nodes[1] == self.nodes[2] { 2 } else { 3 }
+    }
+
+    /// The cloth and the feature in the order of the pair of features that they are.
+    fn places(&self, sharp: &Sharp, x: &[Vec3]) -> (Kind, [Vec3; 4]) {
+        let f = sharp.feature(self.feature);
+        let [a, b, c] = self.nodes.map(|i| x[i as usize]);
+        match f.kind {
+            Kind::EdgeEdge => (f.kind, [a, b, f.ends[0], f.ends[1]]),
+            Kind::VertexTriangle => (f.kind, [f.ends[0], a, b, c]),
+        }
+    }
+
+    fn near(&self, sharp: &Sharp, x: &[Vec3]) -> Near {
+        let (kind, places) = self.places(sharp, x);
+        let c = kind.closest(&places);
+        let (off, weights) = match kind {
+            Kind::EdgeEdge => (c.between, [c.weights[0], c.weights[1], 0.0]),
+            Kind::VertexTriangle => (-c.between, [-c.weights[1], -c.weights[2], -c.weights[3]]),
+        };
+        Near { off, distance: c.distance, weights, inside: c.inside }
+    }
+}
+
+impl Near {
+    /// The two nodes between which the closest point lies, if it lies on a side of the triangle.
+    fn side(&self, nodes: &[u32; 3]) -> Option<[u32; 2]> {
+        let mut on = (0..3).filter(|&k| self.weights[k] > 0.0).map(|k| nodes[k]);
+        match (on.next(), on.next(), on.next()) {
+            (Some(a), Some(b), None) => Some([a.min(b), a.max(b)]),
+            _ => None,
+        }
+    }
+}
+
+impl Contact {
+    fn nodes(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
+        self.pair.nodes.iter().copied().zip(self.weights).take(self.pair.count())
+    }
+
+    fn point(&self, x: &[Vec3]) -> Vec3 {
+        self.nodes().map(|(i, w)| x[i as usize] * w).sum()
+    }
+
+    fn rub(&self) -> Option<Coulomb> {
+        let limit = self.friction * self.load;
+        (limit > 0.0).then_some(Coulomb { normal: self.normal, anchor: self.anchor, limit })
+    }
+
+    fn rubbed(&self, x: &[Vec3]) -> f64 {
+        self.rub().map_or(0.0, |r| r.value(&self.point(x)))
+    }
+}
+
+impl Ridges {
+    /// The sharp features of a body and a sheet that lies on it as `support` says; nothing where
+    /// there are none.
+    pub(crate) fn new(support: &BodyContact<'_>, sheet: &Sheet) -> Option<Self> {
+        Some(Self {
+            sharp: support.body.sharp()?,
+            edges: sheet.distinct_edges().map(|(ends, _)| ends).collect(),
+            triangles: sheet.triangles().to_vec(),
+            thickness: support.offset,
+            longest: sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max),
+            stiffness: support.stiffness.clone(),
+            friction: support.friction.clone(),
+            away: vec![0.0; support.friction.len()],
+            pairs: Vec::new(),
+            bridges: Vec::new(),
+            at: None,
+            slack: 0.0,
+            pierced: Vec::new(),
+            contacts: Vec::new(),
+        })
+    }
+
+    /// Takes friction away, and gives it back.
+    pub(crate) fn swap_friction(&mut self) {
+        std::mem::swap(&mut self.friction, &mut self.away);
+        self.contacts.clear();
+    }
+
+    /// Whether an edge of the cloth lies over an edge of the body: its nodes need not stand off for
+    /// it.
+    pub(crate) fn bridges(&self, edge: [u32; 2]) -> bool {
+        self.bridges.binary_search(&[edge[0].min(edge[1]), edge[0].max(edge[1])]).is_ok()
+    }
+
+    /// Sees to it that the pairs hold for `moves` from `x`.
+    pub(crate) fn seek(&mut self, x: &[Vec3], moves: &[Vec3]) {
+        let most = self.slack * self.slack;
+        let stays = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| (p + m - a).norm_squared() < most;
+        if self.at.as_ref().is_some_and(|at| at.iter().zip(x).zip(moves).all(stays)) {
+            return;
+        }
+        if self.pairs.is_empty() {
+            // Most of a garment's way leads past nothing sharp.
+            if self.is_far(x, moves) {
+                self.at = None;
+                return;
+            }
+            self.seek_within(x, moves, FAR);
+            if self.pairs.is_empty() {
+                return;
+            }
+        }
+        self.seek_within(x, moves, SLACK * self.thickness);
+    }
+
+    fn seek_within(&mut self, x: &[Vec3], moves: &[Vec3], slack: f64) {
+        let is_short = moves.iter().all(|m| m.norm_squared() < 0.25 * slack * slack);
+        (self.at, self.slack) = (is_short.then(|| x.to_vec()), slack);
+        let reach = self.thickness + slack;
+        self.pairs = match is_short {
+            true => self.pairs_about(x, &vec![Vec3::zeros(); x.len()], reach),
+            false => self.pairs_about(x, moves, reach),
+        };
+        let edges = self.pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]);
+        self.bridges = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        self.bridges.sort_unstable();
+        self.bridges.dedup();
+    }
+
+    /// Whether the whole cloth keeps clear of every feature on its way.
+    fn is_far(&self, x: &[Vec3], moves: &[Vec3]) -> bool {
+        let nothing = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
+        let (low, high) = x.iter().zip(moves).fold(nothing, |(low, high), (p, m)| {
+            let end = p + m;
+            (low.inf(p).inf(&end), high.sup(p).sup(&end))
+        });
+        let reach = Vec3::repeat(self.thickness + SLACK * self.thickness);
+        !self.sharp.meets(&(low - reach), &(high + reach))
+    }
+
+    /// Pairs that may come nearer than `reach` on the way, sorted.
+    fn pairs_about(&self, x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<Pair> {
+        let reach = Vec3::repeat(reach);
+        let look = |kind: Kind, nodes: [u32; 3]| {
+            let (mut low, mut high) = (x[nodes[0] as usize], x[nodes[0] as usize]);
+            for i in nodes {
+                let (p, q) = (x[i as usize], x[i as usize] + moves[i as usize]);
+                (low, high) = (low.inf(&p).inf(&q), high.sup(&p).sup(&q));
+            }
+            let mut found = Vec::new();
+            self.sharp
+                .within(kind, &(low - reach), &(high + reach), |feature| found.push(Pair { feature, nodes }));
+            found
+        };
+        let edges = self.edges.par_iter().with_min_len(CHUNK);
+        let mut pairs: Vec<Pair> = edges.flat_map_iter(|[a, b]| look(Kind::EdgeEdge, [*a, *b, *b])).collect();
+        let triangles = self.triangles.par_iter().with_min_len(CHUNK);
+        pairs.par_extend(triangles.flat_map_iter(|t| look(Kind::VertexTriangle, *t)));
+        pairs.sort_unstable();
+        pairs
+    }
+
+    /// Looks for cloth that the body passes through at `x`: each edge and each corner is then
+    /// pushed back over the nearest feature.
+    pub(crate) fn look_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+        let deepest = self.deepest();
+        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], deepest);
+        self.pierced = self.sunk(support, &pairs, x, deepest).into_iter().map(|p| p.1).collect();
+        self.pierced.sort_unstable();
+    }
+
+    /// Adds what the body has come to pass through since: cloth that is led around the end of a
+    /// feature may sink behind another.
+    fn look_again_for_pierced(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+        let known: Vec<Part> = self.pierced.iter().map(Pair::part).collect();
+        let sunk = self.sunk(support, &self.pairs, x, self.thickness);
+        self.pierced.extend(sunk.into_iter().filter(|(part, _)| !known.contains(part)).map(|p| p.1));
+        self.pierced.sort_unstable();
+    }
+
+    /// The pairs of which the cloth lies behind the feature, less than `deepest` and inside the
+    /// body: the nearest of each part.
+    fn sunk(&self, support: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3], deepest: f64) -> Vec<(Part, Pair)> {
+        let near = |p: &Pair| {
+            let near = p.near(&self.sharp, x);
+            let is_in = near.inside
+                && near.distance < deepest
+                && self.sharp.feature(p.feature).side(&near.off) == Side::In;
+            is_in.then_some((*p, near))
+        };
+        let hidden: Vec<(Pair, Near)> = pairs.iter().filter_map(near).collect();
+        if hidden.is_empty() {
+            return Vec::new();
+        }
+        let point = |(p, n): &(Pair, Near)| {
+            (0..p.count()).map(|k| x[p.nodes[k] as usize] * n.weights[k]).sum::<Vec3>()
+        };
+        let points: Vec<Vec3> = hidden.iter().map(point).collect();
+        let inside = support.body.nearest(&points, &vec![deepest; points.len()]);
+        let sunk = hidden.iter().zip(inside).filter(|(_, n)| n.is_some_and(|n| n.distance < 0.0));
+        let mut by_part: Vec<(Part, f64, Pair)> =
+            sunk.map(|((p, n), _)| (p.part(), n.distance, *p)).collect();
+        by_part.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)).then(a.2.cmp(&b.2)));
+        by_part.dedup_by_key(|p| p.0);
+        by_part.into_iter().map(|p| (p.0, p.2)).collect()
+    }
+
+    /// Whether the body passes through the cloth at `x` about a feature: through its triangles, or
+    /// its edges lead into the body, as through a thin plate, where no side of a feature tells.
+    pub(crate) fn is_pierced(&self, support: &BodyContact<'_>, x: &[Vec3]) -> bool {
+        let pairs = self.pairs_about(x, &vec![Vec3::zeros(); x.len()], self.deepest());
+        !leads_in(support, &pairs, x).is_empty() || !self.sunk(support, &pairs, x, self.deepest()).is_empty()
+    }
+
+    /// How far behind a feature cloth is pushed back over it, m.
+    fn deepest(&self) -> f64 {
+        (DEEPEST * self.longest).max(2.0 * self.thickness)
+    }
+
+    /// The pairs that touch at `x`, with the distance that they have, negative where the body
+    /// passes through the cloth.
+    fn feasible(&self, x: &[Vec3]) -> Vec<(Pair, Near, f64)> {
+        let mut found: Vec<(Pair, Near, f64)> = Vec::new();
+        let mut on_sides: Vec<(Pair, Near)> = Vec::new();
+        for p in &self.pairs {
+            let near = p.near(&self.sharp, x);
+            let touches = near.distance < self.thickness && near.distance > 0.0;
+            if !touches || self.sharp.feature(p.feature).side(&near.off) != Side::Out {
+                continue;
+            }
+            if near.inside {
+                found.push((*p, near, near.distance));
+            } else if p.count() == 3 && near.side(&p.nodes).is_some() {
+                on_sides.push((*p, near));
+            }
+        }
+        self.add_sides(&on_sides, &mut found);
+        for p in &self.pierced {
+            let near = p.near(&self.sharp, x);
+            if near.inside && self.sharp.feature(p.feature).side(&near.off) == Side::In {
+                found.push((*p, near, -near.distance));
+            }
+        }
+        found
+    }
+
+    /// Adds corners that are nearest to a side, once, where neither triangle of it is nearer by its
+    /// inside.
+    fn add_sides(&self, on_sides: &[(Pair, Near)], found: &mut Vec<(Pair, Near, f64)>) {
+        let has = |p: &Pair, side: &[u32; 2]| side.iter().all(|i| p.nodes.contains(i));
+        let inside: Vec<Pair> = found.iter().map(|(p, ..)| *p).filter(|p| p.count() == 3).collect();
+        let mut seen: Vec<(u32, [u32; 2])> = Vec::new();
+        for (p, near) in on_sides {
+            let Some(side) = near.side(&p.nodes) else { continue };
+            let key = (p.feature, side);
+            if !seen.contains(&key) && !inside.iter().any(|q| q.feature == p.feature && has(q, &side)) {
+                seen.push(key);
+                found.push((*p, *near, near.distance));
+            }
+        }
+    }
+
+    /// Finds the contacts at `x`, and what friction holds of them: call it at the start of each
+    /// step.
+    pub(crate) fn touch(&mut self, support: &BodyContact<'_>, x: &[Vec3]) {
+        let sharp = &self.sharp;
+        self.pierced.retain(|p| {
+            let near = p.near(sharp, x);
+            sharp.feature(p.feature).side(&near.off) == Side::In || !near.inside
+        });
+        self.look_again_for_pierced(support, x);
+        let before = std::mem::take(&mut self.contacts);
+        let ways: Vec<Vec3> = before
+            .iter()
+            .map(|c| {
+                let rub = Coulomb { normal: c.normal, anchor: c.anchor, limit: 1.0 };
+                rub.way(&c.point(x))
+            })
+            .collect();
+        self.contacts = self
+            .feasible(x)
+            .iter()
+            .map(|(pair, near, distance)| self.contact(pair, near, *distance, x, (&before, &ways)))
+            .collect();
+    }
+
+    fn press(&self, pair: &Pair, near: &Near, distance: f64) -> ContactPotential {
+        let parts = (0..pair.count()).map(|k| near.weights[k] * self.stiffness[pair.nodes[k] as usize]);
+        let stiffness = parts.sum();
+        match distance > 0.0 {
+            true => ContactPotential::of(stiffness, self.thickness, distance),
+            false => ContactPotential::spring(stiffness, self.thickness, distance),
+        }
+    }
+
+    fn contact(
+        &self,
+        pair: &Pair,
+        near: &Near,
+        distance: f64,
+        x: &[Vec3],
+        (before, ways): (&[Contact], &[Vec3]),
+    ) -> Contact {
+        let press = self.press(pair, near, distance);
+        let rubs = (0..pair.count()).map(|k| near.weights[k] * self.friction[pair.nodes[k] as usize]);
+        let mut contact = Contact {
+            pair: *pair,
+            weights: near.weights,
+            normal: near.off / distance,
+            press,
+            anchor: Vec3::zeros(),
+            slid: Vec3::zeros(),
+            load: press.force,
+            friction: rubs.sum(),
+        };
+        match before.iter().position(|c| c.pair == *pair) {
+            Some(k) => {
+                // While Newton's steps swing between touching and not, friction follows the mean.
+                contact.load = 0.5 * (before[k].load + press.force);
+                contact.slid = ways[k];
+            }
+            None => contact.slid = taken_over(pair, before, ways),
+        }
+        contact.anchor = contact.point(x) - contact.slid;
+        contact
+    }
+
+    /// Energy at `x`, J; friction is that of the step's start.
+    pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
+        let press: f64 = self.feasible(x).iter().map(|(p, n, d)| self.press(p, n, *d).energy).sum();
+        press + self.contacts.iter().map(|c| c.rubbed(x)).sum::<f64>()
+    }
+
+    /// The same at the step's start, whose contacts are known, J.
+    pub(crate) fn value_at_start(&self, x: &[Vec3]) -> f64 {
+        self.contacts.iter().map(|c| c.press.energy + c.rubbed(x)).sum()
+    }
+
+    /// Adds the derivative at the step's start, N.
+    pub(crate) fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        for c in &self.contacts {
+            let rub = c.rub().map_or_else(Vec3::zeros, |r| r.gradient(&c.point(x)));
+            let push = rub - c.normal * c.press.force;
+            c.nodes().for_each(|(i, w)| g[i as usize] += push * w);
+        }
+    }
+
+    /// Adds the matrix at the step's start, N/m. The sheet couples all nodes of an edge or a
+    /// triangle.
+    pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        for c in &self.contacts {
+            let rub = c.rub().map_or_else(Matrix3::zeros, |r| r.matrix(&c.point(x)));
+            let block = c.normal * c.normal.transpose() * c.press.curvature + rub;
+            for (k, (i, w)) in c.nodes().enumerate() {
+                for (j, v) in c.nodes().take(k + 1).filter(|(_, v)| w * v != 0.0) {
+                    if let Some(slot) = pattern.slot(i, j) {
+                        add_at(values, slot, &(block * (w * v)));
+                    }
+                }
+            }
+        }
+    }
+
+    /// Drags the anchors of friction along behind cloth that slides.
+    pub(crate) fn drag(&mut self, x: &[Vec3]) {
+        for c in &mut self.contacts {
+            let at = c.point(x);
+            let Some(rub) = c.rub() else { continue };
+            if (rub.way(&at) - c.slid).norm() > SLIP_TOLERANCE {
+                let dragged = rub.dragged(&at);
+                c.anchor = dragged;
+            }
+        }
+    }
+
+    /// What a part of the cloth has of it.
+    pub(crate) fn part(&self, cut: &Subset, nodes: &[u32]) -> Self {
+        let pick = |of: &[f64]| nodes.iter().map(|&i| of[i as usize]).collect::<Vec<f64>>();
+        let knows = |of: &[u32]| cut.touches(of) && cut.has_all(of);
+        let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
+        let mut pierced: Vec<Pair> = self.pierced.iter().filter(|p| knows(&p.nodes)).map(pair).collect();
+        pierced.sort_unstable();
+        Self {
+            sharp: self.sharp.clone(),
+            edges: self.edges.iter().filter(|e| knows(&e[..])).map(|e| cut.renumbered(*e)).collect(),
+            triangles: self.triangles.iter().filter(|t| knows(&t[..])).map(|t| cut.renumbered(*t)).collect(),
+            thickness: self.thickness,
+            longest: self.longest,
+            stiffness: pick(&self.stiffness),
+            friction: pick(&self.friction),
+            away: pick(&self.away),
+            pairs: Vec::new(),
+            bridges: Vec::new(),
+            at: None,
+            slack: 0.0,
+            pierced,
+            contacts: self
+                .contacts
+                .iter()
+                .filter(|c| knows(&c.pair.nodes))
+                .map(|c| Contact { pair: pair(&c.pair), ..*c })
+                .collect(),
+        }
+    }
+
+    /// Takes back what a part has learnt; its node `k` is the node `nodes[k]` of the whole.
+    pub(crate) fn learn(&mut self, cut: &Subset, nodes: &[u32], part: &Self) {
+        let whole = |p: &Pair| Pair { nodes: p.nodes.map(|i| nodes[i as usize]), ..*p };
+        let knows = |p: &Pair| cut.touches(&p.nodes) && cut.has_all(&p.nodes);
+        self.contacts.retain(|c| !knows(&c.pair));
+        self.contacts.extend(part.contacts.iter().map(|c| Contact { pair: whole(&c.pair), ..*c }));
+        self.contacts.sort_by_key(|c| c.pair);
+        self.pierced.retain(|p| !knows(p));
+        self.pierced.extend(part.pierced.iter().map(whole));
+        self.pierced.sort_unstable();
+    }
+
+    /// Keeps what friction holds, and what the body passes through, of the same cloth before its
+    /// fabric or its body changed.
+    pub(crate) fn go_on(&mut self, before: &Self) {
+        if Arc::ptr_eq(&self.sharp, &before.sharp) {
+            self.contacts = before.contacts.clone();
+            self.pierced = before.pierced.clone();
+        }
+    }
+
+    /// Scales contact and its loads.
+    pub(crate) fn weigh(&mut self, factor: f64) {
+        self.stiffness.iter_mut().for_each(|s| *s *= factor);
+        self.contacts.iter_mut().for_each(|c| c.load *= factor);
+    }
+}
+
+/// The edges of the cloth among `pairs` that lead into the body from their first node, outside it.
+fn leads_in(support: &BodyContact<'_>, pairs: &[Pair], x: &[Vec3]) -> Vec<[u32; 2]> {
+    let mut edges: Vec<[u32; 2]> =
+        pairs.iter().filter(|p| p.count() == 2).map(|p| [p.nodes[0], p.nodes[1]]).collect();
+    edges.sort_unstable();
+    edges.dedup();
+    let from: Vec<Vec3> = edges.iter().map(|e| x[e[0] as usize]).collect();
+    let way: Vec<Vec3> = edges.iter().map(|e| x[e[1] as usize] - x[e[0] as usize]).collect();
+    let mut ends = way.clone();
+    support.body.guard(&from, &mut ends, &vec![NUDGE; edges.len()]);
+    let changed = edges.into_iter().zip(way.iter().zip(&ends)).filter(|(_, (way, end))| way != end);
+    changed.map(|(e, _)| e).collect()
+}
+
+/// The mean way that contacts of the same cloth have slid.
+fn taken_over(pair: &Pair, before: &[Contact], ways: &[Vec3]) -> Vec3 {
+    let (mut way, mut load) = (Vec3::zeros(), 0.0);
+    for (c, w) in before.iter().zip(ways) {
+        let shared = c.pair.nodes[..c.pair.count()].iter().any(|i| pair.nodes.contains(i));
+        if shared && c.load > 0.0 {
+            way += w * c.load;
+            load += c.load;
+        }
+    }
+    if load > 0.0 { way / load } else { way }
+}
+
+#[cfg(test)]
+mod tests;

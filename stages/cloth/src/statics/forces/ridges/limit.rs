@@ -1,0 +1,117 @@
+//! Moves that would lead cloth past a sharp feature: the cloth gives way, and what still would pass
+//! ends before.
+//!
+//! As for cloth against cloth (see `contact/give_way` and `contact/limit`), with features that
+//! stand still. The distance of a pair is kept by additive continuous collision detection, so no
+//! step jumps over a blade. Cloth that the body passes through already is not held back.
+
+use super::{Pair, Ridges};
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use toile_geometry::ccd::impact;
+use toile_geometry::pair;
+
+type Vec3 = Vector3<f64>;
+
+/// Rounds in which cloth gives way, and in which moves are shortened node by node.
+const ROUNDS: usize = 4;
+
+/// Share of the time to impact that is used.
+const SAFETY: f64 = 0.9;
+
+/// Distance that a pair keeps which gives way, as a share of the thickness, or of its own where
+/// that is less; and the least share of its own that it keeps of a long way. A contact presses only
+/// from a thickness on: what would lose all of its way to a feature far away never came to lie on
+/// it.
+const KEPT: (f64, f64) = (0.5, 0.15);
+
+/// Nearer than this the two sides of a feature are not told apart, m.
+const TOUCHING: f64 = 1e-9;
+
+impl Ridges {
+    /// Takes from `moves` what leads the closest points of pairs that would meet too near together,
+    /// where nodes are not `held`; whose moves have changed.
+    pub(crate) fn give_way(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
+        let mut pushed = vec![false; x.len()];
+        for _ in 0..ROUNDS {
+            let meeting = self.hits(x, moves);
+            if meeting.is_empty() {
+                break;
+            }
+            for (pair, _) in meeting {
+                self.push(&pair, x, moves, held, &mut pushed);
+            }
+        }
+        pushed
+    }
+
+    fn push(&self, pair: &Pair, x: &[Vec3], moves: &mut [Vec3], held: &[bool], pushed: &mut [bool]) {
+        let near = pair.near(&self.sharp, x);
+        let normal = near.off / near.distance;
+        let own = || (0..pair.count()).map(|k| (pair.nodes[k] as usize, near.weights[k]));
+        let kept = (KEPT.0 * self.thickness.min(near.distance)).max(KEPT.1 * near.distance);
+        let apart = own().map(|(i, w)| moves[i].dot(&normal) * w).sum::<f64>() + near.distance - kept;
+        let sum = own().filter(|(i, _)| !held[*i]).map(|(_, w)| w * w).sum::<f64>();
+        if apart >= 0.0 || sum == 0.0 {
+            return;
+        }
+        for (i, w) in own().filter(|(i, w)| !held[*i] && *w != 0.0) {
+            moves[i] -= normal * (apart * w / sum);
+            pushed[i] = true;
+        }
+    }
+
+    /// Shortens moves, node by node, so that no pair meets.
+    pub(crate) fn hold_apart(&self, x: &[Vec3], moves: &mut [Vec3]) {
+        for _ in 0..ROUNDS {
+            let hits = self.hits(x, moves);
+            if hits.is_empty() {
+                return;
+            }
+            let mut share = vec![1.0f64; x.len()];
+            for (pair, time) in hits {
+                pair.nodes.iter().for_each(|&i| share[i as usize] = share[i as usize].min(SAFETY * time));
+            }
+            moves.iter_mut().zip(share).filter(|(_, s)| *s < 1.0).for_each(|(m, s)| *m *= s);
+        }
+        self.stop(x, moves);
+    }
+
+    /// Shortens all moves alike, so that no pair meets.
+    pub(crate) fn stop(&self, x: &[Vec3], moves: &mut [Vec3]) {
+        let least = self.hits(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
+        if least < 1.0 {
+            moves.iter_mut().for_each(|m| *m *= SAFETY * least);
+        }
+    }
+
+    /// The pairs that would meet, and when.
+    fn hits(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
+        let hit = |p: &Pair| {
+            if self.is_free(p) {
+                return None;
+            }
+            let (kind, from) = p.places(&self.sharp, x);
+            if kind.closest(&from).distance < TOUCHING {
+                return None;
+            }
+            let m = p.nodes.map(|i| moves[i as usize]);
+            let ways = match kind {
+                pair::Kind::EdgeEdge => [m[0], m[1], Vec3::zeros(), Vec3::zeros()],
+                pair::Kind::VertexTriangle => [Vec3::zeros(), m[0], m[1], m[2]],
+            };
+            // The nodes only name the pair.
+            impact(&pair::Pair { kind, nodes: [0; 4] }, &from, &ways).map(|t| (*p, t))
+        };
+        self.pairs.par_iter().with_min_len(256).filter_map(hit).collect()
+    }
+
+    /// Whether the cloth of a pair is one that the body passes through: it must get past features
+    /// to get out.
+    fn is_free(&self, pair: &Pair) -> bool {
+        self.pierced.iter().any(|p| {
+            let shared = p.nodes[..p.count()].iter().filter(|i| pair.nodes.contains(i)).count();
+            shared >= 2 || p.feature == pair.feature && shared > 0
+        })
+    }
+}

@@ -1,0 +1,57 @@
+//! Seams that still pull, while a garment is sewn.
+
+use crate::linear::{Pattern, add_at};
+use nalgebra::{Matrix3, Vector3};
+
+type Vec3 = Vector3<f64>;
+
+/// A seam that still pulls its two nodes together, with a force that hardly depends on the gap.
+#[derive(Debug, Clone, Copy)]
+pub struct SeamForce {
+    /// The nodes.
+    pub nodes: [u32; 2],
+    /// Force at large gaps, N.
+    pub force: f64,
+    /// Gap at which the force falls off, m.
+    pub soft: f64,
+}
+
+impl SeamForce {
+    fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
+        let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
+        (d, (d.norm_squared() + self.soft * self.soft).sqrt())
+    }
+
+    pub(crate) fn value(&self, x: &[Vec3]) -> f64 {
+        self.force * self.reach(x).1
+    }
+
+    pub(crate) fn add_gradient(&self, x: &[Vec3], g: &mut [Vec3]) {
+        let (d, r) = self.reach(x);
+        let pull = d * (self.force / r);
+        g[self.nodes[0] as usize] -= pull;
+        g[self.nodes[1] as usize] += pull;
+    }
+
+    pub(crate) fn add_matrix(&self, x: &[Vec3], pattern: &Pattern, values: &mut [Matrix3<f64>]) {
+        let [i, j] = self.nodes;
+        let (_, r) = self.reach(x);
+        // The secant stiffness: a majorant, with which Newton's step never overshoots.
+        let k = Matrix3::identity() * (self.force / r);
+        values[i as usize] += k;
+        values[j as usize] += k;
+        if let Some(slot) = pattern.slot(i, j) {
+            add_at(values, slot, &-k);
+        }
+    }
+}
+
+/// The widest gap of pairs of vertices, m.
+pub(crate) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
+    pairs.iter().map(|p| (x[p[0] as usize] - x[p[1] as usize]).norm()).fold(0.0, f64::max)
+}
+
+/// The widest gap of seams that still pull, m.
+pub(crate) fn widest_thread(threads: &[SeamForce], x: &[Vec3]) -> f64 {
+    threads.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
+}

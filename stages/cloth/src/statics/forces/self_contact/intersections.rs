@@ -1,0 +1,95 @@
+//! Cloth that has passed through cloth, as a coarser level's state carried to a finer one can have
+//! it, is pulled back out.
+
+use super::{Contact, SelfContact};
+use crate::statics::forces::contact_potential::ContactPotential;
+use nalgebra::Vector3;
+use rayon::prelude::*;
+use toile_geometry::closest::on_triangle;
+use toile_geometry::pair::Pair;
+
+type Vec3 = Vector3<f64>;
+
+/// Share of the thickness below which cloth lies in cloth: under its own weight it keeps a tenth
+/// and more.
+pub(crate) const MERGED: f64 = 0.02;
+
+impl SelfContact {
+    /// Takes up the crossings of `x`: the end of each edge that has gone through least is pulled
+    /// back to the other side. Cloth that lies in cloth counts as tangled, too.
+    pub fn untangle(&mut self, crossings: &[([u32; 2], [u32; 3])], x: &[Vec3]) {
+        let merged = self.merged(x);
+        let free = crossings.is_empty() && merged.is_empty();
+        self.tangled = vec![false; if free { 0 } else { x.len() }];
+        let crossed = crossings.iter().flat_map(|(e, t)| e.iter().chain(t));
+        crossed.chain(merged.iter().flat_map(|p| &p.nodes)).for_each(|&i| self.tangled[i as usize] = true);
+        self.tangles = crossings.iter().filter_map(|(e, t)| self.tangle(*e, *t, x)).collect();
+    }
+
+    /// Pairs so near that the wall between them and the search for the first impact would hold them
+    /// there for ever.
+    fn merged(&self, x: &[Vec3]) -> Vec<Pair> {
+        self.pairs.par_iter().with_min_len(256).filter(|p| self.is_merged(p, x)).copied().collect()
+    }
+
+    /// The nodes of each crossing and of each pair that lies in each other, an edge's or a vertex's
+    /// own first.
+    pub(crate) fn entangled(&self, x: &[Vec3]) -> Vec<[u32; 4]> {
+        self.tangles.iter().map(|c| c.nodes).chain(self.merged(x).iter().map(|p| p.nodes)).collect()
+    }
+
+    /// Whether the pair is one of them.
+    pub fn is_merged(&self, pair: &Pair, x: &[Vec3]) -> bool {
+        pair.closest(x).distance < MERGED * self.thickness
+    }
+
+    fn tangle(&self, e: [u32; 2], t: [u32; 3], x: &[Vec3]) -> Option<Contact> {
+        let [a, b, c] = t.map(|v| x[v as usize]);
+        let up = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+        let height = |v: u32| up.dot(&(x[v as usize] - a));
+        let (shallow, normal) = match self.side(&e, &t) {
+            // The order of the layers tells which end is on the wrong side.
+            Some(side) => (if side * height(e[0]) < side * height(e[1]) { e[0] } else { e[1] }, up * side),
+            None => {
+                let [shallow, deep] = if height(e[0]).abs() < height(e[1]).abs() { e } else { [e[1], e[0]] };
+                (shallow, if height(deep) > 0.0 { up } else { -up })
+            }
+        };
+        let on = on_triangle(&x[shallow as usize], &[a, b, c]);
+        let nodes = [shallow, t[0], t[1], t[2]];
+        let weights = [1.0, -on.weights[0], -on.weights[1], -on.weights[2]];
+        let distance = normal.dot(&(x[shallow as usize] - on.point));
+        let stiffness = 0.5 * self.stiffness[shallow as usize];
+        let press = ContactPotential::spring(stiffness, self.thickness, distance);
+        Some(Contact { nodes, weights, normal, stiffness, press })
+    }
+
+    /// On which side of a triangle an edge of another layer belongs: 1 outside, -1 inside; nothing
+    /// where they are one layer.
+    fn side(&self, e: &[u32; 2], t: &[u32; 3]) -> Option<f64> {
+        let of = |v: &u32| self.order.get(*v as usize).copied();
+        let one = |nodes: &[u32]| {
+            nodes.first().and_then(of).filter(|first| nodes.iter().all(|v| of(v) == Some(*first)))
+        };
+        match one(e)?.cmp(&one(t)?) {
+            std::cmp::Ordering::Greater => Some(1.0),
+            std::cmp::Ordering::Less => Some(-1.0),
+            std::cmp::Ordering::Equal => None,
+        }
+    }
+
+    /// Whether an edge and a triangle are of two layers, whose order resolves their crossing.
+    #[must_use]
+    pub fn is_ordered(&self, e: &[u32; 2], t: &[u32; 3]) -> bool {
+        self.side(e, t).is_some()
+    }
+
+    /// Whether the pair lies among tangled nodes only.
+    #[must_use]
+    pub fn is_tangled(&self, pair: &Pair) -> bool {
+        !self.tangled.is_empty() && pair.nodes.iter().all(|&i| self.tangled[i as usize])
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,184 @@
+//! What acts on the nodes of one level: a scene turned into a [`System`].
+
+use crate::contact::skin::CollisionSurface;
+use crate::energy::{Cloth, Models};
+use crate::error::ClothError;
+use crate::fabric::Fabric;
+use crate::mesh::Sheet;
+use crate::scene::Scene;
+use crate::statics::forces::body_contact::BodyContact;
+use crate::statics::forces::elastic::Elastic;
+use crate::statics::forces::ridges::Ridges;
+use crate::statics::forces::seam_force::SeamForce;
+use crate::statics::forces::self_contact::SelfContact;
+use crate::statics::forces::system::System;
+use crate::statics::levels::pieces::Pieces;
+use nalgebra::Vector3;
+
+type Vec3 = Vector3<f64>;
+
+/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre
+/// of thickness: a cloth strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of
+/// its thickness. Softer converges sooner.
+const CONTACT_STIFFNESS: f64 = 0.5;
+
+/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours
+/// would push each other.
+const LAYER_SHARE: f64 = 0.25;
+
+/// Who wears the garment.
+#[derive(Debug, Clone, Copy)]
+pub struct Collider<'a> {
+    /// The solid.
+    pub skin: &'a dyn CollisionSurface,
+    /// Coulomb's coefficient of cloth on it.
+    pub friction: f64,
+    #[cfg(toile_without = "body")]
+    pub(crate) never: std::convert::Infallible,
+}
+
+/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn
+/// point.
+pub(crate) fn assemble<'a>(
+    scene: &Scene,
+    body: Option<Collider<'a>>,
+    pieces: &Pieces,
+    sheet: &Sheet,
+    open: bool,
+    models: Models,
+) -> Result<System<'a>, ClothError> {
+    let cloths = cloths(scene);
+    let n = sheet.vertex_count();
+    let mut pinned = vec![false; n];
+    let mut panel = vec![0; n];
+    for (v, &p) in pieces.pinned.iter().enumerate() {
+        let node = if open { v } else { pieces.node[v] as usize };
+        pinned[node] |= p;
+        panel[node] = pieces.panel[v] as usize;
+    }
+    let stiffness: Vec<f64> = sheet
+        .masses()
+        .iter()
+        .zip(&panel)
+        .map(|(w, &p)| (w, cloths[p]))
+        .map(|(w, c)| CONTACT_STIFFNESS * c.stretch() / c.thickness * w / c.density)
+        .collect();
+    let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
+    let thickness = |p: &usize| cloths[*p].thickness;
+    let rub = |b: Collider<'_>, p: usize| {
+        let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
+        // Hands that sew a garment on a body let it slip into place.
+        if open { 0.0 } else { own.unwrap_or(b.friction) }
+    };
+    let support = body.map(|b| BodyContact {
+        body: b.skin,
+        friction: panel.iter().map(|&p| rub(b, p)).collect(),
+        offsets: panel.iter().map(thickness).collect(),
+        offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
+        depth: longest.clamp(0.02, 0.1),
+        edges: sheet.distinct_edges().collect(),
+        clear: pieces.rest.len() == scene.rest.len(),
+        grows: false,
+        hard: false,
+        passes: false,
+        #[cfg(toile_without = "body")]
+        never: b.never,
+        stiffness: stiffness.clone(),
+        pressed: Vec::new(),
+    });
+    let mut corners = vec![0u16; n];
+    sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
+    let thickness = layer_thickness(&cloths, panel.iter().copied(), sheet);
+    let edge = sheet.edges().iter().map(|e| e.rest_length).sum::<f64>() / sheet.edges().len().max(1) as f64;
+    let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
+    let no_friction = cloths.iter().all(|c| c.friction == 0.0);
+    let ordered = scene.panels.iter().any(|p| p.layer > 0);
+    let layers = scene.self_collision.then(|| SelfContact {
+        thickness,
+        edge,
+        stiffness,
+        // Hands that sew let cloth slip over cloth, too.
+        friction: if open || no_friction {
+            vec![]
+        } else {
+            panel.iter().map(|&p| cloths[p].friction).collect()
+        },
+        corners,
+        order: if ordered { panel.iter().map(order).collect() } else { vec![] },
+        ..SelfContact::default()
+    });
+    let uncut = pieces.uncut().transpose()?;
+    let one = [&scene.material];
+    let cloth = Cloth {
+        cut: uncut.as_ref().unwrap_or(sheet),
+        fabrics: &cloths,
+        fabric: &|t| pieces.cloth(t),
+        limit: scene.strain_limit,
+        ..Cloth::of(sheet, &one)
+    };
+    let creases = if open { Vec::new() } else { pieces.creases(sheet) };
+    let elastic = Elastic::new(models, &cloth, pieces.springs(open), &creases)?;
+    Ok(System {
+        elastic,
+        masses: sheet.masses().to_vec(),
+        gravity: if open { Vec3::zeros() } else { gravity(scene) },
+        push: vec![],
+        height_springs: None,
+        pinned,
+        threads: vec![],
+        ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),
+        support,
+        layers,
+        touches: vec![],
+        anchors: vec![None; n],
+        slides: vec![Vec3::zeros(); n],
+        loads: vec![0.0; n],
+        seen: vec![],
+        brakes: vec![],
+        pulls: vec![],
+    })
+}
+
+/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted
+/// from 1, m.
+pub(crate) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = usize>, sheet: &Sheet) -> f64 {
+    let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
+    panels.map(|p| cloths[p].thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest)
+}
+
+/// What no panel and what each panel is made of.
+pub(crate) fn cloths(scene: &Scene) -> Vec<&Fabric> {
+    std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
+}
+
+/// The gravity in the end.
+pub(crate) fn gravity(scene: &Scene) -> Vec3 {
+    scene.phases.last().map(|p| p.gravity).unwrap_or_default()
+}
+
+/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch
+/// stiffness: strong enough to carry the garment without a gap.
+pub(crate) const KEPT_PULL: f64 = 0.1;
+
+/// Threads of the seams that are not joined.
+pub(crate) fn kept_threads(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
+    let force = KEPT_PULL * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
+    pieces.kept_pairs().into_iter().map(|nodes| SeamForce { nodes, force, soft: 2.0 * join_gap }).collect()
+}
+
+/// Stretch stiffness of the stiffest panel, N/m.
+pub(crate) fn strongest(cloths: &[&Fabric]) -> f64 {
+    cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
+}
+
+/// Mean length of seam that a pair stands for, m.
+pub(crate) fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
+    let mut sewn = vec![false; pieces.rest.len()];
+    pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);
+    let edges = pieces.triangles.iter().flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]]);
+    let along: Vec<f64> = edges
+        .filter(|e| e.iter().all(|&v| sewn[v as usize]))
+        .map(|[a, b]| (pieces.rest[a as usize] - pieces.rest[b as usize]).norm())
+        .collect();
+    if along.is_empty() { 0.01 } else { along.iter().sum::<f64>() / along.len() as f64 }
+}

@@ -1,0 +1,13 @@
+//! The meshes of a garment, from the coarsest to the finest, and what acts on each.
+//!
+//! Depends on `forces`.
+
+pub(crate) mod assemble;
+pub(crate) mod bending_continuation;
+pub(crate) mod buckle;
+pub(crate) mod cloths;
+pub mod coarsen;
+pub(crate) mod mesh_level;
+pub mod pieces;
+#[cfg(test)]
+pub(crate) mod trial;

@@ -1,0 +1,222 @@
+//! Pairs of cloth that may meet, kept while the cloth hardly moves.
+//!
+//! Pairs are sought a little farther out than contact reaches: a node's hold until it has moved by
+//! that slack, which near rest is many steps. Then they are sought anew for the nodes that have,
+//! while the others keep theirs; so a search costs what moves. A node with a long way before it
+//! looks along that way, for that step alone.
+
+use crate::contact::give_way::give_way;
+use crate::contact::limit::{hold_apart, meet};
+use crate::statics::forces::self_contact::SelfContact;
+use crate::statics::forces::system::System;
+use nalgebra::Vector3;
+use toile_geometry::cloth_tree::ClothTree;
+use toile_geometry::pair::Pair;
+
+type Vec3 = Vector3<f64>;
+
+/// Share of the slack that may be used up where a part begins: it goes on with the pairs that are
+/// known.
+const KEPT: f64 = 0.3;
+
+/// Share of the nodes with a long way from which on all look along their ways, and no farther.
+const MOST_LONG: f64 = 0.3;
+
+/// What is near what, and where the nodes were when it was sought.
+pub(crate) struct Nearby {
+    tree: Option<ClothTree>,
+    /// Where each node's pairs were sought; nothing where they hold for one step alone.
+    at: Vec<Option<Vec3>>,
+    /// What a part of a system knows of is about it: this holds while its nodes stay near where
+    /// they were.
+    fence: Option<Fence>,
+    /// Whether layers that lie in each other met in the last step.
+    jammed: bool,
+}
+
+/// Where the nodes of a part were when it was cut out, and how far they may go from there, m.
+struct Fence {
+    at: Vec<Vec3>,
+    reach: f64,
+}
+
+impl Nearby {
+    pub(crate) fn new(tree: Option<ClothTree>) -> Self {
+        Self { tree, at: vec![], fence: None, jammed: false }
+    }
+
+    /// Seeks the pairs about `x`, so that they hold for a part whose nodes are `awake`.
+    pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], awake: &[bool]) {
+        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
+            let still = vec![Vec3::zeros(); x.len()];
+            let mut moved = outside(&self.at, x, &still, layers.slack());
+            let near_end = outside(&self.at, x, &still, KEPT * layers.slack());
+            moved.iter_mut().zip(near_end).zip(awake).for_each(|((m, n), a)| *m |= n && *a);
+            if !moved.contains(&true) {
+                return;
+            }
+            self.at.resize(x.len(), None);
+            self.at.iter_mut().zip(x).zip(&moved).filter(|(_, m)| **m).for_each(|((a, p), _)| *a = Some(*p));
+            layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, &still]);
+        }
+    }
+
+    /// Where each node was when its pairs were sought.
+    pub(crate) fn at(&self) -> &[Option<Vec3>] {
+        &self.at
+    }
+
+    /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by
+    /// `reach` from there, m.
+    pub(crate) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
+        let at = at.into_iter().flatten().collect();
+        Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
+    }
+
+    /// For a part that seeks pairs in a tree of its own, which knows all that its nodes may meet
+    /// within `reach` of `at`, m.
+    pub(crate) fn fenced(tree: ClothTree, at: Vec<Vec3>, reach: f64) -> Self {
+        Self { tree: Some(tree), at: vec![], fence: Some(Fence { at, reach }), jammed: false }
+    }
+
+    /// The share of `moves` from `x` for which a part knows what is about it.
+    pub(crate) fn within_reach(&self, x: &[Vec3], moves: &[Vec3]) -> f64 {
+        let Some(Fence { at, reach }) = &self.fence else { return 1.0 };
+        let share = |((a, p), m): ((&Vec3, &Vec3), &Vec3)| {
+            let left = reach - (p - a).norm();
+            if m.norm() < left { 1.0 } else { (left / m.norm()).max(0.0) * 0.99 }
+        };
+        at.iter().zip(x).zip(moves).map(share).fold(1.0, f64::min)
+    }
+
+    /// Sees to it that the pairs of the layers hold for `moves` from `x`.
+    pub(crate) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
+        let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
+        let slack = layers.slack();
+        let moved = outside(&self.at, x, moves, slack);
+        if !moved.contains(&true) {
+            return;
+        }
+        let is_long = |m: &Vec3| m.norm() >= 0.5 * slack;
+        let long = moved.iter().zip(moves).filter(|(moved, m)| **moved && is_long(m)).count();
+        if long as f64 > MOST_LONG * x.len() as f64 {
+            self.at = vec![None; x.len()];
+            layers.pairs = tree.pairs(x, moves, layers.thickness);
+            return;
+        }
+        self.at.resize(x.len(), None);
+        for (i, _) in moved.iter().enumerate().filter(|(_, m)| **m) {
+            self.at[i] = (!is_long(&moves[i])).then_some(x[i]);
+        }
+        layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, moves]);
+    }
+
+    /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one
+    /// step alone, along their way.
+    fn renewed(
+        &self,
+        tree: &ClothTree,
+        layers: &SelfContact,
+        known: &[Pair],
+        moved: &[bool],
+        [x, moves]: [&[Vec3]; 2],
+    ) -> Vec<Pair> {
+        let places: Vec<Vec3> = self.at.iter().zip(x).map(|(a, p)| a.unwrap_or(*p)).collect();
+        let way = |(a, m): (&Option<Vec3>, &Vec3)| if a.is_some() { Vec3::zeros() } else { *m };
+        let ways: Vec<Vec3> = self.at.iter().zip(moves).map(way).collect();
+        let mut pairs: Vec<Pair> =
+            known.iter().filter(|p| !p.nodes.iter().any(|&i| moved[i as usize])).copied().collect();
+        pairs.extend(tree.pairs_of(moved, &places, &ways, layers.thickness + 2.0 * layers.slack()));
+        // Two sorted runs.
+        pairs.sort();
+        pairs
+    }
+
+    /// How often triangles cross at `x`.
+    pub(crate) fn crossings(&self, x: &[Vec3]) -> usize {
+        self.tree.as_ref().map_or(0, |t| t.crossings(x).len())
+    }
+
+    /// Changes moves that would lead cloth through cloth: it gives way where it can, and ends
+    /// before it meets where it cannot. The share of the moves that is left; of cloth that gets
+    /// free of crossings, which takes long ways, all counts as left.
+    pub(crate) fn limit(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) -> f64 {
+        if self.tree.is_none() && self.fence.is_none() {
+            return 1.0;
+        }
+        let Some(layers) = &system.layers else { return 1.0 };
+        let wanted = norm(moves);
+        let apart: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
+        let meeting = meet(x, moves, &apart);
+        if !meeting.is_empty() {
+            self.jammed = !layers.crowded && meeting.iter().any(|p| layers.is_merged(p, x));
+            let pushed = give_way(x, moves, &apart, meeting, &system.pinned);
+            self.keep_known(layers.slack(), x, moves, &pushed);
+            system.clear_of_body(x, moves, |i| pushed[i]);
+            self.hold_apart(system, x, moves);
+        }
+        let free = system.layers.as_ref().is_none_or(|l| l.tangled.is_empty());
+        if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
+    }
+
+    /// Shortens moves that were changed to what the known pairs hold for.
+    fn keep_known(&self, slack: f64, x: &[Vec3], moves: &mut [Vec3], changed: &[bool]) {
+        for (i, _) in changed.iter().enumerate().filter(|(_, c)| **c) {
+            let known = self.at.get(i).copied().flatten().map(|a| slack - (x[i] - a).norm());
+            let fenced = self.fence.as_ref().map(|f| f.reach - (x[i] - f.at[i]).norm());
+            let left = 0.99 * known.into_iter().chain(fenced).fold(f64::INFINITY, f64::min).max(0.0);
+            let way = moves[i].norm();
+            if way > left {
+                moves[i] *= left / way;
+            }
+        }
+    }
+
+    /// Ends moves before cloth meets cloth.
+    fn hold_apart(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
+        let Some(layers) = &mut system.layers else { return };
+        let counts = |p: &Pair| !layers.is_tangled(p);
+        // Pairs all round hold for every short move, those along a way for that way.
+        let long: Vec<bool> = self.at.iter().map(Option::is_none).collect();
+        let all = long.iter().all(|l| *l);
+        let tree = self.tree.as_ref().filter(|_| long.contains(&true));
+        let seek = |moves: &[Vec3]| {
+            tree.map(|t| match all {
+                true => t.pairs(x, moves, layers.thickness),
+                false => self.renewed(t, layers, &layers.pairs, &long, [x, moves]),
+            })
+        };
+        let first = seek(moves).unwrap_or_else(|| layers.pairs.clone());
+        layers.pairs = hold_apart(x, moves, first, counts, seek).0;
+    }
+
+    /// Whether cloth must be taken out of cloth.
+    pub(crate) fn is_tangled(&self, system: &System<'_>) -> bool {
+        system.is_tangled() || self.jammed
+    }
+
+    /// Takes up crossings that the start has, or that are left of them.
+    pub(crate) fn untangle(&mut self, system: &mut System<'_>, x: &[Vec3]) {
+        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
+            layers.untangle(&tree.crossings(x), x);
+            self.jammed = false;
+        }
+    }
+}
+
+fn norm(moves: &[Vec3]) -> f64 {
+    moves.iter().map(Vec3::norm_squared).sum::<f64>().sqrt()
+}
+
+/// Which nodes leave the sphere of that radius about where they were, if they were anywhere.
+fn outside(was: &[Option<Vec3>], x: &[Vec3], moves: &[Vec3], reach: f64) -> Vec<bool> {
+    let leaves = |(i, (p, m)): (usize, (&Vec3, &Vec3))| {
+        let left = reach - m.norm();
+        let stays = |a: &Vec3| left > 0.0 && (p - a).norm_squared() < left * left;
+        !was.get(i).and_then(Option::as_ref).is_some_and(stays)
+    };
+    x.iter().zip(moves).enumerate().map(leaves).collect()
+}
+
+#[cfg(test)]
+mod tests;
