@@ -7,7 +7,7 @@ use crate::args::{AcceptArgs, CheckArgs, Overrides};
 use crate::failing::fail_run;
 use crate::run::run_quietly;
 use crate::validate::{checked, open};
-use crate::{Streams, exit, interrupt, stdin};
+use crate::{Streams, exit, terminal::interrupt, terminal::stdin};
 use std::path::{Path, PathBuf};
 use toile_core::artifact::{OutputFile, RunLog};
 use toile_core::{Artifact, Registry, read_file, read_text};

@@ -3,50 +3,35 @@
 //! Exit codes: 0 done; 2 usage; 3 invalid input; 4 the result fails its own quality limits; 5 out
 //! of time or stopped; 70 a bug.
 
-mod ablate;
-mod apart;
 mod args;
 mod at_hand;
-mod bench_costs;
 mod cache;
 mod cards;
 mod contracts;
-mod costs;
 mod doctor;
 mod explain;
-mod explain_json;
-mod explained;
 mod failing;
 mod golden;
-mod interrupt;
-mod last_words;
 mod lock;
-mod measuring;
 mod migrate;
 mod new_stage;
-mod progress;
-mod qualities;
 mod reads;
 mod run;
 mod schema;
 mod shell;
-mod stdin;
-mod streams;
-mod threads;
-mod trade;
-mod tune;
-mod tuned;
+mod terminal;
+mod trading;
 mod validate;
 mod watch;
 mod why;
 
 use args::{Arguments, Bench, Command, Verb};
 use clap::Parser;
-use last_words::Alive;
 use std::ffi::OsString;
 use std::io::Write;
 use std::path::PathBuf;
-use streams::Streams;
+use terminal::last_words::Alive;
+use terminal::streams::Streams;
 use toile_core::{Registry, panics};
 use toile_pipeline::plugin::load_plugin;
 use toile_trade::apart::Apart;
@@ -108,7 +93,7 @@ where
     let arguments: Vec<OsString> = arguments.into_iter().map(Into::into).collect();
     let json = arguments.iter().any(|a| a == "--json");
     if is_program {
-        last_words::as_json(json);
+        terminal::last_words::as_json(json);
     }
     let code = match panics::caught(|| answered(registry, arguments, &mut streams, is_program)) {
         Ok(code) => code,
@@ -141,7 +126,7 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
     streams.behave(color, quiet);
     // A run in a process of its own is ended by the one that waits for it.
     if is_program && !matches!(command, Command::RunApart) {
-        interrupt::on_ctrl_c();
+        terminal::interrupt::on_ctrl_c();
     }
     match command {
         Command::Run(args) if args.watch => watch::watch(&args, &plugins, registry, streams),
@@ -149,7 +134,8 @@ fn asked(arguments: Arguments, registry: &Registry, streams: &mut Streams<'_>, i
             // A refused plugin ends the command, but for the list of stages and the doctor, which
             // show it.
             let (registry, all) = with_plugins(registry, &plugins);
-            streams.apart = streams.apart.take().map(|program| apart::with_plugins(program, &plugins));
+            streams.apart =
+                streams.apart.take().map(|program| trading::apart::with_plugins(program, &plugins));
             match matches!(command, Command::Stages { .. } | Command::Doctor { .. }) || all {
                 true => dispatch(command, &registry, streams),
                 false => refused(&registry, streams),
@@ -185,7 +171,7 @@ pub fn registry() -> Registry {
 
 fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) -> u8 {
     if matches!(command, Command::Doctor { .. } | Command::Bench { .. }) {
-        threads::for_the_program();
+        terminal::threads::for_the_program();
     }
     match command {
         Command::Run(args) => run::once(&args, registry, None, streams),
@@ -205,16 +191,16 @@ fn dispatch(command: Command, registry: &Registry, streams: &mut Streams<'_>) ->
             exit::DONE
         }
         Command::Stage { name, cache_dir, json } => cards::show(&name, cache_dir, json, registry, streams),
-        Command::Explain(args) => explain::explain(&args, registry, streams),
+        Command::Explain(args) => explain::command::explain(&args, registry, streams),
         Command::Why(args) => why::why(&args, registry, streams),
         Command::Cache(args) => cache::cache(&args, streams),
         Command::Lock(args) => lock::lock(&args, registry, streams),
         Command::Migrate(args) => migrate::run(&args, registry, streams),
-        Command::Trade(args) => trade::run(&args, registry, streams),
-        Command::Tune(args) => tune::run(&args, registry, streams),
-        Command::RunApart => apart::run(registry, streams),
+        Command::Trade(args) => trading::study::run(&args, registry, streams),
+        Command::Tune(args) => trading::tune::run(&args, registry, streams),
+        Command::RunApart => trading::apart::run(registry, streams),
         Command::Golden { verb: Verb::Check(args) } => golden::check(&args, registry, streams),
-        Command::Bench { what: Bench::Costs(args) } => bench_costs::costs(&args, registry, streams),
+        Command::Bench { what: Bench::Costs(args) } => trading::bench_costs::costs(&args, registry, streams),
         Command::Golden { verb: Verb::Accept(args) } => golden::accept(&args, registry, streams),
     }
 }

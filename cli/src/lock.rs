@@ -4,7 +4,7 @@
 use crate::args::{LockArgs, Overrides};
 use crate::failing::fail_run;
 use crate::validate::open;
-use crate::{Streams, cache, exit, interrupt, stdin, threads};
+use crate::{Streams, cache, exit, terminal::interrupt, terminal::stdin, terminal::threads};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use toile_core::artifact::OutputFile;

@@ -1,7 +1,7 @@
 //! `toile migrate`: rewrites old pipeline files to the names that stages and parameters have now.
 
 use crate::args::MigrateArgs;
-use crate::{Streams, exit, stdin};
+use crate::{Streams, exit, terminal::stdin};
 use std::path::Path;
 use toile_core::artifact::OutputFile;
 use toile_core::{Registry, read_text};

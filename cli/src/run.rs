@@ -1,11 +1,11 @@
 //! `toile run`.
 
 use crate::args::RunArgs;
-use crate::costs::{self, Known};
 use crate::failing::{fail_load, fail_run};
-use crate::progress::Bar;
+use crate::terminal::progress::Bar;
+use crate::trading::costs::{self, Known};
 use crate::validate::{Refused, inspect, open, warn_before_run};
-use crate::{Streams, cache, exit, interrupt, lock, reads, stdin, threads};
+use crate::{Streams, cache, exit, lock, reads, terminal::interrupt, terminal::stdin, terminal::threads};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError};
 use toile_core::artifact::OutputFile;

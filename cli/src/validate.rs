@@ -1,7 +1,7 @@
 //! `toile validate`, and the loading that all commands share.
 
 use crate::args::{Overrides, ValidateArgs};
-use crate::{Streams, exit, stdin};
+use crate::{Streams, exit, terminal::stdin};
 use serde_json::json;
 use std::path::Path;
 use toile_core::Registry;

@@ -9,7 +9,7 @@
 use crate::args::RunArgs;
 use crate::reads::{Look, look, note};
 use crate::run::once;
-use crate::{Streams, exit, interrupt, refused, stdin, with_plugins};
+use crate::{Streams, exit, refused, terminal::interrupt, terminal::stdin, with_plugins};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -16,9 +16,9 @@ use std::time::Duration;
 use toile_core::{Cancel, Length};
 use toile_trade::ablate;
 use toile_trade::apart::Apart;
+use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
 use toile_trade::record::{Clock, Outcome, Trade};
-use toile_trade::source::Source;
 use toile_trade::study::{Options, study};
 
 const PIPELINE: &str = "(scene: Scene(file: \"sheet.json\"), stages: [StaticEquilibrium(speed: 0.01)])";

@@ -8,8 +8,8 @@ use std::time::Duration;
 use toile_core::{Cancel, StageError};
 use toile_tests::{Answer, napkin, toile};
 use toile_trade::ablate::{Ablation, Options, Progress, Row, Step, ablate, csv};
+use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
-use toile_trade::source::Source;
 
 /// The napkin with a body and a cloth that nothing asks for: two decisions.
 const PIPELINE: &str = r#"(

@@ -3,8 +3,8 @@
 
 use crate::ablate::{Ablation, Row, path_to};
 use crate::cost::{Costs, predict, time, total};
+use crate::knobs::source::Source;
 use crate::record::Clock;
-use crate::source::Source;
 use serde::Serialize;
 use toile_core::cost::Predicted;
 use toile_core::decide::{Saves, Turn};

@@ -1,10 +1,10 @@
 //! What was measured as lines of text: a table for people, comma-separated values for programs.
 
 use crate::digits::to_digits;
-use crate::floor::Floor;
+use crate::knobs::slot::setting_words;
 use crate::record::{Clock, Level, Measured, Neighbours, Order, Outcome, OwnSpread, Point, Trade};
-use crate::richardson::FORMAL_ORDER;
-use crate::slot::setting_words;
+use crate::reference::floor::Floor;
+use crate::reference::richardson::FORMAL_ORDER;
 use std::fmt::Write;
 
 /// A column: its head, its unit, and its value.

@@ -15,7 +15,7 @@ pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use shared::{CacheChoice, Overrides};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 
-use crate::streams::Color;
+use crate::terminal::streams::Color;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 use std::path::PathBuf;

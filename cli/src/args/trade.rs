@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 use toile_core::Length;
 use toile_pipeline::Override;
+use toile_trade::knobs::slot::ReferenceValue;
 use toile_trade::qualities::Asked;
-use toile_trade::slot::ReferenceValue;
 
 #[derive(Debug, Args)]
 pub(crate) struct TradeArgs {

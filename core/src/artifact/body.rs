@@ -1,7 +1,7 @@
 //! The body that wears the garment.
 
-use super::sound::{ensure, finite, finite_figure, indices};
 use super::{Artifact, ArtifactType, Kind, Measures, Point3, Vector3};
+use crate::artifact::store::sound::{ensure, finite, finite_figure, indices};
 use std::collections::BTreeMap;
 
 /// A named point on the body's skin or skeleton.
@@ -98,7 +98,7 @@ impl Artifact for Body {
         self.measurements.iter().try_for_each(|(name, length)| finite_figure(name, *length))
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

@@ -1,7 +1,7 @@
 //! What keeps cloth out of the body and out of itself, as a service to the solvers.
 
-use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Digester, Kind, Measures, Point3, Vector3};
+use crate::artifact::store::sound::{ensure, positive};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

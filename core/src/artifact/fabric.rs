@@ -1,7 +1,7 @@
 //! What a cloth is made of.
 
-use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, Kind, Measures};
+use crate::artifact::store::sound::{ensure, positive};
 use serde::{Deserialize, Serialize};
 
 /// A piecewise-linear force-strain curve through the origin, per metre of width.
@@ -126,7 +126,7 @@ impl Artifact for Fabric {
         ensure(held, || "bending, thickness, friction and damping must be finite and at least 0".to_owned())
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

@@ -1,8 +1,8 @@
 //! What a finished garment is judged by.
 
-use super::sound::finite_figure;
 use super::{Artifact, ArtifactType, Kind, Measures};
 use crate::ErrorCode;
+use crate::artifact::store::sound::finite_figure;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -143,7 +143,7 @@ impl Artifact for Figures {
         finite_figure("seam gap", self.garment.seam_gap_max_m)
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

@@ -1,8 +1,8 @@
 //! Panels in space, sewn or about to be.
 
 use super::body::{obj_text, vertex_normals};
-use super::sound::{alike, ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Fabric, Kind, Measures, Point2, Point3, SeamKind, Vector3};
+use crate::artifact::store::sound::{alike, ensure, finite, indices, length};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -258,7 +258,7 @@ impl Artifact for Garment {
         self.check_panels()
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

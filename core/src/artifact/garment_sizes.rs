@@ -1,8 +1,8 @@
 //! Flat and present sizes of a garment: edges, triangles, panels; along gathered seams as the
 //! gathers leave them.
 
-use super::gathers;
 use super::{Garment, GarmentPanel, Point2, SeamKind};
+use crate::artifact::sewing::gathers;
 use nalgebra::{Matrix2, Matrix3x2};
 
 impl Garment {

@@ -1,7 +1,7 @@
 //! Which pixels of a photo belong to the garment.
 
-use super::sound::ensure;
 use super::{Artifact, ArtifactType, GrayImage, Kind, Measures, Shared};
+use crate::artifact::store::sound::ensure;
 
 /// A binary picture in the frame of its photo: 255 on the garment, 0 off it, nothing else.
 #[derive(Debug, Clone)]
@@ -59,7 +59,7 @@ impl Artifact for Mask {
         ensure(grey.is_none(), || "it has pixels between 0 and 255".to_owned())
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

@@ -6,22 +6,15 @@
 //!
 //! One file holds one kind.
 
-mod arrow;
 mod body;
 mod collider;
-mod digest;
-#[cfg(test)]
-mod every_field;
 mod fabric;
 mod figures;
 mod files;
 mod garment;
 mod garment_sizes;
-mod gathers;
-mod gauge;
 mod geometry;
 mod locate;
-mod lying;
 mod mask;
 mod measures;
 mod model;
@@ -32,22 +25,17 @@ mod phases;
 mod photo;
 mod picture;
 mod runlog;
-mod seam_kind;
 mod sewing;
-mod shared;
-mod sound;
-pub mod stored;
+pub mod store;
 
 pub use body::{Body, Landmark};
 pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact, Surface};
-pub use digest::{Digest, Digester};
 pub use fabric::{Curve, Fabric};
 pub use figures::{
     Figures, GarmentFigures, GirthFigures, PanelFigures, PenetrationFigures, Shortfall, StrainFigures,
 };
 pub use files::{OutputFile, OutputFiles};
 pub use garment::{Garment, GarmentPanel, GarmentSeam, Held, SeamState, SolveStatus, quantile};
-pub use gauge::{CHORD_TOLERANCE, Gauge};
 pub use geometry::{Point2, Point3, Vector2, Vector3, polygon_area, polyline_length};
 pub use locate::{Located, Locator};
 pub use mask::Mask;
@@ -63,9 +51,11 @@ pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
 pub use picture::{GrayImage, Picture, RgbImage};
 pub use runlog::{Failure, RunLog, StageRecord};
-pub use seam_kind::{PleatFold, SeamKind};
-pub use sewing::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
-pub use shared::Shared;
+pub use sewing::gauge::{CHORD_TOLERANCE, Gauge};
+pub use sewing::plan::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
+pub use sewing::seam_kind::{PleatFold, SeamKind};
+pub use store::digest::{Digest, Digester};
+pub use store::shared::Shared;
 
 use std::any::Any;
 use std::fmt::Debug;
@@ -101,7 +91,7 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn measures(&self) -> Measures;
     /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's
     /// border; `None` for a service.
-    fn record(&self) -> Option<stored::Record<'_>> {
+    fn record(&self) -> Option<store::stored::Record<'_>> {
         None
     }
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.

@@ -1,8 +1,8 @@
 //! A finished, textured model.
 
 use super::body::obj_text;
-use super::sound::{ensure, finite, indices, length};
 use super::{Artifact, ArtifactType, Kind, Measures, Point3, RgbImage, Shared, Vector3};
+use crate::artifact::store::sound::{ensure, finite, indices, length};
 
 /// A picture that materials refer to: colours, or the normals of a normal map.
 #[derive(Debug, Clone)]
@@ -228,7 +228,7 @@ impl Artifact for Model {
             .try_for_each(|v| self.check_variant(v).map_err(|e| format!("variant \"{}\": {e}", v.name)))
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 
@@ -246,8 +246,8 @@ impl Artifact for Model {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::stored::tests::model;
     use super::*;
+    use crate::artifact::store::stored::tests::model;
 
     #[test]
     fn a_variant_brings_what_is_its_own_and_shares_the_rest() {

@@ -2,8 +2,8 @@
 
 use nalgebra::Rotation2;
 
-use super::sound::{ensure, finite, positive};
 use super::{Artifact, ArtifactType, Gauge, Kind, Measures, Point2, polygon_area, polyline_length};
+use crate::artifact::store::sound::{ensure, finite, positive};
 
 /// A closed polygon, not repeating its first point. The outer loop runs counter-clockwise, holes
 /// clockwise (y up).
@@ -227,7 +227,7 @@ impl Artifact for Outline {
         })
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 
@@ -281,7 +281,11 @@ fn svg(outline: &Outline) -> String {
             "<path d=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"3\"/>",
             line(&points)
         );
-        let _ = writeln!(s, "<path d=\"{}Z\" fill=\"{colour}\"/>", line(&super::arrow::arrow(&points)));
+        let _ = writeln!(
+            s,
+            "<path d=\"{}Z\" fill=\"{colour}\"/>",
+            line(&crate::artifact::sewing::arrow::arrow(&points))
+        );
         let _ = writeln!(
             s,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" fill=\"{colour}\" text-anchor=\"middle\">{}</text>",

@@ -1,7 +1,7 @@
 //! A meshed piece of flat cloth.
 
-use super::sound::{alike, ensure, finite, finite_figure, indices, length};
 use super::{Artifact, ArtifactType, InnerKind, Kind, Measures, Point2, polygon_area};
+use crate::artifact::store::sound::{alike, ensure, finite, finite_figure, indices, length};
 
 /// A named stretch of the panel's boundary.
 #[derive(Debug, Clone, PartialEq)]
@@ -179,7 +179,7 @@ impl Artifact for Panel {
         finite_figure("outline's length", self.outline_length)
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

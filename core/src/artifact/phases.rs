@@ -1,7 +1,7 @@
 //! What acts on a garment, one span of time after the other.
 
-use super::sound::{ensure, finite_figure};
 use super::{Artifact, ArtifactType, Kind, Measures, Vector3};
+use crate::artifact::store::sound::{ensure, finite_figure};
 
 /// What cloth moves in.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +79,7 @@ impl Artifact for Phases {
         Ok(())
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

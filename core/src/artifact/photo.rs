@@ -1,7 +1,7 @@
 //! A photo of a garment that lies flat.
 
-use super::sound::{ensure, positive};
 use super::{Artifact, ArtifactType, GrayImage, Kind, Measures, RgbImage, Shared};
+use crate::artifact::store::sound::{ensure, positive};
 
 /// An upright sRGB photo with its scale.
 ///
@@ -68,7 +68,7 @@ impl Artifact for Photo {
         self.garment_width.map_or(Ok(()), |w| positive("garment's width", w))
     }
 
-    fn record(&self) -> Option<super::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
         Some(self.fields())
     }
 

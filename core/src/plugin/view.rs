@@ -3,7 +3,7 @@
 
 use super::abi;
 use super::lending::{Lending, Owners};
-use crate::artifact::stored::{Data, Field, MAX_DEPTH, Owner, Record};
+use crate::artifact::store::stored::{Data, Field, MAX_DEPTH, Owner, Record};
 use bytemuck::Pod;
 use std::borrow::Cow;
 use std::ffi::c_void;

@@ -4,9 +4,9 @@
 //! outwards, upright and scaled; landmarks and girths are estimated from its slices. Cost: some
 //! hundred slices.
 
-use super::estimate::estimate;
-use super::topology::TriMesh;
-use super::topology::{Pieces, Topology};
+use crate::body::measures::estimate::estimate;
+use crate::body::skin::topology::TriMesh;
+use crate::body::skin::topology::{Pieces, Topology};
 use crate::engine::OBJ_HINT;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;

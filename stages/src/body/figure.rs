@@ -1,22 +1,22 @@
 //! A human figure as a smooth solid: trunk, breasts, shoulders, neck, head, arms, hands, legs,
 //! feet.
 //!
-//! Parts are [lofts](super::loft), [limbs](super::limb) and ellipsoids, joined by smooth minima;
-//! the [relief](super::relief) of bones and muscles moves the skin. Sections and levels follow a
+//! Parts are [lofts](crate::body::limbs::loft), [limbs](crate::body::limbs::limb) and ellipsoids, joined by smooth minima;
+//! the [relief](crate::body::limbs::relief) of bones and muscles moves the skin. Sections and levels follow a
 //! [`Form`]. Levels are shares of the height up to the chin, so that a child, whose head is larger,
 //! still has its waist where the trunk has one. Girths and lengths are met by [`Aims`].
 //!
 //! Limit: a shop's dummy, not a portrait: a calm head without eyes and ears, fingers side by side.
 
-use super::arm::{self, Arm};
-use super::bump::Bump;
-use super::field::{Field, smooth_min};
-use super::form::Form;
-use super::head::Head;
-use super::leg::Leg;
-use super::relief::relief;
-use super::shape::{Aims, Shape, Size};
-use super::torso::{Torso, neck_middle};
+use crate::body::form::Form;
+use crate::body::limbs::arm::{self, Arm};
+use crate::body::limbs::bump::Bump;
+use crate::body::limbs::head::Head;
+use crate::body::limbs::leg::Leg;
+use crate::body::limbs::relief::relief;
+use crate::body::limbs::torso::{Torso, neck_middle};
+use crate::body::shape::{Aims, Shape, Size};
+use crate::body::skin::field::{Field, smooth_min};
 use toile_core::artifact::{Point3, Vector3};
 
 /// Widths over which parts are joined, metres on the adult.

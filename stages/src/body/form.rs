@@ -6,7 +6,7 @@
 //! gives their share in width and depth.
 
 /// A row of the trunk: level, half width, depth in front and behind the axis, metres on the adult
-/// of [`super::shape::ADULT`].
+/// of [`crate::body::shape::ADULT`].
 pub(crate) type Row = [f64; 4];
 
 /// Sections of the trunk.

@@ -1,14 +1,14 @@
 //! `Mannequin`: a closed, smooth figure made to measure.
 //!
-//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](super::fit). What is
+//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](crate::body::measures::fit). What is
 //! not given follows from the size, the figure, the height and the bust. Cost: mostly one meshing,
 //! a tenth of a second.
 
-use super::fit::fit;
-use super::form::{CHILD, Form, MAN, WOMAN};
-use super::shape::{Size, chin, level};
-use super::sizes::{Table, known, measures, of_child};
 use super::wearer::Wearer;
+use crate::body::form::{CHILD, Form, MAN, WOMAN};
+use crate::body::measures::fit::fit;
+use crate::body::measures::sizes::{Table, known, measures, of_child};
+use crate::body::shape::{Size, chin, level};
 use toile_core::prelude::*;
 
 /// Heights between which a figure that is not stated is half a child's, metres.

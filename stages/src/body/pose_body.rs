@@ -2,7 +2,7 @@
 //!
 //! Method: [`Swing`]. Cost: some slices of the trunk, then linear in vertices.
 
-use super::swing::Swing;
+use crate::body::limbs::swing::Swing;
 use toile_core::prelude::*;
 
 /// Swings the arms of the body, such as from the pose in which a garment is sewn to one in which it

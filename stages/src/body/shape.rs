@@ -1,6 +1,6 @@
 //! What the parts of a figure are made from: its size, its aims, its levels.
 
-use super::form::{Form, HIP_ROW, WOMAN};
+use crate::body::form::{Form, HIP_ROW, WOMAN};
 use toile_core::artifact::Point3;
 
 /// What a figure is made to, metres and radians.
@@ -26,7 +26,7 @@ pub(crate) struct Size {
     pub arm_angle: f64,
 }
 
-/// The adult whose sections stand in [`super::form`].
+/// The adult whose sections stand in [`crate::body::form`].
 pub(crate) const ADULT: Size = Size {
     height: 1.72,
     bust: 0.88,

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stderr)]
 
 use super::*;
-use crate::body::topology::Topology;
+use crate::body::skin::topology::Topology;
 use proptest::prelude::*;
 use toile_core::prelude::*;
 
@@ -59,8 +59,8 @@ fn landmarks_lie_on_the_skin_and_joints_inside() {
         let reach = if joint { 0.05 } else { 0.016 };
         assert!(nearest(&body, &p) < reach || name.starts_with("armpit"), "{name} {p}");
         if joint {
-            let loops = slice::slice(&body.positions, &body.triangles, p.y);
-            let holds = |l: &slice::SliceLoop| {
+            let loops = crate::body::skin::slice::slice(&body.positions, &body.triangles, p.y);
+            let holds = |l: &crate::body::skin::slice::SliceLoop| {
                 l.bounds[0] < p.x && p.x < l.bounds[1] && l.bounds[2] < p.z && p.z < l.bounds[3]
             };
             assert!(loops.iter().any(holds), "{name} {p}");
@@ -234,7 +234,7 @@ fn forty_figures_have_their_measures_and_do_not_cross_themselves() {
         let topology = Topology::of(body.positions.len(), &body.triangles);
         assert!(topology.is_closed() && topology.components == 1 && topology.euler() == 2, "{k}");
         assert!(body.triangles.len() < 28_000, "{k}: {}", body.triangles.len());
-        assert_eq!(untangle::crossing(&body.positions, &body.triangles).len(), 0, "{k}");
+        assert_eq!(crate::body::skin::untangle::crossing(&body.positions, &body.triangles).len(), 0, "{k}");
     }
 }
 
@@ -264,8 +264,8 @@ proptest! {
         };
         for (name, girth) in wanted {
             let y = body.landmarks[&format!("{name}_front")].y;
-            let loops = slice::slice(&body.positions, &body.triangles, y);
-            let tape = slice::trunk(&loops, 0.0).unwrap().girth;
+            let loops = crate::body::skin::slice::slice(&body.positions, &body.triangles, y);
+            let tape = crate::body::skin::slice::trunk(&loops, 0.0).unwrap().girth;
             prop_assert!((tape / girth - 1.0).abs() < 0.005, "{name}: {tape} for {girth}");
             prop_assert!((body.measurements[name] / girth - 1.0).abs() < 0.005);
         }

@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use super::names::{check_name, plain_names};
-use super::report_data::number;
 use super::{Glb, Obj, Ply, Preview, Report};
 use crate::texture::{PhotoTexturer, fixture};
+use crate::write::reporting::data::number;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! A pipeline with one of its decisions turned round.
 
-use crate::source::{Source, path_of};
+use crate::knobs::source::{Source, path_of};
 use toile_core::StageError;
 use toile_core::decide::Turn;
 use toile_pipeline::decide::{Decided, decisions};

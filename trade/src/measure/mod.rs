@@ -14,7 +14,7 @@ mod ran;
 pub use ran::{Missed, Ran};
 
 use crate::apart::{Apart, Task};
-use crate::jitter;
+use crate::reference::jitter;
 use cpu_time::ProcessTime;
 use memory::{forget_peak, peak};
 use std::sync::Arc;

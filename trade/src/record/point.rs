@@ -3,7 +3,7 @@
 use super::Clock;
 use crate::errors::Errors;
 use crate::front::Cost;
-use crate::slot::Setting;
+use crate::knobs::slot::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::Duration;

@@ -1,7 +1,7 @@
 //! What settings are measured against: levels, what they show, and the spread of moved starts.
 
 use crate::errors::Millimetres;
-use crate::slot::Setting;
+use crate::knobs::slot::Setting;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

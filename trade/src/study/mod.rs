@@ -18,12 +18,12 @@ pub(crate) use budget::{Allowed, GROWTH};
 pub(crate) use setting::measured;
 
 use crate::digest::digest;
-use crate::knob::KnobSpec;
-use crate::ladder::{Found, RATIO, Search};
+use crate::knobs::knob::KnobSpec;
+use crate::knobs::slot::{Board, Knob, ReferenceValue, setting_words};
+use crate::knobs::source::Source;
 use crate::measure::Bench;
 use crate::record::{Clock, KnobRecord, Machine, Outcome, Point, SCHEME, Trade, front_of, today};
-use crate::slot::{Board, Knob, ReferenceValue, setting_words};
-use crate::source::Source;
+use crate::reference::ladder::{Found, RATIO, Search};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

@@ -2,10 +2,10 @@
 
 use super::Study;
 use crate::front::Cost;
-use crate::ladder::FINER;
+use crate::knobs::slot::{Knob, Setting};
 use crate::record::{Clock, Outcome, front_of};
-use crate::sample::{candidates, halton};
-use crate::slot::{Knob, Setting};
+use crate::reference::ladder::FINER;
+use crate::reference::sample::{candidates, halton};
 
 /// Space-filling settings a knob, before the front is refined.
 const START: usize = 4;

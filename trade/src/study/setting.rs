@@ -3,10 +3,10 @@
 use super::Study;
 use crate::digest::{digest, garment_digest};
 use crate::errors::{compare, ease};
+use crate::knobs::slot::{Setting, setting_words};
 use crate::measure::{Missed, Ran};
 use crate::page::pictures;
 use crate::record::{Measured, Outcome, Point};
-use crate::slot::{Setting, setting_words};
 use toile_core::StageError;
 use toile_core::artifact::Digester;
 use toile_pipeline::{Pipeline, write_files};

@@ -2,11 +2,11 @@
 
 use super::{Proof, Wish, overrides, picks, refusal};
 use crate::errors::compare;
-use crate::ladder::moved_start;
+use crate::knobs::slot::setting_words;
+use crate::knobs::source::Source;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::Trade;
-use crate::slot::setting_words;
-use crate::source::Source;
+use crate::reference::ladder::moved_start;
 use crate::study::measured;
 use std::path::Path;
 use std::sync::Arc;

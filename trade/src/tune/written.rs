@@ -2,8 +2,8 @@
 //! comment on top.
 
 use super::{Proof, Prover, Wish, overrides};
+use crate::knobs::slot::setting_words;
 use crate::record::{Clock, Machine, Point};
-use crate::slot::setting_words;
 use toile_core::StageError;
 use toile_pipeline::without_qualities;
 

@@ -37,7 +37,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use store::{Shelf, Store};
-use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
+use toile_core::artifact::{Artifact, Digest, Digester, Kind, store::stored};
 use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
 /// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with

@@ -1,7 +1,7 @@
 //! Where two values differ, field by field.
 
 use super::parse;
-use super::tree::{Bracket, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, Shape, Tree};
 use std::ops::Range;
 
 /// A part of a value that is otherwise in another.
@@ -40,7 +40,7 @@ fn walk(path: &str, a: At<'_>, b: At<'_>, found: &mut Vec<Differing>) {
         return;
     }
     let keys = |(text, tree): At<'_>| {
-        let key = |(i, e): (usize, &super::tree::Entry)| {
+        let key = |(i, e): (usize, &crate::load::syntax::tree::Entry)| {
             e.key.as_ref().map_or_else(|| i.to_string(), |k| written(text, k).trim_matches('"').to_owned())
         };
         tree.entries().iter().enumerate().map(key).collect::<Vec<String>>()

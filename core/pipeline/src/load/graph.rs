@@ -10,9 +10,9 @@
 //! Cost: stages times kinds times the number of live makers of one kind, which is one in all but
 //! faulty files.
 
-use super::draft::Draft;
 use super::fault::Fault;
 use super::words::{a, all_of, bridge, list, required};
+use crate::load::syntax::draft::Draft;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, RunLog};

@@ -4,7 +4,7 @@
 
 use super::fault::Faults;
 use super::parse;
-use super::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
 use serde_json::{Map, Value};
 use toile_core::param::ron_options;
 

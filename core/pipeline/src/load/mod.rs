@@ -20,8 +20,6 @@
 //! is said by the registry's sections.
 
 mod differing;
-mod draft;
-mod escapes;
 mod fault;
 mod graph;
 mod json;
@@ -30,16 +28,14 @@ mod old_name;
 mod order;
 mod origin;
 mod overrides;
-mod parser;
 mod pick;
 mod pipeline;
 mod place;
 mod plugins;
 mod qualities;
 mod read;
-mod repair;
 mod setting;
-mod tree;
+mod syntax;
 mod warnings;
 mod words;
 
@@ -145,9 +141,9 @@ pub fn load_with(
     let stem = || Path::new(file).file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
     let (name, plugins) = (read.name.unwrap_or_else(stem), read.plugins);
     let (qualities, quality) = (read.qualities, changes.words());
-    let made = draft::finished(drafts, feeds);
+    let made = syntax::draft::finished(drafts, feeds);
     // What feeds a stage is not known of a file with other faults than values.
-    let draft::Finished { nodes, own, alone } = if of_values { made } else { made.apart() };
+    let syntax::draft::Finished { nodes, own, alone } = if of_values { made } else { made.apart() };
     let written = (text.to_owned(), applied.origin);
     let (base, file_name) = (base.to_owned(), file.to_owned());
     let mut pipeline = Pipeline {
@@ -207,11 +203,11 @@ fn check(
     text: &str,
     (registry, lacks_plugin): (&Registry, bool),
     faults: &mut Vec<Fault>,
-) -> Option<(read::Read, Vec<draft::Draft>, Vec<Vec<Feed>>)> {
-    let (tree, mut of_syntax) = repair::read(text);
+) -> Option<(read::Read, Vec<syntax::draft::Draft>, Vec<Vec<Feed>>)> {
+    let (tree, mut of_syntax) = syntax::repair::read(text);
     faults.append(&mut of_syntax);
     let mut tree = tree?;
-    escapes::controls(text, &mut tree, faults);
+    syntax::escapes::controls(text, &mut tree, faults);
     read::doubled_keys(text, &tree, faults);
     let mut read = read::file(text, &tree, (registry, lacks_plugin), faults);
     let drafts = order::place(std::mem::take(&mut read.sections), std::mem::take(&mut read.stages));
@@ -228,13 +224,13 @@ fn check(
 pub fn fields_of(params: &str) -> BTreeMap<String, String> {
     let Ok(tree) = parse(params) else { return BTreeMap::new() };
     let text = |span: &Range<usize>| params.get(span.clone()).unwrap_or("").to_owned();
-    let field = |e: &tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));
+    let field = |e: &syntax::tree::Entry| Some((text(e.key.as_ref()?), text(&e.value.span)));
     tree.entries().iter().filter_map(field).collect()
 }
 
 /// Every text in a stage's parameters.
 pub(crate) fn texts_of(params: &str) -> Vec<String> {
-    fn walk(params: &str, tree: &tree::Tree, texts: &mut Vec<String>) {
+    fn walk(params: &str, tree: &syntax::tree::Tree, texts: &mut Vec<String>) {
         let text = params.get(tree.span.clone()).filter(|t| t.starts_with(['"', 'r']));
         texts.extend(text.and_then(|t| toile_core::param::ron_options().from_str::<String>(t).ok()));
         tree.entries().iter().for_each(|e| walk(params, &e.value, texts));
@@ -246,8 +242,8 @@ pub(crate) fn texts_of(params: &str) -> Vec<String> {
     texts
 }
 
-fn parse(text: &str) -> Result<tree::Tree, Fault> {
-    parser::parse(text).map_err(|e| repair::plain(&e))
+fn parse(text: &str) -> Result<syntax::tree::Tree, Fault> {
+    syntax::parser::parse(text).map_err(|e| syntax::repair::plain(&e))
 }
 
 fn refused_by_ron(text: &str) -> Option<Fault> {

@@ -4,8 +4,8 @@
 //! after the first stage with which all that it takes has been made. So `style` follows the edge
 //! detector, and `seams` follows `style`.
 
-use super::draft::Draft;
 use super::words::required;
+use crate::load::syntax::draft::Draft;
 use std::collections::BTreeSet;
 use toile_core::{Card, Kind};
 

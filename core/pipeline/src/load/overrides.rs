@@ -4,14 +4,14 @@
 //! text: `photos.front.file`, `body.height`, `stages.Canny2.low`, `stages.GridMesher`. What is
 //! there is replaced; a field that is not there is put in as the first of its group.
 
-use super::draft::Draft;
 use super::fault::Fault;
 use super::origin::{Origin, Region, Writer};
 use super::parse;
 use super::qualities::Quality;
 use super::read::{self, GENERIC};
 use super::setting::Override;
-use super::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::draft::Draft;
+use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::Registry;
 

@@ -4,8 +4,8 @@
 //! edges, after a mesher it smooths. The one is meant that takes what `from` names, that can be
 //! fed at all, and that reads from the nearest stage before it, in this order of weight.
 
-use super::draft::Draft;
 use super::words::required;
+use crate::load::syntax::draft::Draft;
 use toile_core::{Card, Kind};
 
 /// A stage that stands before, as far as it matters here.

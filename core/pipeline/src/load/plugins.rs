@@ -1,7 +1,7 @@
 //! The plugins that a pipeline names: `plugins: ["libsdf.so", (file: "libx.so", blake3: "...")]`.
 
 use super::fault::Fault;
-use super::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
 use crate::plugin::load_plugin;
 use std::ops::Range;
 use std::path::Path;
@@ -78,7 +78,7 @@ fn digest(text: String, at: &Tree) -> Result<String, Wrong> {
 /// The plugins that a pipeline's text asks for, as far as it can be understood; its faults are
 /// reported by the load itself.
 pub fn asked(text: &str) -> Vec<PluginUse> {
-    let Some(tree) = super::repair::read(text).0 else { return Vec::new() };
+    let Some(tree) = crate::load::syntax::repair::read(text).0 else { return Vec::new() };
     let named =
         tree.entries().iter().find(|e| e.key.as_ref().and_then(|k| text.get(k.clone())) == Some("plugins"));
     named.map(|e| read(text, &e.value, &mut Vec::new())).unwrap_or_default()

@@ -1,11 +1,11 @@
 //! Fields, sections and stages of a pipeline's syntax tree.
 
-use super::draft::{Draft, name_all};
 use super::fault::Fault;
 use super::pick::{Before, pick};
-use super::tree::{Bracket, Entry, Shape, Tree};
 use super::words::is_table;
 use super::{MAX_FAULTS, MAX_STAGES, PluginUse, Quality, old_name, plugins, qualities};
+use crate::load::syntax::draft::{Draft, name_all};
+use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 use toile_core::param::ron_options;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use toile_core::artifact::stored::{Data, Owner, Record, from_record};
+use toile_core::artifact::store::stored::{Data, Owner, Record, from_record};
 use toile_core::artifact::{Artifact, ArtifactType, Collider};
 use toile_core::plugin::abi::{self, Text};
 use toile_core::plugin::collide;

@@ -4,7 +4,7 @@
 use super::steps::{Ran, Run, Step};
 use super::value::Held;
 use crate::cache::Fed;
-use toile_core::artifact::{Digest, Digester, RunLog, StageRecord, stored};
+use toile_core::artifact::{Digest, Digester, RunLog, StageRecord, store::stored};
 use toile_core::{Node, PortValue};
 
 impl Run<'_> {

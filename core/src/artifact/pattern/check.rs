@@ -2,8 +2,8 @@
 //! edges that there are.
 
 use super::super::SeamKind;
-use super::super::sound::{Sound, ensure, finite, finite_figure};
 use super::{EdgeCurve, Pattern, PatternLoop, PatternSeam, Piece, Pose};
+use crate::artifact::store::sound::{Sound, ensure, finite, finite_figure};
 use std::collections::BTreeSet;
 
 /// An arc of a greater bulge is a whole circle but for a few thousandths of a degree.

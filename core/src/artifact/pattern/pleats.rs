@@ -7,9 +7,9 @@
 //! Limits: where two pleats lie so close that one covers the other, or one reaches beyond the edge,
 //! its layers are sewn to each other and not to the edge.
 
-use super::super::seam_kind::PleatFold;
 use super::super::{EdgeRef, Point2, SeamKind};
 use super::{EdgeCurve, EdgePath, EdgeUse, Notch, Pattern, PatternSeam, Piece, PieceEdge};
+use crate::artifact::sewing::seam_kind::PleatFold;
 
 /// A line ends on an edge that is this near to its end, metres.
 const NEAR: f64 = 3e-3;

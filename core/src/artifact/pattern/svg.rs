@@ -1,9 +1,9 @@
 //! A pattern as a drawing: pieces side by side, millimetres, every edge named and in the colour of
 //! its seam, an arrow in the direction in which it runs.
 
-use super::super::arrow::arrow;
 use super::super::{Point2, polygon_area};
 use super::{Pattern, Piece};
+use crate::artifact::sewing::arrow::arrow;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! `Fitting`: a mannequin that the photographed garment fits.
 //!
-//! Method: the block that is cut is fitted to the outline ([`super::fit`]) and measured as a tailor
+//! Method: the block that is cut is fitted to the outline ([`crate::style::block::template::fit`]) and measured as a tailor
 //! measures a garment that lies flat. Of the sizes of a table, from a child of 80 cm to an adult,
 //! the one is taken whose girths, with the usual ease, and whose height, with the usual length of
 //! such a garment, lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block,
@@ -8,11 +8,11 @@
 //! little, so that a short garment with few girths may fit several sizes; the body is a woman's or
 //! a child's.
 
-use super::complete::Complete;
-use super::fit::Fit;
-use super::form::Form;
 use super::{Block, BlockStyle, Fitted, Front, Sides, Waist, refusal};
 use crate::body::Mannequin;
+use crate::style::block::template::complete::Complete;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
 use toile_core::param::ron_options;
 use toile_core::prelude::*;
 use toile_core::{Node, StageMeta};
@@ -240,8 +240,9 @@ impl Tape {
     fn of(form: &Form, fit: &Fit) -> Self {
         let at = |name: &str| form.edges.iter().position(|e| e.name == name);
         let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
-        let mean =
-            |of: &dyn Fn(&[super::bow::Bow]) -> f64| 0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>();
+        let mean = |of: &dyn Fn(&[crate::style::block::template::bow::Bow]) -> f64| {
+            0.5 * fit.sides.iter().map(|s| of(s)).sum::<f64>()
+        };
         let high = mean(&|s| s[s.len() - 1].a.y);
         let low = mean(&|s| s[0].a.y);
         let chest = fit.chest(form);
@@ -261,7 +262,9 @@ impl Tape {
             _ => None,
         };
         let is_long = form.underarm().is_some_and(|k| form.edges[k].chord[0] > 0.4);
-        let along = |s: &[super::bow::Bow], k: usize| s[k].length() + s[k + 1].length() + s[k + 1].b.x;
+        let along = |s: &[crate::style::block::template::bow::Bow], k: usize| {
+            s[k].length() + s[k + 1].length() + s[k + 1].b.x
+        };
         let sleeve = at("top").filter(|_| is_long).map(|k| mean(&|s| along(s, k)));
         Tape { girths: [chest, waist, hip], length, sleeve }
     }
@@ -322,7 +325,7 @@ impl Tape {
 /// The angle from the vertical at which arms leave cuffs of grown-on sleeves: square to them;
 /// degrees.
 fn out(fit: &Fit, cuff: usize) -> f64 {
-    let angle = |s: &Vec<super::bow::Bow>| {
+    let angle = |s: &Vec<crate::style::block::template::bow::Bow>| {
         let along = s[cuff].b - s[cuff].a;
         along.y.atan2(along.x).to_degrees()
     };
@@ -337,7 +340,7 @@ fn arms(form: &Form, fit: &Fit) -> f64 {
         return form.edges.iter().position(|e| e.name == "cuff").map_or(ARMS, |k| out(fit, k));
     };
     let from_vertical = |way: Vector2| way.x.atan2(-way.y).to_degrees();
-    let angle = |s: &Vec<super::bow::Bow>| {
+    let angle = |s: &Vec<crate::style::block::template::bow::Bow>| {
         let (armpit, shoulder) = (s[k].a, s[k + 2].b);
         let cuff = nalgebra::center(&s[k + 1].a, &s[k + 1].b);
         let worn = Point2::new(armpit.x * (1.0 - CLOSED), armpit.y);

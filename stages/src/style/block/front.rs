@@ -1,8 +1,8 @@
 //! A front in one piece, or in two halves that are closed along the middle.
 
-use super::curve::Curve;
-use super::flat::{Flat, Run, Side, straight};
-use super::form::Form;
+use crate::style::block::template::curve::Curve;
+use crate::style::block::template::flat::{Flat, Run, Side, straight};
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// How the front is cut.

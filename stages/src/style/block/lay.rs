@@ -1,11 +1,11 @@
 //! From the fits of both layers to a pattern, and where its pieces lie in the photos.
 
-use super::fit::Fit;
-use super::flat::{Flat, Layer};
-use super::form::Form;
-use super::halves::Upright;
 use super::pieces::{self, Making};
 use super::{seams, stand};
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::flat::{Flat, Layer};
+use crate::style::block::template::form::Form;
+use crate::style::block::template::halves::Upright;
 use nalgebra::Rotation2;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -7,11 +7,11 @@
 //! border that stands far above the shoulders is a hood and no neckline. Cost: two pictures of 200
 //! pixels, a millisecond. Limits: what lies within the template (a pocket, a belt) is not seen.
 
-use super::fit::Fit;
-use super::form::Form;
-use super::halves::Upright;
 use super::refusal::LAY;
 use crate::binarise::{Regions, open};
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
+use crate::style::block::template::halves::Upright;
 use image::{GrayImage, Luma};
 use imageproc::drawing::draw_polygon_mut;
 use imageproc::point::Point;

@@ -7,46 +7,36 @@
 //! [`front`] cuts a front in halves, [`seams`] sews it, [`stand`] puts it around the body, if one
 //! can wear it ([`wearable`]); [`fitting`] finds a body that can. Cost: a tenth of a second a form.
 
-mod alike;
-mod bow;
-mod complete;
-mod curve;
-mod fit;
 mod fitting;
-mod flat;
-mod form;
 mod front;
-mod halves;
 mod lay;
 mod leftover;
-mod marks;
 mod pieces;
 mod pleat;
 mod refusal;
 mod seams;
-mod segment;
-mod stance;
 mod stand;
 mod tell;
+mod template;
 #[cfg(test)]
 mod tests;
 mod waist;
 mod wearable;
 
-pub use alike::Sides;
-pub use complete::Complete;
-use fit::{Fit, Halves, fit};
 pub use fitting::Fitting;
-use flat::Layer;
-use form::Form;
 use front::Front;
-use halves::Upright;
 use lay::{Fitted, mirrored, pattern};
 use leftover::Leftover;
-use marks::missing;
 use pieces::Making;
 use rayon::prelude::*;
 use tell::at_95;
+pub use template::alike::Sides;
+pub use template::complete::Complete;
+use template::fit::{Fit, Halves, fit};
+use template::flat::Layer;
+use template::form::Form;
+use template::halves::Upright;
+use template::marks::missing;
 use toile_core::prelude::*;
 pub use waist::Waist;
 
@@ -92,16 +82,16 @@ pub enum BlockStyle {
 impl BlockStyle {
     /// All that can be named, with their forms.
     const NAMED: [(BlockStyle, &'static str, &'static Form); 10] = [
-        (BlockStyle::Vest, "Vest", &form::VEST),
-        (BlockStyle::TShirt, "TShirt", &form::TEE),
-        (BlockStyle::LongSleeve, "LongSleeve", &form::LONG),
-        (BlockStyle::Dress, "Dress", &form::DRESS),
-        (BlockStyle::SleevedDress, "SleevedDress", &form::SLEEVED),
-        (BlockStyle::GrownSleeve, "GrownSleeve", &form::GROWN),
-        (BlockStyle::Skirt, "Skirt", &form::SKIRT),
-        (BlockStyle::Trousers, "Trousers", &form::TROUSERS),
-        (BlockStyle::Onepiece, "Onepiece", &form::ONEPIECE),
-        (BlockStyle::SleevelessOnepiece, "SleevelessOnepiece", &form::ROMPER),
+        (BlockStyle::Vest, "Vest", &template::form::VEST),
+        (BlockStyle::TShirt, "TShirt", &template::form::TEE),
+        (BlockStyle::LongSleeve, "LongSleeve", &template::form::LONG),
+        (BlockStyle::Dress, "Dress", &template::form::DRESS),
+        (BlockStyle::SleevedDress, "SleevedDress", &template::form::SLEEVED),
+        (BlockStyle::GrownSleeve, "GrownSleeve", &template::form::GROWN),
+        (BlockStyle::Skirt, "Skirt", &template::form::SKIRT),
+        (BlockStyle::Trousers, "Trousers", &template::form::TROUSERS),
+        (BlockStyle::Onepiece, "Onepiece", &template::form::ONEPIECE),
+        (BlockStyle::SleevelessOnepiece, "SleevelessOnepiece", &template::form::ROMPER),
     ];
 
     /// Whether a kind of garment has this name.
@@ -214,12 +204,14 @@ impl Block {
         let found = self.best(panel, outline, photo, forms, cx)?;
         let (name, form, Fitted { upright, fit, .. }) = &found;
         let times = match upright.unseen.contains(&true) && photo.is_some_and(|p| p.garment_width.is_some()) {
-            true => complete::widened(fit, upright, outline),
+            true => template::complete::widened(fit, upright, outline),
             false => 1.0,
         };
         match times == 1.0 {
             true => Ok(found),
-            false => self.best(panel, &complete::scaled(outline, times), photo, vec![(*name, *form)], cx),
+            false => {
+                self.best(panel, &template::complete::scaled(outline, times), photo, vec![(*name, *form)], cx)
+            }
         }
     }
 
@@ -235,8 +227,8 @@ impl Block {
         let auto = forms.len() > 1;
         let mut upright = Upright::of(outline).ok_or_else(|| refusal::no_axis(panel))?;
         if self.complete == Complete::Mirror {
-            let photo = photo.ok_or_else(|| complete::no_frame(panel))?;
-            complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
+            let photo = photo.ok_or_else(|| template::complete::no_frame(panel))?;
+            template::complete::mark(&mut upright, outline, photo.pixels.dimensions(), panel)?;
         }
         cx.check()?;
         let share = if auto { self.stray * UNSAID } else { self.stray };
@@ -247,7 +239,7 @@ impl Block {
                 false => Ok(best),
             });
         let doubtful = match &found {
-            Ok((_, form, fit)) => alike::differ(fit, form, upright.size),
+            Ok((_, form, fit)) => template::alike::differ(fit, form, upright.size),
             Err(_) => true,
         };
         let one = || {
@@ -265,9 +257,9 @@ impl Block {
             None => (found?, upright),
         };
         let mut cut = fit.clone();
-        stance::stood(&mut cut, form);
+        template::stance::stood(&mut cut, form);
         if self.sides == Sides::Alike {
-            alike::alike(&mut cut, form, fit.astray(&upright, form));
+            template::alike::alike(&mut cut, form, fit.astray(&upright, form));
         }
         Ok((name, form, Fitted { upright, fit: cut, lying: fit, frame: outline.frame }))
     }

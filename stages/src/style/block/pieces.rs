@@ -8,12 +8,12 @@
 //! chest's half (Aldrich 2008). So do the points of a fork, which lie folded (`leg`). Limits: a
 //! raglan sleeve is cut as a set-in one.
 
-use super::curve::Curve;
-use super::fit::Fit;
-use super::flat::{Flat, Layer, PARTS, Run, Side};
-use super::form::Form;
 use super::front::{self, Front};
 use super::waist::{self, Waist};
+use crate::style::block::template::curve::Curve;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::flat::{Flat, Layer, PARTS, Run, Side};
+use crate::style::block::template::form::Form;
 use toile_core::artifact::BodyPart;
 use toile_core::prelude::*;
 
@@ -167,7 +167,7 @@ fn parted(upper: &[Curve], armpit: f64) -> [Vec<Curve>; 2] {
 }
 
 fn arched(a: Point2, b: Point2) -> Curve {
-    super::bow::Bow { a, b, bow: ARMHOLE }.into()
+    crate::style::block::template::bow::Bow { a, b, bow: ARMHOLE }.into()
 }
 
 /// The layer of a sleeve: underarm, cuff, top, cap. Its grain runs along it.

@@ -6,8 +6,8 @@
 //! piece as it lies: it is drawn apart over the pleats' cloth, as over gathers. Limit: a pattern in
 //! the photo is drawn apart as well.
 
-use super::curve::Curve;
-use super::flat::{Flat, Run, straight};
+use crate::style::block::template::curve::Curve;
+use crate::style::block::template::flat::{Flat, Run, straight};
 use toile_core::prelude::*;
 
 /// A pleat's seam begins so far below the waist, metres: its layers hang free of the edge.

@@ -1,8 +1,8 @@
 //! What is said where no template fits.
 
-use super::fit::Fit;
-use super::form::Form;
 use super::tell::at_95;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// What a photographer can do.

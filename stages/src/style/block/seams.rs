@@ -1,7 +1,7 @@
 //! What of a block is sewn to what.
 
-use super::flat::Flat;
-use super::form::Form;
+use crate::style::block::template::flat::Flat;
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// Edges that front and back pieces do not share a seam at: they stay open, or meet another piece.

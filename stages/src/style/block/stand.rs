@@ -1,7 +1,7 @@
 //! Where the pieces of a block stand around a body: as they lie, front before it and back behind
 //! it.
 
-use super::flat::{Flat, Layer};
+use crate::style::block::template::flat::{Flat, Layer};
 use nalgebra::Rotation2;
 use toile_core::prelude::*;
 

@@ -2,8 +2,8 @@
 //! garment lies.
 
 use super::Sides;
-use super::fit::Fit;
-use super::form::Form;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// What is more than this share of the garment's size is told.

@@ -1,8 +1,8 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 
-use super::bow::Bow;
-use super::curve::Curve;
 use super::*;
+use crate::style::block::template::bow::Bow;
+use crate::style::block::template::curve::Curve;
 use nalgebra::Rotation2;
 use proptest::prelude::*;
 

@@ -5,10 +5,10 @@
 //! as wide as the photo shows it, or as the gathered edge, if that is wider. The photo is laid over
 //! the skirt as it lies, so that its gathers are drawn apart.
 
-use super::curve::Curve;
-use super::flat::{Flat, Layer, Run, Side, straight};
-use super::form::Form;
 use super::pleat::{Fold, Pleats};
+use crate::style::block::template::curve::Curve;
+use crate::style::block::template::flat::{Flat, Layer, Run, Side, straight};
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// How a skirt is held at the waist.

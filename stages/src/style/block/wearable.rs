@@ -3,10 +3,10 @@
 //! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
 //! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
 
-use super::fit::Fit;
 use super::fitting::KEPT;
-use super::form::Form;
 use crate::body::convex_hull;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
 use toile_core::prelude::*;
 
 /// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).

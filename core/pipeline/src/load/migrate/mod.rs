@@ -19,11 +19,11 @@ mod rewrite;
 #[cfg(test)]
 mod tests;
 
-use super::draft::Draft;
 use super::fault::Faults;
 use super::read::Read;
-use super::tree::{Entry, Tree};
 use super::{parse, read};
+use crate::load::syntax::draft::Draft;
+use crate::load::syntax::tree::{Entry, Tree};
 use rewrite::Migrator;
 use std::ops::Range;
 use toile_core::Registry;

@@ -5,14 +5,14 @@
 //! Limit: a path into the parts of a value follows the parameter's new name, but what it points at
 //! is left.
 
-use super::super::draft::Draft;
 use super::super::qualities::{Quality, named};
 use super::super::read::Read;
-use super::super::tree::{Entry, Tree};
 use super::super::{Override, parse};
 use super::is_read_from;
 use super::rewrite::{Edit, Followed, Migrator};
 use crate::load::old_name::renamed;
+use crate::load::syntax::draft::Draft;
+use crate::load::syntax::tree::{Entry, Tree};
 use std::ops::Range;
 use toile_core::param::ron_text;
 

@@ -3,7 +3,7 @@
 use super::Migrated;
 use crate::load::fault::{Fault, Lines};
 use crate::load::old_name::renamed;
-use crate::load::tree::{Entry, Shape, Tree};
+use crate::load::syntax::tree::{Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::{Change, Registry};
 

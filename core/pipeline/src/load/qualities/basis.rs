@@ -20,7 +20,7 @@ use crate::cache::file_hash;
 use crate::cost::Size;
 use crate::load::Pipeline;
 use crate::load::parse;
-use crate::load::tree::Tree;
+use crate::load::syntax::tree::Tree;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use super::{Basis, MAX_QUALITIES, MAX_SETTINGS, Quality};
 use crate::load::fault::Fault;
-use crate::load::tree::{Bracket, Entry, Shape, Tree};
+use crate::load::syntax::tree::{Bracket, Entry, Shape, Tree};
 use crate::load::{Override, parse};
 use std::ops::Range;
 use toile_core::Length;

@@ -4,7 +4,7 @@ use super::read::field;
 use super::{Quality, named};
 use crate::load::fault::Fault;
 use crate::load::parse;
-use crate::load::tree::{Entry, Shape, Tree};
+use crate::load::syntax::tree::{Entry, Shape, Tree};
 use std::ops::Range;
 use toile_core::param::ron_text;
 

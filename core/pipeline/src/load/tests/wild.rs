@@ -143,7 +143,7 @@ proptest! {
         let text: String = text.chars().filter(|c| c.is_ascii() || "é\u{1f9f5}".contains(*c)).collect();
         let accepted = toile_core::param::ron_options().from_str::<serde::de::IgnoredAny>(&text).is_ok();
         if accepted {
-            prop_assert!(super::super::parser::parse(&text).is_ok(), "{text}");
+            prop_assert!(crate::load::syntax::parser::parse(&text).is_ok(), "{text}");
         }
     }
 }

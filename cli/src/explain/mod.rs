@@ -1,0 +1,5 @@
+//! `toile explain`.
+
+pub(crate) mod command;
+pub(crate) mod json;
+pub(crate) mod words;

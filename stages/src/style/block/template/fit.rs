@@ -1,0 +1,424 @@
+//! A form's template fitted to a whole outline by least squares.
+//!
+//! Method: the template is symmetric about an axis whose tilt and place are sought with it, as far
+//! as the outline lets it: corners of both sides are believed to mirror each other to 2 % of the
+//! size, but those of sleeves and legs, which lie as they fall. It starts from the cuts of both
+//! halves ([`crate::style::block::template::segment`]), or, where they differ, from each alone. Then every point of the
+//! outline is drawn to the nearest place of the template, and places of the template to the
+//! outline, along the distance between them (point to line: Chen and Medioni 1992), by damped
+//! Gauss-Newton steps. Far-off points count less (Geman and McClure 1985), so that a fold or a rag
+//! moves no edge. Cost: some milliseconds a form. Limits: a fold along the whole of a side is taken
+//! for the side.
+
+use crate::style::block::template::bow::Bow;
+use crate::style::block::template::form::{EdgeForm, Form};
+use crate::style::block::template::halves::Upright;
+use crate::style::block::template::segment::{Cut, cut};
+use nalgebra::{DMatrix, DVector, Rotation2};
+use toile_core::artifact::{Point2, Vector2};
+
+/// Spread of an outline about its template, as a share of the garment's size.
+const SPREAD: f64 = 0.006;
+/// Distances, in spreads, beyond which points count less and less: at first, and at last.
+const FAR: [f64; 2] = [5.0, 2.0];
+/// Steps.
+const STEPS: usize = 30;
+/// Weight of beliefs about bows beside a point of the outline.
+const BELIEF: f64 = 0.3;
+/// How far corners of both sides differ, as a share of the size; and bows.
+const ALIKE: [f64; 2] = [0.02, 0.05];
+/// Places on each edge that are drawn to the outline, and their weight.
+const PLACES: usize = 8;
+const PULL: f64 = 0.5;
+/// Squared spreads that a point adds to the score at most.
+const MOST: f64 = 16.0;
+/// What the sum of squares of the cut adds to the score, for each of its points; and what every
+/// corner adds, since more corners fit better.
+const UNUSUAL: f64 = 0.5;
+const CORNER: f64 = 0.1;
+/// What a half that reaches farther from the axis by the garment's size is worth.
+const REACH: f64 = 3.0;
+/// A fit of this score is taken from its first start.
+const WELL: f64 = 1.0;
+/// A step that moves every corner by less than this share of the size is the last, once far points
+/// have their last weight.
+const LAST: f64 = 2e-5;
+/// Share of the steps in which far points come to their last weight.
+const SETTLES: f64 = 0.4;
+/// Step of a difference quotient.
+const DIFFERENCE: f64 = 1e-6;
+
+/// Which halves of the outline a template is held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Halves {
+    /// Both; sleeves and legs lie as they fall.
+    Both,
+    /// Both, as each other's mirror image, and judged by the half that it fits better: the other
+    /// may be folded, or hidden in part.
+    Better,
+}
+
+/// A fitted template.
+#[derive(Debug, Clone)]
+pub(crate) struct Fit {
+    /// The edges of the half at positive u, and of the other in a mirror; each in the frame of the
+    /// fitted axis.
+    pub sides: [Vec<Bow>; 2],
+    /// How far the axis is turned, counter-clockwise, radians, and where it stands, from the
+    /// upright outline's.
+    pub turn: f64,
+    pub shift: f64,
+    /// Distances of the outline's points from the template, by edges, metres.
+    pub misses: Vec<Vec<f64>>,
+    /// What the template leaves over: mean squared spreads of points and places, and how unusual it
+    /// is.
+    pub score: f64,
+    /// The half that it is judged by; none where both count.
+    pub judged: Option<usize>,
+}
+
+impl Fit {
+    /// With what its edges cost: how unusual they are, and how many.
+    fn priced(self, unusual: f64, form: &Form) -> Fit {
+        Fit { score: self.score + UNUSUAL * unusual + CORNER * form.edges.len() as f64, ..self }
+    }
+
+    /// Around the garment where its hip is widest, as it lies; of trousers above the fork, since
+    /// legs may flare. `None` for what has no hip.
+    pub(crate) fn hip(&self, form: &Form) -> Option<f64> {
+        let edges = || form.edges.iter().enumerate().filter(|(_, e)| e.name == "hip" || e.name == "outseam");
+        edges().next()?;
+        let widest = |s: &Vec<Bow>| {
+            let points = edges().flat_map(|(k, _)| s[k].points());
+            points.filter(|p| !form.has_legs() || p.y >= s[0].a.y).map(|p| p.x).fold(0.0, f64::max)
+        };
+        Some(2.0 * self.sides.iter().map(widest).sum::<f64>())
+    }
+
+    /// How far the outline strays from the sleeves or legs of each side: the mean distance of their
+    /// points, metres.
+    pub(crate) fn astray(&self, upright: &Upright, form: &Form) -> [f64; 2] {
+        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let mut sums = [(0.0, 0.0); 2];
+        for p in &upright.points {
+            let (side, edge, _, off) = nearest(&m, *p);
+            if own(form.edges, edge) {
+                sums[side].0 += off.norm();
+                sums[side].1 += 1.0;
+            }
+        }
+        sums.map(|(sum, count)| sum / f64::max(count, 1.0))
+    }
+
+    /// The share of the outline's points on a side that lie nearer to the template than `reach`,
+    /// metres.
+    pub(crate) fn near(&self, upright: &Upright, side: usize, reach: f64) -> f64 {
+        let m = Model { sides: self.sides.clone(), turn: self.turn, shift: self.shift };
+        let (mut near, mut all) = (0.0, 0.0);
+        for off in upright.points.iter().map(|p| nearest(&m, *p)).filter(|n| n.0 == side).map(|n| n.3.norm())
+        {
+            all += 1.0;
+            near += if off < reach { 1.0 } else { 0.0 };
+        }
+        near / f64::max(all, 1.0)
+    }
+
+    /// Around the garment at the armpits, as it lies: where sleeves are cut in one with it, where
+    /// its sides are narrowest. `None` for what hangs from the waist.
+    pub(crate) fn chest(&self, form: &Form) -> Option<f64> {
+        let sides = || self.sides.iter();
+        if let Some(k) = form.armpit() {
+            return Some(2.0 * sides().map(|s| s[k].a.x).sum::<f64>());
+        }
+        let k = form.edges.iter().position(|e| e.name == "cuff")?;
+        let narrowest = |s: &Vec<Bow>| s[k - 1].points().iter().map(|p| p.x).fold(f64::INFINITY, f64::min);
+        Some(2.0 * sides().map(narrowest).sum::<f64>())
+    }
+}
+
+/// The best fit of a form; `None` where its edges cannot be laid over the outline at all.
+pub(crate) fn fit(upright: &Upright, form: &Form, halves: Halves) -> Option<Fit> {
+    let cuts = [0, 1].map(|k| cut(&upright.halves[k], form, upright.size));
+    let points = upright.halves[0].len() as f64;
+    if halves == Halves::Better {
+        return better(upright, form, &cuts, points);
+    }
+    let [Some(a), Some(b)] = cuts else { return None };
+    let unusual = (a.cost + b.cost) / (2.0 * points);
+    let mut best = Problem::new(upright, form, [&a, &b], None).solve();
+    // Halves that differ: what only one of them shows is looked for from that one alone.
+    if best.score > WELL || upright.unseen.contains(&true) {
+        for alone in [&a, &b] {
+            let other = Problem::new(upright, form, [alone, alone], None).solve();
+            best = if other.score < best.score { other } else { best };
+        }
+    }
+    Some(best.priced(unusual, form))
+}
+
+/// The best fit that is judged by one half, from the cut of that half.
+fn better(upright: &Upright, form: &Form, cuts: &[Option<Cut>; 2], points: f64) -> Option<Fit> {
+    let solve = |(side, cut): (usize, &Option<Cut>)| {
+        let cut = cut.as_ref()?;
+        let mut fit = Problem::new(upright, form, [cut, cut], Some(side)).solve();
+        fit.sides[1 - side] = fit.sides[side].clone();
+        Some(fit.priced(cut.cost / points, form))
+    };
+    let fits = cuts.iter().enumerate().filter_map(solve);
+    // What is folded or tucked away makes a half narrower.
+    let reach = |fit: &Fit| {
+        let half = upright.halves[fit.judged.unwrap_or(0)].iter();
+        half.map(|p| p.x).fold(0.0, f64::max) / upright.size
+    };
+    let price = |fit: &Fit| fit.score - REACH * reach(fit);
+    fits.min_by(|a, b| price(a).total_cmp(&price(b)))
+}
+
+/// Where a point of the outline, or a place of the template, is drawn to.
+struct Pair {
+    side: usize,
+    edge: usize,
+    t: f64,
+    /// The point of the outline.
+    point: Point2,
+    /// The direction in which they are compared, of length 1.
+    along: Vector2,
+    weight: f64,
+}
+
+struct Problem<'a> {
+    upright: &'a Upright,
+    form: &'a Form,
+    spread: f64,
+    at: DVector<f64>,
+    judged: Option<usize>,
+}
+
+/// The template of a vector of parameters.
+struct Model {
+    sides: [Vec<Bow>; 2],
+    turn: f64,
+    shift: f64,
+}
+
+impl Model {
+    /// A point of the upright outline in the frame of the axis, seen from a side.
+    fn seen(&self, p: Point2, side: usize) -> Point2 {
+        let q = Rotation2::new(-self.turn) * p;
+        Point2::new(if side == 0 { q.x - self.shift } else { self.shift - q.x }, q.y)
+    }
+}
+
+impl<'a> Problem<'a> {
+    fn new(upright: &'a Upright, form: &'a Form, start: [&Cut; 2], judged: Option<usize>) -> Self {
+        let at = packed(form, [&start[0].edges, &start[1].edges]);
+        Problem { upright, form, spread: SPREAD * upright.size, at, judged }
+    }
+
+    fn solve(mut self) -> Fit {
+        let mut damping = 1e-3;
+        for step in 0..STEPS {
+            let share = (step as f64 / (STEPS as f64 * SETTLES)).min(1.0);
+            let far = FAR[0] + (FAR[1] - FAR[0]) * share;
+            let pairs = self.pairs(&model(self.form, &self.at), far);
+            let before = self.rest(&self.at, &pairs);
+            let slopes = self.slopes(&pairs, &before);
+            let (normal, right) = (slopes.tr_mul(&slopes), slopes.tr_mul(&before));
+            let mut moved = 0.0;
+            for _ in 0..6 {
+                let mut damped = normal.clone();
+                (0..damped.nrows()).for_each(|k| damped[(k, k)] += damping * (1e-9 + normal[(k, k)]));
+                let Some(way) = damped.cholesky().map(|c| c.solve(&right)) else { break };
+                let next = &self.at - &way;
+                if self.rest(&next, &pairs).norm_squared() <= before.norm_squared() {
+                    self.at = next;
+                    moved = way.amax();
+                    damping = (damping * 0.3).max(1e-9);
+                    break;
+                }
+                damping = (damping * 10.0).min(1e3);
+            }
+            if share >= 1.0 && moved < LAST * self.upright.size {
+                break;
+            }
+        }
+        self.found()
+    }
+
+    /// What is drawn to what; far points count less.
+    fn pairs(&self, m: &Model, far: f64) -> Vec<Pair> {
+        let trust = |r: f64| 1.0 / (1.0 + (r / (far * self.spread)).powi(2));
+        let mut pairs = Vec::new();
+        for (p, unseen) in self.upright.points.iter().zip(&self.upright.unseen) {
+            let (side, edge, t, off) = nearest(m, *p);
+            let on = &m.sides[side][edge];
+            let along = unit(off, on.direction(t));
+            let weight = if *unseen { 0.0 } else { trust(off.norm()) };
+            pairs.push(Pair { side, edge, t, point: *p, along, weight });
+        }
+        for (side, edges) in m.sides.iter().enumerate() {
+            let outline: Vec<Point2> = self.upright.points.iter().map(|p| m.seen(*p, side)).collect();
+            for (edge, bow) in edges.iter().enumerate() {
+                for k in 0..=PLACES {
+                    let t = k as f64 / PLACES as f64;
+                    let place = bow.at(t);
+                    let (i, share) = nearest_of(&outline, place);
+                    let on = |q: &[Point2]| q[i] + (q[(i + 1) % q.len()] - q[i]) * share;
+                    let off = on(&outline) - place;
+                    let (point, along) = (on(&self.upright.points), unit(off, bow.direction(t)));
+                    let unseen = self.unseen(i);
+                    let weight = if unseen { 0.0 } else { PULL * trust(off.norm()) };
+                    pairs.push(Pair { side, edge, t, point, along, weight });
+                }
+            }
+        }
+        pairs
+    }
+
+    /// Whether a segment of the outline lies where the frame cut the garment off.
+    fn unseen(&self, i: usize) -> bool {
+        let all = &self.upright.unseen;
+        all[i] || all[(i + 1) % all.len()]
+    }
+
+    /// What is left over, weighted.
+    fn rest(&self, at: &DVector<f64>, pairs: &[Pair]) -> DVector<f64> {
+        let m = model(self.form, at);
+        let of = |p: &Pair| {
+            let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
+            p.weight * off.dot(&p.along) / self.spread
+        };
+        let mut all: Vec<f64> = pairs.iter().map(of).collect();
+        // What one half does not show is taken from the other, sleeves and legs too.
+        let completes = self.judged.is_some() || self.upright.unseen.contains(&true);
+        for (k, e) in self.form.edges.iter().enumerate() {
+            let [one, other] = [0, 1].map(|s: usize| m.sides[s][k]);
+            for bow in [one.bow, other.bow] {
+                all.extend(bow.map(|b| BELIEF * (b - e.bow[0]) / e.bow[1]));
+            }
+            let corner = if e.own_end && !completes { Vector2::zeros() } else { one.b - other.b };
+            let bows = if own(self.form.edges, k) && !completes {
+                [0.0; 2]
+            } else {
+                [0, 1].map(|i| one.bow[i] - other.bow[i])
+            };
+            all.extend(corner.iter().map(|c| c / (ALIKE[0] * self.upright.size)));
+            all.extend(bows.map(|b| b / ALIKE[1]));
+        }
+        DVector::from_vec(all)
+    }
+
+    fn slopes(&self, pairs: &[Pair], before: &DVector<f64>) -> DMatrix<f64> {
+        let mut slopes = DMatrix::zeros(before.len(), self.at.len());
+        for k in 0..self.at.len() {
+            let mut moved = self.at.clone();
+            moved[k] += DIFFERENCE;
+            slopes.set_column(k, &((self.rest(&moved, pairs) - before) / DIFFERENCE));
+        }
+        slopes
+    }
+
+    fn found(self) -> Fit {
+        let m = model(self.form, &self.at);
+        let mut misses = vec![Vec::new(); self.form.edges.len()];
+        let mut sum = 0.0;
+        let mut count = 0.0;
+        let counts = |side: usize| self.judged.is_none_or(|only| only == side);
+        for (p, _) in self.upright.points.iter().zip(&self.upright.unseen).filter(|(_, unseen)| !**unseen) {
+            let (side, edge, _, off) = nearest(&m, *p);
+            if counts(side) {
+                misses[edge].push(off.norm());
+                sum += (off.norm() / self.spread).powi(2).min(MOST);
+                count += 1.0;
+            }
+        }
+        let count = f64::max(count, 1.0);
+        let places = self.pairs(&m, FAR[1]).into_iter().skip(self.upright.points.len());
+        let (mut pull, mut n) = (0.0, 0.0);
+        for p in places.filter(|p| p.weight > 0.0 && counts(p.side)) {
+            let off = m.seen(p.point, p.side) - m.sides[p.side][p.edge].at(p.t);
+            pull += (off.norm() / self.spread).powi(2).min(MOST);
+            n += 1.0;
+        }
+        let Model { sides, turn, shift } = m;
+        let score = sum / count + pull / f64::max(n, 1.0);
+        Fit { sides, turn, shift, misses, score, judged: self.judged }
+    }
+}
+
+/// The direction of a distance, or the left of a curve where there is none.
+fn unit(off: Vector2, direction: Vector2) -> Vector2 {
+    let left = Vector2::new(-direction.y, direction.x);
+    off.try_normalize(1e-7).or_else(|| left.try_normalize(1e-12)).unwrap_or_else(Vector2::y)
+}
+
+/// Side, edge and parameter of the template's place nearest to a point, and the way from it to the
+/// point.
+fn nearest(m: &Model, p: Point2) -> (usize, usize, f64, Vector2) {
+    let mut best = (0, 0, 0.0, Vector2::repeat(f64::INFINITY));
+    for (side, edges) in m.sides.iter().enumerate() {
+        let q = m.seen(p, side);
+        for (k, bow) in edges.iter().enumerate() {
+            let t = bow.nearest(q);
+            let off = q - bow.at(t);
+            if off.norm_squared() < best.3.norm_squared() {
+                best = (side, k, t, off);
+            }
+        }
+    }
+    best
+}
+
+/// The segment of a closed loop that is nearest to a point, and where on it.
+fn nearest_of(points: &[Point2], p: Point2) -> (usize, f64) {
+    let n = points.len();
+    let mut best = (0, 0.0, f64::INFINITY);
+    for i in 0..n {
+        let (a, d) = (points[i], points[(i + 1) % n] - points[i]);
+        let t = ((p - a).dot(&d) / d.norm_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let far = (a + d * t - p).norm_squared();
+        if far < best.2 {
+            best = (i, t, far);
+        }
+    }
+    (best.0, best.1)
+}
+
+/// Whether an edge runs on each side by itself.
+fn own(edges: &[EdgeForm], k: usize) -> bool {
+    edges[k].own_end || (k > 0 && edges[k - 1].own_end)
+}
+
+/// Parameters of a template: the axis, the heights of its ends on the axis, and corners and bows of
+/// each side.
+fn packed(form: &Form, sides: [&[Bow]; 2]) -> DVector<f64> {
+    let last = form.edges.len() - 1;
+    let mean = |a: f64, b: f64| 0.5 * (a + b);
+    let low = mean(sides[0][0].a.y, sides[1][0].a.y);
+    let mut at = vec![0.0, 0.0, low, mean(sides[0][last].b.y, sides[1][last].b.y)];
+    for side in sides {
+        for (k, bow) in side.iter().enumerate() {
+            at.extend(bow.bow);
+            if k < last {
+                at.extend([bow.b.x, bow.b.y]);
+            }
+        }
+    }
+    DVector::from_vec(at)
+}
+
+fn model(form: &Form, at: &DVector<f64>) -> Model {
+    let last = form.edges.len() - 1;
+    let mut numbers = at.iter().skip(4).copied();
+    let mut two = || [0, 1].map(|_| numbers.next().unwrap_or(0.0));
+    let sides = [0, 1].map(|_| {
+        let mut from = Point2::new(0.0, at[2]);
+        let edge = |k: usize| {
+            let bow = two();
+            let end = if k < last { Point2::from(two()) } else { Point2::new(0.0, at[3]) };
+            Bow { a: std::mem::replace(&mut from, end), b: end, bow }
+        };
+        (0..=last).map(edge).collect()
+    });
+    Model { sides, turn: at[0], shift: at[1] }
+}

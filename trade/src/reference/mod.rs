@@ -1,0 +1,7 @@
+//! The reference that settings are held against, and how well it is known.
+
+pub mod floor;
+pub mod jitter;
+pub mod ladder;
+pub mod richardson;
+pub mod sample;
