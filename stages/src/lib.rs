@@ -8,6 +8,7 @@ pub mod drape;
 pub mod edges;
 pub mod engine;
 pub mod fabric;
+mod file_names;
 #[cfg(test)]
 mod fixtures;
 pub mod flat;

@@ -15,7 +15,7 @@ use toile_core::artifact::Garment;
 use toile_core::{Cancel, Length, Listener};
 use toile_pipeline::{Override, Pipeline, load};
 use toile_trade::measure::Bench;
-use toile_trade::reference::jitter;
+use toile_trade::measure::jitter;
 use toile_trade::surface::{Surface, displacement, distance};
 
 fn main() {

@@ -49,7 +49,19 @@ fn run_with(name: &str, stages: &str, dir: &Path) {
     let writes = |l: &str| {
         ["Glb(", "GarmentObj(", "PhotoTexturer(", "FabricTexturer("].iter().any(|w| l.trim().starts_with(w))
     };
-    let kept: Vec<&str> = text.lines().filter(|l| !writes(l)).collect();
+    // A writer may have several lines, up to its closing bracket.
+    let open = |l: &str| l.matches('(').count() as i32 - l.matches(')').count() as i32;
+    let mut left_open = 0;
+    let kept: Vec<&str> = text
+        .lines()
+        .filter(|l| {
+            let is_written = left_open > 0 || writes(l);
+            if is_written {
+                left_open += open(l);
+            }
+            !is_written
+        })
+        .collect();
     let text = kept.join("\n");
     let (head, _) = text.rsplit_once("    ],").unwrap();
     let samples = format!("\"{}", root().join("pipelines/samples/").display());

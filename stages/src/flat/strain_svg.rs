@@ -4,8 +4,8 @@
 //! strain of larger absolute value.
 
 use super::sheet::Sheet;
+use crate::render::parts::plain_cloth;
 use crate::render::{Form, Scene, View, jpeg};
-use crate::texture::parts::plain_cloth;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use std::collections::BTreeMap;

@@ -3,7 +3,7 @@
 use super::overlay::outline_distance;
 use super::sheet::Sheet;
 use super::strain_svg;
-use crate::write::check_name;
+use crate::file_names::check_name;
 use rayon::prelude::*;
 use serde::Serialize;
 use toile_core::prelude::*;

@@ -13,11 +13,13 @@ mod light;
 mod mips;
 mod orbit;
 mod overlay;
+pub(crate) mod parts;
 mod pictures;
 mod remember;
 mod scene;
 mod shade;
 mod surroundings;
+pub(crate) mod tangents;
 #[cfg(test)]
 mod tests;
 

@@ -3,7 +3,7 @@
 //! Photos and masks as thumbnails, outlines and panels as drawings, the rest rendered.
 
 use super::{Frame, Line, Scene, View};
-use crate::texture::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
+use crate::render::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
 use image::codecs::jpeg::JpegEncoder;
 use image::{GrayImage, ImageFormat, RgbImage, imageops};
 use std::any::Any;

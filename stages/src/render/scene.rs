@@ -12,7 +12,7 @@ use super::remember::Remember;
 use super::shade::{Lights, wall};
 use super::surroundings::Surroundings;
 use super::{Line, Orbit, overlay};
-use crate::texture::tangents::{Tangent, tangents};
+use crate::render::tangents::{Tangent, tangents};
 use image::{RgbImage, RgbaImage};
 use nalgebra::Matrix2;
 use rayon::prelude::*;

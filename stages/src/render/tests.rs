@@ -27,7 +27,7 @@ fn square(name: &str, z: f64, half: f64, material: usize) -> Mesh {
 }
 
 fn paint(colour: [f32; 3]) -> Material {
-    Material { colour, unlit: true, roughness: 1.0, ..crate::texture::parts::plain_cloth("paint", colour) }
+    Material { colour, unlit: true, roughness: 1.0, ..crate::render::parts::plain_cloth("paint", colour) }
 }
 
 fn red_square() -> Model {

@@ -9,13 +9,11 @@ mod finish;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod inside;
-pub(crate) mod parts;
 mod photo_detail;
 mod photo_texturer;
 mod plain;
 mod relief;
 mod shading;
-pub(crate) mod tangents;
 #[cfg(test)]
 mod tests;
 mod texture_size;

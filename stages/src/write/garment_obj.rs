@@ -1,6 +1,6 @@
 //! `GarmentObj`: the bare garment as Wavefront OBJ, vertex for vertex.
 
-use super::names::check_name;
+use crate::file_names::check_name;
 use std::fmt::Write;
 use toile_core::prelude::*;
 
@@ -55,6 +55,6 @@ impl GarmentObj {
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        super::names::check_name(&self.name).err().into_iter().collect()
+        crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

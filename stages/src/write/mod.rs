@@ -4,7 +4,6 @@ mod check;
 mod copyright;
 mod garment_obj;
 mod glb;
-mod names;
 mod obj;
 pub mod origin;
 mod patterns;
@@ -23,7 +22,6 @@ mod usdz;
 
 pub use garment_obj::GarmentObj;
 pub use glb::Glb;
-pub(crate) use names::check_name;
 pub use obj::Obj;
 pub use patterns::dxf::{DxfStandard, PatternDxf};
 pub use patterns::json::PatternJson;

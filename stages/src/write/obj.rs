@@ -6,9 +6,9 @@
 //! ambient colour.
 
 use super::check::check_model;
-use super::names::{check_name, plain_names};
 use super::shown::sheets;
 use super::texture_file::TextureFormat;
+use crate::file_names::{check_name, plain_names};
 use std::collections::HashMap;
 use std::fmt::Write;
 use toile_core::prelude::*;
@@ -63,7 +63,7 @@ impl Obj {
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        super::names::check_name(&self.name).err().into_iter().collect()
+        crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }
 

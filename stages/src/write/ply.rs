@@ -4,8 +4,8 @@
 //! Cost: one texture lookup a vertex. Limit: 2^31 vertices or triangles.
 
 use super::check::check_model;
-use super::names::check_name;
 use super::shown::sheets;
+use crate::file_names::check_name;
 use crate::render::{Mips, encode};
 use toile_core::prelude::*;
 
@@ -34,7 +34,7 @@ impl Ply {
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        super::names::check_name(&self.name).err().into_iter().collect()
+        crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }
 

@@ -1,7 +1,7 @@
 //! `SceneJson`: the placed garment as a prepared scene for other programs.
 
-use super::names::check_name;
 use crate::engine::{Setting, scene_of};
+use crate::file_names::check_name;
 use nalgebra::Vector3;
 use toile_cloth::scene::{Phase, SceneBody, body_to_obj, to_json};
 use toile_core::prelude::*;
@@ -70,6 +70,6 @@ impl SceneJson {
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        super::names::check_name(&self.name).err().into_iter().collect()
+        crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }

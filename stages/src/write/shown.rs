@@ -1,7 +1,7 @@
 //! The part of a model that a file shows.
 
+use crate::render::parts::BODY;
 use crate::texture::edge::is_edge;
-use crate::texture::parts::BODY;
 use toile_core::StageError;
 use toile_core::artifact::{Material, Mesh, Model};
 

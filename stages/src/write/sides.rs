@@ -67,7 +67,7 @@ fn place(materials: &mut Vec<Material>, material: Material) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::parts::plain_cloth;
+    use crate::render::parts::plain_cloth;
     use toile_core::artifact::{Point3, Variant, Vector3};
 
     fn model(looks: [Option<[f32; 3]>; 2]) -> Model {

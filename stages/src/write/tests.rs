@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use super::names::{check_name, plain_names};
 use super::{Glb, Obj, Ply, Preview, Report};
+use crate::file_names::{check_name, plain_names};
 use crate::texture::{PhotoTexturer, fixture};
 use crate::write::reporting::data::number;
 use proptest::prelude::*;

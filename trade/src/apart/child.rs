@@ -1,8 +1,8 @@
 //! A run's process from inside.
 
 use super::wire::{Task, write};
+use crate::measure::jitter;
 use crate::measure::{Bench, Missed, Ran};
-use crate::reference::jitter;
 use std::sync::Arc;
 use toile_core::{Cancel, Registry, StageError};
 use toile_pipeline::cache::Cache;

@@ -1,7 +1,5 @@
 //! The reference that settings are held against, and how well it is known.
 
 pub mod floor;
-pub mod jitter;
-pub mod ladder;
 pub mod richardson;
 pub mod sample;

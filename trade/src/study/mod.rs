@@ -10,6 +10,7 @@
 //!   `setting`: its runs and figures; `store`: what is kept.
 
 mod budget;
+pub mod ladder;
 mod next;
 mod setting;
 mod store;
@@ -23,7 +24,7 @@ use crate::knobs::slot::{Board, Knob, ReferenceValue, setting_words};
 use crate::knobs::source::Source;
 use crate::measure::Bench;
 use crate::record::{Clock, KnobRecord, Machine, Outcome, Point, SCHEME, Trade, front_of, today};
-use crate::reference::ladder::{Found, RATIO, Search};
+use crate::study::ladder::{Found, RATIO, Search};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};

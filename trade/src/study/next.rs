@@ -4,8 +4,8 @@ use super::Study;
 use crate::front::Cost;
 use crate::knobs::slot::{Knob, Setting};
 use crate::record::{Clock, Outcome, front_of};
-use crate::reference::ladder::FINER;
 use crate::reference::sample::{candidates, halton};
+use crate::study::ladder::FINER;
 
 /// Space-filling settings a knob, before the front is refined.
 const START: usize = 4;

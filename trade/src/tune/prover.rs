@@ -6,7 +6,7 @@ use crate::knobs::slot::setting_words;
 use crate::knobs::source::Source;
 use crate::measure::{Bench, Missed, Ran};
 use crate::record::Trade;
-use crate::reference::ladder::moved_start;
+use crate::study::ladder::moved_start;
 use crate::study::measured;
 use std::path::Path;
 use std::sync::Arc;

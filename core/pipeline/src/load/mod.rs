@@ -11,7 +11,7 @@
 //!
 //! The settings of a quality that is asked for and `--set` overrides are spliced into the text
 //! before step 1, so that they pass the same checks; `qualities` are checked beside the file.
-//! `origin` shows what is wrong where the user wrote it: in the file or in the option. `warnings`
+//! `origin` shows what is wrong where the user wrote it: in the file or in the option. `run::unused`
 //! says what a clean file does not use.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
@@ -36,8 +36,7 @@ mod qualities;
 mod read;
 mod setting;
 mod syntax;
-mod warnings;
-mod words;
+pub(crate) mod words;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -242,7 +241,7 @@ pub(crate) fn texts_of(params: &str) -> Vec<String> {
     texts
 }
 
-fn parse(text: &str) -> Result<syntax::tree::Tree, Fault> {
+pub(crate) fn parse(text: &str) -> Result<syntax::tree::Tree, Fault> {
     syntax::parser::parse(text).map_err(|e| syntax::repair::plain(&e))
 }
 

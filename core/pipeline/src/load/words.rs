@@ -8,7 +8,7 @@ use toile_core::{Card, Kind, Registry, Section, SectionValue};
 const MAX_NAMED: usize = 4;
 
 /// `a mask`, `an outline`.
-pub(super) fn a(kind: Kind) -> String {
+pub(crate) fn a(kind: Kind) -> String {
     match kind.0.starts_with(['a', 'e', 'i', 'o', 'u']) {
         _ if kind.0.ends_with('s') => kind.0.to_owned(),
         true => format!("an {kind}"),
@@ -23,7 +23,7 @@ pub(super) fn all_of(kinds: impl IntoIterator<Item = Kind>) -> String {
 }
 
 /// `x`, `x and y`, `x, y and z`.
-pub(super) fn list(words: &[String], join: &str) -> String {
+pub(crate) fn list(words: &[String], join: &str) -> String {
     match words {
         [] => "nothing".into(),
         [one] => one.clone(),

@@ -14,10 +14,10 @@ mod recall;
 mod record;
 mod so_far;
 mod steps;
+mod unused;
 mod value;
 
 pub use faults::faults;
-pub(crate) use faults::warnings;
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
 pub(crate) use node::Made;

@@ -5,7 +5,7 @@
 
 use super::closed::{Whole, list, wholes};
 use super::raw::{Mended, RawMesh};
-use crate::texture::parts::BODY;
+use crate::render::parts::BODY;
 use toile_core::prelude::*;
 
 /// Strips along open edges and turned copies of the cloth, as this program writes them.

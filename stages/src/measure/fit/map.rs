@@ -4,8 +4,8 @@
 //! from zero on, purple to orange (ColorBrewer's PuOr: Harrower, Brewer 2003) for values of both
 //! signs. No light falls on the cloth, so a colour is the legend's.
 
+use crate::render::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
 use crate::render::{Form, Scene, View, jpeg};
-use crate::texture::parts::{body_mesh, mannequin, panel_mesh, plain_cloth};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use image::{Rgb, RgbImage};

@@ -13,7 +13,7 @@ use self::map::Map;
 use self::openings::{finished, openings};
 use super::with_pattern;
 use crate::engine::check_garment;
-use crate::write::check_name;
+use crate::file_names::check_name;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

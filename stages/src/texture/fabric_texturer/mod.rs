@@ -12,8 +12,9 @@ use self::edges::{finishes, lacking};
 use super::edge::add_edges;
 use super::finish::{Finish, MOST_PX, Sheet};
 use super::weave::{Cloth, Colour, Tile, tile};
-use super::{BodyShown, parts, variants};
+use super::{BodyShown, variants};
 use crate::render::LINEAR;
+use crate::render::parts;
 use std::collections::BTreeMap;
 use toile_core::prelude::*;
 

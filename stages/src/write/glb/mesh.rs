@@ -2,7 +2,7 @@
 
 use super::buffer::Buffer;
 use super::grid::Grid;
-use crate::texture::tangents::tangents;
+use crate::render::tangents::tangents;
 use serde_json::{Value, json};
 use toile_core::artifact::{Mesh, Model, Vector3};
 

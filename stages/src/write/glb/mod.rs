@@ -16,11 +16,11 @@ mod tests;
 
 use super::check::check_model;
 use super::copyright::check_copyright;
-use super::names::check_name;
 use super::power_of_two::to_powers_of_two;
 use super::shown::shown;
 use super::sides::with_wrong_sides;
 use super::texture_file::TextureFormat;
+use crate::file_names::check_name;
 use buffer::Buffer;
 use grid::Grid;
 use serde_json::{Value, json};

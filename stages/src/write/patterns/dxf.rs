@@ -1,6 +1,6 @@
 //! `PatternDxf`: the sewing pattern for programs of the trade.
 
-use crate::write::names::check_name;
+use crate::file_names::check_name;
 use crate::write::patterns::file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::dxf::{Standard, to_dxf};

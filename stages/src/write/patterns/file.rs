@@ -1,6 +1,6 @@
 //! What the writers of patterns have in common.
 
-use crate::write::names::check_name;
+use crate::file_names::check_name;
 use toile_core::prelude::*;
 use toile_pattern_files::allowance::Allowances;
 use toile_pattern_files::{Options, WriteError, Written};

@@ -1,6 +1,6 @@
 //! `PatternJson`: the sewing pattern as GarmentCode writes it.
 
-use crate::write::names::check_name;
+use crate::file_names::check_name;
 use crate::write::patterns::file::files;
 use toile_core::prelude::*;
 use toile_pattern_files::garment_code;

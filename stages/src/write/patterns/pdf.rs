@@ -1,6 +1,6 @@
 //! `PatternPdf`: the sewing pattern to print.
 
-use crate::write::names::check_name;
+use crate::file_names::check_name;
 use crate::write::patterns::file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::pdf::{Paper, to_pdf};

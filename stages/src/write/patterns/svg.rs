@@ -1,6 +1,6 @@
 //! `PatternSvg`: the sewing pattern as a drawing.
 
-use crate::write::names::check_name;
+use crate::file_names::check_name;
 use crate::write::patterns::file::{SeamAllowances, files};
 use toile_core::prelude::*;
 use toile_pattern_files::svg;

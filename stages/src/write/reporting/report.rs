@@ -45,7 +45,7 @@ pub struct Report {
 #[stage]
 impl Report {
     pub(crate) fn run(&self, run: &RunLog, cx: &Context) -> Result<OutputFiles, StageError> {
-        crate::write::names::check_name(&self.name)?;
+        crate::file_names::check_name(&self.name)?;
         let page = page(run, self.pictures, self.views, cx)?;
         let html =
             html(&page).map_err(|e| StageError::internal(format!("the report's template fails: {e}")))?;
@@ -57,7 +57,7 @@ impl Report {
     }
 
     fn precheck(&self, _placed: &Placed<'_>) -> Vec<StageError> {
-        crate::write::names::check_name(&self.name).err().into_iter().collect()
+        crate::file_names::check_name(&self.name).err().into_iter().collect()
     }
 }
 

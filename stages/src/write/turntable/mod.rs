@@ -12,7 +12,7 @@ mod numbers;
 mod sheet;
 
 use super::check::check_model;
-use super::names::check_name;
+use crate::file_names::check_name;
 use crate::photo::decode;
 use crate::render::{Orbit, Scene, Surroundings};
 use base64::Engine;

@@ -15,10 +15,10 @@ mod zip;
 use super::check::check_model;
 use super::copyright::check_copyright;
 use super::glb::digest;
-use super::names::{check_name, plain_names};
 use super::shown::shown;
 use super::sides::with_wrong_sides;
 use super::texture_file::TextureFormat;
+use crate::file_names::{check_name, plain_names};
 use scene::{About, scene};
 use toile_core::prelude::*;
 

@@ -48,7 +48,7 @@ pub(super) fn identifiers<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<S
         if text.starts_with(|c: char| c.is_ascii_digit()) { format!("_{text}") } else { text }
     };
     let texts: Vec<String> = names.into_iter().map(lettered).collect();
-    super::super::names::plain_names(texts.iter().map(String::as_str))
+    crate::file_names::plain_names(texts.iter().map(String::as_str))
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! What a pipeline without faults does not use: likely a slip, and no reason not to run.
 
-use super::fault::{Fault, Faults};
-use super::words::{a, list};
-use super::{Pipeline, parse};
+use crate::load::words::{a, list};
+use crate::load::{Fault, Faults, Pipeline, parse};
 use std::ops::Range;
 use toile_core::artifact::{ArtifactType, Figures, Garment, Model, OutputFiles, RunLog};
 use toile_core::{Card, Kind, Node, Registry, Role};
@@ -15,7 +14,7 @@ impl Pipeline {
     /// garment; none where all is well.
     pub fn warnings(&self, registry: &Registry) -> Option<Faults> {
         let mut found: Vec<Fault> = self.unused();
-        found.extend(crate::run::warnings(self));
+        found.extend(super::faults::warnings(self));
         found.extend(self.writes_no_garment(registry));
         (!found.is_empty()).then(|| self.faults(found))
     }

@@ -27,7 +27,7 @@ pub(crate) fn check_name(name: &str) -> Result<(), StageError> {
 
 /// Names for a format that knows no quoting: letters, digits, `-` and `_`; no two alike, none
 /// empty.
-pub(super) fn plain_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
+pub(crate) fn plain_names<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     let mut taken: Vec<String> = Vec::new();
     for name in names {
         let base = plain(name);
