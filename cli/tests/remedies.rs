@@ -1,7 +1,7 @@
 //! The `--set` lines that messages offer, typed by someone who reads them: each mends what it
 //! stands behind.
 //!
-//! tests/tests/proposals.rs holds what the binariser `Auto` offers.
+//! tests/tests/texts/proposals.rs holds what the binariser `Auto` offers.
 
 use crate::own_files::{flat, photo, solid};
 use crate::readme::{root, scratch};

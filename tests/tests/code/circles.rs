@@ -2,7 +2,8 @@
 //!
 //! Each file's paths are read (uses, and paths that begin with `crate`, `self` or `super`) and
 //! followed to the file that defines the name, through what a module hands on (`pub use`). A module
-//! and its descendants may name each other. Tests are passed over.
+//! and its descendants may name each other. Tests are passed over. The same is asked of folders that
+//! lie side by side: what one takes from the other it does not give back.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -10,6 +11,12 @@ use syn::visit::Visit;
 
 /// Files, by their place in the source tree, that import each other: none, and none may come.
 const LEFT: &[&[&str]] = &[];
+
+/// Folders, side by side, that import each other: no new pair may come.
+const LEFT_FOLDERS: &[[&str; 2]] = &[];
+
+/// The most files of code in a folder.
+const MOST_FILES: usize = 20;
 
 /// A module's path within its crate.
 type Module = Vec<String>;
@@ -224,6 +231,25 @@ fn circles(edges: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> Vec<BTreeSet<PathBuf
     found.into_iter().collect()
 }
 
+/// Folders side by side below `src`, each of which imports files of the other.
+fn folder_pairs(src: &Path, edges: &BTreeMap<PathBuf, BTreeSet<PathBuf>>) -> BTreeSet<[PathBuf; 2]> {
+    let folders = |a: &Path, b: &Path| {
+        let (mut from, mut to) = (src.to_path_buf(), src.to_path_buf());
+        let parts = a.strip_prefix(src).ok()?.iter().zip(b.strip_prefix(src).ok()?.iter());
+        for (x, y) in parts {
+            (from, to) = (from.join(x), to.join(y));
+            if x != y {
+                break;
+            }
+        }
+        (from.is_dir() && to.is_dir()).then_some((from, to))
+    };
+    let all: BTreeSet<(PathBuf, PathBuf)> =
+        edges.iter().flat_map(|(a, to)| to.iter().filter_map(move |b| folders(a, b))).collect();
+    let both = all.iter().filter(|(a, b)| a < b && all.contains(&(b.clone(), a.clone())));
+    both.map(|(a, b)| [a.clone(), b.clone()]).collect()
+}
+
 fn crates(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap().map(|e| e.unwrap().path()).filter(|e| e.is_dir()) {
         let name = entry.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -257,6 +283,61 @@ fn no_files_import_each_other_in_a_circle() {
     found.sort();
     let left: Vec<Vec<String>> = LEFT.iter().map(|c| c.iter().map(|f| (*f).to_owned()).collect()).collect();
     assert_eq!(found, left, "{found:#?}");
+}
+
+#[test]
+fn no_two_folders_import_each_other() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut all = Vec::new();
+    crates(root, &mut all);
+    let name = |p: &PathBuf| p.strip_prefix(root).unwrap().to_string_lossy().replace('\\', "/");
+    let mut found: Vec<[String; 2]> = all
+        .iter()
+        .flat_map(|src| folder_pairs(src, &imports(src)))
+        .map(|pair| [name(&pair[0]), name(&pair[1])])
+        .collect();
+    found.sort();
+    let left: Vec<[String; 2]> = LEFT_FOLDERS.iter().map(|pair| pair.map(str::to_owned)).collect();
+    assert_eq!(found, left, "{found:#?}");
+}
+
+#[test]
+fn no_folder_has_more_files_than_a_reader_keeps_in_mind() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let mut all = Vec::new();
+    for part in ["cli", "core", "pipelines", "plugins", "stages", "tests", "trade"] {
+        sources(&root.join(part), &mut all);
+    }
+    let mut count: BTreeMap<&Path, usize> = BTreeMap::new();
+    for file in all.iter().filter(|f| !f.components().any(|c| c.as_os_str() == "target")) {
+        *count.entry(file.parent().unwrap()).or_default() += 1;
+    }
+    let full: Vec<_> = count.iter().filter(|(_, files)| **files > MOST_FILES).collect();
+    assert!(full.is_empty() && all.len() > 900, "{full:?}");
+}
+
+#[test]
+fn folders_that_import_each_other_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    };
+    write("lib.rs", "mod one; mod two; mod three;");
+    write("one/mod.rs", "mod a; mod b;");
+    write("one/a.rs", "use crate::two::x::X; pub struct A(X);");
+    write("one/b.rs", "pub struct B;");
+    write("two/mod.rs", "pub mod x; pub mod y;");
+    write("two/x.rs", "pub struct X;");
+    write("two/y.rs", "use crate::one::b::B; pub struct Y(B);");
+    write("three/mod.rs", "use crate::two::y::Y; pub struct Three(Y);");
+    let src = folder.path();
+    assert!(circles(&imports(src)).is_empty());
+    assert_eq!(
+        folder_pairs(src, &imports(src)).into_iter().collect::<Vec<_>>(),
+        [[src.join("one"), src.join("two")]]
+    );
 }
 
 #[test]

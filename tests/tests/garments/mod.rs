@@ -1,0 +1,9 @@
+//! Shipped pipelines, from their files to what they write.
+
+mod drawn_as_sewn;
+mod falls;
+mod flat;
+mod outputs;
+mod photos;
+mod turntable;
+mod vest;
