@@ -63,5 +63,54 @@ fn doc_text(attrs: &[syn::Attribute]) -> String {
     };
     let lines: Vec<String> =
         attrs.iter().filter_map(line).map(|l| l.strip_prefix(' ').unwrap_or(&l).to_owned()).collect();
-    lines.join("\n").trim().to_owned()
+    unwrapped(&lines).trim().to_owned()
+}
+
+/// Each paragraph and each entry of a list as one line; code and tables stay as they are.
+fn unwrapped(lines: &[String]) -> String {
+    let is_own = |line: &str| {
+        let digits = line.trim_start_matches(|c: char| c.is_ascii_digit());
+        ["- ", "* ", "|", "#", ">", "    ", "```"].iter().any(|start| line.starts_with(start))
+            || digits.len() < line.len() && digits.starts_with(". ")
+    };
+    let (mut text, mut fenced, mut goes_on) = (String::new(), false, false);
+    for line in lines {
+        let was_fenced = fenced;
+        fenced ^= line.starts_with("```");
+        let is_prose = !was_fenced && !fenced && !line.trim().is_empty();
+        if is_prose && goes_on && !is_own(line) {
+            text.push(' ');
+            text.push_str(line.trim());
+        } else {
+            text.push('\n');
+            text.push_str(line);
+        }
+        goes_on = is_prose && !["|", "#", ">", "    "].iter().any(|start| line.starts_with(start));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unwrapped;
+
+    #[test]
+    fn paragraphs_and_entries_of_lists_are_one_line_each() {
+        let lines = [
+            "One",
+            "sentence.",
+            "",
+            "- an entry",
+            "  of a list",
+            "- another",
+            "",
+            "```",
+            "let a",
+            "= 1;",
+            "```",
+        ];
+        let lines = lines.map(str::to_owned);
+        let expected = "\nOne sentence.\n\n- an entry of a list\n- another\n\n```\nlet a\n= 1;\n```";
+        assert_eq!(unwrapped(&lines), expected);
+    }
 }

@@ -1,10 +1,11 @@
 //! A human figure as a smooth solid: trunk, breasts, shoulders, neck, head, arms, hands, legs,
 //! feet.
 //!
-//! Parts are [lofts](crate::body::limbs::loft), [limbs](crate::body::limbs::limb) and ellipsoids, joined by smooth minima;
-//! the [relief](crate::body::limbs::relief) of bones and muscles moves the skin. Sections and levels follow a
-//! [`Form`]. Levels are shares of the height up to the chin, so that a child, whose head is larger,
-//! still has its waist where the trunk has one. Girths and lengths are met by [`Aims`].
+//! Parts are [lofts](crate::body::limbs::loft), [limbs](crate::body::limbs::limb) and ellipsoids,
+//! joined by smooth minima; the [relief](crate::body::limbs::relief) of bones and muscles moves the
+//! skin. Sections and levels follow a [`Form`]. Levels are shares of the height up to the chin, so
+//! that a child, whose head is larger, still has its waist where the trunk has one. Girths and
+//! lengths are met by [`Aims`].
 //!
 //! Limit: a shop's dummy, not a portrait: a calm head without eyes and ears, fingers side by side.
 

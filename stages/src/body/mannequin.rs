@@ -1,8 +1,8 @@
 //! `Mannequin`: a closed, smooth figure made to measure.
 //!
-//! A [`Figure`](super::figure::Figure) is brought to its measures by [`fit`](crate::body::measures::fit). What is
-//! not given follows from the size, the figure, the height and the bust. Cost: mostly one meshing,
-//! a tenth of a second.
+//! A [`Figure`](super::figure::Figure) is brought to its measures by
+//! [`fit`](crate::body::measures::fit). What is not given follows from the size, the figure, the
+//! height and the bust. Cost: mostly one meshing, a tenth of a second.
 
 use super::wearer::Wearer;
 use crate::body::form::{CHILD, Form, MAN, WOMAN};

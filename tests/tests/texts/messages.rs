@@ -39,7 +39,7 @@ const OWN_WORDS: [(&str, &str, &str); 15] = [
     ("write/check.rs", "vertex", "a model of the user's own stage"),
     ("write/ply.rs", "vert", "the file's format"),
     ("write/usdz/scene.rs", "vertex", "the file's format"),
-    ("write/report_data.rs", "vertices", "a heading of figures"),
+    ("write/reporting/data.rs", "vertices", "a heading of figures"),
     ("drape/asleep.rs", "vertices", "what a decision saves, for `explain`"),
     ("drape/static_equilibrium.rs", "newton", "source of the method"),
     ("texture/photo_texturer.rs", "vertex", "a garment of the user's own stage"),

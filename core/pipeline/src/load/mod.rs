@@ -11,8 +11,8 @@
 //!
 //! The settings of a quality that is asked for and `--set` overrides are spliced into the text
 //! before step 1, so that they pass the same checks; `qualities` are checked beside the file.
-//! `origin` shows what is wrong where the user wrote it: in the file or in the option. `run::unused`
-//! says what a clean file does not use.
+//! `origin` shows what is wrong where the user wrote it: in the file or in the option.
+//! `run::unused` says what a clean file does not use.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!

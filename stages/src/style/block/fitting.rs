@@ -1,12 +1,12 @@
 //! `Fitting`: a mannequin that the photographed garment fits.
 //!
-//! Method: the block that is cut is fitted to the outline ([`crate::style::block::template::fit`]) and measured as a tailor
-//! measures a garment that lies flat. Of the sizes of a table, from a child of 80 cm to an adult,
-//! the one is taken whose girths, with the usual ease, and whose height, with the usual length of
-//! such a garment, lie nearest. The arms are spread as the sleeves hang. Cost: a fit of the block,
-//! a tenth of a second a form, and a mannequin. Limits: lengths of skirts, shorts and vests tell
-//! little, so that a short garment with few girths may fit several sizes; the body is a woman's or
-//! a child's.
+//! Method: the block that is cut is fitted to the outline ([`crate::style::block::template::fit`])
+//! and measured as a tailor measures a garment that lies flat. Of the sizes of a table, from a
+//! child of 80 cm to an adult, the one is taken whose girths, with the usual ease, and whose
+//! height, with the usual length of such a garment, lie nearest. The arms are spread as the sleeves
+//! hang. Cost: a fit of the block, a tenth of a second a form, and a mannequin. Limits: lengths of
+//! skirts, shorts and vests tell little, so that a short garment with few girths may fit several
+//! sizes; the body is a woman's or a child's.
 
 use super::{Block, BlockStyle, Fitted, Front, Sides, Waist, refusal};
 use crate::body::Mannequin;

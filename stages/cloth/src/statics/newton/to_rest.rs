@@ -61,8 +61,8 @@ const SLOW_STEP: f64 = 0.1;
 const CREEP: f64 = 0.01;
 
 /// Speed, as a multiple of that of rest, beyond which contacts are not held any more (see
-/// [`crate::statics::forces::self_contact::SelfContact::hold`]): what the proof of a pile held it forgets
-/// only far from rest, or it would look for it again at every proof.
+/// [`crate::statics::forces::self_contact::SelfContact::hold`]): what the proof of a pile held it
+/// forgets only far from rest, or it would look for it again at every proof.
 const FAST: f64 = 10.0;
 
 /// What holds a node still that is stopped, N/m, and the share of its move that a stopped node

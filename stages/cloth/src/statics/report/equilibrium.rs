@@ -36,7 +36,8 @@ pub struct Equilibrium {
     pub residual: f64,
     /// Where that is, and what the cloth meets there.
     pub unbalanced: Unbalanced,
-    /// How far friction holds each vertex back, m: what [`Live`](crate::statics::drive::live::Live) goes on from.
+    /// How far friction holds each vertex back, m: what [`Live`](crate::statics::drive::live::Live)
+    /// goes on from.
     pub slides: Vec<Vec3>,
     /// Angles at which friction between yarns holds the folds, by hinges of the sewn garment: what
     /// `Live` goes on from.

@@ -3,12 +3,12 @@
 //! Method: the template is symmetric about an axis whose tilt and place are sought with it, as far
 //! as the outline lets it: corners of both sides are believed to mirror each other to 2 % of the
 //! size, but those of sleeves and legs, which lie as they fall. It starts from the cuts of both
-//! halves ([`crate::style::block::template::segment`]), or, where they differ, from each alone. Then every point of the
-//! outline is drawn to the nearest place of the template, and places of the template to the
-//! outline, along the distance between them (point to line: Chen and Medioni 1992), by damped
-//! Gauss-Newton steps. Far-off points count less (Geman and McClure 1985), so that a fold or a rag
-//! moves no edge. Cost: some milliseconds a form. Limits: a fold along the whole of a side is taken
-//! for the side.
+//! halves ([`crate::style::block::template::segment`]), or, where they differ, from each alone.
+//! Then every point of the outline is drawn to the nearest place of the template, and places of the
+//! template to the outline, along the distance between them (point to line: Chen and Medioni 1992),
+//! by damped Gauss-Newton steps. Far-off points count less (Geman and McClure 1985), so that a fold
+//! or a rag moves no edge. Cost: some milliseconds a form. Limits: a fold along the whole of a side
+//! is taken for the side.
 
 use crate::style::block::template::bow::Bow;
 use crate::style::block::template::form::{EdgeForm, Form};
