@@ -1,54 +1,25 @@
-//! The built-in stages of Toile: a folder a role, a file a stage.
+//! The built-in stages of Toile, gathered from the crates that hold them, in the order in which data
+//! passes through: [`toile_image`], [`toile_pattern`], [`toile_body`], [`toile_drape`],
+//! [`toile_output`].
 
-pub mod binarise;
-pub mod body;
-pub mod collide;
-pub mod denoise;
-pub mod drape;
-pub mod edges;
-pub mod engine;
-pub mod fabric;
-mod file_names;
-#[cfg(test)]
-mod fixtures;
-pub mod flat;
-mod grid;
-pub mod measure;
-pub mod mesh;
-pub mod pattern;
-pub mod photo;
-pub mod place;
-pub mod render;
-pub mod scene;
-pub mod smooth;
-pub mod stitch;
-pub mod style;
-pub mod texture;
-pub mod write;
+pub use toile_body as body;
+pub use toile_drape::{collide, drape, engine, fabric, measure, scene, stitch};
+pub use toile_image::{binarise, denoise, edges, photo};
+pub use toile_output::{fit, flat, render, texture, write};
+pub use toile_pattern::{mesh, pattern, place, smooth, style};
 
 use toile_core::{Registry, Role, Section};
 
+/// The crates that hold them, by name.
+pub const CRATES: [&str; 5] = ["toile-image", "toile-pattern", "toile-body", "toile-drape", "toile-output"];
+
 /// Adds every built-in stage: the one line by which a program gets them all.
 pub fn register(registry: &mut Registry) {
-    photo::register(registry);
-    denoise::register(registry);
-    binarise::register(registry);
-    edges::register(registry);
-    style::register(registry);
-    mesh::register(registry);
-    smooth::register(registry);
-    body::register(registry);
-    fabric::register(registry);
-    place::register(registry);
-    scene::register(registry);
-    pattern::register(registry);
-    collide::register(registry);
-    stitch::register(registry);
-    drape::register(registry);
-    flat::register(registry);
-    measure::register(registry);
-    texture::register(registry);
-    write::register(registry);
+    toile_image::register(registry);
+    toile_pattern::register(registry);
+    toile_body::register(registry);
+    toile_drape::register(registry);
+    toile_output::register(registry);
     sections(registry);
 }
 

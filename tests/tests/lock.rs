@@ -35,7 +35,7 @@ fn a_run_against_a_lock_says_what_differs() {
     assert_eq!(toile(&["lock", &name, "--no-cache"]).code, 0);
     let again = fs::read_to_string(dir.path().join("vest.ron.lock")).unwrap();
     assert_eq!(text, again, "the same with and without a cache");
-    assert!(text.contains("\"package\": \"toile-stages "), "{text}");
+    assert!(text.contains("\"package\": \"toile-image "), "{text}");
 
     let same = run(dir.path(), &[]);
     assert_eq!((same.code, same.err.as_str()), (0, ""));

@@ -166,7 +166,7 @@ mod tests {
         let stage = |id: &str, params: &[(&str, &str)]| LockedStage {
             id: id.into(),
             stage: id.into(),
-            package: "toile-stages 0.1.0".into(),
+            package: "toile-image 0.1.0".into(),
             version: 1,
             params_version: 1,
             schema: "00".into(),
@@ -190,7 +190,7 @@ mod tests {
         now.stages[0].params.insert("edge".into(), "\"12 mm\"".into());
         now.stages[0].result = None;
         now.stages[1].version = 2;
-        now.stages[1].package = "toile-stages 0.2.0".into();
+        now.stages[1].package = "toile-image 0.2.0".into();
         now.stages[1].params_version = 2;
         now.stages[1].params = BTreeMap::from([("offset".into(), "0.0".into())]);
         let short = Digest::of(b"GridMesher").short();
@@ -199,7 +199,7 @@ mod tests {
             [
                 "GridMesher: edge 16 mm -> 12 mm".to_owned(),
                 format!("GridMesher: result {short} -> (none)"),
-                "Otsu: package toile-stages 0.1.0 -> toile-stages 0.2.0".into(),
+                "Otsu: package toile-image 0.1.0 -> toile-image 0.2.0".into(),
                 "Otsu: stage version 1 -> 2".into(),
                 "Otsu: parameters' version 1 -> 2".into(),
                 "Otsu: bias 0.0 -> (none)".into(),

@@ -12,6 +12,7 @@ mod fabric;
 mod figures;
 mod files;
 mod garment;
+mod garment_check;
 mod garment_sizes;
 mod geometry;
 mod locate;
@@ -54,6 +55,7 @@ pub use runlog::{Failure, RunLog, StageRecord};
 pub use sewing::gauge::{CHORD_TOLERANCE, Gauge};
 pub use sewing::plan::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
 pub use sewing::seam_kind::{PleatFold, SeamKind};
+pub use sewing::weld::join_pairs;
 pub use store::digest::{Digest, Digester};
 pub use store::shared::Shared;
 

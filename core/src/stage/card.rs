@@ -27,7 +27,7 @@ pub struct Card {
     pub inputs: Vec<InPort>,
     /// Its output ports.
     pub outputs: Vec<OutPort>,
-    /// The crate that holds it, with its version: `toile-stages 0.1.0`.
+    /// The crate that holds it, with its version: `toile-image 0.1.0`.
     pub package: &'static str,
     /// The plugin that it comes from; `None` for a stage that is linked in.
     pub plugin: Option<PluginId>,

@@ -1,7 +1,7 @@
 //! The cloth engine: what a sheet of cloth resists (membranes, bending), what it touches (body,
 //! itself), what sews it together (seams), and the solvers that bring it to rest.
 //!
-//! It knows neither stages nor pipelines: `toile-stages` wraps it. Everything is f64, in metres,
+//! It knows neither stages nor pipelines: `toile-drape` wraps it. Everything is f64, in metres,
 //! kilograms and seconds.
 
 pub mod constraint;

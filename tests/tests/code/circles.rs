@@ -32,7 +32,6 @@ const LEFT_FOLDERS: &[[&str; 2]] = &[
     ["stages/cloth/src/linear", "stages/cloth/src/statics"],
     ["stages/cloth/src/mesh", "stages/cloth/src/solver"],
     ["stages/cloth/src/scene", "stages/cloth/src/statics"],
-    ["stages/src/photo", "stages/src/style"],
     ["trade/src/apart", "trade/src/measure"],
 ];
 

@@ -77,7 +77,7 @@ fn calls_are_read_from_messages() {
 fn messages_name_stages_and_parameters_that_there_are() {
     let stages = stages();
     let mut files = Vec::new();
-    for folder in ["core/src", "stages/src", "cli/src"] {
+    for folder in ["core/src", "stages", "cli/src"] {
         sources(&root().join(folder), &mut files);
     }
     let (mut checked, mut wrong) = (0, Vec::new());

@@ -6,3 +6,4 @@ pub(crate) mod gauge;
 pub(crate) mod lying;
 pub(crate) mod plan;
 pub(crate) mod seam_kind;
+pub(crate) mod weld;

@@ -31,6 +31,10 @@ pub use write::{to_text, write};
 
 use nalgebra::Vector3;
 
+/// What to do about an OBJ file that cannot be read.
+pub const OBJ_HINT: &str =
+    "it must be a Wavefront OBJ with `v` and `f` lines; write it again from the program that made it";
+
 /// A mesh as an OBJ file holds it.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Mesh {

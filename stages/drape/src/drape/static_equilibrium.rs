@@ -1,0 +1,339 @@
+//! `StaticEquilibrium`: sews and drapes at once, straight to static equilibrium.
+//!
+//! Method: the engine's `StaticEquilibrium` (coarse to fine, Newton's method on the potential of
+//! sheet, seams, weight, contacts and friction). Cost: some 35 to 150 factorizations of the finest
+//! mesh, O(triangles^1.5) each with a small factor. Limits: the way there is no motion: nothing of
+//! it may be shown as an animation; folds and friction have many states of rest, of which one is
+//! found.
+
+use super::again::{MOST_DIP, is_better, thin_of, why_again};
+use super::asleep;
+use super::mixed_precision::{self, Precision};
+use super::models::{Bending, Membrane, models};
+use super::motion::engine_air;
+use super::{ImplicitEuler, InTime};
+use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_of, weld_seams};
+use nalgebra::Vector3;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+use toile_cloth::contact::skin::CollisionSurface;
+use toile_cloth::statics::drive::solve::{
+    Collider as EngineCollider, Equilibrium, LevelReport, StaticEquilibrium as Solver, StaticsError,
+};
+use toile_cloth::statics::report::start::surely_reversed;
+use toile_cloth::stopper::Stopper;
+use toile_core::decide::{Decision, Known};
+use toile_core::prelude::*;
+
+/// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds
+/// gains speed in it.
+#[choice]
+#[derive(Copy, Eq)]
+pub enum Proof {
+    /// A sixtieth of a second: the least force left over shows.
+    Short,
+    /// A tenth of a second and more, too: what slides or falls shows. Folds may still creep, in
+    /// garments of many gathers by some centimetres in the end; the way there is what takes
+    /// longest.
+    Long,
+}
+
+/// Sews the garment and brings it to rest, without the way there.
+///
+/// The default for garments: it solves for the drape itself, on coarser meshes first, so it takes a
+/// fraction of the time of a simulated fall and ends at rest: no vertex but the share `non_static`
+/// would gain `speed` if it were let go for a short while (see `proof`), with friction within its
+/// limit. Seams are joined exactly, cloth is kept out of the body and out of itself. Where it does
+/// not come to rest in `steps`, the last state goes on with a warning. Where the coarsest mesh
+/// turns out too coarse (a seam stays open, layers tangle, a limb comes through), it begins again
+/// on a finer one: the figure `restarts` tells how often, and a larger `coarsest` saves it. Cloth
+/// that misses the body or slides off it is an error, as soon as nothing is left that could catch
+/// it, mostly on the coarsest mesh. A scene without a body that no pin holds has no rest: its fall
+/// is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state
+/// of rest; a scene with wind in its last phase is refused, for wind has no potential: take
+/// `ImplicitEuler`.
+#[stage(
+    role = Draper,
+    version = 21,
+    source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
+    example = "StaticEquilibrium(speed: 0.001)",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
+)]
+pub struct StaticEquilibrium {
+    /// Downward acceleration; a scene's own phases come before it.
+    #[param(default = 9.81, min = 0.0, max = 1000.0, unit = "m/s2")]
+    pub gravity: f64,
+    /// What cloth resists in its plane.
+    #[param(default = Membrane::Woven, trades)]
+    pub membrane: Membrane,
+    /// What cloth resists when it is folded.
+    #[param(default = Bending::Quadratic, trades)]
+    pub bending: Bending,
+    /// At rest, no vertex but the share `non_static` gains more than this in a step that proves
+    /// rest (see `proof`).
+    #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
+    pub speed: f64,
+    /// The share of the vertices that may gain more, for garments that lie where the skin of a body
+    /// folds, as in an armpit: some vertices there never come to rest. The figure `non_static`
+    /// tells the share that still moves.
+    #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
+    pub non_static: f64,
+    /// Which steps prove rest.
+    #[param(default = Proof::Short, trades)]
+    pub proof: Proof,
+    /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at
+    /// least 700.
+    #[param(default = 300, min = 20, max = 100_000, unit = "vertices", trades)]
+    pub coarsest: usize,
+    /// Steps on every mesh but the finest; with `bending_continuation`, each of its states has 60.
+    #[param(default = 30, min = 1, max = 100_000, unit = "steps", trades)]
+    pub coarse_steps: usize,
+    /// Steps on the finest mesh, after which the drape stops as it is.
+    #[param(default = 500, min = 1, max = 100_000, unit = "steps", trades)]
+    pub steps: usize,
+    /// Gap below which a seam is joined.
+    #[param(default = Length::mm(0.5), min = 1e-6, max = 0.1, trades)]
+    pub join_gap: Length,
+    /// Wall time after which it gives up, with an error. A run that meets it is not repeatable.
+    #[param(default = 600.0, min = 0.001, max = 1e6, unit = "s", trades)]
+    pub time_limit: f64,
+    /// Whether bending starts far too stiff and is let go mesh by mesh: a start moved by a
+    /// millimetre then ends in the same folds, and a finer mesh in like ones. Without, it is
+    /// faster, and chance picks the folds.
+    #[param(default = true)]
+    pub bending_continuation: bool,
+    /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came
+    /// to rest on a coarser mesh (see `Subdivide`) and shall keep its folds. Bending is not
+    /// continued then.
+    #[param(default = false, way)]
+    pub from_here: bool,
+    /// Whether cloth passes through cloth while its seams close: for panels that start far apart,
+    /// with others in between, or in the body. What crosses itself then is taken out of itself
+    /// along the contours where it does (Volino, Magnenat-Thalmann 2006). What starts in the body
+    /// is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh.
+    /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
+    /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
+    /// size in it; that is told, and the better result is taken.
+    #[param(default = false, way)]
+    pub sew_through: bool,
+    /// How precise the factor of each step's matrix is: single where that solves the step well,
+    /// which is checked, or always double. The state that is found keeps `speed` either way.
+    #[param(default = Precision::Mixed)]
+    pub precision: Precision,
+    /// Whether what has come to rest sleeps while few vertices still move: these settle by
+    /// themselves before the whole takes its next step. Rest is proved with all either way.
+    #[param(default = true)]
+    pub asleep: bool,
+    /// Distance at which cloth is held off itself where the pipeline names no collider.
+    #[param(default = Length::mm(1.0), min = 1e-5, max = 0.05)]
+    pub thickness: Length,
+}
+
+#[stage]
+impl StaticEquilibrium {
+    /// Runs the stage.
+    pub fn run(
+        &self,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        phases: Option<&Phases>,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
+        garment.check()?;
+        engine::check_response(collider, "StaticEquilibrium")?;
+        let gravity =
+            phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));
+        let card = collider.map(|c| c.scheme.card());
+        let setting = Setting {
+            gravity,
+            air: phases.and_then(Phases::last_air).map(engine_air),
+            thickness: card.map_or(self.thickness.metres(), |c| c.thickness),
+            self_collision: card.is_none_or(|c| c.self_collision),
+        };
+        let scene = scene_of(garment, &setting)?;
+        let friction = card.map_or(0.0, |c| c.friction);
+        let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
+        let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
+        let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
+        let clock = Instant::now();
+        let reversed = surely_reversed(&scene, &scene.positions);
+        for name in reversed.iter().filter(|_| self.sew_through) {
+            cx.warn(format!(
+                "{} seems to run the wrong way: {}",
+                engine::seam(name),
+                engine::turn_round(name)
+            ));
+        }
+        let cancel = cx.cancel().clone();
+        let stopper = Stopper::when(move || cancel.is_cancelled());
+        let mut result =
+            self.solver().solve_around(&scene, wearer, &[], &stopper, &mut |level| progress.tell(level));
+        if let (true, Some(collider), Some(why)) = (self.sew_through, collider, why_again(&result)) {
+            let thin = thin_of(collider);
+            let around: Vec<&dyn CollisionSurface> =
+                thin.iter().map(|f| f as &dyn CollisionSurface).collect();
+            if !around.is_empty() {
+                cx.note(format!(
+                    "{why}: the garment is sewn again around a thin figure, which grows to the body"
+                ));
+                // Both ways share the time that the user gives.
+                let solver =
+                    Solver { budget: self.solver().budget.saturating_sub(clock.elapsed()), ..self.solver() };
+                let second =
+                    solver.solve_around(&scene, wearer, &around, &stopper, &mut |level| progress.tell(level));
+                if is_better(&second, &result) {
+                    result = second;
+                } else {
+                    cx.note("that came out no better: the first result is kept");
+                }
+            }
+        }
+        cx.check()?;
+        if let (Err(StaticsError::Falls), Some(phases)) = (&result, phases) {
+            cx.warn("nothing holds the cloth, so it has no state of rest: its fall is followed for the scene's phases");
+            return ImplicitEuler {
+                motion: InTime { drag: 0.0, ..InTime::default() },
+                ..ImplicitEuler::default()
+            }
+            .run(garment, collider, Some(phases), cx);
+        }
+        let steps = progress.steps;
+        if let Some(positions) = result.as_ref().err().and_then(StaticsError::so_far) {
+            cx.so_far(self.at(garment, positions));
+        }
+        let words = Words { garment, scheme: collider.map(|c| c.scheme.as_ref()), stage: cx.stage() };
+        let (state, converged) = self.judge(result, &words, &reversed, cx)?;
+        cx.figure("residual", state.residual, "N");
+        cx.figure("non_static", state.outcome.non_static, "");
+        cx.figure("restarts", state.restarts as f64, "");
+        if state.dip > MOST_DIP {
+            let mm = state.dip * 1e3;
+            cx.warn(format!(
+                "between its points the cloth dips up to {mm:.1} mm into the body: a smaller edge length of the mesh follows it closer"
+            ));
+        }
+        let mut rested = self.finish(garment, &state, steps, converged);
+        if let Some(collider) = collider {
+            let kept = engine::on_body(garment, &rested.positions, collider.scheme.as_ref(), &gravity);
+            rested.status.on_body = engine::both(&garment.status.on_body, kept);
+        }
+        Ok(rested)
+    }
+
+    /// Going on from a garment at rest on a finer mesh, or in another pose.
+    fn improves(&self) -> bool {
+        self.from_here
+    }
+
+    fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
+        let rules = [
+            mixed_precision::rule(self.precision, self.bending_continuation, known.given),
+            asleep::rule(self.asleep, self.bending_continuation, known.given),
+        ];
+        rules.into_iter().flatten().collect()
+    }
+
+    fn solver(&self) -> Solver {
+        Solver {
+            models: models(self.membrane, self.bending),
+            speed: self.speed,
+            non_static: self.non_static,
+            coarsest: self.coarsest,
+            coarse_steps: self.coarse_steps,
+            finest_steps: self.steps,
+            join_gap: self.join_gap.metres(),
+            budget: Duration::from_secs_f64(self.time_limit),
+            bending_continuation: self.bending_continuation,
+            from_here: self.from_here,
+            sew_through: self.sew_through,
+            long_proof: self.proof == Proof::Long,
+            precision: self.precision.into(),
+            asleep: self.asleep,
+        }
+    }
+
+    /// The state to go on with, and whether it is at rest.
+    fn judge(
+        &self,
+        result: Result<Equilibrium, StaticsError>,
+        words: &Words<'_>,
+        reversed: &[String],
+        cx: &Context,
+    ) -> Result<(Equilibrium, bool), StageError> {
+        let can = Rests {
+            reversed,
+            sew_through: self.sew_through,
+            coarsest: self.coarsest,
+            steps: self.steps,
+            time_limit: self.time_limit,
+        };
+        match result {
+            Ok(state) => Ok((state, true)),
+            Err(StaticsError::NotAtRest { wanted, panel, state }) => {
+                let [warning, detail] = words.still_moving(&state, &panel, wanted, &can);
+                cx.warn(warning);
+                cx.note(detail);
+                Ok((*state, false))
+            }
+            Err(StaticsError::Crossing { pairs, state }) => {
+                cx.warn(crossing(pairs));
+                Ok((*state, false))
+            }
+            Err(error) => Err(words.rest(&error, &can)),
+        }
+    }
+
+    /// The garment at rest somewhere.
+    fn at(&self, garment: &Garment, positions: &[Vector3<f64>]) -> Garment {
+        let mut garment = garment.clone();
+        garment.positions = positions.iter().map(|p| Point3::from(*p)).collect();
+        garment.velocities.fill(Vector3::zeros());
+        garment
+    }
+
+    fn finish(&self, garment: &Garment, state: &Equilibrium, steps: usize, converged: bool) -> Garment {
+        let mut garment = self.at(garment, &state.positions);
+        weld_seams(&mut garment);
+        garment.status = SolveStatus {
+            steps: garment.status.steps + steps,
+            converged,
+            energy: state.energy,
+            max_speed: state.outcome.fastest,
+            on_body: garment.status.on_body.clone(),
+            held: engine::held_of(&state.held()),
+        };
+        garment
+    }
+}
+
+/// Tells the user how far the solver has come, and stops it when asked to.
+struct Progress<'a> {
+    cx: &'a Context,
+    wanted: f64,
+    /// Vertices of the garment.
+    vertices: usize,
+    steps: usize,
+}
+
+impl Progress<'_> {
+    fn tell(&mut self, level: &LevelReport) -> ControlFlow<()> {
+        self.steps += 1;
+        self.cx.work(level.nodes as f64 / self.vertices.max(1) as f64);
+        if self.cx.check().is_err() {
+            return ControlFlow::Break(());
+        }
+        let (speed, [pass, passes]) = (level.outcome.speed, level.pass);
+        let text = match level.sewing {
+            true => format!("sewing: widest seam {:.1} mm", level.gap * 1e3),
+            false => format!(
+                "draping, mesh {pass} of {passes}: moves {:.1} mm/s, at rest below {:.1} mm/s",
+                speed * 1e3,
+                self.wanted * 1e3
+            ),
+        };
+        // From 1 m/s down to rest, by the logarithm.
+        let share = if speed > 0.0 { speed.ln() / self.wanted.ln() } else { 1.0 };
+        self.cx.progress(if level.sewing { 0.0 } else { share }, text);
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,27 @@
+//! The judgement of a finished garment, behind `metrics.json`.
+
+pub mod girth;
+mod looks;
+mod on_body;
+mod parts;
+mod quality;
+mod shortfalls;
+mod tight;
+
+pub use quality::Measure;
+
+use toile_core::Registry;
+use toile_core::artifact::Garment;
+
+/// Adds the judgement to every pipeline that makes a garment.
+pub fn register(registry: &mut Registry) {
+    registry.add_implicit::<Measure>();
+}
+
+/// The garment by the pattern that it was sewn from; one from a 3D file has no pattern before it is
+/// laid flat.
+pub fn with_pattern<'a>(sewn: &'a Garment, flat: Option<&'a Garment>) -> &'a Garment {
+    let first = sewn.rest.first();
+    let is_known = sewn.rest.iter().any(|p| Some(p) != first);
+    flat.filter(|_| !is_known).unwrap_or(sewn)
+}

@@ -1,0 +1,85 @@
+//! `SpringStitcher`: sews panels with springs.
+//!
+//! Method: the engine's motion by central differences (Fan et al. 1999) with springs along the mesh
+//! edges for cloth and bending; seams close at a set speed as if by hands, and pairs that have met
+//! become one node. Gravity does not act until every pair is joined. Cost: steps times triangles.
+//! Limits: stiff fabrics are softened to `stiffest`; a seam that does not come nearer is reported;
+//! nothing is torn or pulled through the body.
+
+use crate::drape::{Course, InTime, damping, moved, softened, springs};
+use crate::engine::Motions;
+use toile_cloth::motion::{Method, Motion, Until};
+use toile_core::prelude::*;
+
+/// Sews the panels of a garment together, cloth taken as springs.
+///
+/// Paired points of the seams are brought together at `closing` while the cloth's own springs,
+/// damping and contacts act; gravity waits until the sewing is done, or the cloth would fall. When
+/// all are nearer than `seam_distance` they become one with their momentum kept. Gathered seams are
+/// sewn the same way. A seam that cannot close is an error that names it.
+#[stage(
+    role = Stitcher,
+    version = 3,
+    source = "Fan, Zhou, Wang, Yuen, 1999; improved spring-mass model, 2003",
+    example = "SpringStitcher(seam_distance: \"1 mm\")",
+    contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
+)]
+pub struct SpringStitcher {
+    /// Seams are joined when the points of each pair are nearer than this.
+    #[param(default = Length::mm(1.0), min = 1e-5, max = 0.02, trades)]
+    pub seam_distance: Length,
+    /// Speed at which the two sides of a seam are brought together.
+    #[param(default = 0.5, min = 0.001, max = 100.0, unit = "m/s")]
+    pub closing: f64,
+    /// Damping of all motion while sewing, on top of the fabric's.
+    #[param(default = 20.0, min = 0.0, max = 1000.0, unit = "1/s")]
+    pub damping: f64,
+    /// Share of the friction that acts while sewing: hands smooth the cloth as they sew.
+    #[param(default = 0.1, min = 0.0, max = 1.0)]
+    pub friction: f64,
+    /// Tensile curves are cut at this slope: the stiffest spring decides the time step, and sewing
+    /// needs no stiffer cloth.
+    #[param(default = 500.0, min = 10.0, max = 1e6, unit = "N/m", trades)]
+    pub stiffest: f64,
+    /// Time between two looks at contacts.
+    #[param(default = 0.004, min = 1e-6, max = 0.1, unit = "s", trades, finer = "less")]
+    pub dt: f64,
+    /// Longest simulated time for sewing.
+    #[param(default = 4.0, min = 0.01, max = 100.0, unit = "s", trades)]
+    pub time_limit: f64,
+}
+
+#[stage]
+impl SpringStitcher {
+    /// Runs the stage.
+    pub fn run(
+        &self,
+        garment: &Garment,
+        collider: Option<&Collider>,
+        cx: &Context,
+    ) -> Result<Garment, StageError> {
+        garment.check()?;
+        let time = InTime {
+            gravity: 0.0,
+            dt: self.dt,
+            drag: self.damping + damping(garment),
+            longest: self.time_limit,
+            join_gap: self.seam_distance,
+            ..InTime::default()
+        };
+        let motion = Motion {
+            closing: self.closing,
+            sewing_friction: self.friction,
+            until: Until::Sewn { longest: self.time_limit },
+            ..time.motion(Method::CentralDifferences, springs())
+        };
+        let can = Motions {
+            longest: ("time_limit", self.time_limit),
+            closing: motion.closing,
+            time_limit: None,
+            stiffest: Some(self.stiffest),
+        };
+        let course = Course { time: &time, motion, can };
+        moved(&course, &softened(garment, self.stiffest), garment, collider, None, cx)
+    }
+}

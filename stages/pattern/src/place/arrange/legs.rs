@@ -1,0 +1,143 @@
+//! Flat halves of legs that stand beside the body's legs.
+//!
+//! Trousers lie with their legs more or less spread, the body stands with its own. A half whose
+//! rows miss the leg would be sewn beside it. Below the fork its rows are moved sideways, so that
+//! the middle of each is before (or behind) the middle of the leg.
+
+use std::collections::BTreeMap;
+use toile_body::slice;
+use toile_core::artifact::BodyPart;
+use toile_core::prelude::*;
+
+/// Heights at which legs and pieces are compared, metres.
+const STEP: f64 = 0.02;
+/// A row covers the leg where the leg's middle lies within this share of it.
+const MIDST: f64 = 0.5;
+/// From the fork down over so much the move sets in, metres.
+const SETS_IN: f64 = 0.25;
+/// No piece is moved by less, metres.
+const LEAST: f64 = 0.005;
+
+/// Moves the flat halves of legs that miss the body's; what was moved, in words.
+pub(super) fn swing(
+    pattern: &Pattern,
+    body: &Body,
+    places: &mut BTreeMap<String, Vec<Point3>>,
+) -> Vec<String> {
+    let Some(crotch) = body.landmarks.get("crotch").map(|p| p.y) else { return Vec::new() };
+    let mut told = Vec::new();
+    for piece in pattern.pieces.iter().filter(|p| p.body_part == Some(BodyPart::Leg)) {
+        let Some(points) = places.get_mut(&piece.name) else { continue };
+        let hand = points.iter().map(|p| p.x).sum::<f64>().signum();
+        let rows = rows(points, crotch);
+        let legs: BTreeMap<i64, f64> =
+            rows.keys().filter_map(|k| Some((*k, leg_at(body, *k as f64 * STEP, hand)?))).collect();
+        let misses = |(k, [low, high]): (&i64, &[f64; 2])| {
+            let reach = 0.5 * MIDST * (high - low);
+            legs.get(k).is_some_and(|x| (x - 0.5 * (low + high)).abs() > reach)
+        };
+        if !rows.iter().any(misses) {
+            continue;
+        }
+        let away: BTreeMap<i64, f64> =
+            legs.iter().map(|(k, x)| (*k, x - 0.5 * (rows[k][0] + rows[k][1]))).collect();
+        let mut moved = 0.0f64;
+        for p in points.iter_mut().filter(|p| p.y < crotch) {
+            let set_in = ((crotch - p.y) / SETS_IN).min(1.0);
+            let by = set_in * set_in * (3.0 - 2.0 * set_in) * between(&away, p.y / STEP);
+            moved = if by.abs() > moved.abs() { by } else { moved };
+            p.x += by;
+        }
+        if moved.abs() > LEAST {
+            let way = if moved * hand > 0.0 { "outwards" } else { "inwards" };
+            told.push(format!(
+                "{} is swung {way} by {:.0} mm, to where the body's leg is",
+                piece.name,
+                moved.abs() * 1e3
+            ));
+        }
+    }
+    told
+}
+
+/// Least and greatest x of a piece's rows below the fork, by their number.
+fn rows(points: &[Point3], crotch: f64) -> BTreeMap<i64, [f64; 2]> {
+    let mut rows: BTreeMap<i64, [f64; 2]> = BTreeMap::new();
+    for p in points.iter().filter(|p| p.y < crotch) {
+        let row = rows.entry((p.y / STEP).floor() as i64).or_insert([f64::INFINITY, f64::NEG_INFINITY]);
+        *row = [row[0].min(p.x), row[1].max(p.x)];
+    }
+    rows
+}
+
+/// The middle of the body's leg on one side at a height.
+fn leg_at(body: &Body, y: f64, hand: f64) -> Option<f64> {
+    let loops = slice(&body.positions, &body.triangles, y);
+    // Hands may hang lower than the fork, farther out.
+    let own = loops.iter().filter(|l| l.centre().x * hand > 0.01);
+    let leg = own.min_by(|a, b| a.centre().x.abs().total_cmp(&b.centre().x.abs()))?;
+    Some(leg.centre().x)
+}
+
+/// The move at a height, in rows, between those of the next row below and above; that of the last
+/// row beyond it.
+fn between(away: &BTreeMap<i64, f64>, at: f64) -> f64 {
+    // A row's middle lies half a row above its number.
+    let at = at - 0.5;
+    let below = away.range(..=at.floor() as i64).next_back();
+    let above = away.range(at.floor() as i64 + 1..).next();
+    match (below, above) {
+        (Some((k, a)), Some((l, b))) => a + (b - a) * (at - *k as f64) / (l - k) as f64,
+        (Some((_, by)), None) | (None, Some((_, by))) => *by,
+        (None, None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    fn mannequin() -> Body {
+        let lengths = "(height: \"172 cm\", bust: \"88 cm\", waist: \"70 cm\", hip: \"96 cm\")";
+        toile_fixtures::mannequin(lengths).unwrap()
+    }
+
+    /// The half of a left leg from waist to ankle, 20 cm wide, that leaves the middle by so much a
+    /// metre.
+    fn half(spread: f64) -> (Pattern, BTreeMap<String, Vec<Point3>>) {
+        let row = |k: usize| {
+            let y = 0.105 + 0.02 * k as f64;
+            let out = spread * (0.8 - y).max(0.0);
+            (0..5).map(move |i| Point3::new(out + 0.05 * f64::from(i), y, 0.2))
+        };
+        let piece =
+            Piece { name: "left_leg_front".into(), body_part: Some(BodyPart::Leg), ..Piece::default() };
+        let pattern = Pattern { name: "trousers".into(), pieces: vec![piece], seams: vec![] };
+        (pattern, BTreeMap::from([("left_leg_front".to_owned(), (0..48).flat_map(row).collect())]))
+    }
+
+    #[test]
+    fn a_leg_that_is_spread_wide_is_swung_before_the_bodys() {
+        let body = mannequin();
+        let (pattern, mut places) = half(0.3);
+        let told = swing(&pattern, &body, &mut places);
+        assert!(told[0].starts_with("left_leg_front is swung inwards by "), "{told:?}");
+        for k in [2, 6, 12] {
+            let row = &places["left_leg_front"][5 * k..5 * k + 5];
+            let leg = leg_at(&body, row[0].y, 1.0).unwrap();
+            assert!((row[2].x - leg).abs() < 0.01, "{} {leg}", row[2].x);
+            assert!((row[4].x - row[0].x - 0.2).abs() < 1e-9, "as wide as before");
+        }
+        let waist = &places["left_leg_front"][5 * 40..];
+        assert!(waist.iter().all(|p| p.x < 0.2001), "what is above the fork stays");
+    }
+
+    #[test]
+    fn a_leg_that_covers_the_bodys_stays() {
+        let (pattern, places) = half(0.05);
+        let mut moved = places.clone();
+        assert!(swing(&pattern, &mannequin(), &mut moved).is_empty());
+        assert_eq!(moved, places);
+    }
+}

@@ -1,0 +1,275 @@
+//! Patterns without poses: what is decided of each piece, where it stands, what is refused.
+#![allow(clippy::unwrap_used)]
+
+use super::Arrange;
+use super::region::{Decided, Region, Side, decide};
+use crate::mesh::GridMesher;
+use toile_core::prelude::*;
+
+fn piece(name: &str, corners: &[[f64; 2]], edges: &[&str]) -> Piece {
+    Piece {
+        name: name.into(),
+        outer: PatternLoop {
+            corners: corners.iter().map(|[x, y]| Point2::new(*x, *y)).collect(),
+            edges: edges.iter().map(|n| PieceEdge { name: (*n).into(), curve: EdgeCurve::Line }).collect(),
+        },
+        ..Piece::default()
+    }
+}
+
+fn seam(a: (&str, &str), b: (&str, &str)) -> PatternSeam {
+    let side = |(p, e): (&str, &str), reversed| {
+        vec![EdgeUse { edge: EdgeRef { panel: p.into(), edge: e.into() }, reversed }]
+    };
+    PatternSeam {
+        name: format!("{}.{} + {}.{}", a.0, a.1, b.0, b.1),
+        kind: SeamKind::Matched,
+        sides: vec![side(a, false), side(b, true)],
+    }
+}
+
+/// A tank of front and back, named as a CAD program does.
+fn tank() -> Pattern {
+    let corners = [
+        [-0.24, 0.0],
+        [0.24, 0.0],
+        [0.24, 0.4],
+        [0.16, 0.6],
+        [0.1, 0.61],
+        [-0.1, 0.61],
+        [-0.16, 0.6],
+        [-0.24, 0.4],
+    ];
+    let edges = ["hem", "side_l", "arm_l", "shoulder_l", "neck", "shoulder_r", "arm_r", "side_r"];
+    let pair =
+        |a: &str, b: &str| [seam(("TANK FRT", a), ("TANK BK", b)), seam(("TANK FRT", b), ("TANK BK", a))];
+    Pattern {
+        name: "tank".into(),
+        pieces: vec![piece("TANK FRT", &corners, &edges), piece("TANK BK", &corners, &edges)],
+        seams: [pair("side_l", "side_r"), pair("shoulder_l", "shoulder_r")].concat(),
+    }
+}
+
+/// Legs in one piece each with a waistband; only its name says what the band is.
+fn leggings() -> Pattern {
+    let left = [[0.12, 0.0], [0.36, 0.0], [0.52, 0.65], [0.46, 0.95], [0.1, 0.93], [0.02, 0.65]];
+    let right: Vec<[f64; 2]> = (0..6).map(|k| left[(6 - k) % 6]).map(|[x, y]| [-x, y]).collect();
+    let names = ["hem", "in_back", "rise_back", "waist", "rise_front", "in_front"];
+    let turned: Vec<&str> = names.iter().rev().copied().collect();
+    let band = [[0.0, 0.0], [0.36, 0.0], [0.72, 0.0], [0.72, 0.05], [0.0, 0.05]];
+    let own = |p: &'static str| seam((p, "in_back"), (p, "in_front"));
+    let both = |e: &'static str| seam(("LL", e), ("LL_mirrored", e));
+    Pattern {
+        name: "leggings".into(),
+        pieces: vec![
+            piece("LL", &left, &names),
+            piece("LL_mirrored", &right, &turned),
+            piece("WB", &band, &["low_a", "low_b", "end_a", "top", "end_b"]),
+        ],
+        seams: vec![
+            own("LL"),
+            own("LL_mirrored"),
+            both("rise_back"),
+            both("rise_front"),
+            seam(("WB", "end_a"), ("WB", "end_b")),
+            seam(("WB", "low_a"), ("LL_mirrored", "waist")),
+            seam(("WB", "low_b"), ("LL", "waist")),
+        ],
+    }
+}
+
+/// The tank with sleeves, sewn in with their fronts to the front.
+fn tee() -> Pattern {
+    let mut tee = tank();
+    let corners = [[-0.2, 0.0], [0.2, 0.0], [0.2, 0.1], [0.0, 0.2], [-0.2, 0.1]];
+    let names = ["hem", "under_a", "cap_a", "cap_b", "under_b"];
+    for (sleeve, arms) in [("right sleeve", ["arm_r", "arm_l"]), ("left sleeve", ["arm_r", "arm_l"])] {
+        tee.pieces.push(piece(sleeve, &corners, &names));
+        tee.seams.push(seam((sleeve, "under_a"), (sleeve, "under_b")));
+        let bodies = if sleeve == "right sleeve" { ["TANK FRT", "TANK BK"] } else { ["TANK BK", "TANK FRT"] };
+        let mut cap = seam((sleeve, "cap_a"), (bodies[0], arms[0]));
+        cap.sides[0]
+            .push(EdgeUse { reversed: false, ..seam((sleeve, "cap_b"), ("", "")).sides[0][0].clone() });
+        cap.sides[1].extend(seam((sleeve, "cap_b"), (bodies[1], arms[1])).sides[1].clone());
+        tee.seams.push(cap);
+    }
+    tee
+}
+
+fn arranged(pattern: &Pattern) -> Result<Garment, StageError> {
+    let lowered = pattern.lower().unwrap();
+    let mesher: GridMesher = toile_core::param::ron_options().from_str("(edge: \"20 mm\")").unwrap();
+    let panel =
+        |(name, o): (&String, &Outline)| (name.clone(), mesher.run(o, &Context::quiet()).unwrap().into());
+    let panels = Set(lowered.outlines.iter().map(panel).collect());
+    let lengths = "(height: \"168 cm\", bust: \"80 cm\", waist: \"66 cm\", hip: \"85 cm\")";
+    let body = toile_fixtures::mannequin(lengths).unwrap();
+    let stage: Arrange = toile_core::param::ron_options().from_str("()").unwrap();
+    let fabric = toile_core::testkit::dress::fabric();
+    stage.run(pattern, panels, &lowered.plan, &body, &fabric, &Context::quiet())
+}
+
+fn middle(garment: &Garment, panel: &str) -> Vector3 {
+    let panel = garment.panels.iter().find(|p| p.name == panel).unwrap();
+    let points = &garment.positions[panel.vertices.clone()];
+    points.iter().map(|p| p.coords).sum::<Vector3>() / points.len() as f64
+}
+
+fn widest_gap(garment: &Garment) -> f64 {
+    let pairs = garment.seams.iter().flat_map(|s| &s.pairs);
+    pairs
+        .map(|[a, b]| (garment.positions[*a as usize] - garment.positions[*b as usize]).norm())
+        .fold(0.0, f64::max)
+}
+
+/// The mean normal of a panel points away from the middle of the body, as its outside does.
+fn looks_out(garment: &Garment, panel: &str) -> bool {
+    let panel = garment.panels.iter().find(|p| p.name == panel).unwrap();
+    let out: f64 = garment.triangles[panel.triangles.clone()]
+        .iter()
+        .map(|t| {
+            let [a, b, c] = t.map(|v| garment.positions[v as usize]);
+            let away = Vector3::new(a.x, 0.0, a.z);
+            (b - a).cross(&(c - a)).dot(&away)
+        })
+        .sum();
+    out > 0.0
+}
+
+#[test]
+fn fronts_and_backs_are_known_by_the_short_words_of_cad_programs() {
+    let decided = decide(&tank()).unwrap();
+    let why = |word: &str| {
+        format!(
+            "the word \"{word}\" in its name; it is sewn at its upper end beside the middle, as shoulders are"
+        )
+    };
+    let one = |side, word| Decided { region: Region::Trunk, side, hand: 0.0, why: why(word) };
+    assert_eq!(decided, [one(Side::Front, "frt"), one(Side::Back, "bk")]);
+}
+
+#[test]
+fn a_tank_hangs_from_the_shoulders_before_and_behind_the_body() {
+    let g = arranged(&tank()).unwrap();
+    let (front, back) = (middle(&g, "TANK FRT"), middle(&g, "TANK BK"));
+    assert!(front.z > 0.1 && back.z < -0.1, "{front} {back}");
+    assert!(front.x.abs() < 1e-3 && (front.y - back.y).abs() < 1e-9);
+    assert!(looks_out(&g, "TANK FRT") && looks_out(&g, "TANK BK"));
+    // Sides and shoulders lie as far apart as the pieces.
+    assert!((widest_gap(&g) - (front.z - back.z)).abs() < 1e-9, "{}", widest_gap(&g));
+}
+
+#[test]
+fn legs_go_around_their_own_leg_and_the_band_around_the_waist() {
+    let pattern = leggings();
+    let decided = decide(&pattern).unwrap();
+    let found: Vec<(Region, f64)> = decided.iter().map(|d| (d.region, d.hand)).collect();
+    assert_eq!(found, [(Region::Leg, 1.0), (Region::Leg, -1.0), (Region::Waist, 0.0)]);
+    let g = arranged(&pattern).unwrap();
+    assert!(middle(&g, "LL").x > 0.05 && middle(&g, "LL_mirrored").x < -0.05);
+    assert!(["LL", "LL_mirrored", "WB"].iter().all(|p| looks_out(&g, p)));
+    let band = g.panels.iter().find(|p| p.name == "WB").unwrap();
+    let low = g.positions[band.vertices.clone()].iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+    let legs = g.panels.iter().filter(|p| p.name != "WB").flat_map(|p| &g.positions[p.vertices.clone()]);
+    let high = legs.map(|p| p.y).fold(0.0, f64::max);
+    assert!((low - high).abs() < 0.02, "{low} {high}");
+}
+
+#[test]
+fn sleeves_go_around_the_arm_whose_armhole_they_are_sewn_into() {
+    let pattern = tee();
+    let decided = decide(&pattern).unwrap();
+    let found: Vec<(Region, f64)> = decided.iter().skip(2).map(|d| (d.region, d.hand)).collect();
+    assert_eq!(found, [(Region::Arm, -1.0), (Region::Arm, 1.0)]);
+    let g = arranged(&pattern).unwrap();
+    assert!(middle(&g, "right sleeve").x < -0.2 && middle(&g, "left sleeve").x > 0.2);
+    for (sleeve, hand) in [("right sleeve", -1.0), ("left sleeve", 1.0)] {
+        let panel = g.panels.iter().find(|p| p.name == sleeve).unwrap();
+        let of = |far: &dyn Fn(Point2) -> f64| {
+            let all = panel.vertices.clone();
+            all.max_by(|a, b| far(g.rest[*a]).total_cmp(&far(g.rest[*b]))).unwrap()
+        };
+        // The top of the cap is over the arm, the hem farther out; the left sleeve's left half is
+        // before the arm.
+        let (top, hem, at_left) =
+            (of(&|p| p.y), of(&|p| -p.y - p.x.abs()), of(&|p| 0.1 - (p.x + 0.1).abs() - (p.y - 0.1).abs()));
+        let at = |v: usize| g.positions[v];
+        assert!(at(top).y > at(hem).y && at(hem).x * hand > at(top).x * hand, "{sleeve}");
+        assert!((at(at_left).z - at(top).z) * hand > 0.02, "{sleeve}: {} {}", at(at_left), at(top));
+    }
+}
+
+#[test]
+fn a_band_in_one_edge_is_turned_so_that_its_stretches_lie_at_what_they_are_sewn_to() {
+    let flat = |name: &str| {
+        piece(name, &[[-0.25, 0.0], [0.25, 0.0], [0.2, 0.6], [-0.2, 0.6]], &["hem", "left", "waist", "right"])
+    };
+    let band = piece(
+        "WAISTBAND",
+        &[[0.0, 0.0], [0.8, 0.0], [0.8, 0.05], [0.0, 0.05]],
+        &["low", "end_a", "top", "end_b"],
+    );
+    let (sides, mut waist) =
+        ([("left", "right"), ("right", "left")], seam(("WAISTBAND", "low"), ("FRONT", "waist")));
+    waist.sides[1].extend(seam(("WAISTBAND", "low"), ("BACK", "waist")).sides[1].clone());
+    let pattern = Pattern {
+        name: "skirt".into(),
+        pieces: vec![flat("FRONT"), flat("BACK"), band],
+        seams: sides.iter().map(|(a, b)| seam(("FRONT", a), ("BACK", b))).chain([waist]).collect(),
+    };
+    let g = arranged(&pattern).unwrap();
+    let panel = g.panels.iter().find(|p| p.name == "WAISTBAND").unwrap();
+    // The first half of the band goes along the front, the second along the back.
+    let half = |from: f64, to: f64| {
+        let own: Vec<usize> =
+            panel.vertices.clone().filter(|v| g.rest[*v].x > from && g.rest[*v].x < to).collect();
+        own.iter().map(|v| g.positions[*v].z).sum::<f64>() / own.len() as f64
+    };
+    assert!(half(0.01, 0.39) > 0.05 && half(0.41, 0.79) < -0.05, "{} {}", half(0.01, 0.39), half(0.41, 0.79));
+}
+
+#[test]
+fn what_cannot_be_sewn_or_placed_is_refused_by_name() {
+    let refused = |pattern: &Pattern| {
+        let e = arranged(pattern).unwrap_err();
+        (e.message, e.hint.unwrap_or_default())
+    };
+    let mut bare = tank();
+    bare.seams.clear();
+    assert_eq!(
+        refused(&bare),
+        (
+            "the pattern has no seams: its pieces would fall to the floor".into(),
+            "give its reader the file of seams that you have looked through as `seams`".into()
+        )
+    );
+    let mut loose = tank();
+    loose.pieces.push(piece("BADGE", &[[0.0, 0.0], [0.1, 0.0], [0.1, 0.1]], &["a", "b", "c"]));
+    assert_eq!(
+        refused(&loose),
+        (
+            "the piece \"BADGE\" is sewn to nothing and would fall".into(),
+            "write its seams into the file that the reader takes as `seams`, or take the piece out".into()
+        )
+    );
+    let hint = "call it front, back or waistband, or give its pattern places around the body, as GarmentCode files have";
+    let renamed = |name: &str| {
+        let mut p = tank();
+        p.pieces[0].name = name.into();
+        let uses = p.seams.iter_mut().flat_map(|s| s.sides.iter_mut().flatten());
+        uses.filter(|u| u.edge.panel == "TANK FRT").for_each(|u| u.edge.panel = name.into());
+        refused(&p)
+    };
+    assert_eq!(renamed("P1"), ("nothing says where the piece \"P1\" stands".into(), hint.into()));
+    assert_eq!(
+        renamed("TANK SLV"),
+        ("nothing tells whether the sleeve \"TANK SLV\" is the left or the right one".into(), hint.into())
+    );
+    assert_eq!(
+        renamed("TANK COLLAR"),
+        (
+            "nothing places the piece \"TANK COLLAR\", a \"collar\" by its name, without a pose".into(),
+            hint.into()
+        )
+    );
+}

@@ -1,0 +1,124 @@
+//! Whether a body can wear the garment: known before anything is sewn.
+//!
+//! Cost: one pass over the body's vertices. Limits: a tape around the garment as it lies flat, at
+//! its armpits, its waist and hip, and its cuffs; what a closure would open is not known.
+
+use super::fitting::KEPT;
+use crate::style::block::template::fit::Fit;
+use crate::style::block::template::form::Form;
+use toile_body::convex_hull;
+use toile_core::prelude::*;
+
+/// A garment may be narrower than the body by this share: a knit stretches so far (a quarter).
+const NARROWEST: f64 = 0.8;
+/// Half the thickness of the slice in which an arm is measured, and how far from its axis its skin
+/// may lie, metres.
+const SLICE: f64 = 0.012;
+const REACH: f64 = 0.08;
+/// An arm is measured no higher than at this share of the upper arm: above it the trunk is near.
+const UPPERMOST: f64 = 0.5;
+
+/// A girth of the garment beside that of the body, metres.
+struct Girth {
+    what: &'static str,
+    garment: f64,
+    of_body: &'static str,
+    body: f64,
+}
+
+/// Girths of one garment that differ by more than this share were not measured alike.
+const ALIKE: f64 = 0.03;
+
+/// Refuses a garment that is much too narrow for the body. `name` is its style's.
+pub(super) fn check(
+    name: &str,
+    form: &Form,
+    fit: &Fit,
+    body: &Body,
+    photo: Option<&Photo>,
+) -> Result<(), StageError> {
+    let small = girths(form, fit, body).into_iter().find(|g| g.garment < NARROWEST * g.body);
+    small.map_or(Ok(()), |g| Err(too_small(&g, name, body, photo)))
+}
+
+fn too_small(g: &Girth, name: &str, body: &Body, photo: Option<&Photo>) -> StageError {
+    let cm = |m: f64| (m * 100.0).round();
+    // What the body was chosen for, where it was chosen for this garment.
+    let chosen_for = body.measurements.get(&format!("garment_{}", g.what)).copied();
+    let was_chosen = KEPT.iter().any(|kept| body.measurements.contains_key(*kept));
+    let width = photo.and_then(|p| p.garment_width).map(|w| cm(w * g.body / g.garment));
+    let scale = match width {
+        Some(width) => {
+            format!("is the stated width right? It gives the scale; from {width} cm on it would fit")
+        }
+        None => "is the scale right? The garment is measured by it".to_owned(),
+    };
+    let hint = match chosen_for {
+        Some(other) if (other - g.garment).abs() > ALIKE * g.garment => format!(
+            "the mannequin was chosen for {} cm there, as of another garment: --set 'body.style={name}'",
+            cm(other)
+        ),
+        _ if was_chosen => {
+            format!("{scale}. If it is, lay waistband and cuffs stretched out, without folds")
+        }
+        _ => format!("{scale}. If it is, take a mannequin that it fits: --set 'body=Fitting(style: {name})'"),
+    };
+    StageError::invalid(format!(
+        "the garment is too small: its {} measures {} cm around, {} {} cm",
+        g.what,
+        cm(g.garment),
+        g.of_body,
+        cm(g.body)
+    ))
+    .hint(hint)
+}
+
+/// What can be compared.
+fn girths(form: &Form, fit: &Fit, body: &Body) -> Vec<Girth> {
+    let at = |name: &str| form.edges.iter().position(|e| e.name == name);
+    let across = |k: usize| 2.0 * fit.sides.iter().map(|s| s[k].a.x).sum::<f64>();
+    let tape = |what, of_body, level: &str, garment: Option<f64>| {
+        Some(Girth { what, garment: garment?, of_body, body: *body.measurements.get(level)? })
+    };
+    let found = [
+        tape("chest", "the body's", "bust", fit.chest(form)),
+        tape("waist", "the body's", "waist", at("waist").map(across)),
+        tape("hip", "the body's", "hip", fit.hip(form)),
+    ];
+    found.into_iter().flatten().chain(sleeve(form, fit, body)).collect()
+}
+
+/// The narrower cuff beside the arm where it ends: as far below the armpit as the underarm seam is
+/// long.
+fn sleeve(form: &Form, fit: &Fit, body: &Body) -> Option<Girth> {
+    let cuff = form.underarm()? + 1;
+    let mark = |name: &str| body.landmarks.get(&format!("{name}_left")).copied();
+    let (shoulder, elbow, wrist) = (mark("shoulder")?, mark("elbow")?, mark("wrist")?);
+    let (upper, fore) = ((elbow - shoulder).norm(), (wrist - elbow).norm());
+    let armpit = mark("armpit").map_or(0.0, |p| (p - shoulder).dot(&(elbow - shoulder)) / upper.max(1e-6));
+    let narrower = fit.sides.iter().min_by(|a, b| a[cuff].length().total_cmp(&b[cuff].length()))?;
+    let along = armpit.max(0.0) + narrower[cuff - 1].length();
+    let (of_body, from, to, share) = match along - upper {
+        below if below < 0.0 => ("the upper arm", shoulder, elbow, (along / upper).max(UPPERMOST)),
+        below if below < 0.8 * fore => ("the forearm", elbow, wrist, below / fore),
+        _ => ("the wrist", elbow, wrist, 1.0),
+    };
+    let around = arm_girth(body, from, to, share)?;
+    Some(Girth { what: "narrower cuff", garment: 2.0 * narrower[cuff].length(), of_body, body: around })
+}
+
+/// The girth of an arm at a share of the way between two of its landmarks.
+fn arm_girth(body: &Body, from: Point3, to: Point3, share: f64) -> Option<f64> {
+    let axis = (to - from).try_normalize(1e-6)?;
+    let middle = from + (to - from) * share;
+    let across = axis.cross(&Vector3::z()).try_normalize(1e-6)?;
+    let front = across.cross(&axis);
+    let near = |p: &Point3| {
+        let d = p - middle;
+        let flat = Point2::new(d.dot(&across), d.dot(&front));
+        (d.dot(&axis).abs() < SLICE && flat.coords.norm() < REACH).then_some(flat)
+    };
+    let hull = convex_hull(body.positions.iter().filter_map(near).collect());
+    let n = hull.len();
+    (n > 2).then(|| (0..n).map(|i| (hull[(i + 1) % n] - hull[i]).norm()).sum())
+}

@@ -1,0 +1,352 @@
+#![allow(clippy::unwrap_used, clippy::expect_used)]
+
+use super::*;
+use proptest::prelude::*;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toile_core::prelude::*;
+
+/// A sample's true outline and its edges' names and lengths in mm.
+fn truth(garment: &str, side: &str) -> (Outline, Vec<(String, f64)>) {
+    let base = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../pipelines/samples").join(garment);
+    let text = std::fs::read_to_string(base.join(format!("{side}.outline.json"))).unwrap();
+    let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let point =
+        |v: &serde_json::Value| Point2::new(v[0].as_f64().unwrap() / 1e3, v[1].as_f64().unwrap() / 1e3);
+    let edges = truth["edges"].as_array().unwrap();
+    let corners = edges.iter().map(|e| e["start"].as_u64().unwrap() as usize).collect();
+    let lengths = edges
+        .iter()
+        .map(|e| (e["name"].as_str().unwrap().to_owned(), e["length_mm"].as_f64().unwrap()))
+        .collect();
+    (outline(truth["outline"].as_array().unwrap().iter().map(point).collect(), corners), lengths)
+}
+
+fn outline(points: Vec<Point2>, corners: Vec<usize>) -> Outline {
+    Outline {
+        outer: Loop { points, corners },
+        holes: vec![],
+        edges: vec![],
+        inner: vec![],
+        frame: None,
+        lies: vec![],
+    }
+}
+
+/// Front and back of a sample, each changed by `f`.
+fn set(garment: &str, f: impl Fn(Outline) -> Outline) -> Set<Outline> {
+    ["front", "back"].iter().map(|s| ((*s).to_owned(), f(truth(garment, s).0))).collect()
+}
+
+fn run(garment: &str, outlines: Set<Outline>) -> Result<(Set<Outline>, SewingPlan), StageError> {
+    match garment {
+        "vest" => Vest {}.run(outlines, &Context::quiet()),
+        _ => TShirt {}.run(outlines, &Context::quiet()),
+    }
+}
+
+/// Names and lengths as in the truth, within `tolerance` mm.
+fn assert_named(garment: &str, named: &Set<Outline>, scale: f64, tolerance: f64) {
+    for side in ["front", "back"] {
+        let found = named.get(side).unwrap();
+        let want = truth(garment, side).1;
+        assert_eq!(found.edges.len(), want.len());
+        for (e, (name, length)) in found.edges.iter().zip(&want) {
+            assert_eq!(&e.name, name);
+            let is = 1e3 * polyline_length(&found.edge_points(e)) / scale;
+            assert!((is - length).abs() < tolerance, "{garment} {side} {name}: {is:.1} for {length:.1} mm");
+        }
+        // Together they cover the loop.
+        let n = found.edges.len();
+        assert!((0..n).all(|k| found.edges[k].end == found.edges[(k + 1) % n].start));
+    }
+}
+
+#[test]
+fn samples_get_their_names() {
+    for garment in ["vest", "tshirt"] {
+        let (named, plan) = run(garment, set(garment, |o| o)).unwrap();
+        assert_named(garment, &named, 1.0, 0.1);
+        assert_eq!(plan.seams.len(), if garment == "vest" { 4 } else { 6 });
+        let front = plan.placements["front"];
+        assert!(!front.behind && plan.placements["back"].behind);
+        assert!(front.anchor.x.abs() < 1e-6, "{}", front.anchor);
+        // The samples' neck points are their highest.
+        let top = truth(garment, "front").0.bounds().1.y;
+        assert!((front.anchor.y - top).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn corners_may_be_missing() {
+    let bare = |o: Outline| outline(o.outer.points, vec![]);
+    for garment in ["vest", "tshirt"] {
+        let (named, _) = run(garment, set(garment, bare)).unwrap();
+        assert_named(garment, &named, 1.0, 8.0);
+    }
+}
+
+#[test]
+fn corners_may_be_too_many() {
+    let many = |o: Outline| {
+        let n = o.outer.points.len();
+        let extra = (0..n).step_by(n / 23).filter(|i| o.outer.corners.iter().all(|c| c.abs_diff(*i) > 40));
+        let mut corners: Vec<usize> = o.outer.corners.iter().copied().chain(extra).collect();
+        corners.sort_unstable();
+        outline(o.outer.points, corners)
+    };
+    for garment in ["vest", "tshirt"] {
+        let (named, _) = run(garment, set(garment, many)).unwrap();
+        assert_named(garment, &named, 1.0, 0.1);
+    }
+}
+
+#[test]
+fn garments_may_lie_askew_and_be_of_any_size() {
+    for (degrees, scale) in [(-15.0f64, 1.0), (-6.0, 0.4), (9.0, 1.7), (15.0, 1.0)] {
+        let turn = nalgebra::Rotation2::new(degrees.to_radians());
+        let moved = |o: Outline| {
+            let to = |p: &Point2| Point2::from(turn * p.coords * scale) + Vector2::new(3.0, -2.0);
+            outline(o.outer.points.iter().map(to).collect(), o.outer.corners)
+        };
+        for garment in ["vest", "tshirt"] {
+            let (named, _) = run(garment, set(garment, moved)).unwrap();
+            assert_named(garment, &named, scale, 0.1);
+        }
+    }
+}
+
+#[test]
+fn the_loops_start_does_not_matter() {
+    let rolled = |o: Outline| {
+        let (mut points, n) = (o.outer.points, 777);
+        let count = points.len();
+        points.rotate_left(n % count);
+        let mut corners: Vec<usize> =
+            o.outer.corners.iter().map(|c| (c + count - n % count) % count).collect();
+        corners.sort_unstable();
+        outline(points, corners)
+    };
+    for garment in ["vest", "tshirt"] {
+        assert_named(garment, &run(garment, set(garment, rolled)).unwrap().0, 1.0, 0.1);
+    }
+}
+
+#[test]
+fn sewn_edges_are_divided_alike() {
+    let (named, plan) = run("vest", set("vest", |o| o)).unwrap();
+    let gauge = |e: &EdgeRef| named.get(&e.panel).unwrap().edge(&e.edge).unwrap().gauge;
+    for seam in &plan.seams {
+        assert_eq!(gauge(&seam.a), gauge(&seam.b), "{}", seam.name());
+        assert_eq!(gauge(&seam.a).divisions(0.012), gauge(&seam.b).divisions(0.012));
+    }
+    let gauge = |edge: &str| named.get("front").unwrap().edge(edge).unwrap().gauge;
+    let finer = |edge: &str| gauge(edge).divisions(0.016) as f64 / (gauge(edge).length / 0.016);
+    assert!(finer("armhole_left") > 1.2, "the armhole bends: {}", finer("armhole_left"));
+    assert!(finer("shoulder_left") < 1.2, "the shoulder is straight: {}", finer("shoulder_left"));
+}
+
+#[test]
+fn a_panel_alone_is_named_and_told() {
+    let cx = Context::quiet();
+    let only: Set<Outline> = [("front".to_owned(), truth("vest", "front").0)].into_iter().collect();
+    let (named, plan) = Vest {}.run(only, &cx).unwrap();
+    assert_eq!(named.get("front").unwrap().edges.len(), 8);
+    assert!(plan.seams.is_empty());
+    assert_eq!(
+        cx.take_remarks().warnings,
+        ["the panel \"front\" has no partner and stays unsewn; give a photo of the other side, or \
+          `MirrorOf(\"front\")` in its place"]
+    );
+}
+
+fn polygon(points: &[[f64; 2]]) -> Outline {
+    let n = points.len();
+    let side = |i: usize| {
+        let (a, b) = (points[i], points[(i + 1) % n]);
+        (0..40).map(move |k| {
+            let t = f64::from(k) / 40.0;
+            Point2::new((a[0] + (b[0] - a[0]) * t) / 1e3, (a[1] + (b[1] - a[1]) * t) / 1e3)
+        })
+    };
+    outline((0..n).flat_map(side).collect(), (0..n).map(|i| 40 * i).collect())
+}
+
+fn refusal(garment: &str, front: Outline) -> String {
+    run(garment, [("front".to_owned(), front)].into_iter().collect()).unwrap_err().message
+}
+
+#[test]
+fn a_style_says_why_it_does_not_fit() {
+    let trousers = [
+        [250.0, 0.0],
+        [210.0, 1000.0],
+        [-210.0, 1000.0],
+        [-250.0, 0.0],
+        [-90.0, 0.0],
+        [0.0, 700.0],
+        [90.0, 0.0],
+    ];
+    let notched = "its lower border rises by 70 % of its height in the middle, like a pair of trousers";
+    assert_eq!(
+        refusal("vest", polygon(&trousers)),
+        format!("\"front\" does not look like a vest: {notched}")
+    );
+    assert_eq!(
+        refusal("tshirt", polygon(&trousers)),
+        format!("\"front\" does not look like a T-shirt: {notched}")
+    );
+    assert_eq!(
+        refusal("vest", truth("tshirt", "front").0),
+        "\"front\" does not look like a vest: its sides run up to the shoulders without an armhole; it seems to have \
+         sleeves or none at all"
+    );
+    assert_eq!(
+        refusal("tshirt", truth("vest", "front").0),
+        "\"front\" does not look like a T-shirt: its arms end without a cuff; it seems to have no sleeves"
+    );
+    let skirt = [[300.0, 0.0], [180.0, 600.0], [-180.0, 600.0], [-300.0, 0.0]];
+    assert_eq!(
+        refusal("vest", polygon(&skirt)),
+        "\"front\" does not look like a vest: it has no shoulder beside the neck"
+    );
+    let low = [[250.0, 0.0], [240.0, 80.0], [170.0, 250.0], [180.0, 560.0], [90.0, 600.0], [0.0, 480.0]];
+    let left = low.iter().rev().skip(1).map(|p| [-p[0], p[1]]);
+    let robe: Vec<[f64; 2]> = low.into_iter().chain(left).collect();
+    assert_eq!(
+        refusal("vest", polygon(&robe)),
+        "\"front\" does not look like a vest: its armpits would lie at 13 % of its height; 30 % to 90 % is usual"
+    );
+    let lopsided =
+        [[300.0, 0.0], [300.0, 120.0], [-150.0, 120.0], [-150.0, 900.0], [-300.0, 900.0], [-300.0, 0.0]];
+    assert!(
+        refusal("vest", polygon(&lopsided))
+            .starts_with("\"front\" does not look like a vest: its left and right halves differ by")
+    );
+    let flat = outline(vec![Point2::origin(); 30], vec![]);
+    assert_eq!(refusal("vest", flat), "\"front\" does not look like a vest: it has no area");
+}
+
+fn edge(text: &str) -> EdgeRef {
+    EdgeRef::try_from(text.to_owned()).unwrap()
+}
+
+fn sewn(entries: Vec<SeamEntry>) -> Result<(Set<Outline>, SewingPlan), StageError> {
+    let (named, plan) = run("vest", set("vest", |o| o)).unwrap();
+    Seams::of(entries).run(named, &plan, &Context::quiet())
+}
+
+fn fault(entry: fn(EdgeRef, EdgeRef) -> SeamEntry, a: &str, b: &str) -> (String, String) {
+    let e = sewn(vec![entry(edge(a), edge(b))]).unwrap_err();
+    assert_eq!(e.code, ErrorCode::InvalidInput);
+    (e.message, e.hint.unwrap_or_default())
+}
+
+#[test]
+fn listed_seams_replace_the_styles() {
+    let (_, plan) = sewn(vec![SeamEntry::Match(edge("front.side_left"), edge("back.side_left"))]).unwrap();
+    assert_eq!(plan.seams.iter().map(Seam::name).collect::<Vec<_>>(), ["front.side_left + back.side_left"]);
+    assert_eq!(plan.placements.len(), 2);
+    let text = r#"(seams: [Match("front.side_left", "back.side_left"), Gather("front.hem", "back.hem")])"#;
+    let read: Seams = toile_core::param::ron_options().from_str(text).unwrap();
+    assert_eq!(
+        read,
+        Seams::of(vec![
+            SeamEntry::Match(edge("front.side_left"), edge("back.side_left")),
+            SeamEntry::Gather(edge("front.hem"), edge("back.hem")),
+        ])
+    );
+}
+
+#[test]
+fn unknown_names_are_told_with_the_nearest() {
+    let (text, hint) = fault(SeamEntry::Match, "front.side_lft", "back.side_left");
+    assert_eq!(text, "the panel \"front\" has no edge \"side_lft\"");
+    assert_eq!(hint, "did you mean \"front.side_left\"?");
+    let (text, hint) = fault(SeamEntry::Match, "front.side_left", "bak.side_left");
+    assert_eq!(text, "there is no panel \"bak\"");
+    assert_eq!(hint, "did you mean \"back.side_left\"?");
+    let (_, hint) = fault(SeamEntry::Match, "front.zzzzzz", "back.side_left");
+    assert!(hint.starts_with("known are side_left, armhole_left, "), "{hint}");
+}
+
+#[test]
+fn very_different_lengths_are_refused_unless_gathered() {
+    let (text, hint) = fault(SeamEntry::Match, "front.shoulder_left", "back.side_left");
+    assert_eq!(
+        text,
+        "front.shoulder_left is 100.0 mm long, back.side_left 346.1 mm: they differ by 71.1 %, too much to be sewn flat"
+    );
+    assert_eq!(
+        hint,
+        "if the longer one is meant to be gathered, write Gather(\"front.shoulder_left\", \"back.side_left\")"
+    );
+    let gathered = SeamEntry::Gather(edge("front.armhole_left"), edge("back.armhole_left"));
+    assert!(sewn(vec![gathered]).is_ok());
+}
+
+#[test]
+fn reversed_seams_are_refused() {
+    let (text, hint) = fault(SeamEntry::Match, "front.side_left", "back.side_right");
+    assert_eq!(
+        text,
+        "the seam front.side_left + back.side_right is reversed: its threads would cross between the panels"
+    );
+    assert!(hint.ends_with("write Reversed(\"front.side_left\", \"back.side_right\")"), "{hint}");
+    let (text, _) = fault(SeamEntry::Reversed, "front.side_left", "back.side_left");
+    assert_eq!(
+        text,
+        "the seam front.side_left + back.side_left is reversed: its threads would cross between the panels"
+    );
+}
+
+#[test]
+fn an_edge_is_sewn_once() {
+    let twice = |b: &str| SeamEntry::Match(edge("front.side_left"), edge(b));
+    let e = sewn(vec![twice("back.side_left"), twice("back.side_left")]).unwrap_err();
+    assert_eq!(e.message, "the edge front.side_left stands in more than one seam");
+    let e = sewn(vec![twice("front.side_left")]).unwrap_err();
+    assert_eq!(e.message, "the edge front.side_left stands in more than one seam");
+}
+
+#[test]
+fn small_differences_are_eased_with_a_word() {
+    let cx = Context::quiet();
+    let mut outlines: BTreeMap<String, Outline> =
+        set("vest", |o| o).iter().map(|(k, o)| (k.to_owned(), o.clone())).collect();
+    // A back that is 2 % larger.
+    let back = outlines.get_mut("back").unwrap();
+    back.outer.points.iter_mut().for_each(|p| *p *= 1.02);
+    Vest {}.run(outlines.into_iter().collect(), &cx).unwrap();
+    assert_eq!(
+        cx.take_remarks().notes[0],
+        "front.shoulder_left is 100.0 mm long, back.shoulder_left 102.0 mm; the longer one is eased in by 2.0 %"
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Star-shaped outlines of any kind get names that cover them, or an error.
+    #[test]
+    fn no_outline_makes_a_style_panic(
+        radii in prop::collection::vec(0.001..1.0f64, 3..60),
+        corners in prop::collection::vec(0usize..60, 0..9),
+        vest in any::<bool>(),
+    ) {
+        let n = radii.len();
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+        let points = (0..n).map(|i| Point2::new(radii[i] * angle(i).cos(), radii[i] * angle(i).sin())).collect();
+        let mut corners: Vec<usize> = corners.into_iter().filter(|c| *c < n).collect();
+        corners.sort_unstable();
+        corners.dedup();
+        let both: Set<Outline> =
+            ["front", "back"].iter().map(|s| ((*s).to_owned(), outline(Vec::clone(&points), corners.clone()))).collect();
+        if let Ok((named, _)) = run(if vest { "vest" } else { "tshirt" }, both) {
+            for (_, o) in named.iter() {
+                let count = o.edges.len();
+                prop_assert!((0..count).all(|k| o.edges[k].end == o.edges[(k + 1) % count].start));
+            }
+        }
+    }
+}
