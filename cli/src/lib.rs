@@ -34,7 +34,7 @@ use terminal::last_words::Alive;
 use terminal::streams::Streams;
 use toile_core::{Registry, panics};
 use toile_pipeline::plugin::load_plugin;
-use toile_trade::apart::Apart;
+use toile_trade::measure::apart::Apart;
 
 /// Exit codes of the command.
 pub mod exit {

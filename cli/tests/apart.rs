@@ -15,9 +15,9 @@ use std::sync::Arc;
 use std::time::Duration;
 use toile_core::{Cancel, Length};
 use toile_trade::ablate;
-use toile_trade::apart::Apart;
 use toile_trade::knobs::source::Source;
 use toile_trade::measure::Bench;
+use toile_trade::measure::apart::Apart;
 use toile_trade::record::{Clock, Outcome, Trade};
 use toile_trade::study::{Options, study};
 

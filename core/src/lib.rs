@@ -51,6 +51,7 @@ pub mod param;
 pub mod plugin;
 mod registry;
 mod remarks;
+mod runlog;
 mod stage;
 #[cfg(any(test, feature = "testkit"))]
 pub mod testkit;
@@ -68,9 +69,10 @@ pub use near::{hint, nearest, quoted};
 pub use param::{Finer, Length, ParamDoc, ParamFault, ParamType};
 pub use registry::{Registry, Section, SectionValue};
 pub use remarks::Remarks;
+pub use runlog::{Failure, RunLog, StageRecord};
 pub use stage::{
-    Arity, Card, Contract, Feed, InPort, Input, Inputs, Node, OutPort, Output, Placed, PluginId, PortValue,
-    Role, Set, Stage, StageMeta, StageType, needed_for,
+    Arity, ByPlace, Card, Contract, Feed, InPort, Input, Inputs, Known, Node, OutPort, Output, Placed,
+    PluginId, PortValue, Role, Set, Stage, StageMeta, StageType, needed_for,
 };
 pub use toile_core_derive::{choice, params, plugin, stage};
 // The `stage` macro's expansion names these.
@@ -105,7 +107,7 @@ macro_rules! stage_impl {
 pub mod prelude {
     pub use crate::artifact::*;
     pub use crate::{
-        Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, Section, SectionValue, Set,
-        Stage, StageError, StageType, choice, params, stage,
+        Context, Contract, ErrorCode, Length, ParamType, Placed, Registry, Role, RunLog, Section,
+        SectionValue, Set, Stage, StageError, StageRecord, StageType, choice, params, stage,
     };
 }

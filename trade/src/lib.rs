@@ -24,7 +24,6 @@
 //! takes is timed here and by the runner, not by the stage.
 
 pub mod ablate;
-pub mod apart;
 pub mod cost;
 pub mod decided;
 pub mod digest;

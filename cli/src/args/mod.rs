@@ -2,6 +2,7 @@
 
 mod amounts;
 mod bench;
+pub(crate) mod color;
 mod file;
 mod run;
 mod shared;
@@ -15,9 +16,9 @@ pub(crate) use run::{CacheArgs, ExplainArgs, RunArgs, WhyArgs};
 pub(crate) use shared::{CacheChoice, Overrides};
 pub(crate) use trade::{StudyArgs, TradeArgs, TuneArgs};
 
-use crate::terminal::streams::Color;
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
+use color::Color;
 use std::path::PathBuf;
 
 /// Photos of a garment laid flat in, a sewn and draped 3D garment out.

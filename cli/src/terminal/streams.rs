@@ -1,37 +1,11 @@
 //! Where a command writes, and its manners: colour, and how much it says.
 
+use crate::args::color::Color;
 use crate::exit;
-use std::io::{self, ErrorKind, IsTerminal, Write};
+use std::io::{self, ErrorKind, Write};
 use toile_core::panics;
 use toile_pipeline::Faults;
-use toile_trade::apart::Apart;
-
-/// When messages are coloured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
-pub(crate) enum Color {
-    /// On a terminal, unless NO_COLOR is set or TERM is dumb.
-    #[default]
-    Auto,
-    /// Everywhere.
-    Always,
-    /// Nowhere.
-    Never,
-}
-
-impl Color {
-    /// Whether standard error is coloured.
-    fn is_on(self) -> bool {
-        match self {
-            Color::Always => true,
-            Color::Never => false,
-            Color::Auto => {
-                let is_set = |name| std::env::var_os(name).is_some_and(|v| !v.is_empty());
-                let is_dumb = std::env::var_os("TERM").is_some_and(|term| term == "dumb");
-                io::stderr().is_terminal() && !is_set("NO_COLOR") && !is_dumb
-            }
-        }
-    }
-}
+use toile_trade::measure::apart::Apart;
 
 /// Where a command writes: `out` for its answer, `err` for progress and messages; and how the
 /// program starts itself.

@@ -6,7 +6,7 @@ use std::io::{BufRead, BufReader, Read, stdin};
 use std::path::PathBuf;
 use std::process::Command;
 use toile_core::Registry;
-use toile_trade::apart::{Apart, answer};
+use toile_trade::measure::apart::{Apart, answer};
 
 /// The program as it runs one task with the same plugins.
 pub(crate) fn with_plugins(program: Apart, plugins: &[PathBuf]) -> Apart {

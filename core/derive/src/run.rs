@@ -30,6 +30,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
     let out = output(run)?;
     let (sizes, decisions, faults) = (sizes(&item), decisions(&item), faults(&item));
     let (warnings, improves) = (warnings(&item), improves(&item));
+    let by_place = by_place(&item);
     let in_ports = ports.iter().map(|Port { name, ty, original, sewn }| {
         quote! {{
             let (kind, arity, optional) = <#ty as ::toile_core::Input>::port();
@@ -55,6 +56,7 @@ pub(crate) fn expand(mut item: ItemImpl) -> syn::Result<TokenStream> {
                 }
                 #sizes
                 #decisions
+                #by_place
                 #faults
                 #warnings
                 #improves
@@ -104,9 +106,25 @@ fn decisions(item: &ItemImpl) -> TokenStream {
         true => quote! {
             fn decisions(
                 &self,
-                known: &::toile_core::decide::Known<'_>,
+                known: &::toile_core::Known<'_>,
             ) -> ::std::vec::Vec<::toile_core::decide::Decision> {
                 Self::decide(self, known)
+            }
+        },
+    }
+}
+
+/// The trait's `by_place`, where the author gives parameters by a function of that name.
+fn by_place(item: &ItemImpl) -> TokenStream {
+    match has(item, "by_place") {
+        false => TokenStream::new(),
+        true => quote! {
+            fn by_place(
+                &self,
+                nodes: &[::toile_core::Node],
+                index: usize,
+            ) -> ::toile_core::ByPlace {
+                Self::by_place(self, nodes, index)
             }
         },
     }

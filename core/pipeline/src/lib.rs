@@ -15,9 +15,11 @@ mod beside;
 pub mod cache;
 pub mod cost;
 pub mod decide;
+mod file_hash;
 pub mod golden;
 mod load;
 pub mod lock;
+mod made;
 mod metrics;
 mod output;
 #[allow(unsafe_code)]
@@ -27,6 +29,4 @@ mod run;
 pub use load::*;
 pub use metrics::{GarmentMetrics, Metrics, StageMetrics};
 pub use output::{check_folder, write_files};
-pub use run::{
-    Outlook, Reads, RunError, RunOptions, RunResult, SoFar, add_implicit, faults, forecast, plan, run,
-};
+pub use run::{Outlook, RunError, RunOptions, RunResult, SoFar, add_implicit, forecast, plan, run};

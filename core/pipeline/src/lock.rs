@@ -8,7 +8,8 @@ use crate::RunResult;
 use crate::load::{Pipeline, fields_of};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use toile_core::artifact::{ArtifactType, Digest, Digester, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::{ArtifactType, Digest, Digester};
 use toile_core::{Card, Node, Registry};
 
 /// The version of the lock file's form.

@@ -98,7 +98,7 @@ impl Artifact for Body {
         self.measurements.iter().try_for_each(|(name, length)| finite_figure(name, *length))
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

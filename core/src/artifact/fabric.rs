@@ -126,7 +126,7 @@ impl Artifact for Fabric {
         ensure(held, || "bending, thickness, friction and damping must be finite and at least 0".to_owned())
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

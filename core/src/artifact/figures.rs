@@ -143,7 +143,7 @@ impl Artifact for Figures {
         finite_figure("seam gap", self.garment.seam_gap_max_m)
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

@@ -59,7 +59,7 @@ impl Artifact for OutputFiles {
         }
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

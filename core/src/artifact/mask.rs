@@ -59,7 +59,7 @@ impl Artifact for Mask {
         ensure(grey.is_none(), || "it has pixels between 0 and 255".to_owned())
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

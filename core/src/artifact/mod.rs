@@ -25,9 +25,9 @@ mod pattern;
 mod phases;
 mod photo;
 mod picture;
-mod runlog;
 mod sewing;
 pub mod store;
+pub mod stored;
 
 pub use body::{Body, Landmark};
 pub use collider::{BodyContact, Collide, Collider, ColliderCard, SelfContact, Surface};
@@ -51,7 +51,6 @@ pub use pattern::{
 pub use phases::{Air, Phase, Phases};
 pub use photo::Photo;
 pub use picture::{GrayImage, Picture, RgbImage};
-pub use runlog::{Failure, RunLog, StageRecord};
 pub use sewing::gauge::{CHORD_TOLERANCE, Gauge};
 pub use sewing::plan::{EdgeRef, Limb, PanelPlacement, Seam, SewingPlan};
 pub use sewing::seam_kind::{PleatFold, SeamKind};
@@ -93,7 +92,7 @@ pub trait Artifact: Any + Send + Sync + Debug {
     fn measures(&self) -> Measures;
     /// The artifact as a record of plain fields, by which it is stored and crosses a plugin's
     /// border; `None` for a service.
-    fn record(&self) -> Option<store::stored::Record<'_>> {
+    fn record(&self) -> Option<store::Record<'_>> {
         None
     }
     /// The artifact as ordinary files for `--until` and `--keep`: extension and bytes.

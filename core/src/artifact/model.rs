@@ -228,7 +228,7 @@ impl Artifact for Model {
             .try_for_each(|v| self.check_variant(v).map_err(|e| format!("variant \"{}\": {e}", v.name)))
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 
@@ -247,7 +247,7 @@ impl Artifact for Model {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use crate::artifact::store::stored::tests::model;
+    use crate::artifact::stored::tests::model;
 
     #[test]
     fn a_variant_brings_what_is_its_own_and_shares_the_rest() {

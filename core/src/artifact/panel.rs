@@ -179,7 +179,7 @@ impl Artifact for Panel {
         finite_figure("outline's length", self.outline_length)
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

@@ -68,7 +68,7 @@ impl Artifact for Photo {
         self.garment_width.map_or(Ok(()), |w| positive("garment's width", w))
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

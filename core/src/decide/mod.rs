@@ -12,7 +12,5 @@
 //! for depends on do not run.
 
 mod decision;
-mod known;
 
 pub use decision::{Decision, Saves, State, Tolerance, Turn};
-pub use known::Known;

@@ -2,7 +2,7 @@
 //! them is told when the other side needs them no more.
 
 use super::abi;
-use crate::artifact::{Picture, Shared};
+use crate::artifact::store::Lend;
 use std::any::Any;
 use std::ffi::c_void;
 use std::sync::Arc;
@@ -84,7 +84,9 @@ impl Lending {
     pub fn block(keeper: Keeper) -> Self {
         Lending(Asked::Block(keeper))
     }
+}
 
+impl Lend for Lending {
     fn keep(&self) -> Option<Keeper> {
         match &self.0 {
             Asked::Block(keeper) => Some(keeper.clone()),
@@ -94,22 +96,5 @@ impl Lending {
                 (!handle.is_null()).then(|| Arc::new(Handle { handle, release }) as Keeper)
             }
         }
-    }
-
-    /// The list as a picture, where it lies; `None` where its owner cannot keep it.
-    ///
-    /// `bytes` is the list that this owner was named for.
-    pub(crate) fn picture<P: Picture>(&self, bytes: &[u8], w: u32, h: u32) -> Option<Shared<P>> {
-        let keeper = self.keep().filter(|_| !bytes.is_empty())?;
-        // The vector only shows the bytes: `Shared` gives out references alone and never drops it,
-        // so that it is neither grown nor freed; the keeper keeps the bytes for as long as it
-        // lives.
-        let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
-        let length = bytes.len() as u64;
-        if length != u64::from(w) * u64::from(h) * u64::from(P::CHANNELS) {
-            std::mem::forget(shown);
-            return None;
-        }
-        P::of_bytes(w, h, shown).map(|picture| Shared::lent(picture, keeper))
     }
 }

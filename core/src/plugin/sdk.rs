@@ -7,7 +7,7 @@ use super::abi::{self, Text};
 use super::guard::guarded;
 use super::view::{Lent, record, text};
 use super::{card, collide};
-use crate::artifact::store::stored::{from_trusted_record, kind_named};
+use crate::artifact::stored::{from_trusted_record, kind_named};
 use crate::artifact::{Artifact, Collider};
 use crate::context::Parallel;
 use crate::param::ron_options;

@@ -3,10 +3,11 @@
 
 use super::abi;
 use super::lending::{Lending, Owners};
-use crate::artifact::store::stored::{Data, Field, MAX_DEPTH, Owner, Record};
+use crate::artifact::stored::{Data, Field, MAX_DEPTH, Owner, Record};
 use bytemuck::Pod;
 use std::borrow::Cow;
 use std::ffi::c_void;
+use std::sync::Arc;
 
 /// The longest list of fields of one record.
 const MAX_FIELDS: usize = 1000;
@@ -155,7 +156,7 @@ unsafe fn one<'a>(f: &abi::Field, budget: &mut u64, depth: usize) -> Result<Fiel
         }
         other => return Err(format!("the field `{name}` has the unknown type {other}")),
     };
-    let owner = unsafe { Lending::of(f.owner) }.map_or(Owner::None, Owner::Foreign);
+    let owner = unsafe { Lending::of(f.owner) }.map_or(Owner::None, |of| Owner::Foreign(Arc::new(of)));
     Ok(Field { name: Cow::Borrowed(name), width: f.width, data, owner })
 }
 

@@ -1,21 +1,25 @@
 //! The one trait that every step of a pipeline stands behind.
 
+mod by_place;
 mod card;
 mod contract;
+mod known;
 mod node;
 mod placed;
 mod role;
 mod values;
 
+pub use by_place::ByPlace;
 pub use card::{Arity, Card, InPort, OutPort, PluginId};
 pub use contract::Contract;
+pub use known::Known;
 pub use node::{Feed, Node, needed_for};
 pub use placed::Placed;
 pub use role::Role;
 pub use values::{Input, Inputs, Output, PortValue, Set};
 
 use crate::cost::Size;
-use crate::decide::{Decision, Known};
+use crate::decide::Decision;
 use crate::{Context, StageError};
 
 /// A step of a pipeline, with its parameters set.
@@ -39,6 +43,13 @@ pub trait Stage: std::fmt::Debug + Send + Sync {
     /// What it leaves out or simplifies here, by which facts of the scene (see [`crate::decide`]).
     fn decisions(&self, _known: &Known<'_>) -> Vec<Decision> {
         Vec::new()
+    }
+
+    /// Values of parameters that follow from where stage `index` stands among the pipeline's
+    /// stages, such as whether the garment has been draped before. The loader sets those that the
+    /// file leaves out, before anything else asks the stage; [`Stage::decisions`] tells them.
+    fn by_place(&self, _nodes: &[Node], _index: usize) -> ByPlace {
+        ByPlace::default()
     }
 
     /// What is wrong with its parameters and files, as far as it can be told before anything runs:

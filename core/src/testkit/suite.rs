@@ -6,6 +6,7 @@
 //! [`dress`](super::dress).
 
 use super::{capsules, dress, shapes};
+use crate::RunLog;
 use crate::artifact::*;
 use crate::{Arity, Card, InPort, Inputs, PortValue, Role};
 use image::{GrayImage, Luma, RgbImage};

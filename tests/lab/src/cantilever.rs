@@ -4,7 +4,7 @@ use super::reference;
 use toile_cloth::energy::{Clamp, Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 
 const GAMMAS: [f64; 5] = [0.1, 1.0, 10.0, 100.0, 1000.0];

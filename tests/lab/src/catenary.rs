@@ -4,7 +4,7 @@ use super::reference;
 use toile_cloth::energy::{Cloth, Membrane, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 
 const SPANS: [f64; 4] = [0.5, 0.8, 0.95, 0.99];

@@ -19,8 +19,8 @@ use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::fabric::Rigidity;
 use toile_cloth::linear::Cholesky;
-use toile_cloth::mesh::layout::{Layout, Rectangle, disc};
 use toile_cloth::scene::{Scene, generate};
+use toile_cloth::solver::layout::{Layout, Rectangle, disc};
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Static, Xpbd,
 };

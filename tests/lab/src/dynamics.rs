@@ -5,7 +5,7 @@ use super::reference;
 use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{CentralDifferences, ImplicitEuler, Model, Solver, State, Static, lowest_modes};
 
 /// Greatest displacement of the motion, in lengths.

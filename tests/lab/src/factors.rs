@@ -9,8 +9,8 @@ use toile_cloth::energy::{Cloth, Models, Projection, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::linear::{BlockMatrix, Cholesky};
-use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::solver::Model;
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::statics::factor::multifrontal::{Factor, Symbolic};
 use toile_cloth::statics::factor::scalar::Real;
 

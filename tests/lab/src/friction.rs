@@ -5,7 +5,7 @@ use toile_cloth::constraint::{Cylinder, Plane};
 use toile_cloth::energy::{Cloth, DeadLoad, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{CentralDifferences, Model, Solver, State};
 
 const FRICTIONS: [f64; 3] = [0.1, 0.3, 0.5];

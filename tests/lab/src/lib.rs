@@ -42,7 +42,7 @@ pub use score::{Score, Test, run};
 pub use solvers::solvers;
 pub use stability::stability;
 pub use toile_cloth::energy::{Bending, Membrane, Models};
-pub use toile_cloth::mesh::layout::Layout;
+pub use toile_cloth::solver::layout::Layout;
 
 /// Hears how far a run is (0 to 1) and what comes next; may stop it there.
 pub type Progress<'p> = dyn FnMut(f64, &str) -> ControlFlow<()> + 'p;

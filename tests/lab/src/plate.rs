@@ -7,7 +7,7 @@ use super::reference;
 use toile_cloth::energy::{Clamp, Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 
 /// Centre deflection in plate sides: so small that the membrane stays idle.

@@ -20,8 +20,8 @@ use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::fabric::Rigidity;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::scene::Scene;
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{
     CentralDifferences, ImplicitEuler, LinearMethod, Model, Projective, Solver, State, Static, Xpbd,
 };

@@ -2,7 +2,7 @@
 use std::ops::ControlFlow;
 
 use super::stability::{Case, Options, Verdict, axes, stability};
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 
 use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::fabric::Fabric;

@@ -8,7 +8,7 @@ use toile_cloth::energy::{Cloth, DeadLoad, Membrane, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::{Curve, Fabric};
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 
 const ALPHAS: [f64; 3] = [1e-3, 1e-2, 1e-1];

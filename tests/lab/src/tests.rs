@@ -112,7 +112,7 @@ fn e6_dynamics() {
 #[test]
 fn layouts_cover_their_rectangle() {
     for layout in Layout::ALL {
-        let sheet = toile_cloth::mesh::layout::Rectangle::new(layout, 0.3, 1.0, 12).sheet(1.0).unwrap();
+        let sheet = toile_cloth::solver::layout::Rectangle::new(layout, 0.3, 1.0, 12).sheet(1.0).unwrap();
         let area: f64 = sheet.areas().iter().sum();
         assert!((area - 0.3).abs() < 1e-12, "{}: {area}", layout.name());
     }

@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use std::ops::ControlFlow;
 use toile_cloth::energy::Vec3;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::scene::Scene;
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::statics::drive::solve::{Precision, StaticEquilibrium};
 
 /// Two strips of length 1 that hang from a bar between them: by symmetry each is clamped level

@@ -8,13 +8,14 @@
 //! and memory is its high-water mark, put back before the run where the kernel lets a process do so
 //! (Linux).
 
+pub mod apart;
 pub mod jitter;
 mod memory;
 mod ran;
 
 pub use ran::{Missed, Ran};
 
-use crate::apart::{Apart, Task};
+use crate::measure::apart::{Apart, Task};
 use cpu_time::ProcessTime;
 use memory::{forget_peak, peak};
 use std::sync::Arc;

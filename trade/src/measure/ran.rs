@@ -3,7 +3,8 @@
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::sync::PoisonError;
-use toile_core::artifact::{Body, Figures, Garment, Model, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::{Body, Figures, Garment, Model};
 use toile_core::{ArtifactType, ErrorCode, StageError};
 use toile_pipeline::{Reads, RunResult};
 

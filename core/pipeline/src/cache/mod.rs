@@ -15,7 +15,6 @@
 //! takes an output of it that cannot be stored, is always run.
 
 mod causes;
-mod file_hash;
 mod key;
 mod manifest;
 mod size;
@@ -26,18 +25,18 @@ mod tests;
 
 pub use causes::Cause;
 pub(crate) use causes::{Last, RUN_SO_FAR};
-pub(crate) use file_hash::file_hash;
 pub(crate) use key::{Fed, Ingredients};
 pub(crate) use manifest::{Blob, Kept, Manifest};
 pub use size::Bytes;
 pub use space::Usage;
 
-use crate::run::Made;
+use crate::file_hash::file_hash;
+use crate::made::Made;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use store::{Shelf, Store};
-use toile_core::artifact::{Artifact, Digest, Digester, Kind, store::stored};
+use toile_core::artifact::{Artifact, Digest, Digester, Kind, stored};
 use toile_core::{Card, MakePart, Memo, PortValue, StageError};
 
 /// Bytes that the cache holds at most after a run, if not told otherwise: some twenty garments with

@@ -1,14 +1,14 @@
 //! Every decision of a pipeline, in the order of its stages.
 
 use super::unasked::unasked;
-use super::{Decision, Known, Turn};
+use super::{Decision, Turn};
 use crate::cost::{Foreseen, foresee};
 use crate::load::Pipeline;
 use crate::{RunError, RunOptions, plan};
 use serde::{Deserialize, Serialize};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use toile_core::{Cancel, Context};
+use toile_core::{Cancel, Context, Known};
 
 /// A decision with the stage that it is of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -4,6 +4,7 @@ use crate::cost::{Quantity, Size};
 use crate::load::{Pipeline, load, tests::kit};
 use crate::{RunOptions, plan};
 use std::path::Path;
+use toile_core::Known;
 use toile_core::prelude::*;
 
 /// A painter that tells what it knows.

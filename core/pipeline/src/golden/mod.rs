@@ -39,7 +39,8 @@ pub use text::{SheetError, parse};
 
 use crate::run::typed;
 use std::sync::Arc;
-use toile_core::artifact::{Artifact, Digester, Garment, Measure, OutputFiles, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::{Artifact, Digester, Garment, Measure, OutputFiles};
 use toile_core::{ArtifactType, PortValue};
 
 /// The measures of one artifact.

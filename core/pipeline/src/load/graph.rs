@@ -15,7 +15,8 @@ use super::words::{a, all_of, bridge, list, required};
 use crate::load::syntax::draft::Draft;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
-use toile_core::artifact::{ArtifactType, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::ArtifactType;
 use toile_core::{Arity, Card, Feed, InPort, Kind, Registry, Role, Section, SectionValue};
 
 /// The most places that one fault underlines.

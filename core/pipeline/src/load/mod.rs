@@ -7,18 +7,21 @@
 //! 2. `read`: fields, sections and stages are read, every parameter is checked by its own
 //!    [`ParamDoc`](toile_core::ParamDoc), clean stages are made through typetag;
 //! 3. `order`: stages get their ids, sections their place among the stages;
-//! 4. `graph`: each input port finds the stage that feeds it.
+//! 4. `graph`: each input port finds the stage that feeds it; then `by_place` gives stages what
+//!    follows from their place.
 //!
 //! The settings of a quality that is asked for and `--set` overrides are spliced into the text
 //! before step 1, so that they pass the same checks; `qualities` are checked beside the file.
 //! `origin` shows what is wrong where the user wrote it: in the file or in the option.
-//! `run::unused` says what a clean file does not use.
+//! `unused` says what a clean file does not use.
 //!
 //! Cost: linear in the text, and in stages times names. Limits: [`MAX_BYTES`], [`MAX_STAGES`].
 //!
 //! Architecture invariant: nothing here knows a stage by name. Which top-level fields there are
 //! is said by the registry's sections.
 
+mod asked;
+mod by_place;
 mod differing;
 mod fault;
 mod graph;
@@ -41,6 +44,8 @@ pub(crate) mod words;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub(crate) use asked::warnings;
+pub use asked::{Reads, faults};
 pub use differing::{Differing, differing};
 pub use fault::{Fault, FaultRecord, Faults, Label};
 pub(crate) use graph::before_flatteners;
@@ -80,7 +85,7 @@ pub struct Changes<'a> {
     /// checked then, against the file as it was.
     pub again: bool,
     /// True where what stages find wrong comes out with the faults of the file: what
-    /// [`crate::faults`] finds where it has none. Files are then looked at.
+    /// [`faults`] finds where it has none. Files are then looked at.
     pub asks: bool,
 }
 
@@ -142,7 +147,8 @@ pub fn load_with(
     let (qualities, quality) = (read.qualities, changes.words());
     let made = syntax::draft::finished(drafts, feeds);
     // What feeds a stage is not known of a file with other faults than values.
-    let syntax::draft::Finished { nodes, own, alone } = if of_values { made } else { made.apart() };
+    let syntax::draft::Finished { mut nodes, own, alone } = if of_values { made } else { made.apart() };
+    by_place::settle(&mut nodes, &applied.text, &registry);
     let written = (text.to_owned(), applied.origin);
     let (base, file_name) = (base.to_owned(), file.to_owned());
     let mut pipeline = Pipeline {
@@ -162,11 +168,11 @@ pub fn load_with(
     // What a stage says of a part with a key that is given twice would only follow from that.
     let is_spared = |node: &Node| doubled.iter().any(|place| within(place, &node.span));
     let asked = |i: usize| own.get(i) == Some(&true) && !pipeline.nodes.get(i).is_some_and(is_spared);
-    let more = crate::faults(&pipeline, asked, None);
+    let more = asked::faults(&pipeline, asked, None);
     found.extend(more.err().into_iter().flat_map(|f| f.faults));
     for node in alone.into_iter().filter(|node| !is_spared(node)) {
         pipeline.nodes = vec![node];
-        found.extend(crate::faults(&pipeline, |_| true, None).err().into_iter().flat_map(|f| f.faults));
+        found.extend(asked::faults(&pipeline, |_| true, None).err().into_iter().flat_map(|f| f.faults));
     }
     Err(Faults::new(file, text, found))
 }

@@ -1,7 +1,8 @@
 //! Kinds and stages in the words of diagnostics.
 
 use std::collections::BTreeSet;
-use toile_core::artifact::{ArtifactType, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::ArtifactType;
 use toile_core::{Card, Kind, Registry, Section, SectionValue};
 
 /// The most stages that a hint names.

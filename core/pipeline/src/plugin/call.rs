@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ffi::c_void;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use toile_core::artifact::store::stored::{Data, Owner, Record, from_record};
+use toile_core::artifact::stored::{Data, Owner, Record, from_record};
 use toile_core::artifact::{Artifact, ArtifactType, Collider};
 use toile_core::plugin::abi::{self, Text};
 use toile_core::plugin::collide;
@@ -203,7 +203,7 @@ impl Call {
             let Data::U8(bytes) = &field.data else { continue };
             let block = blocks.get(&bytes.as_ptr().addr()).filter(|b| b.bytes >= bytes.len());
             if let Some(block) = block {
-                field.owner = Owner::Foreign(Lending::block(block.memory.clone()));
+                field.owner = Owner::Foreign(Arc::new(Lending::block(block.memory.clone())));
             }
         }
     }

@@ -1,7 +1,8 @@
 //! Stage cards, read from the tables of a plugin.
 
-use toile_core::artifact::store::stored::kind_named;
-use toile_core::artifact::{ArtifactType, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::ArtifactType;
+use toile_core::artifact::stored::kind_named;
 use toile_core::param::{Check, Finer, check_number};
 use toile_core::plugin::abi::{self, Text};
 use toile_core::plugin::view::{list, text};

@@ -9,7 +9,8 @@ use serde::Serialize;
 use std::io::Cursor;
 use std::sync::Arc;
 use toile_core::Artifact;
-use toile_core::artifact::{Fabric, Figures, Mask, OutputFile, Photo, StageRecord};
+use toile_core::StageRecord;
+use toile_core::artifact::{Fabric, Figures, Mask, OutputFile, Photo};
 
 /// The files of all that a stage made.
 pub(super) fn exports(record: &StageRecord) -> Vec<OutputFile> {

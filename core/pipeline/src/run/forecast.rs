@@ -7,7 +7,8 @@ use super::{RunError, RunOptions, plan};
 use crate::cache::{Cache, Cause, Found, Last, Miss};
 use crate::load::Pipeline;
 use std::sync::Arc;
-use toile_core::artifact::{ArtifactType, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::ArtifactType;
 use toile_core::{Cancel, Contract, Listener, Node, Remarks};
 
 /// What would become of one stage.

@@ -1,10 +1,11 @@
 //! Results that are known: looked for in the cache, put together with what was made, and kept
 //! there.
 
-use super::node::{Failure, Made};
+use super::node::Failure;
 use super::steps::{Ran, Run, Step};
 use super::value::{Held, gather};
 use crate::cache::{Cache, Found, Ingredients, Kept, Manifest, Miss};
+use crate::made::Made;
 use rayon::prelude::*;
 use toile_core::artifact::Digest;
 use toile_core::{Arity, Context, Contract, Event, Node, Remarks};

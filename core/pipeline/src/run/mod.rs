@@ -1,7 +1,6 @@
 //! Runs a pipeline: only what the asked outputs need, in file order, sets in parallel.
 
 mod exports;
-mod faults;
 mod forecast;
 mod implicit;
 mod improve;
@@ -17,24 +16,22 @@ mod steps;
 mod unused;
 mod value;
 
-pub use faults::faults;
 pub use forecast::{Outlook, forecast};
 pub use implicit::add_implicit;
-pub(crate) use node::Made;
 pub use so_far::SoFar;
 
 use crate::cache::Cache;
 use crate::cost::{Expect, Meter, StageCost};
-use crate::load::Pipeline;
+use crate::load::{Pipeline, Reads};
 use crate::{Metrics, StageMetrics};
 use std::any::Any;
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::Arc;
 use std::time::Instant;
 use steps::{Run, Step};
-use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::{Artifact, Digest, Figures, OutputFile, OutputFiles};
 use toile_core::{ArtifactType, Cancel, Feed, Listener, Node, Remarks, StageError, panics};
 
 /// What is asked of a run.
@@ -57,10 +54,6 @@ pub struct RunOptions {
     /// Says what stages were expected to take, for the record and the report; none says nothing.
     pub expect: Option<Arc<dyn Expect>>,
 }
-
-/// Files with the digest of the content that was read, none where there was no such file; a run
-/// fills it in while it goes on.
-pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Digest>>>>;
 
 /// What a run gives. Nothing is written yet.
 #[derive(Debug)]

@@ -1,27 +1,16 @@
 //! Runs one stage: once, or once for each entry of its named sets.
 
 use super::pixels::of_the_file;
-use crate::cache::file_hash;
+use crate::file_hash::file_hash;
 use crate::load::texts_of;
+use crate::made::Made;
 use rayon::prelude::*;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use toile_core::artifact::{Digest, Measure};
-use toile_core::{Context, Inputs, Node, PortValue, Remarks, StageError, panics};
+use toile_core::artifact::Digest;
+use toile_core::{Context, Inputs, Node, PortValue, StageError, panics};
 
 /// A failure with the entry at work.
 pub(super) type Failure = (String, StageError);
-
-/// What one run of a stage gave.
-#[derive(Debug)]
-pub(crate) struct Made {
-    /// The entry of its sets; empty where it is not mapped.
-    pub(crate) entry: String,
-    pub(crate) outputs: Vec<PortValue>,
-    pub(crate) figures: Vec<Measure>,
-    pub(crate) remarks: Remarks,
-    /// The files that it read.
-    pub(crate) reads: Vec<(String, Option<Digest>)>,
-}
 
 /// The figure that says how much work a stage took: steps over all of its vertices.
 pub(super) const WORK: &str = "work";

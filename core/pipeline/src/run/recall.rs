@@ -4,7 +4,7 @@ use super::RunError;
 use super::steps::{Run, Step};
 use std::sync::Arc;
 use std::time::Instant;
-use toile_core::artifact::store::stored;
+use toile_core::artifact::stored;
 
 impl Run<'_> {
     /// Brings what a report on the stages before `index` is given into memory: all but services.

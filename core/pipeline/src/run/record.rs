@@ -4,8 +4,9 @@
 use super::steps::{Ran, Run, Step};
 use super::value::Held;
 use crate::cache::Fed;
-use toile_core::artifact::{Digest, Digester, RunLog, StageRecord, store::stored};
+use toile_core::artifact::{Digest, Digester, stored};
 use toile_core::{Node, PortValue};
+use toile_core::{RunLog, StageRecord};
 
 impl Run<'_> {
     /// The digest of what every stage made.

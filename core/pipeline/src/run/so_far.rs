@@ -5,8 +5,9 @@ use super::steps::Run;
 use super::{RunError, RunOptions};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
-use toile_core::artifact::{Failure, OutputFile, OutputFiles, RunLog, StageRecord};
+use toile_core::artifact::{OutputFile, OutputFiles};
 use toile_core::{ArtifactType, ErrorCode, Feed, Inputs, Node, PortValue, Remarks};
+use toile_core::{Failure, RunLog, StageRecord};
 
 /// Takes what a run that fails has made until then.
 ///

@@ -1,12 +1,13 @@
 //! A run under way: stage by stage, each from the cache where its result is known (`known`), and
 //! what lies in the cache only brought into memory once something needs it (`recall`).
 
-use super::node::{Failure, Made, run_entries};
+use super::node::{Failure, run_entries};
 use super::value::Held;
-use super::{Reads, RunError, typed};
+use super::{RunError, typed};
 use crate::cache::{Cache, Fed, Found, Ingredients, Parts, RUN_SO_FAR};
 use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used, size_of};
-use crate::load::Pipeline;
+use crate::load::{Pipeline, Reads};
+use crate::made::Made;
 use std::collections::BTreeMap;
 use std::sync::{Arc, PoisonError};
 use std::time::Instant;

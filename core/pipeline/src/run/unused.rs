@@ -3,7 +3,8 @@
 use crate::load::words::{a, list};
 use crate::load::{Fault, Faults, Pipeline, parse};
 use std::ops::Range;
-use toile_core::artifact::{ArtifactType, Figures, Garment, Model, OutputFiles, RunLog};
+use toile_core::RunLog;
+use toile_core::artifact::{ArtifactType, Figures, Garment, Model, OutputFiles};
 use toile_core::{Card, Kind, Node, Registry, Role};
 
 /// The most stages that a hint names.
@@ -14,7 +15,7 @@ impl Pipeline {
     /// garment; none where all is well.
     pub fn warnings(&self, registry: &Registry) -> Option<Faults> {
         let mut found: Vec<Fault> = self.unused();
-        found.extend(super::faults::warnings(self));
+        found.extend(crate::load::warnings(self));
         found.extend(self.writes_no_garment(registry));
         (!found.is_empty()).then(|| self.faults(found))
     }

@@ -75,7 +75,7 @@ impl Artifact for Pattern {
         check::check(self)
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

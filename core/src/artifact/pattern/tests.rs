@@ -3,7 +3,7 @@
 
 use super::super::Point2;
 use super::*;
-use crate::artifact::store::stored::{decode, encode};
+use crate::artifact::stored::{decode, encode};
 use crate::artifact::{EdgeRef, Point3, SeamKind, Vector3, polyline_length};
 use proptest::prelude::*;
 

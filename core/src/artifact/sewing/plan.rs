@@ -119,7 +119,7 @@ impl Artifact for SewingPlan {
         finite("anchor", self.placements.values().map(|p| &p.anchor.coords))
     }
 
-    fn record(&self) -> Option<crate::artifact::store::stored::Record<'_>> {
+    fn record(&self) -> Option<crate::artifact::store::Record<'_>> {
         Some(self.fields())
     }
 

@@ -1,8 +1,13 @@
-//! Artifacts as bytes: digests, stored fields, checks.
+//! What artifacts are made of: digests, named fields, shared memory, checks.
 
 pub(crate) mod digest;
-#[cfg(test)]
-pub(crate) mod every_field;
+#[allow(unsafe_code)]
+mod lend;
+mod list;
+mod read;
 pub(crate) mod shared;
 pub(crate) mod sound;
-pub mod stored;
+
+pub use lend::Lend;
+pub use list::{Data, Field, Listed, Owner, Record};
+pub use read::Reader;

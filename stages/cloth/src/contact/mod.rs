@@ -1,6 +1,7 @@
 //! What cloth touches: the body and itself.
 
 pub mod body;
+pub mod friction;
 pub mod give_way;
 pub mod limit;
 pub mod past;

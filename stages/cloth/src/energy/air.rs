@@ -17,8 +17,9 @@ use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 use super::places::Places;
-use super::potential::{Energy, Projection, Vec3};
+use super::potential::{Energy, Projection};
 use crate::error::{ClothError, check_parameter};
+use crate::linear::Vec3;
 
 /// Denser than water no fluid is that cloth moves in, kg/m³.
 const DENSEST: f64 = 2000.0;

@@ -1,7 +1,8 @@
 //! Derivatives against central differences: the first test of every model, also of models from
 //! other crates.
 
-use super::potential::{Energy, Projection, Vec3, matrix_of, write_matrix};
+use super::potential::{Energy, Projection, matrix_of, write_matrix};
+use crate::linear::Vec3;
 
 /// Largest difference between the gradient and central differences of the value, relative to the
 /// largest entry.

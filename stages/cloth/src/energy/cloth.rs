@@ -1,10 +1,10 @@
 //! A sheet and its fabrics: what models of membrane and bending are made from.
 
 use super::bending::Calibration;
-use super::potential::Vec3;
+use crate::energy::StrainLimit;
 use crate::fabric::{Fabric, Rigidity};
+use crate::linear::Vec3;
 use crate::mesh::Sheet;
-use crate::scene::StrainLimit;
 use std::cell::OnceCell;
 
 /// A sheet and what it is made of.

@@ -7,9 +7,10 @@
 //! Cost: one pass over the elements.
 
 use super::places::{Places, Share};
-use super::potential::{Energy, Projection, Resistance, Vec3};
+use super::potential::{Energy, Projection, Resistance};
 use super::subset::Subset;
 use crate::linear::Pattern;
+use crate::linear::Vec3;
 use nalgebra::Matrix3;
 use rayon::prelude::*;
 use std::any::Any;

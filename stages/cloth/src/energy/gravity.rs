@@ -1,6 +1,7 @@
 //! A uniform field: E = -sum m g.x. Linear, so its Hessian is zero.
 
-use super::potential::{Energy, Vec3};
+use super::potential::Energy;
+use crate::linear::Vec3;
 
 /// Weight of lumped masses.
 #[derive(Debug, Clone)]

@@ -22,11 +22,13 @@ pub mod membrane;
 mod models;
 mod places;
 mod potential;
+mod strain_limit;
 mod subset;
 
 #[cfg(test)]
 mod tests;
 
+pub use crate::linear::Vec3;
 pub use air::{Air, AirDrag, AirStep, carried, mobility};
 pub use band::{Band, Bands};
 pub use check::{gradient_error, hessian_error};
@@ -36,7 +38,6 @@ pub use gravity::Gravity;
 pub use load::DeadLoad;
 pub use models::{Bending, Membrane, Models};
 pub use places::Places;
-pub use potential::{
-    Energy, Projection, Resistance, Vec3, matrix_of, total_gradient, total_value, write_matrix,
-};
+pub use potential::{Energy, Projection, Resistance, matrix_of, total_gradient, total_value, write_matrix};
+pub use strain_limit::StrainLimit;
 pub use subset::Subset;

@@ -3,12 +3,9 @@
 
 use super::places::Places;
 use super::subset::Subset;
-use crate::linear::{BlockMatrix, Pattern};
-use nalgebra::{Matrix3, Vector3};
+use crate::linear::{BlockMatrix, Pattern, Vec3};
+use nalgebra::Matrix3;
 use std::any::Any;
-
-/// A position, force or direction in space.
-pub type Vec3 = Vector3<f64>;
 
 /// Which matrix stands for the second derivative.
 #[derive(Debug, Clone, Copy, PartialEq)]

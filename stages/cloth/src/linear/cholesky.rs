@@ -15,8 +15,8 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 
+use super::Vec3;
 use super::{BlockMatrix, leave_vectors};
-use crate::energy::Vec3;
 use crate::error::ClothError;
 
 /// A factor that can be renewed for other values of the same pattern.

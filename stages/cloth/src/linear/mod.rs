@@ -5,7 +5,6 @@ mod block;
 mod cholesky;
 mod pattern;
 mod pcg;
-mod probe;
 mod vectors;
 
 #[cfg(test)]
@@ -15,5 +14,7 @@ pub use block::BlockMatrix;
 pub use cholesky::Cholesky;
 pub use pattern::{Pattern, Slot, add_at};
 pub use pcg::{PcgReport, conjugate_gradients};
-pub use probe::probe;
 pub(crate) use vectors::leave_vectors;
+
+/// A position, force or direction in space.
+pub type Vec3 = nalgebra::Vector3<f64>;

@@ -5,7 +5,7 @@
 use nalgebra::Matrix3;
 
 use super::BlockMatrix;
-use crate::energy::Vec3;
+use super::Vec3;
 use crate::error::ClothError;
 use crate::stopper::Stopper;
 

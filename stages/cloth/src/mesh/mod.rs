@@ -5,7 +5,6 @@
 //! by area: a third of each triangle to each corner. Building is linear in the triangles;
 //! everything is checked here, so that the models downstream need not check again.
 
-pub mod layout;
 mod topology;
 
 #[cfg(test)]

@@ -5,7 +5,7 @@
 //! friction has to slide a little before friction keeps it again.
 
 use super::{Scene, SceneError};
-use crate::statics::forces::friction_history::FrictionContact;
+use crate::contact::friction::FrictionContact;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;

@@ -25,6 +25,7 @@ pub use strict::FieldFault;
 pub use write::{body_to_obj, to_json};
 
 use crate::energy::Air;
+pub use crate::energy::StrainLimit;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
 use nalgebra::{Vector2, Vector3};
@@ -113,15 +114,6 @@ pub struct Band {
     pub ratio: f64,
     /// Force per unit of strain, N. It does not resist being pressed together.
     pub stiffness: f64,
-}
-
-/// Strain that cloth may reach, beyond which it stiffens. Shares of the length at rest.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StrainLimit {
-    /// Along the warp.
-    pub warp: f64,
-    /// Along the weft.
-    pub weft: f64,
 }
 
 /// A closed, static mesh whose triangles face outwards.

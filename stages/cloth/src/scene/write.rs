@@ -3,8 +3,8 @@
 
 use super::held::figures;
 use super::{Held, Panel, Phase, Scene, Seam};
+use crate::contact::friction::FrictionContact;
 use crate::fabric::{Curve, Fabric};
-use crate::statics::forces::friction_history::FrictionContact;
 use serde_json::{Value, json};
 use toile_geometry::obj;
 

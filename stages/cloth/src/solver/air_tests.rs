@@ -5,7 +5,7 @@ use super::*;
 use crate::energy::{Air, AirDrag, Cloth, Models, Vec3};
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
-use crate::mesh::layout::{Layout, Rectangle};
+use crate::solver::layout::{Layout, Rectangle};
 use proptest::prelude::*;
 
 const G: f64 = 9.81;

@@ -10,6 +10,7 @@
 
 mod explicit;
 mod implicit;
+pub mod layout;
 mod model;
 mod newton;
 mod projective;

@@ -6,7 +6,7 @@ use crate::energy::membrane::{StVenantKirchhoff, Triangles};
 use crate::energy::{Blocks, Cloth, Models, Projection, Subset, Vec3, add_block_of};
 use crate::fabric::{Fabric, Rigidity};
 use crate::mesh::Sheet;
-use crate::mesh::layout::{Layout, Rectangle};
+use crate::solver::layout::{Layout, Rectangle};
 use nalgebra::Matrix3;
 
 const G: f64 = 9.81;

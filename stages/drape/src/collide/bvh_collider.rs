@@ -5,9 +5,11 @@ use super::body_check::check_body;
 use super::scheme::BvhScheme;
 use std::sync::Arc;
 use toile_body::bridged;
-use toile_core::decide::{Decision, Known};
+use toile_core::Known;
+use toile_core::decide::Decision;
 use toile_core::param::ron_text;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Node};
 use toile_geometry::volume::{Aabb, BoundingVolume, KDop, Obb, Sphere};
 
 /// The bounding volume of the hierarchies.
@@ -34,6 +36,9 @@ pub enum Volume {
 /// `restitution` times. With `penalty`, cloth nearer than `thickness` is pushed off by a spring of
 /// that stiffness instead. Both are what `SpringStitcher` and `SpringDraper` do; the other drapers
 /// refuse them.
+///
+/// Behind another `BvhCollider`, such as one of the same body in another pose, it takes that one's
+/// parameters where it is given none.
 #[stage(
     role = Collider,
     source = "Gottschalk et al. 1996; Klosowski et al. 1998; Baerentzen & Aanaes 2005",
@@ -75,6 +80,12 @@ const SHARE: f64 = 0.7;
 
 #[stage]
 impl BvhCollider {
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        let own = nodes.get(index).map(|n| n.card.name);
+        let like = nodes.iter().take(index).rposition(|n| Some(n.card.name) == own);
+        ByPlace { like, set: Vec::new() }
+    }
+
     fn run(&self, body: Option<&Body>, cx: &Context) -> Result<Collider, StageError> {
         body.map(check_body).transpose()?;
         if body.is_none() && !self.self_collision {

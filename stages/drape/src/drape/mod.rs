@@ -2,6 +2,7 @@
 
 mod again;
 mod asleep;
+mod by_place;
 mod central_differences;
 mod implicit_euler;
 mod mixed_precision;

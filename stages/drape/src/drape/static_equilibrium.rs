@@ -8,6 +8,7 @@
 
 use super::again::{MOST_DIP, is_better, thin_of, why_again};
 use super::asleep;
+use super::by_place;
 use super::mixed_precision::{self, Precision};
 use super::models::{Bending, Membrane, models};
 use super::motion::engine_air;
@@ -22,8 +23,10 @@ use toile_cloth::statics::drive::solve::{
 };
 use toile_cloth::statics::report::start::surely_reversed;
 use toile_cloth::stopper::Stopper;
-use toile_core::decide::{Decision, Known};
+use toile_core::Known;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
+use toile_core::{ByPlace, Node};
 
 /// Which steps prove that cloth is at rest. Each step begins standing, so that what nothing holds
 /// gains speed in it.
@@ -52,11 +55,13 @@ pub enum Proof {
 /// is followed for the scene's phases, as by `ImplicitEuler(drag: 0.0)`. Still air changes no state
 /// of rest; a scene with wind in its last phase is refused, for wind has no potential: take
 /// `ImplicitEuler`.
+///
+/// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none.
 #[stage(
     role = Draper,
-    version = 21,
+    version = 22,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
-    example = "StaticEquilibrium(speed: 0.001)",
+    example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
 )]
 pub struct StaticEquilibrium {
@@ -71,15 +76,15 @@ pub struct StaticEquilibrium {
     pub bending: Bending,
     /// At rest, no vertex but the share `non_static` gains more than this in a step that proves
     /// rest (see `proof`).
-    #[param(default = 1e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
+    #[param(default = 5e-3, min = 1e-9, max = 1.0, unit = "m/s", trades, finer = "less")]
     pub speed: f64,
     /// The share of the vertices that may gain more, for garments that lie where the skin of a body
     /// folds, as in an armpit: some vertices there never come to rest. The figure `non_static`
     /// tells the share that still moves.
-    #[param(default = 0.0, min = 0.0, max = 0.5, trades, finer = "less")]
+    #[param(default = 0.015, min = 0.0, max = 0.5, trades, finer = "less")]
     pub non_static: f64,
     /// Which steps prove rest.
-    #[param(default = Proof::Short, trades)]
+    #[param(default = Proof::Long, trades)]
     pub proof: Proof,
     /// Vertices of the coarsest mesh, on which the garment is sewn; with `bending_continuation`, at
     /// least 700.
@@ -104,7 +109,8 @@ pub struct StaticEquilibrium {
     pub bending_continuation: bool,
     /// Whether the cloth goes on from where it is, on its own mesh alone: for a garment that came
     /// to rest on a coarser mesh (see `Subdivide`) and shall keep its folds. Bending is not
-    /// continued then.
+    /// continued then. Left out, it is true behind a draper, with only stages between that move
+    /// the garment or cut its mesh.
     #[param(default = false, way)]
     pub from_here: bool,
     /// Whether cloth passes through cloth while its seams close: for panels that start far apart,
@@ -113,7 +119,8 @@ pub struct StaticEquilibrium {
     /// is moved out of it, and seams join at gaps of up to a third of an edge of the coarsest mesh.
     /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
     /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
-    /// size in it; that is told, and the better result is taken.
+    /// size in it; that is told, and the better result is taken. Left out, it is true behind a
+    /// placement of panels, such as `Arrange`.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well,
@@ -225,8 +232,13 @@ impl StaticEquilibrium {
         self.from_here
     }
 
+    fn by_place(&self, nodes: &[Node], index: usize) -> ByPlace {
+        by_place::by_place(nodes, index)
+    }
+
     fn decide(&self, known: &Known<'_>) -> Vec<Decision> {
         let rules = [
+            by_place::rule(known),
             mixed_precision::rule(self.precision, self.bending_continuation, known.given),
             asleep::rule(self.asleep, self.bending_continuation, known.given),
         ];

@@ -7,5 +7,5 @@ use toile_core::artifact::Digester;
 ///
 /// Equal code gives equal bits on machines of equal arithmetic, for any number of threads.
 pub fn arithmetic() -> String {
-    Digester::new().text("arithmetic").floats(toile_cloth::linear::probe()).finish().short()
+    Digester::new().text("arithmetic").floats(toile_cloth::statics::factor::probe()).finish().short()
 }

@@ -9,8 +9,9 @@
 
 use super::join::joint_of;
 use crate::photo::frames;
+use toile_core::Known;
 use toile_core::cost::{Quantity, Size, garment_area};
-use toile_core::decide::{Decision, Known, Saves, State, Tolerance, Turn};
+use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 
 /// What 95 % of the outline keep, metres.
 const MOST_MOVED: f64 = 1e-3;

@@ -16,8 +16,9 @@ use super::join::{joined, joint};
 use super::joined_pixels;
 use image::RgbImage;
 use std::ops::Range;
+use toile_core::Known;
 use toile_core::cost::Size;
-use toile_core::decide::{Decision, Known};
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
 
 /// Which pixels count as neighbours.

@@ -14,8 +14,9 @@ use super::{bleed, crop, of_panel, photo_detail, plain, variants};
 use crate::render::parts;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
+use toile_core::Known;
 use toile_core::cost::Size;
-use toile_core::decide::{Decision, Known};
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
 
 /// What light does to the photo.
@@ -108,7 +109,7 @@ pub enum WrongSide {
 /// beside that place go on.
 #[stage(
     role = Texturer,
-    version = 8,
+    version = 9,
     source = "garment modelling thesis, 2012: replace and modulate; Land, McCann 1971 and Grosse and others 2009: light apart from colour; Blinn 1978: normals from heights; Estevez, Kulla 2017: sheen",
     example = "PhotoTexturer(light: Modulate, size: 2048)",
     contracts(Deterministic, ThreadInvariant, Cancellable)
@@ -120,14 +121,15 @@ pub struct PhotoTexturer {
     /// Longer side of a texture at most; larger crops are scaled down.
     #[param(default = 2048, min = 16, max = LARGEST, unit = "px", trades)]
     size: u32,
-    /// How far inside the outline colours are taken: past the garment's own rim and shadow.
-    #[param(default = Length::mm(2.0), min = 0.0, max = 0.05)]
+    /// How far inside the outline colours are taken: past the garment's own rim and shadow, so that
+    /// no ground shows along the seams.
+    #[param(default = Length::mm(7.0), min = 0.0, max = 0.05)]
     inset: Length,
     /// What a side shows of which there is no photo (`MirrorOf`).
-    #[param(default = Unseen::Mirrored)]
+    #[param(default = Unseen::Plain)]
     unseen: Unseen,
     /// What becomes of the photo's own light: creases, shadows and uneven light.
-    #[param(default = PhotoLight::Keep)]
+    #[param(default = PhotoLight::Remove)]
     shading: PhotoLight,
     /// What the wrong side of the cloth shows.
     #[param(default = WrongSide::Plain)]

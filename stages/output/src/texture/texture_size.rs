@@ -6,8 +6,9 @@
 //! difference of the texture in grey levels; the scaled texture lacks the grain of camera and weave
 //! below its own pixels. Source: area average (Williams 1983).
 
+use toile_core::Known;
 use toile_core::cost::{Quantity, Size};
-use toile_core::decide::{Decision, Known, Saves, State, Tolerance, Turn};
+use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 use toile_image::photo::frames;
 
 /// How much longer than the garment a photo's frame may be.

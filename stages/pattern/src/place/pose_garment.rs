@@ -10,7 +10,7 @@ use toile_core::prelude::*;
 /// Brings a draped garment along with a body that `PoseBody` has given another pose.
 ///
 /// The garment is stretched and pressed where arm and trunk meet; a collider of the new body and
-/// `StaticEquilibrium(from_here: true)` after it let it settle.
+/// a `StaticEquilibrium` after it let it settle.
 #[stage(
     role = Placement,
     source = "monotone cubic between arm and trunk: Fritsch and Carlson 1980",

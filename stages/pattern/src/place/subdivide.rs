@@ -27,7 +27,7 @@ const MOST_VERTICES: usize = 4_000_000;
 /// own shape. No old vertex moves, and new ones lie on the flat triangles of the coarse mesh;
 /// seams, joined or still open, are sewn at every new vertex. It finds no folds and no rest by
 /// itself: put a draper behind it that goes on from where the cloth is, such as
-/// `StaticEquilibrium(from_here: true)`. The outline stays the polygon of the coarse mesh: where
+/// a second `StaticEquilibrium`. The outline stays the polygon of the coarse mesh: where
 /// curves matter, mesh with shorter edges. Pins hold the old vertices alone. With one part the
 /// garment is left as it is.
 #[stage(

@@ -21,7 +21,7 @@ const FARTHEST: f64 = 1e6;
 ///
 /// For a second, finer mesh of a garment: drape a coarse mesh, mesh again (finer, or graded to the
 /// folds that have formed), carry the drape over, and let a solver settle it.
-/// `StaticEquilibrium(from_here: true)` goes on from the carried state straight; without, it would
+/// `StaticEquilibrium` goes on from the carried state straight; with `from_here: false`, it would
 /// begin anew on coarse meshes. The earlier garment must be sewn.
 #[stage(
     role = Placement,

@@ -9,7 +9,7 @@ use toile_cloth::energy::{self, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 
 const WIDTH: f64 = 0.3;

@@ -6,7 +6,7 @@ use toile_cloth::energy::{Cloth, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{CentralDifferences, Model, Solver, State, Static};
 
 /// Side of the sheet, m.

@@ -8,7 +8,7 @@ use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::error::{ClothError, check_parameter};
 use toile_cloth::fabric::Fabric;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{ImplicitEuler, Model, Solver, State};
 
 /// One combination of extremes; SI units.

@@ -8,7 +8,7 @@ use toile_cloth::constraint::Plane;
 use toile_cloth::energy::Vec3;
 use toile_cloth::error::ClothError;
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{ImplicitEuler, Model, Solver, State};
 
 /// All of them.

@@ -6,8 +6,8 @@ use std::ops::ControlFlow;
 use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::Fabric;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
 use toile_cloth::scene::Scene;
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{Model, Solver, State, Static};
 use toile_cloth::statics::drive::solve::{Precision, StaticEquilibrium, StaticsError};
 

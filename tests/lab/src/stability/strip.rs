@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use super::{Case, Check, Must, Verdict};
 use crate::reference;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 
 use toile_cloth::energy::{Clamp, Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;

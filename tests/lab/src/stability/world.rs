@@ -9,7 +9,7 @@ use toile_cloth::energy::{Cloth, Models, Vec3};
 use toile_cloth::error::ClothError;
 use toile_cloth::fabric::{Fabric, Rigidity};
 use toile_cloth::mesh::Sheet;
-use toile_cloth::mesh::layout::{Layout, Rectangle};
+use toile_cloth::solver::layout::{Layout, Rectangle};
 use toile_cloth::solver::{CentralDifferences, ImplicitEuler, Model, Projective, Solver, State, Xpbd};
 
 const DENSITY: f64 = 0.15;

@@ -16,8 +16,7 @@
 //! parameters counts only where the stage looks at it beforehand (`foresee`).
 
 use super::Quality;
-use crate::cache::file_hash;
-use crate::cost::Size;
+use crate::file_hash::file_hash;
 use crate::load::Pipeline;
 use crate::load::parse;
 use crate::load::syntax::tree::Tree;
@@ -26,6 +25,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::Arc;
 use toile_core::artifact::{Digester, Garment, OutputFiles};
+use toile_core::cost::Size;
 use toile_core::{ArtifactType, Cancel, Context, Feed, Node};
 
 /// What a measurement was made on.

@@ -151,7 +151,7 @@ fn cylinder_costs_the_same_in_every_direction() {
 /// triangle, before calibration.
 #[test]
 fn a_quadratic_surface_has_its_energy_on_any_mesh() {
-    use crate::mesh::layout::{Layout, Rectangle};
+    use crate::solver::layout::{Layout, Rectangle};
     let d = Rigidity { warp: 3.0, weft: 2.0 };
     for layout in Layout::ALL {
         let mesh = Rectangle::new(layout, 1.0, 1.0, 8);

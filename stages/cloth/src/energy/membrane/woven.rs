@@ -10,10 +10,10 @@
 //! keep the slopes that they have there.
 
 use super::triangles::{Law, Response};
+use crate::energy::StrainLimit;
 use crate::energy::Vec3;
 use crate::error::ClothError;
 use crate::fabric::{Curve, Fabric};
-use crate::scene::StrainLimit;
 use nalgebra::{Matrix3, Vector3};
 
 /// Length of a yarn direction below which strains no longer follow it: its derivatives would grow

@@ -1,7 +1,7 @@
 //! A garment goes on from what friction held when it came to rest.
 
+use crate::contact::friction::FrictionContact;
 use crate::scene::Held;
-use crate::statics::forces::friction_history::FrictionContact;
 use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::report::equilibrium::Equilibrium;

@@ -7,6 +7,7 @@ pub(crate) mod front;
 pub(crate) mod mixed;
 pub mod multifrontal;
 pub mod nested_dissection;
+mod probe;
 pub mod scalar;
 
-pub(crate) use dense::probe_factor;
+pub use probe::probe;

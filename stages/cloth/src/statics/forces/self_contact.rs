@@ -5,10 +5,11 @@
 //! 2025, names these the feasible pairs), so that nothing is counted twice. What touches rubs, by
 //! Coulomb's law (see `friction_history`).
 
+use crate::contact::friction::FrictionContact;
 use crate::linear::{Pattern, add_at};
 use crate::statics::forces::contact::Contact;
 use crate::statics::forces::contact_potential::ContactPotential;
-use crate::statics::forces::friction_history::{FrictionContact, Memory, between};
+use crate::statics::forces::friction_history::{Memory, between};
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 use toile_geometry::closest::Feature;

@@ -5,9 +5,9 @@
 //! Lanzkron, Rose, Wilkes 1996). The whole system looks again afterwards, so the state of rest is
 //! that of the whole.
 
+use crate::contact::friction::FrictionContact;
 use crate::energy::Subset;
 use crate::statics::forces::body_contact::BodyContact;
-use crate::statics::forces::friction_history::FrictionContact;
 use crate::statics::forces::height_springs::HeightSprings;
 use crate::statics::forces::seam_force::SeamForce;
 use crate::statics::forces::self_contact::SelfContact;

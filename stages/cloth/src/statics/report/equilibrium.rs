@@ -1,6 +1,6 @@
 //! What the static solver reports.
 
-use crate::statics::forces::friction_history::FrictionContact;
+use crate::contact::friction::FrictionContact;
 use crate::statics::newton::state::Outcome;
 use crate::statics::report::unbalanced::Unbalanced;
 use nalgebra::Vector3;

@@ -16,10 +16,11 @@ use std::any::Any;
 use std::collections::BTreeMap;
 use toile_core::artifact::{
     Artifact, Body, Digester, Figures, Garment, GarmentPanel, Measure, Model, Outline, OutputFiles,
-    PanelFigures, Photo, RunLog, SeamState, SewingPlan, StageRecord, StrainFigures, quantile, store::stored,
+    PanelFigures, Photo, SeamState, SewingPlan, StrainFigures, quantile, stored,
 };
 use toile_core::cost::Estimate;
 use toile_core::{Context, StageError, StageMeta};
+use toile_core::{RunLog, StageRecord};
 
 /// Pictures of one page in bytes, as they stand in it: keeps the page fit for mail.
 const PICTURE_BUDGET: usize = 2_600_000;

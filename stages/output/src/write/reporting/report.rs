@@ -9,7 +9,8 @@ use crate::write::reporting::views::{self, Views};
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Serde, Value};
-use toile_core::decide::{Decision, Known};
+use toile_core::Known;
+use toile_core::decide::Decision;
 use toile_core::prelude::*;
 
 /// The page; autoescaped, since its name ends in `.html`.

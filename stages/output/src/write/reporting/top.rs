@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 use toile_core::Remarks;
-use toile_core::artifact::{Garment, RunLog, SeamState, StageRecord};
+use toile_core::artifact::{Garment, SeamState};
+use toile_core::{RunLog, StageRecord};
 
 /// Whether the result is good, in a word and a sentence.
 #[derive(Debug, Serialize, PartialEq, Eq)]
@@ -65,7 +66,7 @@ fn told(run: &RunLog, texts: impl Fn(&Remarks) -> &Vec<String>) -> Vec<Told> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use toile_core::artifact::Failure;
+    use toile_core::Failure;
     use toile_core::testkit::dress;
 
     #[test]

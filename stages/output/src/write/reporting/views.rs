@@ -8,8 +8,10 @@
 
 use crate::write::preview::Preview;
 use image::RgbImage;
-use toile_core::artifact::{ArtifactType, Model, OutputFiles, RunLog};
-use toile_core::decide::{Decision, Known, Saves, State, Tolerance, Turn};
+use toile_core::Known;
+use toile_core::RunLog;
+use toile_core::artifact::{ArtifactType, Model, OutputFiles};
+use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 use toile_core::param::ron_options;
 use toile_core::{PortValue, StageMeta, choice};
 

@@ -3,7 +3,7 @@
 use super::*;
 use crate::energy::Vec3;
 use crate::fabric::Fabric;
-use crate::mesh::layout::{Layout, Rectangle};
+use crate::solver::layout::{Layout, Rectangle};
 use std::ops::ControlFlow;
 
 /// Curvature that the strip is bent to, 1/m.

@@ -6,7 +6,7 @@
 //! the processor has fused multiplication, and another release has other ones. Cost: some tens of
 //! milliseconds. Limit: two machines that agree here may differ where nothing was probed.
 
-use crate::statics::factor::probe_factor;
+use super::dense::probe_factor;
 
 /// Unknowns of the factor that is probed, and its rows: as large as the fronts of a fine mesh, so
 /// that its products are cut.

@@ -1,7 +1,8 @@
 //! What a rule may look at.
 
+use super::{Feed, Node};
+use crate::Context;
 use crate::cost::{Quantity, Size};
-use crate::{Context, Feed, Node};
 
 /// What is known of a stage's place before anything runs.
 pub struct Known<'a> {

@@ -1,9 +1,15 @@
 //! What stages find wrong before anything runs.
 
-use super::Reads;
-use crate::load::{Fault, Faults, Pipeline};
-use std::sync::{Arc, PoisonError};
+use super::{Fault, Faults, Pipeline};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+use toile_core::artifact::Digest;
 use toile_core::{Cancel, Context, Node, Placed, Stage, StageError, panics};
+
+/// Files with the digest of the content that was read, none where there was no such file; a run
+/// fills it in while it goes on.
+pub type Reads = Arc<Mutex<BTreeMap<PathBuf, Option<Digest>>>>;
 
 /// Asks every stage of which `runs` says that it will run; all that they find wrong comes out at
 /// once, each at its place.

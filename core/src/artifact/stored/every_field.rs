@@ -3,13 +3,14 @@
 //! Each type is taken apart without `..`: who adds a field must change it here as well.
 #![allow(clippy::unwrap_used, clippy::needless_update)]
 
-use crate::artifact::store::stored::tests::{
+use crate::artifact::stored::tests::{
     body, fabric, figures, garment, model, outline, panel, phases, photo, plan,
 };
 use crate::artifact::*;
 use crate::cost::Used;
 use crate::stage::PortValue;
 use crate::{ErrorCode, Remarks, Role};
+use crate::{Failure, RunLog, StageRecord};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Records and their fields.
 
+use super::lend::Lend;
 use crate::artifact::{Digester, Point2, Point3, Vector3};
-use crate::plugin::Lending;
 use bytemuck::{Pod, cast_slice};
 use std::any::Any;
 use std::borrow::Cow;
@@ -37,7 +37,7 @@ pub enum Owner {
     /// A shared value of this program.
     Own(Arc<dyn Any + Send + Sync>),
     /// The other side of a plugin's border.
-    Foreign(Lending),
+    Foreign(Arc<dyn Lend>),
 }
 
 /// What a field holds: numbers, a text or records.
@@ -216,7 +216,7 @@ impl<'a> Record<'a> {
     }
 
     /// Adds bytes that are shared.
-    pub(super) fn lent(
+    pub(in crate::artifact) fn lent(
         mut self,
         name: &'a str,
         width: u32,

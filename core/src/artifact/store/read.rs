@@ -112,7 +112,7 @@ impl<'a> Reader<'a> {
             return Err(format!("`{name}` has {} bytes, {w} x {h} pixels are {wanted}", bytes.len()));
         }
         let lent = match &field.owner {
-            Owner::Foreign(lending) => lending.picture(bytes, w, h),
+            Owner::Foreign(owner) => super::lend::picture(owner.as_ref(), bytes, w, h),
             _ => None,
         };
         let copied = || P::of_bytes(w, h, bytes.to_vec()).map(Shared::new);

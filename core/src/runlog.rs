@@ -1,7 +1,7 @@
 //! What has happened in a run so far, for stages that report on it.
 
-use super::{Artifact, ArtifactType, Digester, Kind, Measure, Measures};
 use crate::Remarks;
+use crate::artifact::{Artifact, ArtifactType, Digester, Kind, Measure, Measures};
 use crate::cost::{Predicted, Used};
 use crate::stage::PortValue;
 

@@ -6,7 +6,7 @@ use std::any::Any;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
-use toile_core::artifact::store::stored::{decode, encode};
+use toile_core::artifact::stored::{decode, encode};
 use toile_core::{Artifact, ArtifactType, ErrorCode, Length, StageError};
 use toile_pipeline::Pipeline;
 

@@ -4,12 +4,12 @@
 use nalgebra::Vector2;
 use spade::{DelaunayTriangulation, Point2, Triangulation};
 
-use crate::energy::Vec3;
+use super::Model;
 use crate::error::ClothError;
 use crate::fabric::Fabric;
+use crate::linear::Vec3;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
-use crate::solver::Model;
 
 /// Rounds of moving irregular points to the middle of their surroundings.
 const SMOOTHING: usize = 40;

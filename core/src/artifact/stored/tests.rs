@@ -1,6 +1,7 @@
 #![allow(clippy::unwrap_used)]
 use super::{Data, Reader, Record, decode, encode, from_record, kind_named};
 use crate::ErrorCode;
+use crate::RunLog;
 use crate::artifact::*;
 use proptest::prelude::*;
 use std::collections::BTreeMap;

@@ -4,7 +4,7 @@
 //! (u32), and of each its name (u32 and bytes), type (u8), width (u32), count (u64) and numbers.
 
 use super::MAX_DEPTH;
-use super::list::{Data, Field, Owner, Record};
+use super::{Data, Field, Owner, Record};
 use crate::artifact::Kind;
 use bytemuck::{Pod, cast_slice, pod_collect_to_vec};
 use std::borrow::Cow;

@@ -8,17 +8,16 @@
 //! machines, nesting up to [`MAX_DEPTH`].
 
 mod bytes;
+#[cfg(test)]
+mod every_field;
 mod flat;
-mod list;
 mod pattern;
 mod plan;
-mod read;
 mod solid;
 #[cfg(test)]
 pub(crate) mod tests;
 
-pub use list::{Data, Field, Listed, Owner, Record};
-pub use read::Reader;
+pub use super::store::{Data, Field, Listed, Owner, Reader, Record};
 
 use crate::artifact::{Artifact, ArtifactType, Kind};
 use std::sync::Arc;
@@ -71,7 +70,7 @@ pub fn is_stored(kind: Kind) -> bool {
 
 /// The kind of that name.
 pub fn kind_named(name: &str) -> Option<Kind> {
-    let services = [crate::artifact::Collider::KIND, crate::artifact::RunLog::KIND];
+    let services = [crate::artifact::Collider::KIND, crate::RunLog::KIND];
     MAKERS.iter().map(|(k, _)| *k).chain(services).find(|k| k.0 == name)
 }
 

@@ -1,0 +1,79 @@
+//! Rule `by-place`: whether a garment is sewn or goes on from where it is follows from the stages
+//! before it.
+//!
+//! Fact: which stage made the garment that `StaticEquilibrium` takes, past those that only move it
+//! or cut its mesh. A placement puts panels around the body, far apart and with others in between,
+//! so cloth passes through cloth while its seams close. Behind a draper the garment hangs already:
+//! it goes on from there, on the same settings. Whoever prepared a scene knows how it lies.
+
+use toile_core::Known;
+use toile_core::artifact::{ArtifactType, Garment};
+use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
+use toile_core::{ByPlace, Feed, Node, Role};
+
+/// 95 % of the surface lie within so many metres of where another way of sewing brings it: friction
+/// has many states of rest.
+const APART: f64 = 0.04;
+
+/// What the garment of a stage comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Origin {
+    /// A placement of panels.
+    Placed(usize),
+    /// A draper.
+    Draped(usize),
+}
+
+/// Whence the garment of stage `index` comes.
+fn origin(nodes: &[Node], index: usize) -> Option<Origin> {
+    let node = nodes.get(index)?;
+    let mut ports = node.card.inputs.iter().zip(&node.inputs);
+    let (_, feed) = ports.find(|(port, _)| port.kind == Garment::KIND && !port.original)?;
+    let Feed::Node { node: before, .. } = *feed else { return None };
+    let maker = nodes.get(before)?;
+    let takes_garment = maker.card.inputs.iter().any(|p| p.kind == Garment::KIND && !p.original);
+    match maker.card.role {
+        Role::Draper => Some(Origin::Draped(before)),
+        Role::Placement if takes_garment => origin(nodes, before),
+        Role::Placement => Some(Origin::Placed(before)),
+        _ => None,
+    }
+}
+
+/// The parameters of a stage that stands there.
+pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
+    let set = |name: &'static str| vec![(name, "true".to_owned())];
+    let own = nodes.get(index).map(|n| n.card.name);
+    match origin(nodes, index) {
+        Some(Origin::Placed(_)) => ByPlace { like: None, set: set("sew_through") },
+        Some(Origin::Draped(k)) => {
+            let is_alike = nodes.get(k).map(|n| n.card.name) == own;
+            let mut set = set("from_here");
+            set.push(("sew_through", "false".to_owned()));
+            ByPlace { like: Some(k).filter(|_| is_alike), set }
+        }
+        None => ByPlace::default(),
+    }
+}
+
+/// What is told of it, unless the file says otherwise.
+pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
+    let is_written = |name: &str| known.node().params.contains_key(name);
+    let (from, what, fact, name) = match origin(known.nodes, known.index)? {
+        Origin::Placed(k) => {
+            (k, "seams close through what lies between them", "puts panels around the body", "sew_through")
+        }
+        Origin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
+    };
+    let maker = known.nodes.get(from)?;
+    (!is_written(name)).then(|| Decision {
+        rule: "by-place".into(),
+        state: State::On,
+        what: what.into(),
+        fact: format!("`{}` {fact}", maker.id),
+        tolerance: Tolerance::Distance(APART),
+        saves: Saves::Share(0.0),
+        source: "docs/reference/solver.md".into(),
+        turn: Turn::Param { name: name.into(), value: "false".into() },
+    })
+}
