@@ -1,5 +1,5 @@
-//! The built-in stages of Toile, gathered from the crates that hold them, in the order in which data
-//! passes through: [`toile_image`], [`toile_pattern`], [`toile_body`], [`toile_drape`],
+//! The built-in stages of Toile, gathered from the crates that hold them, in the order in which
+//! data passes through: [`toile_image`], [`toile_pattern`], [`toile_body`], [`toile_drape`],
 //! [`toile_output`].
 
 pub use toile_body as body;

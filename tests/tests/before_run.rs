@@ -32,7 +32,7 @@ fn everything_outside_the_file_is_looked_at_and_comes_out_at_once_each_at_its_el
             ("vest/front.jpg", "vest/none.jpg"),
             ("width: \"52 cm\"", "width: \"0 cm\""),
             ("cotton poplin", "coton poplin"),
-            ("low: 20", "low: 90"),
+            ("smooth: 1", "low: 90, high: 60, smooth: 1"),
             ("Glb()", "Glb(name: \"a/b\")"),
             ("stages: [", seams),
         ],
@@ -125,7 +125,7 @@ fn faults_of_the_file_do_not_hide_what_its_stages_find() {
     let changes = [
         ("vest/front.jpg", "vest/none.jpg"),
         ("cotton poplin", "coton poplin"),
-        ("low: 20", "low: 90"),
+        ("smooth: 1", "low: 90, high: 60, smooth: 1"),
         ("Otsu()", "Otzu()"),
         ("radius: 1", "raduis: 1"),
         ("GridMesher(edge: \"16 mm\"),", "GridMesher(edge: 16)"),
@@ -355,7 +355,7 @@ fn values_out_of_range_come_out_with_all_other_faults_in_the_order_of_the_file()
 
     // Of a stage with such a value nothing else is said: what it takes by default in its place is
     // not the user's.
-    let file = vest(dir.path(), &[("low: 20", "low: 90"), ("high: 60", "high: 6000")]);
+    let file = vest(dir.path(), &[("smooth: 1", "low: 90, high: 6000, smooth: 1")]);
     let answer = toile(&["validate", &file]);
     assert_eq!((answer.code, answer.err.matches('×').count()), (3, 1), "{}", answer.err);
     assert!(words(&answer).contains("`high` is 6000, above its greatest value"), "{}", answer.err);

@@ -18,7 +18,7 @@ fn of(garment: &Garment, vertex: usize) -> String {
 impl Garment {
     /// Refuses a garment that no solver can work on: empty, with numbers that are not finite, with
     /// triangles or edges of no size, with cloth that weighs nothing.
-    pub fn check(&self) -> Result<(), StageError> {
+    pub fn check_solvable(&self) -> Result<(), StageError> {
         if self.positions.is_empty() || self.triangles.is_empty() {
             return Err(StageError::invalid("the garment is empty: it has no triangles")
                 .hint("see what the mesher and the placement made of the panels"));

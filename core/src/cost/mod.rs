@@ -8,11 +8,9 @@
 //! need not care.
 
 mod estimate;
-mod fact;
 mod size;
 mod used;
 
 pub use estimate::{Estimate, Predicted};
-pub use fact::size_of;
 pub use size::{Quantity, Size, garment_area};
 pub use used::Used;

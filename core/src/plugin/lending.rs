@@ -5,6 +5,7 @@ use super::abi;
 use crate::artifact::store::Lend;
 use std::any::Any;
 use std::ffi::c_void;
+use std::mem::ManuallyDrop;
 use std::sync::Arc;
 
 type Keeper = Arc<dyn Any + Send + Sync>;
@@ -87,14 +88,16 @@ impl Lending {
 }
 
 impl Lend for Lending {
-    fn keep(&self) -> Option<Keeper> {
-        match &self.0 {
-            Asked::Block(keeper) => Some(keeper.clone()),
+    fn keep(&self, bytes: &[u8]) -> Option<(ManuallyDrop<Vec<u8>>, Keeper)> {
+        let keeper = match &self.0 {
+            Asked::Block(keeper) => keeper.clone(),
             Asked::Foreign(owner) => {
                 let (retain, release) = (owner.retain?, owner.release?);
                 let handle = unsafe { retain(owner.ctx) };
-                (!handle.is_null()).then(|| Arc::new(Handle { handle, release }) as Keeper)
+                (!handle.is_null()).then(|| Arc::new(Handle { handle, release }) as Keeper)?
             }
-        }
+        };
+        let shown = unsafe { Vec::from_raw_parts(bytes.as_ptr().cast_mut(), bytes.len(), bytes.len()) };
+        Some((ManuallyDrop::new(shown), keeper))
     }
 }

@@ -7,6 +7,7 @@ mod known;
 mod node;
 mod placed;
 mod role;
+mod size;
 mod values;
 
 pub use by_place::ByPlace;

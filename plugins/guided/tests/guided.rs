@@ -58,7 +58,7 @@ fn a_pipeline_names_it_like_any_other_stage() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let vest = std::fs::read_to_string(root.join("pipelines/vest.ron")).unwrap();
     let text = vest
-        .replace("NeighbourhoodMean(mask: Eight, radius: 1)", "Guided(radius: 2)")
+        .replace("NeighbourhoodMean()", "Guided(radius: 2)")
         .replace("samples/", &format!("{}/pipelines/samples/", root.display()));
     let dir = tempfile::tempdir().unwrap();
     let (file, out) = (dir.path().join("guided.ron"), dir.path().join("out"));

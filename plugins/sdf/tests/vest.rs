@@ -10,7 +10,7 @@ fn drape(collider: &str, out: &Path) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let vest = std::fs::read_to_string(root.join("pipelines/vest.ron")).unwrap();
     let text = vest
-        .replace("BvhCollider(volume: Aabb, thickness: \"1.5 mm\", friction: 0.3)", collider)
+        .replace("BvhCollider()", collider)
         .replace("samples/", &format!("{}/pipelines/samples/", root.display()));
     assert!(text.contains(collider));
     let file = out.join("vest.ron");

@@ -12,28 +12,8 @@ use syn::visit::Visit;
 /// Files, by their place in the source tree, that import each other: none, and none may come.
 const LEFT: &[&[&str]] = &[];
 
-/// Folders, side by side, that import each other: no new pair may come.
-const LEFT_FOLDERS: &[[&str; 2]] = &[
-    ["cli/src/args", "cli/src/terminal"],
-    ["core/pipeline/src/cache", "core/pipeline/src/load"],
-    ["core/pipeline/src/cache", "core/pipeline/src/run"],
-    ["core/pipeline/src/cost", "core/pipeline/src/load"],
-    ["core/pipeline/src/load", "core/pipeline/src/run"],
-    ["core/src/artifact", "core/src/cost"],
-    ["core/src/artifact", "core/src/plugin"],
-    ["core/src/artifact", "core/src/stage"],
-    ["core/src/artifact/pattern", "core/src/artifact/store"],
-    ["core/src/artifact/sewing", "core/src/artifact/store"],
-    ["core/src/cost", "core/src/stage"],
-    ["core/src/decide", "core/src/stage"],
-    ["stages/cloth/src/energy", "stages/cloth/src/linear"],
-    ["stages/cloth/src/energy", "stages/cloth/src/mesh"],
-    ["stages/cloth/src/energy", "stages/cloth/src/scene"],
-    ["stages/cloth/src/linear", "stages/cloth/src/statics"],
-    ["stages/cloth/src/mesh", "stages/cloth/src/solver"],
-    ["stages/cloth/src/scene", "stages/cloth/src/statics"],
-    ["trade/src/apart", "trade/src/measure"],
-];
+/// Folders, side by side, that import each other: none, and none may come.
+const LEFT_FOLDERS: &[[&str; 2]] = &[];
 
 /// The most files of code in a folder.
 const MOST_FILES: usize = 20;

@@ -139,12 +139,12 @@ fn the_schema_refuses_what_the_loader_refuses() {
     let (schemas, index) = validator();
     let text = std::fs::read_to_string(root().join("pipelines/vest.ron")).unwrap();
     for (right, wrong) in [
-        ("Canny(low: 20", "Canny(lower: 20"),
+        ("Canny(smooth: 1", "Canny(smoth: 1"),
         ("edge: \"16 mm\"", "edge: 16"),
         ("edge: \"16 mm\"", "edge: \"16 miles\""),
-        ("volume: Aabb", "volume: Box"),
-        ("radius: 1)", "radius: 1.5)"),
-        ("lambda: 0.5", "lambda: -0.5"),
+        ("BvhCollider()", "BvhCollider(volume: Box)"),
+        ("NeighbourhoodMean()", "NeighbourhoodMean(radius: 1.5)"),
+        ("PlaneSmoother()", "PlaneSmoother(lambda: -0.5)"),
         ("style: Vest()", "style: Otsu()"),
         ("fabric: Preset(", "fabrics: Preset("),
         ("StaticEquilibrium()", "Resting()"),

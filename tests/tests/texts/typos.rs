@@ -18,17 +18,12 @@ const SLIPS: [Slip; 32] = [
     ("GarmentObj(", "^GarmentOjb(", "unknown stage `GarmentOjb`", "did you mean `GarmentObj`?"),
     ("style: Vest()", "style: ^Vset()", "unknown stage `Vset`", "did you mean `Vest`?"),
     ("body: Mannequin(", "body: ^Manequin(", "unknown stage `Manequin`", "did you mean `Mannequin`?"),
-    ("lambda: 0.5", "^lamda: 0.5", "unknown parameter `lamda`", "did you mean `lambda`?"),
-    ("from_here: true", "^form_here: true", "unknown parameter `form_here`", "did you mean `from_here`?"),
+    ("smooth: 1", "^smoth: 1", "unknown parameter `smoth`", "did you mean `smooth`?"),
+    ("hysteresis: true", "^hysterisis: true", "unknown parameter `hysterisis`", "did you mean `hysteresis`?"),
     ("Scene(file:", "Scene(^fiel:", "unknown parameter `fiel`", "did you mean `file`?"),
     ("stages: [", "^stagse: [", "unknown field `stagse`", "did you mean `stages`?"),
     ("fabric: Preset", "^fabirc: Preset", "unknown field `fabirc`", "did you mean `fabric`?"),
-    (
-        "mask: Eight",
-        "mask: ^Eigth",
-        "`mask` wants Four | Eight: there is no choice `Eigth`",
-        "did you mean `Eight`?",
-    ),
+    ("texture: Check", "texture: ^Chekc", "`texture` wants ", "did you mean `Check`?"),
     // values
     (
         "start_offset: \"2 cm\"",
@@ -36,9 +31,9 @@ const SLIPS: [Slip; 32] = [
         "`start_offset`: the length 2 has no unit; write \"2 mm\" or \"2 cm\"",
         "",
     ),
-    ("lambda: 0.5", "lambda: ^5", "`lambda` is 5, above its greatest value ", ""),
-    ("high: 60", "high: ^\"60\"", "`high` wants a number, found `\"60\"`", ""),
-    ("from_here: true", "from_here: ^yes", "`from_here` wants true | false, found `yes`", ""),
+    ("smooth: 1", "smooth: ^9", "`smooth` is 9, above its greatest value ", ""),
+    ("smooth: 1", "smooth: ^\"1\"", "`smooth` wants a number, found `\"1\"`", ""),
+    ("hysteresis: true", "hysteresis: ^yes", "`hysteresis` wants true | false, found `yes`", ""),
     // what lies outside the file
     ("/front.jpg\"", "/fornt.jpg\"", "Photos: cannot read ", ""),
     (
@@ -62,8 +57,8 @@ const SLIPS: [Slip; 32] = [
     ("\"172 cm\"", "^\"172 mm\"", "`height` is 17.2 cm, below its least value 80 cm", ""),
     // commas, colons, quotes and brackets
     ("start_offset: \"2 cm\"),", "start_offset: \"2 cm\")^", "a comma is missing after `Place(...)`", ""),
-    ("low: 20,", "low: 20^", "a comma is missing after `20`", ""),
-    ("lambda: 0.5", "lambda^ 0.5", "a colon is missing after `lambda`", "write `lambda: ...`"),
+    ("height: \"172 cm\",", "height: \"172 cm\"^", "a comma is missing after `\"172 cm\"`", ""),
+    ("smooth: 1", "smooth^ 1", "a colon is missing after `smooth`", "write `smooth: ...`"),
     ("start_offset: \"2 cm\"", "start_offset: ^\"2 cm", "this text is never closed", "write `\"` at its end"),
     (
         "start_offset: \"2 cm\"",
@@ -72,10 +67,15 @@ const SLIPS: [Slip; 32] = [
         "write `\"2 cm\"`",
     ),
     ("Glb()", "^Glb", "`Glb` needs brackets", "write `Glb()`"),
-    ("(lambda: 0.5)", "^(lambda: 0.5", "this `(` is never closed", "write `)` before `"),
+    ("(smooth: 1)", "^(smooth: 1", "this `(` is never closed", "write `)` before `"),
     // what stands twice, and settings of qualities
     ("\"back\":", "^\"front\":", "the key \"front\" is given twice", ""),
-    ("low: 20,", "low: 20, ^low: 20,", "the field `low` is given twice", ""),
+    (
+        "height: \"172 cm\",",
+        "height: \"172 cm\", ^height: \"172 cm\",",
+        "the field `height` is given twice",
+        "",
+    ),
     (
         "[\"stages.Subdivide.parts",
         "[^\"stages.Subdivid.parts",

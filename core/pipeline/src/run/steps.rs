@@ -5,7 +5,7 @@ use super::node::{Failure, run_entries};
 use super::value::Held;
 use super::{RunError, typed};
 use crate::cache::{Cache, Fed, Found, Ingredients, Parts, RUN_SO_FAR};
-use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used, size_of};
+use crate::cost::{Expect, Meter, Predicted, Size, StageCost, Used};
 use crate::load::{Pipeline, Reads};
 use crate::made::Made;
 use std::collections::BTreeMap;
@@ -247,7 +247,7 @@ impl Run<'_> {
 
 /// How much was made, all entries and ports together.
 fn sizes(made: &[Made]) -> Size {
-    let ports = |m: &Made| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&size_of(v)));
+    let ports = |m: &Made| m.outputs.iter().fold(Size::new(), |all, v| all.joined(&v.size()));
     made.iter().fold(Size::new(), |sum, m| sum.plus(&ports(m)))
 }
 

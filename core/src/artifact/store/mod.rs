@@ -1,7 +1,6 @@
 //! What artifacts are made of: digests, named fields, shared memory, checks.
 
 pub(crate) mod digest;
-#[allow(unsafe_code)]
 mod lend;
 mod list;
 mod read;

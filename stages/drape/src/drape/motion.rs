@@ -97,7 +97,7 @@ pub(crate) fn moved(
     cx: &Context,
 ) -> Result<Garment, StageError> {
     let time = course.time;
-    garment.check()?;
+    garment.check_solvable()?;
     garment.seams.iter().try_for_each(|s| only_joins(s.kind, &s.name))?;
     let air = time.air();
     check_wind(&air)?;

@@ -68,7 +68,7 @@ impl SpringDraper {
         collider: Option<&Collider>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        garment.check()?;
+        garment.check_solvable()?;
         let time = InTime {
             gravity: self.gravity,
             dt: self.dt,

@@ -59,7 +59,7 @@ pub enum Proof {
 /// Behind another `StaticEquilibrium` it takes that one's parameters where it is given none.
 #[stage(
     role = Draper,
-    version = 22,
+    version = 21,
     source = "Newton's method on the potential of Baraff and Witkin 1998; Bergou et al. 2006; Li et al. 2020",
     example = "StaticEquilibrium(speed: 0.001, non_static: 0.0)",
     contracts(Deterministic, ThreadInvariant, RefusesEmpty, Cancellable)
@@ -146,7 +146,7 @@ impl StaticEquilibrium {
         phases: Option<&Phases>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        garment.check()?;
+        garment.check_solvable()?;
         engine::check_response(collider, "StaticEquilibrium")?;
         let gravity =
             phases.and_then(Phases::last_gravity).unwrap_or_else(|| Vector3::new(0.0, -self.gravity, 0.0));

@@ -41,11 +41,11 @@ pub struct Measure {
     max_gap: Length,
     /// Greatest area error of a panel, as a share; triangles that the body stretches count as they
     /// were cut.
-    #[param(default = 0.01, min = 0.0, max = 1.0)]
+    #[param(default = 0.03, min = 0.0, max = 1.0)]
     max_area_error: f64,
     /// Greatest outline error of a panel, as a share; edges that the body stretches count as they
     /// were cut.
-    #[param(default = 0.01, min = 0.0, max = 1.0)]
+    #[param(default = 0.03, min = 0.0, max = 1.0)]
     max_outline_error: f64,
     /// Greatest 99th percentile of the edge strain, as a share; edges that the body stretches count
     /// as not strained.
@@ -81,7 +81,7 @@ impl Measure {
     ) -> Result<Figures, StageError> {
         let laid = flat.filter(|flat| flat.rest != garment.rest);
         let garment = with_pattern(garment, laid);
-        garment.check()?;
+        garment.check_solvable()?;
         let tight = Tight::of(garment, collider);
         let mut figures = Figures {
             panels: panel_figures(garment, None)?,

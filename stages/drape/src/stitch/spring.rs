@@ -58,7 +58,7 @@ impl SpringStitcher {
         collider: Option<&Collider>,
         cx: &Context,
     ) -> Result<Garment, StageError> {
-        garment.check()?;
+        garment.check_solvable()?;
         let time = InTime {
             gravity: 0.0,
             dt: self.dt,

@@ -64,7 +64,7 @@ impl Fit {
     ) -> Result<OutputFiles, StageError> {
         check_name(&self.name)?;
         let garment = with_pattern(garment, flat);
-        garment.check()?;
+        garment.check_solvable()?;
         let load = Load::of(garment, collider, cx)?;
         let open = openings(garment);
         let girths = body.map(|b| tape::girths(garment, b, &open)).unwrap_or_default();

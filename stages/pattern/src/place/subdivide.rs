@@ -46,7 +46,7 @@ pub struct Subdivide {
 impl Subdivide {
     /// Runs the stage.
     pub fn run(&self, garment: &Garment, cx: &Context) -> Result<Garment, StageError> {
-        garment.check()?;
+        garment.check_solvable()?;
         cx.check()?;
         if self.parts == 1 {
             return Ok(garment.clone());

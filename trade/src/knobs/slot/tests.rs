@@ -144,7 +144,7 @@ fn the_own_setting_and_its_refinements() {
     let words = |s: Setting| s.into_iter().map(|(k, v)| format!("{k} {v}")).collect::<Vec<_>>().join(", ");
     assert_eq!(
         words(board.own()),
-        "StaticEquilibrium.speed 0.001, mesher.edge \"16 mm\", solver StaticEquilibrium"
+        "StaticEquilibrium.speed 0.005, mesher.edge \"16 mm\", solver StaticEquilibrium"
     );
     assert_eq!(
         words(board.refined(2.0)),
@@ -259,11 +259,14 @@ fn a_pipeline_without_knobs_gets_its_resolutions_and_stages() {
     let registry = registry();
     let pipeline = source(VEST, &registry).load(&[]).unwrap();
     let found: Vec<String> = default_knobs(&pipeline, &registry).iter().map(KnobSpec::key).collect();
-    assert_eq!(found, ["mesher.edge", "mesher", "solver", "StaticEquilibrium.speed"]);
+    assert_eq!(
+        found,
+        ["mesher.edge", "mesher", "solver", "StaticEquilibrium.speed", "StaticEquilibrium.non_static"]
+    );
     let scene = source(FILE, &registry).load(&[]).unwrap();
     assert_eq!(
         default_knobs(&scene, &registry).iter().map(KnobSpec::key).collect::<Vec<_>>(),
-        ["solver", "StaticEquilibrium.speed"]
+        ["solver", "StaticEquilibrium.speed", "StaticEquilibrium.non_static"]
     );
 }
 
@@ -280,7 +283,10 @@ fn where_a_draped_garment_is_refined_its_parts_are_turned_and_the_mesh_that_find
     let registry = registry();
     let pipeline = source(&refined_vest(), &registry).load(&[]).unwrap();
     let found = default_knobs(&pipeline, &registry);
-    assert_eq!(found.iter().map(KnobSpec::key).collect::<Vec<_>>(), ["Subdivide.parts", "Settle.speed"]);
+    assert_eq!(
+        found.iter().map(KnobSpec::key).collect::<Vec<_>>(),
+        ["Subdivide.parts", "Settle.speed", "Settle.non_static"]
+    );
     let board = Board::new(&source(&refined_vest(), &registry), &pipeline, &found).unwrap();
     // Half and twice the parts.
     assert!(

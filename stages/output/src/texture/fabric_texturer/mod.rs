@@ -125,7 +125,7 @@ impl FabricTexturer {
         body: Option<&Body>,
         cx: &Context,
     ) -> Result<Model, StageError> {
-        garment.check()?;
+        garment.check_solvable()?;
         self.fault().map_or(Ok(()), Err)?;
         let mut kinds = Vec::new();
         for shows in garment.panels.iter().map(|p| self.shows(&p.fabric.name)) {

@@ -1,14 +1,16 @@
 //! The size of what a stage made.
 
-use super::{Quantity, Size};
-use crate::PortValue;
+use super::PortValue;
 use crate::artifact::{Artifact, Body, Garment, Mask, Model, Outline, Panel, Photo};
+use crate::cost::{Quantity, Size};
 use std::any::Any;
 
-/// The size of a port's value, of a set all entries together. Empty for kinds whose size no stage's
-/// work depends on.
-pub fn size_of(value: &PortValue) -> Size {
-    value.entries().into_iter().fold(Size::new(), |sum, (_, a)| sum.plus(&of_artifact(a.as_ref())))
+impl PortValue {
+    /// Its size, of a set all entries together. Empty for kinds whose size no stage's work depends
+    /// on.
+    pub fn size(&self) -> Size {
+        self.entries().into_iter().fold(Size::new(), |sum, (_, a)| sum.plus(&of_artifact(a.as_ref())))
+    }
 }
 
 fn of_artifact(artifact: &dyn Artifact) -> Size {
