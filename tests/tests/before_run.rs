@@ -127,7 +127,7 @@ fn faults_of_the_file_do_not_hide_what_its_stages_find() {
         ("cotton poplin", "coton poplin"),
         ("smooth: 1", "low: 90, high: 60, smooth: 1"),
         ("Otsu()", "Otzu()"),
-        ("radius: 1", "raduis: 1"),
+        ("NeighbourhoodMean()", "NeighbourhoodMean(raduis: 1)"),
         ("GridMesher(edge: \"16 mm\"),", "GridMesher(edge: 16)"),
     ];
     let answer = toile(&["validate", &vest(dir.path(), &changes)]);

@@ -1,5 +1,6 @@
 //! Shipped pipelines, from their files to what they write.
 
+mod by_place;
 mod drawn_as_sewn;
 mod falls;
 mod flat;

@@ -147,7 +147,7 @@ fn the_schema_refuses_what_the_loader_refuses() {
         ("PlaneSmoother()", "PlaneSmoother(lambda: -0.5)"),
         ("style: Vest()", "style: Otsu()"),
         ("fabric: Preset(", "fabrics: Preset("),
-        ("StaticEquilibrium()", "Resting()"),
+        ("StaticEquilibrium(", "Resting("),
     ] {
         assert!(text.contains(right), "{right}");
         let value = toile_pipeline::to_json(&text.replace(right, wrong), "").unwrap();

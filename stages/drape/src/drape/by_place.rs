@@ -2,12 +2,14 @@
 //! before it.
 //!
 //! Fact: which stage made the garment that `StaticEquilibrium` takes, past those that only move it
-//! or cut its mesh. A placement puts panels around the body, far apart and with others in between,
-//! so cloth passes through cloth while its seams close. Behind a draper the garment hangs already:
+//! or cut its mesh. A placement of a pattern puts its pieces around the body, far apart and with
+//! others in between, so cloth passes through cloth while its seams close. Between two panels of an
+//! outline nothing lies, and sewn plainly they end in the same folds from a start that is moved by
+//! a millimetre. Behind a draper the garment hangs already:
 //! it goes on from there, on the same settings. Whoever prepared a scene knows how it lies.
 
 use toile_core::Known;
-use toile_core::artifact::{ArtifactType, Garment};
+use toile_core::artifact::{ArtifactType, Garment, Kind, Pattern};
 use toile_core::decide::{Decision, Saves, State, Tolerance, Turn};
 use toile_core::{ByPlace, Feed, Node, Role};
 
@@ -18,7 +20,7 @@ const APART: f64 = 0.04;
 /// What the garment of a stage comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Origin {
-    /// A placement of panels.
+    /// A placement of a pattern's pieces.
     Placed(usize),
     /// A draper.
     Draped(usize),
@@ -31,11 +33,11 @@ fn origin(nodes: &[Node], index: usize) -> Option<Origin> {
     let (_, feed) = ports.find(|(port, _)| port.kind == Garment::KIND && !port.original)?;
     let Feed::Node { node: before, .. } = *feed else { return None };
     let maker = nodes.get(before)?;
-    let takes_garment = maker.card.inputs.iter().any(|p| p.kind == Garment::KIND && !p.original);
+    let takes = |kind: Kind| maker.card.inputs.iter().any(|p| p.kind == kind && !p.original);
     match maker.card.role {
         Role::Draper => Some(Origin::Draped(before)),
-        Role::Placement if takes_garment => origin(nodes, before),
-        Role::Placement => Some(Origin::Placed(before)),
+        Role::Placement if takes(Garment::KIND) => origin(nodes, before),
+        Role::Placement if takes(Pattern::KIND) => Some(Origin::Placed(before)),
         _ => None,
     }
 }
@@ -61,7 +63,7 @@ pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);
     let (from, what, fact, name) = match origin(known.nodes, known.index)? {
         Origin::Placed(k) => {
-            (k, "seams close through what lies between them", "puts panels around the body", "sew_through")
+            (k, "seams close through what lies between them", "puts a pattern's pieces around the body", "sew_through")
         }
         Origin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
     };
@@ -72,7 +74,7 @@ pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
         what: what.into(),
         fact: format!("`{}` {fact}", maker.id),
         tolerance: Tolerance::Distance(APART),
-        saves: Saves::Share(0.0),
+        saves: Saves::Modelled,
         source: "docs/reference/solver.md".into(),
         turn: Turn::Param { name: name.into(), value: "false".into() },
     })

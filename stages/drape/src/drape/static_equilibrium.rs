@@ -120,7 +120,7 @@ pub struct StaticEquilibrium {
     /// Where the body keeps seams open, or the cloth does not come out of itself or of the body,
     /// the garment is sewn again around a thin figure of the body's pose, which grows to its full
     /// size in it; that is told, and the better result is taken. Left out, it is true behind a
-    /// placement of panels, such as `Arrange`.
+    /// placement of a pattern, such as `Arrange`.
     #[param(default = false, way)]
     pub sew_through: bool,
     /// How precise the factor of each step's matrix is: single where that solves the step well,

@@ -56,7 +56,7 @@ const MIDDLE: f64 = 0.65;
 /// their names, seams and sizes. What was decided and moved is in the log.
 #[stage(
     role = Placement,
-    version = 4,
+    version = 5,
     source = "arrangement of pattern pieces around limbs, as in garment CAD",
     example = "Arrange(bend: true)",
     contracts(Deterministic, ThreadInvariant)
@@ -105,7 +105,8 @@ impl Arrange {
         self.raise(&mut places, body, cx);
         at_the_body(&places, body)?;
         if self.bend {
-            legs::swing(&worn, body, &mut places).into_iter().for_each(|what| cx.note(what));
+            let swung = legs::swing(&worn, body, &mut places, &seams, &offsets);
+            swung.into_iter().for_each(|what| cx.note(what));
             for limb in Limb::arms(body) {
                 let mine = match &sleeves {
                     Some(all) => {

@@ -148,7 +148,7 @@ fn the_own_setting_and_its_refinements() {
     );
     assert_eq!(
         words(board.refined(2.0)),
-        "StaticEquilibrium.speed 0.0005, mesher.edge \"8 mm\", solver StaticEquilibrium"
+        "StaticEquilibrium.speed 0.0025, mesher.edge \"8 mm\", solver StaticEquilibrium"
     );
     let fine = board.refined(4.0);
     assert!(board.is_finer(&fine, 1.9) && !board.is_finer(&board.refined(2.0), 1.3));

@@ -3,10 +3,16 @@
 //! Trousers lie with their legs more or less spread, the body stands with its own. A half whose
 //! rows miss the leg would be sewn beside it. Below the fork its rows are moved sideways, so that
 //! the middle of each is before (or behind) the middle of the leg.
+//!
+//! A label does not tell a leg: GarmentCode calls the panels of skirts `leg`, too. Low down the
+//! halves of a leg are sewn to each other, and to nothing across the middle; the panels of a skirt
+//! go around both legs. So a piece is one of a leg where all that it is sewn to there lies on its
+//! side.
 
+use crate::place::sew::Offsets;
 use std::collections::BTreeMap;
 use toile_body::slice;
-use toile_core::artifact::BodyPart;
+use toile_core::artifact::{BodyPart, join_pairs};
 use toile_core::prelude::*;
 
 /// Heights at which legs and pieces are compared, metres.
@@ -18,15 +24,28 @@ const SETS_IN: f64 = 0.25;
 /// No piece is moved by less, metres.
 const LEAST: f64 = 0.005;
 
+/// Seams count in this lower share of what hangs below the body's fork: the rise of a garment may
+/// end below that.
+const LOWER: f64 = 0.5;
+/// What reaches farther across the middle is before both legs, metres.
+const ACROSS: f64 = 0.03;
+
 /// Moves the flat halves of legs that miss the body's; what was moved, in words.
 pub(super) fn swing(
     pattern: &Pattern,
     body: &Body,
     places: &mut BTreeMap<String, Vec<Point3>>,
+    seams: &[GarmentSeam],
+    offsets: &Offsets,
 ) -> Vec<String> {
     let Some(crotch) = body.landmarks.get("crotch").map(|p| p.y) else { return Vec::new() };
+    let lowest = places.values().flatten().map(|p| p.y).fold(crotch, f64::min);
+    let of_one_leg = of_one_leg(places, seams, offsets, lowest + LOWER * (crotch - lowest));
     let mut told = Vec::new();
     for piece in pattern.pieces.iter().filter(|p| p.body_part == Some(BodyPart::Leg)) {
+        if of_one_leg.get(&piece.name) != Some(&true) {
+            continue;
+        }
         let Some(points) = places.get_mut(&piece.name) else { continue };
         let hand = points.iter().map(|p| p.x).sum::<f64>().signum();
         let rows = rows(points, crotch);
@@ -58,6 +77,44 @@ pub(super) fn swing(
         }
     }
     told
+}
+
+/// For each piece that reaches below a height, whether it and all that is sewn to it there lie on
+/// one side of the middle.
+fn of_one_leg(
+    places: &BTreeMap<String, Vec<Point3>>,
+    seams: &[GarmentSeam],
+    offsets: &Offsets,
+    below: f64,
+) -> BTreeMap<String, bool> {
+    let names: Vec<&String> = places.keys().collect();
+    let piece_of = |v: u32| {
+        let (name, (first, _)) =
+            offsets.iter().filter(|(_, (first, _))| *first <= v as usize).max_by_key(|(_, o)| o.0)?;
+        let at = places.get(*name)?.get(v as usize - first)?;
+        Some((names.iter().position(|n| n == name)?, at.y))
+    };
+    let mut group: Vec<u32> = (0..names.len() as u32).collect();
+    for [a, b] in seams.iter().flat_map(|s| &s.pairs) {
+        if let (Some((a, ya)), Some((b, yb))) = (piece_of(*a), piece_of(*b))
+            && ya < below
+            && yb < below
+        {
+            join_pairs(&mut group, &[[a as u32, b as u32]]);
+        }
+    }
+    let span = |k: usize| {
+        let low = places[names[k]].iter().filter(|p| p.y < below).map(|p| p.x);
+        low.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)))
+    };
+    let one_sided = |k: usize| {
+        let members = (0..names.len()).filter(|l| group[*l] == group[k]);
+        let (lo, hi) =
+            members.map(span).fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+        lo > -ACROSS || hi < ACROSS
+    };
+    let reaching = (0..names.len()).filter(|k| span(*k).0.is_finite());
+    reaching.map(|k| (names[k].clone(), one_sided(k))).collect()
 }
 
 /// Least and greatest x of a piece's rows below the fork, by their number.
@@ -121,7 +178,7 @@ mod tests {
     fn a_leg_that_is_spread_wide_is_swung_before_the_bodys() {
         let body = mannequin();
         let (pattern, mut places) = half(0.3);
-        let told = swing(&pattern, &body, &mut places);
+        let told = swing(&pattern, &body, &mut places, &[], &Offsets::new());
         assert!(told[0].starts_with("left_leg_front is swung inwards by "), "{told:?}");
         for k in [2, 6, 12] {
             let row = &places["left_leg_front"][5 * k..5 * k + 5];
@@ -137,7 +194,7 @@ mod tests {
     fn a_leg_that_covers_the_bodys_stays() {
         let (pattern, places) = half(0.05);
         let mut moved = places.clone();
-        assert!(swing(&pattern, &mannequin(), &mut moved).is_empty());
+        assert!(swing(&pattern, &mannequin(), &mut moved, &[], &Offsets::new()).is_empty());
         assert_eq!(moved, places);
     }
 }
