@@ -2,7 +2,7 @@
 //! them is told when the other side needs them no more.
 
 use super::abi;
-use crate::artifact::store::Lend;
+use crate::artifact::store::{Kept, Lend};
 use std::any::Any;
 use std::ffi::c_void;
 use std::mem::ManuallyDrop;
@@ -88,7 +88,7 @@ impl Lending {
 }
 
 impl Lend for Lending {
-    fn keep(&self, bytes: &[u8]) -> Option<(ManuallyDrop<Vec<u8>>, Keeper)> {
+    fn keep(&self, bytes: &[u8]) -> Option<Kept> {
         let keeper = match &self.0 {
             Asked::Block(keeper) => keeper.clone(),
             Asked::Foreign(owner) => {
