@@ -62,9 +62,12 @@ pub(super) fn by_place(nodes: &[Node], index: usize) -> ByPlace {
 pub(super) fn rule(known: &Known<'_>) -> Option<Decision> {
     let is_written = |name: &str| known.node().params.contains_key(name);
     let (from, what, fact, name) = match origin(known.nodes, known.index)? {
-        Origin::Placed(k) => {
-            (k, "seams close through what lies between them", "puts a pattern's pieces around the body", "sew_through")
-        }
+        Origin::Placed(k) => (
+            k,
+            "seams close through what lies between them",
+            "puts a pattern's pieces around the body",
+            "sew_through",
+        ),
         Origin::Draped(k) => (k, "goes on from where the garment hangs", "has draped it", "from_here"),
     };
     let maker = known.nodes.get(from)?;
