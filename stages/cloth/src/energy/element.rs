@@ -90,7 +90,7 @@ pub trait Element<const N: usize>: Clone + Send + Sync + 'static {
     fn predict(&mut self, _x: &[Vec3], _moves: &[Vec3]) {}
 
     /// Takes over what a part of these elements has learnt.
-    fn learn(&mut self, _elements: &[usize], _part: &Self) {}
+    fn merge(&mut self, _elements: &[usize], _part: &Self) {}
 
     /// See [`Resistance::is_hysteretic`].
     fn is_hysteretic(&self) -> bool {
@@ -211,10 +211,10 @@ impl<const N: usize, E: Element<N>> Resistance for Assembled<N, E> {
         Box::new(Self(self.0.part(&self.touched(subset), subset)))
     }
 
-    fn learn(&mut self, subset: &Subset, part: &dyn Resistance) {
+    fn merge(&mut self, subset: &Subset, part: &dyn Resistance) {
         let touched = self.touched(subset);
         if let Some(Self(part)) = part.as_any().downcast_ref::<Self>() {
-            self.0.learn(&touched, part);
+            self.0.merge(&touched, part);
         }
     }
 

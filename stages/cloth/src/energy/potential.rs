@@ -70,7 +70,7 @@ pub trait Resistance: Energy {
     fn part(&self, subset: &Subset) -> Box<dyn Resistance>;
 
     /// Takes over what such a part has learnt of its elements.
-    fn learn(&mut self, subset: &Subset, part: &dyn Resistance);
+    fn merge(&mut self, subset: &Subset, part: &dyn Resistance);
 
     /// To find its kind again.
     fn as_any(&self) -> &dyn Any;

@@ -148,7 +148,7 @@ impl Element<4> for Hysteresis {
         !self.held.is_empty()
     }
 
-    fn learn(&mut self, elements: &[usize], part: &Self) {
+    fn merge(&mut self, elements: &[usize], part: &Self) {
         if self.acts() {
             elements.iter().zip(&part.held).for_each(|(&e, new)| self.held[e] = *new);
         }

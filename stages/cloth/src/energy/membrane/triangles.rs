@@ -187,7 +187,7 @@ impl<L: Law> Element<3> for Triangles<L> {
         predicted.par_iter_mut().zip(&*triangles).with_min_len(TASK).for_each(predict);
     }
 
-    fn learn(&mut self, elements: &[usize], part: &Self) {
+    fn merge(&mut self, elements: &[usize], part: &Self) {
         if self.predicted.len() == self.triangles.len() {
             elements.iter().zip(&part.predicted).for_each(|(&t, new)| self.predicted[t] = *new);
         }

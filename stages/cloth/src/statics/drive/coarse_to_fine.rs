@@ -6,7 +6,7 @@ use crate::statics::drive::plan::Plan;
 use crate::statics::factor::multifrontal::Halt;
 use crate::statics::forces::clearance::{Clearance, clearance};
 use crate::statics::forces::penetration::pierced;
-use crate::statics::forces::seam_force::{widest, widest_thread};
+use crate::statics::forces::seam_force::{widest, widest_open_seam};
 use crate::statics::forces::system::System;
 use crate::statics::levels::assemble::{KEPT_PULL, strongest};
 use crate::statics::levels::cloths::pieces_of;
@@ -79,7 +79,7 @@ impl<'a> Solve<'a> {
     }
 
     /// Sews and drapes.
-    pub(crate) fn make(mut self, progress: &mut Progress<'_>) -> Result<Draped, StaticsError> {
+    pub(crate) fn run(mut self, progress: &mut Progress<'_>) -> Result<Draped, StaticsError> {
         self.sew(progress)?;
         let coarsest = self.plan.pieces.len() - 1;
         let sheet = self.plan.pieces[coarsest].sewn_sheet(&self.plan.cloths)?;
@@ -99,22 +99,22 @@ impl<'a> Solve<'a> {
     /// its end.
     pub(crate) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
         let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
-        let wearer = self.plan.body?;
-        (pierced(sheet, wearer.skin, x) > 0).then_some(Draped::TooCoarse { finer })
+        let collider = self.plan.body?;
+        (pierced(sheet, collider.skin, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
     /// Moves nodes out where triangles between them dip into the body, and lets the cloth settle
     /// again.
-    pub(crate) fn clear(
+    pub(crate) fn restore_clearance(
         &mut self,
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let pace = NewtonOptions { first: CLEAR_STEP, one_by_one: false, ..*pace };
+        let options = NewtonOptions { first: CLEAR_STEP, one_by_one: false, ..*options };
         for _ in 0..CLEARINGS {
             let Some(Clearance { lacks, depth, triangles }) =
                 self.plan.body.map(|w| clearance(sheet, w.skin, x))
@@ -125,10 +125,10 @@ impl<'a> Solve<'a> {
                 self.dip = Some(depth);
                 break;
             }
-            if let Some(s) = &mut system.support {
+            if let Some(s) = &mut system.body_contact {
                 s.offsets.iter_mut().zip(&lacks).for_each(|(o, l)| *o += l);
             }
-            let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
+            let report = self.relax_uncrossed(system, sheet, layout, x, &options, progress)?;
             self.reports.push(report);
         }
         Ok(())
@@ -140,17 +140,17 @@ impl<'a> Solve<'a> {
         sheet: &Sheet,
         x: Vec<Vec3>,
     ) -> Result<Equilibrium, StaticsError> {
-        system.touch(&x);
+        system.update_contacts(&x);
         let unbalanced = unbalanced(&system, &system.gradient(&x), &self.plan.pieces[0]);
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.plan.pieces[0].spread(&x);
         let energy = system.stored(&x);
         let depth = || self.plan.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
         let (pairs, dip) = rayon::join(|| self.crossings(sheet, &x), || self.dip.unwrap_or_else(depth));
-        let slides = self.plan.pieces[0].spread(&system.held_back(&x));
+        let slides = self.plan.pieces[0].spread(&system.displacements(&x));
         let offsets = self.plan.pieces[0].offsets(&system);
         let (joined_at, levels) = (self.joined_at, self.reports);
-        let friction_contacts = system.layers.take().map_or_else(Vec::new, |l| l.friction_contacts);
+        let friction_contacts = system.self_contact.take().map_or_else(Vec::new, |c| c.friction_contacts);
         let state = Equilibrium {
             positions,
             outcome,
@@ -185,18 +185,18 @@ impl<'a> Solve<'a> {
 
     /// Runs one level.
     #[allow(clippy::too_many_arguments)]
-    pub(crate) fn run(
+    pub(crate) fn relax(
         &self,
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         done: &dyn Fn(&System<'_>, &[Vec3]) -> bool,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        let sewing = self.joined_at.is_none() && !system.threads.is_empty();
-        let meets = system.layers.is_some() && !(sewing && self.through);
+        let sewing = self.joined_at.is_none() && !system.seam_forces.is_empty();
+        let meets = system.self_contact.is_some() && !(sewing && self.through);
         let tree = meets.then(|| self.plan.tree(sheet, layout, sewing));
         let start = Instant::now();
         let meshes = self.plan.pieces.len();
@@ -210,10 +210,10 @@ impl<'a> Solve<'a> {
         };
         let (mut stop, mut is_late) = (None, false);
         let piece = if self.plan.body_box.is_some() { pieces_of(system) } else { Vec::new() };
-        let late = || self.clock.elapsed() > self.plan.rest.budget || self.plan.stopper.is_up();
+        let late = || self.clock.elapsed() > self.plan.settings.budget || self.plan.stopper.is_up();
         let mut watch = |system: &System<'_>, x: &[Vec3], outcome: &Outcome| {
             let seconds = start.elapsed().as_secs_f64();
-            let gap = if sewing { widest_thread(&system.threads, x) } else { 0.0 };
+            let gap = if sewing { widest_open_seam(&system.seam_forces, x) } else { 0.0 };
             report = LevelReport { gap, outcome: *outcome, seconds, ..report };
             stop = self.fallen(system, sheet, x, &piece);
             if stop.is_none() && progress(&report).is_break() {
@@ -226,7 +226,7 @@ impl<'a> Solve<'a> {
                 ControlFlow::Continue(())
             }
         };
-        match relax(system, layout, tree, x, pace, &mut watch, &late) {
+        match relax(system, layout, tree, x, options, &mut watch, &late) {
             Ok(outcome) => report.outcome = outcome,
             Err(Halt::NotPositive(error)) => return Err(self.unsolvable(error.node, x)),
             Err(Halt::Stopped) => is_late = true,
@@ -277,7 +277,7 @@ impl<'a> Solve<'a> {
     /// Refuses seams that are not joined and stay open at the end.
     pub(crate) fn check_kept(&self, x: &[Vec3]) -> Result<(), StaticsError> {
         let gap = widest(x, &self.plan.pieces[0].kept_pairs());
-        if gap <= self.plan.rest.join_gap {
+        if gap <= self.plan.settings.join_gap {
             return Ok(());
         }
         let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));

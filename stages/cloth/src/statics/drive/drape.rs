@@ -39,9 +39,9 @@ impl<'a> Solve<'a> {
         let mut ready = plan.level(plan.pieces.len() - 1);
         for k in (0..plan.pieces.len()).rev() {
             let mut level = ready?;
-            let is_handed = k + 1 < plan.pieces.len() || plan.rest.from_here;
+            let is_handed = k + 1 < plan.pieces.len() || plan.settings.from_here;
             level.begin(std::mem::take(&mut self.x), slides, is_handed);
-            if plan.rest.from_here && !plan.scene.held.is_empty() {
+            if plan.settings.from_here && !plan.scene.held.is_empty() {
                 hold_as(&plan.scene.held, &mut level.system, &plan.pieces[k], &level.x);
             }
             // Another thread makes the next finer level ready meanwhile; below the finest there is
@@ -53,17 +53,17 @@ impl<'a> Solve<'a> {
                 }
                 // What was sewn through itself has no start that is free of crossings: a finer mesh
                 // may come over the edge.
-                if !self.free(k, &mut level, progress)? && !plan.rest.sew_through {
+                if !self.free_of_ridges(k, &mut level, progress)? && !plan.settings.sew_through {
                     return Ok(false);
                 }
-                self.bring(k, &mut level, &mut bending, progress).map(|()| true)
+                self.solve_level(k, &mut level, &mut bending, progress).map(|()| true)
             })?;
             if !is_free {
                 return Ok(Draped::TooCoarse { finer: plan.pieces[k].points });
             }
             // What was sewn through itself may come free on a finer mesh; nothing is gained by
             // sewing it there anew.
-            if level.system.is_tangled() && (k == 0 || !plan.rest.sew_through) {
+            if level.system.is_intersecting() && (k == 0 || !plan.settings.sew_through) {
                 return Ok(Draped::Tangled(entangled(&plan.pieces[k], &level)));
             }
             if let Some(pierced) = self.pierced(k, &level.sheet, &level.x) {
@@ -78,7 +78,7 @@ impl<'a> Solve<'a> {
                     level.x,
                 )?)));
             }
-            slides = plan.finer(k, &level.system.held_back(&level.x));
+            slides = plan.finer(k, &level.system.displacements(&level.x));
             self.x = plan.finer(k, &level.x);
         }
         Err(ClothError::EmptyScene.into())
@@ -86,7 +86,7 @@ impl<'a> Solve<'a> {
 
     /// Lets level `k` come out over sharp edges and corners of the body that its coarser mesh came
     /// to lie on both sides of; whether it has. From its own start no mesh comes to cross one.
-    fn free(
+    fn free_of_ridges(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
@@ -95,51 +95,54 @@ impl<'a> Solve<'a> {
         if k + 1 == self.plan.pieces.len() || !level.system.is_pierced(&level.x) {
             return Ok(true);
         }
-        self.settle(level, 1.0, NewtonOptions { steps: FREEING, ..self.pace() }, progress)?;
+        self.settle(level, 1.0, NewtonOptions { steps: FREEING, ..self.options() }, progress)?;
         Ok(!level.system.is_pierced(&level.x))
     }
 
     /// Brings level `k` near rest, the finest one to rest. `bending` is how many times stiffer it
     /// was left by the level before, and whether without friction.
-    fn bring(
+    fn solve_level(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
         bending: &mut (f64, bool),
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let (stiff, loose) = *bending;
-        if let Some(grade) = self.plan.grade(level.size()) {
-            let end = if k == 0 { 1.0 } else { grade.resolved(level.edge()) };
+        let (stiff, frictionless) = *bending;
+        if let Some(continuation) = self.plan.continuation(level.size()) {
+            let end = if k == 0 { 1.0 } else { continuation.resolved(level.edge()) };
             *bending = if k + 1 == self.plan.pieces.len() {
-                self.forget(k, level, grade.first(), end, progress)?
+                self.initial_equilibrium(k, level, continuation.first(), end, progress)?
             } else {
-                (self.carry_on(k, level, [stiff, end.min(stiff)], loose, progress)?, loose)
+                (
+                    self.continue_level(k, level, [stiff, end.min(stiff)], frictionless, progress)?,
+                    frictionless,
+                )
             };
         } else if k > 0 {
-            let pace = NewtonOptions { one_by_one: self.begins_with_pile(k), ..self.pace() };
-            self.settle(level, 1.0, pace, progress)?;
+            let options = NewtonOptions { one_by_one: self.starts_one_by_one(k), ..self.options() };
+            self.settle(level, 1.0, options, progress)?;
         }
-        if k == 0 { self.end(level, progress) } else { Ok(()) }
+        if k == 0 { self.solve_finest(level, progress) } else { Ok(()) }
     }
 
     /// Brings a finer level from one stiffness to another, without friction if it stays; the
     /// stiffness reached.
-    fn carry_on(
+    fn continue_level(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
         way: [f64; 2],
-        loose: bool,
+        frictionless: bool,
         progress: &mut Progress<'_>,
     ) -> Result<f64, StaticsError> {
         let mut free = level.clone();
-        if loose {
+        if frictionless {
             free.disable_friction();
         }
         if self.continue_to(k, &mut free, way, progress)? {
             *level = free;
-        } else if loose {
+        } else if frictionless {
             self.continue_to(k, level, way, progress)?;
         }
         Ok(way[1])
@@ -162,12 +165,12 @@ impl<'a> Solve<'a> {
             stages.push(to);
         }
         for stage in stages {
-            if !self.stays(level, stage, self.forgetful(), progress)? {
+            if !self.stays(level, stage, self.continuation_options(), progress)? {
                 return Ok(false);
             }
         }
         if level.enable_friction() && k > 0 {
-            self.settle(level, to, self.forgetful(), progress)?;
+            self.settle(level, to, self.continuation_options(), progress)?;
         }
         Ok(true)
     }
@@ -178,10 +181,10 @@ impl<'a> Solve<'a> {
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
-        pace: NewtonOptions,
+        options: NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
-        match self.settle(level, stiff, pace, progress) {
+        match self.settle(level, stiff, options, progress) {
             Ok(()) if level.friction.is_some() => Ok(level.moved() < MOST_FALL * level.size()),
             Ok(()) => Ok(true),
             Err(StaticsError::FallsPast(fallen)) if !fallen.is_certain => {
@@ -197,18 +200,18 @@ impl<'a> Solve<'a> {
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
-        pace: NewtonOptions,
+        options: NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
         level.system.elastic.scale_bending(stiff);
         let offsets =
-            level.system.support.as_mut().filter(|_| self.plan.rest.bending_continuation).map(|s| {
+            level.system.body_contact.as_mut().filter(|_| self.plan.settings.bending_continuation).map(|s| {
                 s.grows = true;
                 s.offsets.clone()
             });
         let Level { system, sheet, layout, x, .. } = &mut *level;
-        let run = self.run_free(system, sheet, layout, x, &pace, progress);
-        if let (Some(s), Some(offsets)) = (&mut level.system.support, offsets) {
+        let run = self.relax_uncrossed(system, sheet, layout, x, &options, progress);
+        if let (Some(s), Some(offsets)) = (&mut level.system.body_contact, offsets) {
             (s.grows, s.offsets) = (false, offsets);
         }
         level.system.elastic.scale_bending(1.0 / stiff);
@@ -217,50 +220,54 @@ impl<'a> Solve<'a> {
     }
 
     /// Brings the finest level to rest, and proves it.
-    fn end(&mut self, level: &mut Level<'a>, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        let (steps, speed) = (self.plan.rest.finest_steps, self.plan.rest.speed);
-        let one_by_one = self.begins_with_pile(0);
-        let pace =
-            NewtonOptions { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.pace() };
+    fn solve_finest(
+        &mut self,
+        level: &mut Level<'a>,
+        progress: &mut Progress<'_>,
+    ) -> Result<(), StaticsError> {
+        let (steps, speed) = (self.plan.settings.finest_steps, self.plan.settings.speed);
+        let one_by_one = self.starts_one_by_one(0);
+        let options =
+            NewtonOptions { first: FIRST_AT_END, steps, speed, prove: true, one_by_one, ..self.options() };
         let Level { system, sheet, layout, x, .. } = level;
-        let report = self.run_free(system, sheet, layout, x, &pace, progress)?;
+        let report = self.relax_uncrossed(system, sheet, layout, x, &options, progress)?;
         self.reports.push(report);
-        self.clear(system, sheet, layout, x, &pace, progress)
+        self.restore_clearance(system, sheet, layout, x, &options, progress)
     }
 
     /// Whether level `k` is where cloths are laid down one by one: finer ones start from a pile.
-    fn begins_with_pile(&self, k: usize) -> bool {
-        self.plan.is_pile && k + 1 == self.plan.pieces.len()
+    fn starts_one_by_one(&self, k: usize) -> bool {
+        self.plan.is_stack && k + 1 == self.plan.pieces.len()
     }
 
     /// The pace of all but the end.
-    pub(crate) fn pace(&self) -> NewtonOptions {
+    pub(crate) fn options(&self) -> NewtonOptions {
         let (first, longest, farthest) = SPAN;
-        let (steps, speed) = (self.plan.rest.coarse_steps, 2.0 * self.plan.rest.speed);
+        let (steps, speed) = (self.plan.settings.coarse_steps, 2.0 * self.plan.settings.speed);
         NewtonOptions {
             first,
             longest,
             steps,
             speed,
-            non_static: self.plan.rest.non_static,
+            non_static: self.plan.settings.non_static,
             farthest,
             prove: false,
-            long_proof: self.plan.rest.long_proof,
+            long_proof: self.plan.settings.long_proof,
             rough: false,
-            yields: self.plan.rest.sew_through,
+            yields: self.plan.settings.sew_through,
             one_by_one: false,
-            asleep: self.plan.rest.asleep,
-            precision: self.plan.rest.precision,
+            asleep: self.plan.settings.asleep,
+            precision: self.plan.settings.precision,
         }
     }
 
     /// The pace of a state on the way from stiff to limp.
-    pub(crate) fn forgetful(&self) -> NewtonOptions {
+    pub(crate) fn continuation_options(&self) -> NewtonOptions {
         NewtonOptions {
             longest: LONGEST,
             steps: FORGET.0,
-            speed: FORGET.1 * self.plan.rest.speed,
-            ..self.pace()
+            speed: FORGET.1 * self.plan.settings.speed,
+            ..self.options()
         }
     }
 }

@@ -54,7 +54,8 @@ impl Solve<'_> {
             cloth: list_of(self.plan.scene, &is_fallen),
             start,
             body: body.height(),
-            is_certain: start != Start::Around || !self.plan.rest.bending_continuation && body.resolves(edge),
+            is_certain: start != Start::Around
+                || !self.plan.settings.bending_continuation && body.resolves(edge),
         })))
     }
 }

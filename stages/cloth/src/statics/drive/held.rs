@@ -28,12 +28,12 @@ pub(crate) fn hold_as(held: &Held, system: &mut System<'_>, pieces: &Pieces, x: 
     if held.slides.len() == vertices {
         system.slides = pieces.sew(&held.slides, &vec![1.0; vertices]);
     }
-    if let Some(s) = system.support.as_mut().filter(|_| held.offsets.len() == vertices) {
+    if let Some(s) = system.body_contact.as_mut().filter(|_| held.offsets.len() == vertices) {
         pieces.node.iter().zip(&held.offsets).for_each(|(&n, o)| s.offsets[n as usize] = *o);
     }
-    if let Some(layers) = &mut system.layers {
+    if let Some(self_contact) = &mut system.self_contact {
         let known = |c: &&FrictionContact| c.nodes.iter().all(|&i| (i as usize) < x.len());
-        layers.friction_contacts = held.contacts.iter().filter(known).copied().collect();
+        self_contact.friction_contacts = held.contacts.iter().filter(known).copied().collect();
     }
     system.elastic.hold(x, false);
     system.elastic.hold_at(&held.folds);

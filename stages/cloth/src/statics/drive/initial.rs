@@ -38,7 +38,7 @@ const TWIST: f64 = 0.08;
 impl<'a> Solve<'a> {
     /// Brings the coarsest level to its first state and on to `end`: how stiff it is then, and
     /// whether friction was left out.
-    pub(crate) fn forget(
+    pub(crate) fn initial_equilibrium(
         &mut self,
         k: usize,
         level: &mut Level<'a>,
@@ -46,16 +46,16 @@ impl<'a> Solve<'a> {
         end: f64,
         progress: &mut Progress<'_>,
     ) -> Result<(f64, bool), StaticsError> {
-        let slick = level.system.rubs_nowhere();
+        let slick = level.system.is_frictionless_on_body();
         for stiff in std::iter::once(first).chain(stages(first, end)).take(TRIES) {
             let (mut free, mut held) = (level.clone(), level.clone());
             self.last_fall = None;
-            let stays = self.free_state(&mut free, stiff, progress)?;
+            let stays = self.frictionless_equilibrium(&mut free, stiff, progress)?;
             if !slick {
                 // Friction may hold what falls without it.
                 self.last_fall = None;
             }
-            let mut is_held = !slick && self.first_state(&mut held, stiff, progress)?;
+            let mut is_held = !slick && self.stiff_equilibrium(&mut held, stiff, progress)?;
             let alike = slick || is_held && apart(&held.x, &free.x) < MOST_SLIP * level.size();
             if stays && alike && self.continue_to(k, &mut free, [stiff, end], progress)? {
                 *level = free;
@@ -77,7 +77,7 @@ impl<'a> Solve<'a> {
     }
 
     /// Brings a level near rest without friction; whether it stays on the body.
-    fn free_state(
+    fn frictionless_equilibrium(
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
@@ -86,19 +86,19 @@ impl<'a> Solve<'a> {
         level.disable_friction();
         level.turn_back();
         level.system.push = level.twist(TWIST);
-        let stays = self.first_state(level, stiff, progress);
+        let stays = self.stiff_equilibrium(level, stiff, progress);
         level.system.push.clear();
-        Ok(stays? && self.first_state(level, stiff, progress)?)
+        Ok(stays? && self.stiff_equilibrium(level, stiff, progress)?)
     }
 
     /// Brings a level near rest as stiff as it is in its first state; whether it stays on the body.
-    fn first_state(
+    fn stiff_equilibrium(
         &mut self,
         level: &mut Level<'a>,
         stiff: f64,
         progress: &mut Progress<'_>,
     ) -> Result<bool, StaticsError> {
-        let pace = NewtonOptions { steps: FIRST_STEPS, ..self.forgetful() };
-        self.stays(level, stiff, pace, progress)
+        let options = NewtonOptions { steps: FIRST_STEPS, ..self.continuation_options() };
+        self.stays(level, stiff, options, progress)
     }
 }

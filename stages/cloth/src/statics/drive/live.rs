@@ -13,7 +13,7 @@ use crate::statics::drive::solve::{Equilibrium, LevelReport, Progress, StaticEqu
 use crate::statics::factor::multifrontal::Halt;
 use crate::statics::forces::clearance::clearance;
 use crate::statics::forces::system::System;
-use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_threads};
+use crate::statics::levels::assemble::{Collider, assemble, cloths, kept_seam_forces};
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::to_rest::{NewtonOptions, NewtonState, Outcome, greatest};
 use crate::statics::report::unbalanced::unbalanced;
@@ -31,13 +31,13 @@ const FARTHEST: f64 = 0.05;
 
 /// A garment that can be changed.
 pub struct Live<'a> {
-    rest: StaticEquilibrium,
+    settings: StaticEquilibrium,
     scene: Scene,
-    wearer: Option<Collider<'a>>,
+    collider: Option<Collider<'a>>,
     pieces: Pieces,
     sheet: Sheet,
     system: System<'a>,
-    descent: NewtonState,
+    newton: NewtonState,
     x: Vec<Vec3>,
 }
 
@@ -47,9 +47,9 @@ impl<'a> Live<'a> {
     /// # Errors
     /// [`StaticsError`], where the scene is at fault or the state has another number of vertices.
     pub fn new(
-        rest: StaticEquilibrium,
+        settings: StaticEquilibrium,
         scene: Scene,
-        wearer: Option<Collider<'a>>,
+        collider: Option<Collider<'a>>,
         state: &Equilibrium,
     ) -> Result<Self, StaticsError> {
         scene.check()?;
@@ -59,15 +59,15 @@ impl<'a> Live<'a> {
         }
         let pieces = Pieces::new(&scene);
         let sheet = pieces.sewn_sheet(&cloths(&scene))?;
-        let mut system = assemble(&scene, wearer, &pieces, &sheet, false, rest.models)?;
-        system.threads = kept_threads(&scene, &pieces, rest.join_gap);
+        let mut system = assemble(&scene, collider, &pieces, &sheet, false, settings.models)?;
+        system.seam_forces = kept_seam_forces(&scene, &pieces, settings.join_gap);
         let even = vec![1.0; scene.rest.len()];
         let x = pieces.sew(&state.positions, &even);
         hold_as(&state.held(), &mut system, &pieces, &x);
         let layout = pieces.sew(&scene.positions, &even);
         let tree = scene.self_collision.then(|| ClothTree::new(sheet.triangles(), &layout));
-        let descent = NewtonState::new(&mut system, &layout, tree, &x, FIRST);
-        Ok(Self { rest, scene, wearer, pieces, sheet, system, descent, x })
+        let newton = NewtonState::new(&mut system, &layout, tree, &x, FIRST);
+        Ok(Self { settings, scene, collider, pieces, sheet, system, newton, x })
     }
 
     /// The scene as it is now.
@@ -99,8 +99,8 @@ impl<'a> Live<'a> {
         if !same_mesh || !same_panels || scene.seams != self.scene.seams {
             return Err(StaticsError::Reshaped);
         }
-        if let (Some(wearer), Some(body)) = (&mut self.wearer, &scene.body) {
-            wearer.friction = body.friction;
+        if let (Some(collider), Some(body)) = (&mut self.collider, &scene.body) {
+            collider.friction = body.friction;
         }
         self.scene = scene;
         self.renew()
@@ -110,9 +110,9 @@ impl<'a> Live<'a> {
     ///
     /// # Errors
     /// [`StaticsError`], where the scene is at fault.
-    pub fn wear(&mut self, wearer: Option<Collider<'a>>) -> Result<(), StaticsError> {
-        self.wearer = wearer;
-        self.system.seen.clear();
+    pub fn wear(&mut self, collider: Option<Collider<'a>>) -> Result<(), StaticsError> {
+        self.collider = collider;
+        self.system.distance_cache.clear();
         self.renew()
     }
 
@@ -120,9 +120,9 @@ impl<'a> Live<'a> {
     pub fn pull(&mut self, vertex: u32, to: Vec3) -> bool {
         let node = self.pieces.node.get(vertex as usize).copied().filter(|n| self.system.pinned[*n as usize]);
         let Some(node) = node else { return false };
-        self.system.pulls.retain(|(n, _)| *n != node);
-        self.system.pulls.push((node, to));
-        self.descent.wake();
+        self.system.targets.retain(|(n, _)| *n != node);
+        self.system.targets.push((node, to));
+        self.newton.wake();
         true
     }
 
@@ -131,27 +131,28 @@ impl<'a> Live<'a> {
         self.pieces.pinned.fill(false);
         self.scene.pinned.iter().for_each(|&p| self.pieces.pinned[p as usize] = true);
         self.sheet = self.pieces.sewn_sheet(&cloths(&self.scene))?;
-        let mut new = assemble(&self.scene, self.wearer, &self.pieces, &self.sheet, false, self.rest.models)?;
-        new.threads = kept_threads(&self.scene, &self.pieces, self.rest.join_gap);
+        let mut new =
+            assemble(&self.scene, self.collider, &self.pieces, &self.sheet, false, self.settings.models)?;
+        new.seam_forces = kept_seam_forces(&self.scene, &self.pieces, self.settings.join_gap);
         let old = &mut self.system;
         new.elastic.hold(&self.x, false);
         new.elastic.hold_at(old.elastic.held());
         std::mem::swap(&mut new.anchors, &mut old.anchors);
         std::mem::swap(&mut new.loads, &mut old.loads);
-        std::mem::swap(&mut new.seen, &mut old.seen);
-        if let (Some(new), Some(old)) = (&mut new.support, &mut old.support) {
+        std::mem::swap(&mut new.distance_cache, &mut old.distance_cache);
+        if let (Some(new), Some(old)) = (&mut new.body_contact, &mut old.body_contact) {
             new.offsets.iter_mut().zip(&old.offsets).for_each(|(new, old)| *new = new.max(*old));
         }
-        if let (Some(new), Some(old)) = (&mut new.layers, &mut old.layers) {
+        if let (Some(new), Some(old)) = (&mut new.self_contact, &mut old.self_contact) {
             std::mem::swap(&mut new.pairs, &mut old.pairs);
             std::mem::swap(&mut new.friction_contacts, &mut old.friction_contacts);
         }
         if let (Some(new), Some(old)) = (&mut new.ridges, &old.ridges) {
-            new.go_on(old);
+            new.continue_from(old);
         }
-        new.pulls = old.pulls.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
+        new.targets = old.targets.iter().filter(|(n, _)| new.pinned[*n as usize]).copied().collect();
         self.system = new;
-        self.descent.renew(&mut self.system);
+        self.newton.renew(&mut self.system);
         Ok(())
     }
 
@@ -162,46 +163,46 @@ impl<'a> Live<'a> {
     /// # Errors
     /// [`StaticsError::NotPositive`], where no inertia makes the matrix positive definite.
     pub fn follow(&mut self, steps: usize) -> Result<Outcome, StaticsError> {
-        let pace = self.pace();
+        let options = self.options();
         for left in (0..steps).rev() {
-            if self.descent.outcome().at_rest {
+            if self.newton.outcome().at_rest {
                 break;
             }
             if left == 0 {
-                self.descent.shorten_next();
+                self.newton.shorten_next();
             }
-            self.step(&pace, &|| false)?;
+            self.step(&options, &|| false)?;
         }
-        self.system.touch(&self.x);
+        self.system.update_contacts(&self.x);
         let residual = greatest(&self.system.gradient(&self.x));
-        Ok(Outcome { residual, ..self.descent.outcome() })
+        Ok(Outcome { residual, ..self.newton.outcome() })
     }
 
-    fn pace(&self) -> NewtonOptions {
-        let (steps, speed) = (self.rest.finest_steps, self.rest.speed);
+    fn options(&self) -> NewtonOptions {
+        let (steps, speed) = (self.settings.finest_steps, self.settings.speed);
         NewtonOptions {
             first: FIRST,
             longest: 1.0,
             steps,
             speed,
-            non_static: self.rest.non_static,
+            non_static: self.settings.non_static,
             farthest: FARTHEST,
             prove: true,
             rough: false,
             yields: false,
             one_by_one: false,
-            long_proof: self.rest.long_proof,
-            asleep: self.rest.asleep,
-            precision: self.rest.precision,
+            long_proof: self.settings.long_proof,
+            asleep: self.settings.asleep,
+            precision: self.settings.precision,
         }
     }
 
     fn step(
         &mut self,
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Result<Outcome, StaticsError> {
-        self.descent.step(&mut self.system, &mut self.x, pace, stop).map_err(|halt| match halt {
+        self.newton.step(&mut self.system, &mut self.x, options, stop).map_err(|halt| match halt {
             Halt::NotPositive(error) => error.into(),
             Halt::Stopped => StaticsError::Stopped,
         })
@@ -213,45 +214,45 @@ impl<'a> Live<'a> {
     /// Every [`StaticsError`]; the steps allowed are those of the finest level of
     /// [`StaticEquilibrium`].
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<Equilibrium, StaticsError> {
-        let (clock, budget, pace) = (Instant::now(), self.rest.budget, self.pace());
-        let first = self.descent.outcome().steps;
-        let mut outcome = self.descent.outcome();
-        while !outcome.at_rest && outcome.steps < first + pace.steps {
-            outcome = self.step(&pace, &|| clock.elapsed() > budget)?;
+        let (clock, budget, options) = (Instant::now(), self.settings.budget, self.options());
+        let first = self.newton.outcome().steps;
+        let mut outcome = self.newton.outcome();
+        while !outcome.at_rest && outcome.steps < first + options.steps {
+            outcome = self.step(&options, &|| clock.elapsed() > budget)?;
             if progress(&self.report(clock, first)).is_break() {
                 return Err(StaticsError::Stopped);
             }
         }
-        self.system.touch(&self.x);
+        self.system.update_contacts(&self.x);
         let unbalanced = unbalanced(&self.system, &self.system.gradient(&self.x), &self.pieces);
         let state = Equilibrium {
             positions: self.positions(),
             outcome,
             residual: unbalanced.force,
             unbalanced,
-            slides: self.pieces.spread(&self.system.held_back(&self.x)),
+            slides: self.pieces.spread(&self.system.displacements(&self.x)),
             folds: self.system.elastic.held().to_vec(),
             friction_contacts: self
                 .system
-                .layers
+                .self_contact
                 .as_ref()
                 .map_or_else(Vec::new, |l| l.friction_contacts.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
-            dip: self.wearer.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
+            dip: self.collider.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
             joined_at: None,
             levels: vec![self.report(clock, first)],
             restarts: 0,
         };
-        let pairs = self.descent.crossings(&self.x);
+        let pairs = self.newton.crossings(&self.x);
         if pairs > 0 {
             return Err(StaticsError::Crossing { pairs, state: Box::new(state) });
         }
-        self.rest.judge(&self.scene, state)
+        self.settings.judge(&self.scene, state)
     }
 
     fn report(&self, clock: Instant, first: usize) -> LevelReport {
-        let outcome = self.descent.outcome();
+        let outcome = self.newton.outcome();
         let outcome = Outcome { steps: outcome.steps - first, ..outcome };
         LevelReport {
             nodes: self.x.len(),

@@ -6,13 +6,13 @@ use crate::contact::skin::CollisionSurface;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
-use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_threads};
-use crate::statics::levels::bending_continuation::{EDGES, EDGES_THROUGH, Grade};
+use crate::statics::levels::assemble::{Collider, assemble, cloths, gravity, kept_seam_forces};
+use crate::statics::levels::bending_continuation::{BendingContinuation, EDGES, EDGES_THROUGH};
 use crate::statics::levels::coarsen::{Coarser, coarsen};
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::levels::pieces::Pieces;
 use crate::statics::newton::settings::StaticEquilibrium;
-use crate::statics::newton::stack::pile_of;
+use crate::statics::newton::stack::stack_size;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::start::{crossing, crossings_at_start};
 use crate::stopper::Stopper;
@@ -24,7 +24,7 @@ type Vec3 = Vector3<f64>;
 /// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready
 /// while a coarser one moves.
 pub(crate) struct Plan<'a> {
-    pub(crate) rest: &'a StaticEquilibrium,
+    pub(crate) settings: &'a StaticEquilibrium,
     pub(crate) scene: &'a Scene,
     pub(crate) body: Option<Collider<'a>>,
     /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing
@@ -37,7 +37,7 @@ pub(crate) struct Plan<'a> {
     /// What no panel and what each panel is made of.
     pub(crate) cloths: Vec<&'a Fabric>,
     /// Whether many cloths lie on each other.
-    pub(crate) is_pile: bool,
+    pub(crate) is_stack: bool,
     /// Fine to coarse.
     pub(crate) pieces: Vec<Pieces>,
     /// How each level but the finest was made from the finer one.
@@ -49,7 +49,7 @@ pub(crate) struct Plan<'a> {
 impl<'a> Plan<'a> {
     /// Levels down to one of about `coarsest` nodes, of a scene whose vertices begin at `start`.
     pub(crate) fn new(
-        rest: &'a StaticEquilibrium,
+        settings: &'a StaticEquilibrium,
         coarsest: usize,
         scene: &'a Scene,
         body: Option<Collider<'a>>,
@@ -66,7 +66,7 @@ impl<'a> Plan<'a> {
         }
         // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
         while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
-            if rest.sew_through {
+            if settings.sew_through {
                 break;
             }
             let crossings = crossings_at_start(scene, coarse, start)?;
@@ -81,8 +81,20 @@ impl<'a> Plan<'a> {
         if scene.pinned.is_empty() && body_box.is_none() && gravity(scene).norm() > 0.0 {
             return Err(StaticsError::Falls);
         }
-        let (cloths, is_pile) = (cloths(scene), pile_of(scene).is_some());
-        Ok(Self { rest, scene, body, around, stopper, body_box, cloths, is_pile, pieces, coarser, starts })
+        let (cloths, is_stack) = (cloths(scene), stack_size(scene).is_some());
+        Ok(Self {
+            settings,
+            scene,
+            body,
+            around,
+            stopper,
+            body_box,
+            cloths,
+            is_stack,
+            pieces,
+            coarser,
+            starts,
+        })
     }
 
     /// What keeps cloth out while its seams close.
@@ -110,10 +122,13 @@ impl<'a> Plan<'a> {
     }
 
     /// How bending is let go in a garment of that size, if it is.
-    pub(crate) fn grade(&self, size: f64) -> Option<Grade> {
+    pub(crate) fn continuation(&self, size: f64) -> Option<BendingContinuation> {
         let gravity = gravity(self.scene).norm();
-        let edges = if self.rest.sew_through { EDGES_THROUGH } else { EDGES };
-        self.rest.bending_continuation.then(|| Grade::of(&self.cloths, gravity, size, edges)).flatten()
+        let edges = if self.settings.sew_through { EDGES_THROUGH } else { EDGES };
+        self.settings
+            .bending_continuation
+            .then(|| BendingContinuation::of(&self.cloths, gravity, size, edges))
+            .flatten()
     }
 
     /// Level `k`, sewn, with its nodes nowhere yet.
@@ -121,15 +136,15 @@ impl<'a> Plan<'a> {
         let pieces = &self.pieces[k];
         let sheet = pieces.sewn_sheet(&self.cloths)?;
         let layout = pieces.sew(&self.starts[k], &vec![1.0; self.starts[k].len()]);
-        let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.rest.models)?;
-        system.threads = kept_threads(self.scene, pieces, self.rest.join_gap);
-        system.layers.iter_mut().for_each(|l| l.crowded = self.is_pile);
-        if let (true, true, Some(s)) = (self.rest.bending_continuation, k > 0, &mut system.support) {
+        let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.settings.models)?;
+        system.seam_forces = kept_seam_forces(self.scene, pieces, self.settings.join_gap);
+        system.self_contact.iter_mut().for_each(|c| c.stacked = self.is_stack);
+        if let (true, true, Some(s)) = (self.settings.bending_continuation, k > 0, &mut system.body_contact) {
             // Offsets that grow with the edges of a passing state would shake the cloth, and with
             // it the choice of folds.
             s.edges.clear();
         }
-        system.support.iter_mut().for_each(|s| s.hard = self.rest.sew_through);
+        system.body_contact.iter_mut().for_each(|s| s.hard = self.settings.sew_through);
         Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
     }
 

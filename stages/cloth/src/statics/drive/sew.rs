@@ -69,8 +69,8 @@ impl Solve<'_> {
         let sheet = self.plan.pieces[coarsest].open_sheet(&self.plan.cloths)?;
         let mut x = self.plan.starts[coarsest].clone();
         let pairs = self.plan.pieces[coarsest].seam_pairs();
-        let here = self.plan.rest.from_here;
-        if here && widest(&x, &pairs) <= self.plan.rest.join_gap {
+        let here = self.plan.settings.from_here;
+        if here && widest(&x, &pairs) <= self.plan.settings.join_gap {
             self.joined_at = (!pairs.is_empty()).then(|| widest(&x, &pairs));
         } else if pairs.is_empty() {
             self.press(&sheet, &mut x, progress)?;
@@ -99,7 +99,7 @@ impl Solve<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        self.through = self.plan.rest.sew_through;
+        self.through = self.plan.settings.sew_through;
         let start = x.to_vec();
         let mut force = self.draw(sheet, pairs, x, progress)?;
         if widest(x, pairs) > self.most_gap() {
@@ -142,8 +142,8 @@ impl Solve<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<f64, StaticsError> {
-        let grade = self.plan.grade(sheet.size()).filter(|_| self.plan.around.is_empty());
-        let first = grade.map_or(1.0, |g| g.first());
+        let continuation = self.plan.continuation(sheet.size()).filter(|_| self.plan.around.is_empty());
+        let first = continuation.map_or(1.0, |g| g.first());
         let mut force = 0.0;
         let start = x.to_vec();
         let softer = stages(first, 1.0);
@@ -164,8 +164,8 @@ impl Solve<'_> {
         Ok(force)
     }
 
-    fn threads(&self, pairs: &[[u32; 2]], force: f64) -> Vec<SeamForce> {
-        let soft = 2.0 * self.plan.rest.join_gap;
+    fn seam_forces(&self, pairs: &[[u32; 2]], force: f64) -> Vec<SeamForce> {
+        let soft = 2.0 * self.plan.settings.join_gap;
         pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, soft }).collect()
     }
 
@@ -184,12 +184,12 @@ impl Solve<'_> {
         let mut before = f64::INFINITY;
         for round in 0..HARDER.1 {
             let gap = widest(x, pairs);
-            if gap < self.plan.rest.join_gap || self.is_wide(gap) && is_hopeless(before, gap, round) {
+            if gap < self.plan.settings.join_gap || self.is_wide(gap) && is_hopeless(before, gap, round) {
                 break;
             }
             before = gap;
             let mut system = self.open(sheet, stiff)?;
-            system.threads = self.threads(pairs, pull * spacing);
+            system.seam_forces = self.seam_forces(pairs, pull * spacing);
             if !self.plan.around.is_empty() {
                 system.height_springs = self.height_springs(
                     sheet,
@@ -200,22 +200,22 @@ impl Solve<'_> {
             }
             let (steps, first, least) = SEWING;
             let farthest = (0.2 * gap).max(least);
-            let pace = NewtonOptions {
+            let options = NewtonOptions {
                 first,
                 longest: 1.0,
                 steps,
-                speed: self.plan.rest.speed,
+                speed: self.plan.settings.speed,
                 farthest,
-                asleep: self.plan.rest.asleep && self.plan.around.is_empty(),
-                ..self.pace()
+                asleep: self.plan.settings.asleep && self.plan.around.is_empty(),
+                ..self.options()
             };
             let shrinking = Patience::new(SHRINKING);
             let closed = |_: &System<'_>, x: &[Vec3]| {
                 let gap = widest(x, pairs);
-                gap < self.plan.rest.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
+                gap < self.plan.settings.join_gap || self.is_wide(gap) && !shrinking.goes_on(gap)
             };
             let report =
-                self.run(&mut system, sheet, &self.plan.starts[coarsest], x, &pace, &closed, progress)?;
+                self.relax(&mut system, sheet, &self.plan.starts[coarsest], x, &options, &closed, progress)?;
             self.reports.push(report);
             pull *= HARDER.0;
         }
@@ -250,14 +250,14 @@ impl Solve<'_> {
         pieces.node.iter().zip(&pieces.panel).for_each(|(n, p)| panel[*n as usize] = *p);
         let mut x = std::mem::take(&mut self.x);
         let mut system =
-            assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.rest.models)?;
+            assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.settings.models)?;
         system.gravity = Vec3::zeros();
         system.ridges = None;
-        system.support.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
+        system.body_contact.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
         system.height_springs = self.height_springs(&sheet, &start, held, panel);
         let (_, first, farthest) = SEWING;
-        let speed = self.plan.rest.speed;
-        let pace = NewtonOptions {
+        let speed = self.plan.settings.speed;
+        let options = NewtonOptions {
             first,
             longest: LONGEST,
             steps,
@@ -265,9 +265,9 @@ impl Solve<'_> {
             farthest,
             rough: true,
             asleep: false,
-            ..self.pace()
+            ..self.options()
         };
-        let report = self.run(&mut system, &sheet, &start, &mut x, &pace, &|_, x| done(x), progress)?;
+        let report = self.relax(&mut system, &sheet, &start, &mut x, &options, &|_, x| done(x), progress)?;
         self.reports.push(report);
         self.x = x;
         Ok(())
@@ -291,8 +291,8 @@ impl Solve<'_> {
 
     /// The widest gap at which seams are joined all the same, m.
     fn most_gap(&self) -> f64 {
-        let joined = self.plan.rest.join_gap;
-        if self.plan.rest.sew_through { joined.max(SNAPPED * self.plan.edge()) } else { joined }
+        let joined = self.plan.settings.join_gap;
+        if self.plan.settings.sew_through { joined.max(SNAPPED * self.plan.edge()) } else { joined }
     }
 
     /// Whether a gap is wider than a mesh that is too coarse leaves it.
@@ -307,17 +307,17 @@ impl Solve<'_> {
         x: &mut [Vec3],
         progress: &mut Progress<'_>,
     ) -> Result<(), StaticsError> {
-        let Some(grade) = self.plan.grade(sheet.size()) else { return Ok(()) };
+        let Some(continuation) = self.plan.continuation(sheet.size()) else { return Ok(()) };
         let (_, first, farthest) = SEWING;
-        let pace =
-            NewtonOptions { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.pace() };
+        let options =
+            NewtonOptions { first, longest: 1.0, steps: PRESSING, speed: 0.0, farthest, ..self.options() };
         let layout = x.to_vec();
-        let report = self.run(
-            &mut self.open(sheet, grade.first())?,
+        let report = self.relax(
+            &mut self.open(sheet, continuation.first())?,
             sheet,
             &layout,
             x,
-            &pace,
+            &options,
             &|_, _| false,
             progress,
         )?;
@@ -329,10 +329,10 @@ impl Solve<'_> {
     fn open<'b>(&'b self, sheet: &Sheet, stiff: f64) -> Result<System<'b>, StaticsError> {
         let coarsest = &self.plan.pieces[self.plan.pieces.len() - 1];
         let mut system =
-            assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.rest.models)?;
-        if self.plan.rest.bending_continuation {
+            assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.settings.models)?;
+        if self.plan.settings.bending_continuation {
             system.elastic.scale_bending(stiff);
-            system.support.iter_mut().for_each(|s| s.grows = true);
+            system.body_contact.iter_mut().for_each(|s| s.grows = true);
         }
         Ok(system)
     }

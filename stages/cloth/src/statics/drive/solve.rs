@@ -33,7 +33,7 @@ use crate::statics::levels::assemble::gravity;
 use crate::statics::levels::bending_continuation::COARSEST;
 use crate::statics::levels::pieces::Pieces;
 pub use crate::statics::newton::settings::StaticEquilibrium;
-use crate::statics::newton::stack::pile_of;
+use crate::statics::newton::stack::stack_size;
 pub use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 pub use crate::statics::report::error::{StaticsError, Unsolvable};
 use crate::statics::report::intersecting::tangled;
@@ -52,10 +52,10 @@ impl StaticEquilibrium {
         #[cfg(not(toile_without = "body"))]
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
         #[cfg(not(toile_without = "body"))]
-        let wearer = body.as_ref().map(|(body, friction)| Collider { skin: body, friction: *friction });
+        let collider = body.as_ref().map(|(body, friction)| Collider { skin: body, friction: *friction });
         #[cfg(toile_without = "body")]
-        let wearer = None;
-        self.solve_on(scene, wearer, progress)
+        let collider = None;
+        self.solve_on(scene, collider, progress)
     }
 
     /// Solves `scene` on a body that answers for itself; the scene's own body is not looked at.
@@ -65,10 +65,10 @@ impl StaticEquilibrium {
     pub fn solve_on(
         &self,
         scene: &Scene,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         progress: &mut Progress<'_>,
     ) -> Result<Equilibrium, StaticsError> {
-        self.solve_around(scene, wearer, &[], &Stopper::default(), progress)
+        self.solve_around(scene, collider, &[], &Stopper::default(), progress)
     }
 
     /// The same, sewn on other solids before the body comes: seams close on the first of `around`,
@@ -82,7 +82,7 @@ impl StaticEquilibrium {
     pub fn solve_around(
         &self,
         scene: &Scene,
-        wearer: Option<Collider<'_>>,
+        collider: Option<Collider<'_>>,
         around: &[&dyn CollisionSurface],
         stopper: &Stopper,
         progress: &mut Progress<'_>,
@@ -90,29 +90,29 @@ impl StaticEquilibrium {
         let clock = Instant::now();
         scene.check()?;
         scene.check_still()?;
-        let pile = pile_of(scene);
-        let mut rest = Self {
-            bending_continuation: self.bending_continuation && !self.from_here && pile.is_none(),
+        let stack = stack_size(scene);
+        let mut settings = Self {
+            bending_continuation: self.bending_continuation && !self.from_here && stack.is_none(),
             ..*self
         };
         let start = match self.sew_through {
             true => moved_out::<StaticsError>(
                 scene,
-                around.first().copied().or(wearer.map(|w| w.skin)),
+                around.first().copied().or(collider.map(|w| w.skin)),
                 self.join_gap,
             )?,
-            false => check::<StaticsError>(scene, wearer.map(|w| w.skin), self.join_gap)?,
+            false => check::<StaticsError>(scene, collider.map(|w| w.skin), self.join_gap)?,
         };
         if !self.from_here && !self.sew_through {
             check_lying::<StaticsError>(scene, &Pieces::new(scene), &start)?;
         }
-        let (mut coarsest, mut restarts) = (rest.first_coarsest(pile), 0);
+        let (mut coarsest, mut restarts) = (settings.first_coarsest(stack), 0);
         loop {
-            let plan = Plan::new(&rest, coarsest, scene, wearer, around, stopper, &start)?;
-            let (made, finer) = (Solve::new(&plan, clock).make(progress), plan.second());
+            let plan = Plan::new(&settings, coarsest, scene, collider, around, stopper, &start)?;
+            let (made, finer) = (Solve::new(&plan, clock).run(progress), plan.second());
             coarsest = match (made, finer) {
                 (Ok(Draped::Equilibrium(state)), _) => {
-                    return rest.judge(scene, Equilibrium { restarts, ..*state });
+                    return settings.judge(scene, Equilibrium { restarts, ..*state });
                 }
                 // From its own start the level keeps free of crossings by itself, if slowly.
                 (Ok(Draped::Tangled(entangled)), None) => {
@@ -122,10 +122,10 @@ impl StaticEquilibrium {
                 (Ok(Draped::TooCoarse { finer }), _) => finer,
                 // What slides off while it is stiff may stay on as cloth.
                 (Err(StaticsError::FallsPast(fallen)), _)
-                    if rest.bending_continuation && !fallen.is_certain =>
+                    if settings.bending_continuation && !fallen.is_certain =>
                 {
-                    rest.bending_continuation = false;
-                    rest.first_coarsest(pile)
+                    settings.bending_continuation = false;
+                    settings.first_coarsest(stack)
                 }
                 // A sheet of a few vertices falls past a body that would catch it.
                 (Err(StaticsError::FallsPast(fallen)), Some(finer)) if !fallen.is_certain => finer,
@@ -139,13 +139,13 @@ impl StaticEquilibrium {
     }
 
     /// Most vertices of the coarsest mesh of the first try.
-    fn first_coarsest(&self, pile: Option<usize>) -> usize {
+    fn first_coarsest(&self, stack: Option<usize>) -> usize {
         if self.from_here {
             return usize::MAX;
         }
         let one = if self.bending_continuation { COARSEST.max(self.coarsest) } else { self.coarsest };
         // The limit is for each cloth of a pile: nine nodes cannot follow a body.
-        one * pile.unwrap_or(1)
+        one * stack.unwrap_or(1)
     }
 
     pub(crate) fn judge(&self, scene: &Scene, state: Equilibrium) -> Result<Equilibrium, StaticsError> {

@@ -31,39 +31,39 @@ const PATIENCE: usize = 25;
 impl Solve<'_> {
     /// Runs one level, and where cloth that was sewn through itself stays knotted, smooths the
     /// knots and runs it again.
-    pub(crate) fn run_free(
+    pub(crate) fn relax_uncrossed(
         &self,
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
-        if !self.plan.rest.sew_through {
-            return self.run(system, sheet, layout, x, pace, &|_, _| false, progress);
+        if !self.plan.settings.sew_through {
+            return self.relax(system, sheet, layout, x, options, &|_, _| false, progress);
         }
-        let mut report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
+        let mut report = self.relax_until_stuck(system, sheet, layout, x, options, progress)?;
         for rings in RINGS {
-            if !system.is_tangled() {
+            if !system.is_intersecting() {
                 break;
             }
             if uncross(sheet, &self.plan.tree(sheet, x, false), &system.pinned, x) > 0 {
                 smooth(sheet, x, &around(system, sheet, rings));
             }
-            report = self.run_until_stuck(system, sheet, layout, x, pace, progress)?;
+            report = self.relax_until_stuck(system, sheet, layout, x, options, progress)?;
         }
         Ok(report)
     }
 
     /// Runs one level to rest, or until tangled nodes come free no more.
-    fn run_until_stuck(
+    fn relax_until_stuck(
         &self,
         system: &mut System<'_>,
         sheet: &Sheet,
         layout: &[Vec3],
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         progress: &mut Progress<'_>,
     ) -> Result<LevelReport, StaticsError> {
         let patience = Patience::new((PATIENCE, 0.0));
@@ -71,18 +71,18 @@ impl Solve<'_> {
             let count = tangled(system);
             !patience.goes_on(count as f64) && count > 0
         };
-        self.run(system, sheet, layout, x, pace, &is_stuck, progress)
+        self.relax(system, sheet, layout, x, options, &is_stuck, progress)
     }
 }
 
 /// How many nodes are tangled.
 fn tangled(system: &System<'_>) -> usize {
-    system.layers.as_ref().map_or(0, |l| l.tangled.iter().filter(|t| **t).count())
+    system.self_contact.as_ref().map_or(0, |c| c.intersecting.iter().filter(|t| **t).count())
 }
 
 /// The tangled nodes and so many rings of nodes around them, but for those that are pinned.
 fn around(system: &System<'_>, sheet: &Sheet, rings: usize) -> Vec<bool> {
-    let mut knotted = system.layers.as_ref().map_or_else(Vec::new, |l| l.tangled.clone());
+    let mut knotted = system.self_contact.as_ref().map_or_else(Vec::new, |c| c.intersecting.clone());
     for _ in 0..rings {
         let inner = knotted.clone();
         for [a, b] in sheet.edges().iter().map(|e| e.vertices.map(|v| v as usize)) {

@@ -56,7 +56,7 @@ impl<'a, T: Real> Dense<'a, T> {
     pub(crate) fn zeros(columns: &'a mut Vec<T>, mut border: Vec<T>, m: usize, own: usize) -> Self {
         let n = m - own;
         columns.resize(m * own, T::ZERO);
-        // Memory that was longer stays so: to cut it would fill it with zeros again later.
+        // FrictionHistory that was longer stays so: to cut it would fill it with zeros again later.
         border.resize(border.len().max(n * n), T::ZERO);
         (0..own).for_each(|c| columns[c * m + c..(c + 1) * m].fill(T::ZERO));
         if own == 0 {

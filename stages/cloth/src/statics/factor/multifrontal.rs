@@ -87,7 +87,7 @@ pub struct Factor<T> {
     spare: Spare<T>,
 }
 
-/// Memory of borders, kept from front to front and from one factorization to the next: fresh pages
+/// FrictionHistory of borders, kept from front to front and from one factorization to the next: fresh pages
 /// cost more than sums.
 #[derive(Debug, Default)]
 struct Spare<T>(Mutex<Vec<Vec<T>>>);

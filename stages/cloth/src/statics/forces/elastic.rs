@@ -180,8 +180,8 @@ impl Elastic {
     }
 
     /// Takes over what a part has predicted of its triangles, and where it holds its folds.
-    pub(crate) fn learn(&mut self, subset: &Subset, part: &Self) {
-        self.energies.iter_mut().zip(&part.energies).for_each(|(e, p)| e.learn(subset, p.as_ref()));
+    pub(crate) fn merge(&mut self, subset: &Subset, part: &Self) {
+        self.energies.iter_mut().zip(&part.energies).for_each(|(e, p)| e.merge(subset, p.as_ref()));
     }
 }
 

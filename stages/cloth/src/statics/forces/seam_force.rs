@@ -52,6 +52,6 @@ pub(crate) fn widest(x: &[Vec3], pairs: &[[u32; 2]]) -> f64 {
 }
 
 /// The widest gap of seams that still pull, m.
-pub(crate) fn widest_thread(threads: &[SeamForce], x: &[Vec3]) -> f64 {
+pub(crate) fn widest_open_seam(threads: &[SeamForce], x: &[Vec3]) -> f64 {
     threads.iter().map(|t| (x[t.nodes[0] as usize] - x[t.nodes[1] as usize]).norm()).fold(0.0, f64::max)
 }

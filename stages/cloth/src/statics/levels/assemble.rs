@@ -70,7 +70,7 @@ pub(crate) fn assemble<'a>(
         // Hands that sew a garment on a body let it slip into place.
         if open { 0.0 } else { own.unwrap_or(b.friction) }
     };
-    let support = body.map(|b| BodyContact {
+    let body_contact = body.map(|b| BodyContact {
         body: b.skin,
         friction: panel.iter().map(|&p| rub(b, p)).collect(),
         offsets: panel.iter().map(thickness).collect(),
@@ -84,7 +84,7 @@ pub(crate) fn assemble<'a>(
         #[cfg(toile_without = "body")]
         never: b.never,
         stiffness: stiffness.clone(),
-        pressed: Vec::new(),
+        overloaded: Vec::new(),
     });
     let mut corners = vec![0u16; n];
     sheet.triangles().iter().flatten().for_each(|&v| corners[v as usize] += 1);
@@ -93,7 +93,7 @@ pub(crate) fn assemble<'a>(
     let order = |p: &usize| p.checked_sub(1).map_or(0, |k| scene.panels[k].layer);
     let no_friction = cloths.iter().all(|c| c.friction == 0.0);
     let ordered = scene.panels.iter().any(|p| p.layer > 0);
-    let layers = scene.self_collision.then(|| SelfContact {
+    let self_contact = scene.self_collision.then(|| SelfContact {
         thickness,
         edge,
         stiffness,
@@ -125,17 +125,17 @@ pub(crate) fn assemble<'a>(
         push: vec![],
         height_springs: None,
         pinned,
-        threads: vec![],
-        ridges: support.as_ref().and_then(|s| Ridges::new(s, sheet)),
-        support,
-        layers,
+        seam_forces: vec![],
+        ridges: body_contact.as_ref().and_then(|s| Ridges::new(s, sheet)),
+        body_contact,
+        self_contact,
         touches: vec![],
         anchors: vec![None; n],
         slides: vec![Vec3::zeros(); n],
         loads: vec![0.0; n],
-        seen: vec![],
+        distance_cache: vec![],
         brakes: vec![],
-        pulls: vec![],
+        targets: vec![],
     })
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn gravity(scene: &Scene) -> Vec3 {
 pub(crate) const KEPT_PULL: f64 = 0.1;
 
 /// Threads of the seams that are not joined.
-pub(crate) fn kept_threads(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
+pub(crate) fn kept_seam_forces(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
     let force = KEPT_PULL * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
     pieces.kept_pairs().into_iter().map(|nodes| SeamForce { nodes, force, soft: 2.0 * join_gap }).collect()
 }

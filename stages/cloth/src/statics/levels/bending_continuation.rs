@@ -38,7 +38,7 @@ pub(crate) const EDGES_THROUGH: f64 = 2.0;
 
 /// How stiff bending is on the way.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Grade {
+pub(crate) struct BendingContinuation {
     /// Bending length of the limpest fabric, m.
     length: f64,
     /// Bending length of the first state, m.
@@ -47,7 +47,7 @@ pub(crate) struct Grade {
     edges: f64,
 }
 
-impl Grade {
+impl BendingContinuation {
     /// Of a garment of that size, the root of its area in metres, whose levels let go to a bending
     /// length of so many edges; nothing where cloth has no bending or no weight.
     pub(crate) fn of(cloths: &[&Fabric], gravity: f64, size: f64, edges: f64) -> Option<Self> {
@@ -104,13 +104,13 @@ mod tests {
     #[test]
     fn every_mesh_lets_go_through_the_same_states() {
         let cloth = Fabric::isotropic(0.1, 1000.0, 0.0, 0.1 * 10.0 * 0.02_f64.powi(3));
-        let grade = Grade::of(&[&cloth], 10.0, 0.8, EDGES).unwrap();
+        let continuation = BendingContinuation::of(&[&cloth], 10.0, 0.8, EDGES).unwrap();
         // Factors of 8000, 1000, 125, 15.6 and 1.95: of the last, edges of 3 mm carry the folds.
-        assert!((grade.resolved(0.01) - 125.0).abs() < 1e-9);
-        assert!((grade.resolved(0.003) - 1.953125).abs() < 1e-9);
-        assert!((grade.first() - 8000.0).abs() < 1e-6);
+        assert!((continuation.resolved(0.01) - 125.0).abs() < 1e-9);
+        assert!((continuation.resolved(0.003) - 1.953125).abs() < 1e-9);
+        assert!((continuation.first() - 8000.0).abs() < 1e-6);
         // Of fewer edges in the bending length, coarser meshes do more of the way.
-        let through = Grade::of(&[&cloth], 10.0, 0.8, EDGES_THROUGH).unwrap();
+        let through = BendingContinuation::of(&[&cloth], 10.0, 0.8, EDGES_THROUGH).unwrap();
         assert!((through.resolved(0.01) - 1.953125).abs() < 1e-9);
     }
 
@@ -118,8 +118,13 @@ mod tests {
     fn without_bending_or_weight_there_is_nothing_to_grade() {
         let limp =
             Fabric { bending_warp: 0.0, bending_weft: 0.0, ..Fabric::isotropic(0.1, 1000.0, 0.0, 0.0) };
-        assert!(Grade::of(&[&limp], 10.0, 1.0, EDGES).is_none());
-        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-6)], 0.0, 1.0, EDGES).is_none());
-        assert!(Grade::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-320)], 10.0, 1.0, EDGES).is_none());
+        assert!(BendingContinuation::of(&[&limp], 10.0, 1.0, EDGES).is_none());
+        assert!(
+            BendingContinuation::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-6)], 0.0, 1.0, EDGES).is_none()
+        );
+        assert!(
+            BendingContinuation::of(&[&Fabric::isotropic(0.1, 1000.0, 0.0, 1e-320)], 10.0, 1.0, EDGES)
+                .is_none()
+        );
     }
 }

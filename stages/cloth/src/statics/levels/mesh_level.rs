@@ -78,7 +78,7 @@ impl Level<'_> {
     /// Turns it about its axis towards how it was placed, no farther than the body pushes out what
     /// it meets. What is pinned stays.
     pub(crate) fn turn_back(&mut self) {
-        let Some(depth) = self.system.support.as_ref().map(|s| s.depth) else { return };
+        let Some(depth) = self.system.body_contact.as_ref().map(|s| s.depth) else { return };
         if self.system.pinned.contains(&true) {
             return;
         }

@@ -236,7 +236,7 @@ impl Pieces {
     /// The distance at which the body presses on each vertex.
     pub(crate) fn offsets(&self, system: &System<'_>) -> Vec<f64> {
         let of = |s: &BodyContact<'_>| self.node.iter().map(|&n| s.offsets[n as usize]).collect();
-        system.support.as_ref().map_or_else(Vec::new, of)
+        system.body_contact.as_ref().map_or_else(Vec::new, of)
     }
 
     /// The value of each vertex's node.

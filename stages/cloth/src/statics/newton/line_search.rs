@@ -21,7 +21,7 @@ const LEAST_FALL: f64 = 1e-4;
 const MEMORY: usize = 8;
 
 /// The way gone in a step.
-pub(crate) struct Way {
+pub(crate) struct Accepted {
     /// The share of the step that is left.
     pub share: f64,
     /// What was found at its end, if anybody looked.
@@ -37,9 +37,9 @@ pub(crate) fn descend(
     moves: &mut [Vec3],
     start: f64,
     history: &mut Vec<f64>,
-) -> Way {
+) -> Accepted {
     if greatest(moves) < ROUNDING {
-        return Way { share: 1.0, end: None };
+        return Accepted { share: 1.0, end: None };
     }
     let slope: f64 = g.iter().zip(moves.iter()).map(|(g, d)| g.dot(d)).sum();
     history.push(start);
@@ -51,14 +51,14 @@ pub(crate) fn descend(
     let mut share = 1.0;
     for _ in 0..MOST_HALVINGS {
         let trial: Vec<Vec3> = x.iter().zip(moves.iter()).map(|(p, d)| p + d).collect();
-        let visit = system.visit(&trial);
+        let visit = system.evaluate(&trial);
         if visit.energy <= highest + LEAST_FALL * share * slope.min(0.0) {
-            return Way { share, end: Some(visit) };
+            return Accepted { share, end: Some(visit) };
         }
         share *= 0.5;
         shorten(moves, 0.5);
     }
-    Way { share, end: None }
+    Accepted { share, end: None }
 }
 
 /// Shortens all moves alike.

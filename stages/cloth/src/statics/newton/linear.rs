@@ -48,7 +48,7 @@ impl Linear {
     pub(crate) fn new(system: &mut System<'_>, layout: &[Vec3]) -> Self {
         let own = system.pattern();
         system.elastic.bind(&own);
-        let touched = system.layers.iter().flat_map(SelfContact::groups).map(|g| (*g, 0)).collect();
+        let touched = system.self_contact.iter().flat_map(SelfContact::groups).map(|g| (*g, 0)).collect();
         let (pattern, slots) = widened(&own, &touched);
         system.elastic.follow(&pattern, &slots);
         let layout = smoothed(&own, layout);
@@ -65,7 +65,7 @@ impl Linear {
     /// Follows the contacts: new pairs need new places in the matrix. Whether any did.
     pub(crate) fn follow(&mut self, system: &mut System<'_>) -> bool {
         self.steps += 1;
-        let groups = || system.layers.iter().flat_map(SelfContact::groups);
+        let groups = || system.self_contact.iter().flat_map(SelfContact::groups);
         self.touched.extend(groups().map(|g| (*g, self.steps)));
         let known = groups().all(|g| self.pattern.couples(g));
         if !known {
@@ -156,12 +156,12 @@ mod tests {
         let [a, b, c] = scene.triangles[0];
         let middle = (x[a as usize] + x[b as usize] + x[c as usize]) / 3.0;
         let pair = Pair { kind: Kind::VertexTriangle, nodes: [n, a, b, c] };
-        system.layers.as_mut().unwrap().pairs = vec![pair];
-        let thickness = system.layers.as_ref().unwrap().thickness;
+        system.self_contact.as_mut().unwrap().pairs = vec![pair];
+        let thickness = system.self_contact.as_ref().unwrap().thickness;
         let mut linear = Linear::new(&mut system, &scene.positions);
         let mut follow = |height: f64, system: &mut System<'_>| {
             x[n as usize] = middle + Vec3::y() * height;
-            system.touch(&x);
+            system.update_contacts(&x);
             linear.follow(system)
         };
         assert!(!follow(2.0 * thickness, &mut system));

@@ -46,18 +46,18 @@ impl Nearby {
     }
 
     /// Seeks the pairs about `x`, so that they hold for a part whose nodes are `awake`.
-    pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], awake: &[bool]) {
-        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
+    pub(crate) fn seek_about(&mut self, system: &mut System<'_>, x: &[Vec3], active: &[bool]) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
             let still = vec![Vec3::zeros(); x.len()];
-            let mut moved = outside(&self.at, x, &still, layers.slack());
-            let near_end = outside(&self.at, x, &still, KEPT * layers.slack());
-            moved.iter_mut().zip(near_end).zip(awake).for_each(|((m, n), a)| *m |= n && *a);
+            let mut moved = outside(&self.at, x, &still, self_contact.slack());
+            let near_end = outside(&self.at, x, &still, KEPT * self_contact.slack());
+            moved.iter_mut().zip(near_end).zip(active).for_each(|((m, n), a)| *m |= n && *a);
             if !moved.contains(&true) {
                 return;
             }
             self.at.resize(x.len(), None);
             self.at.iter_mut().zip(x).zip(&moved).filter(|(_, m)| **m).for_each(|((a, p), _)| *a = Some(*p));
-            layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, &still]);
+            self_contact.pairs = self.renewed(tree, self_contact, &self_contact.pairs, &moved, [x, &still]);
         }
     }
 
@@ -68,7 +68,7 @@ impl Nearby {
 
     /// For a part whose pairs were sought where its nodes were `at`, and hold while none moves by
     /// `reach` from there, m.
-    pub(crate) fn of_part(at: Vec<Option<Vec3>>, reach: f64) -> Self {
+    pub(crate) fn of_subdomain(at: Vec<Option<Vec3>>, reach: f64) -> Self {
         let at = at.into_iter().flatten().collect();
         Self { tree: None, at: vec![], fence: Some(Fence { at, reach }), jammed: false }
     }
@@ -91,8 +91,8 @@ impl Nearby {
 
     /// Sees to it that the pairs of the layers hold for `moves` from `x`.
     pub(crate) fn seek(&mut self, system: &mut System<'_>, x: &[Vec3], moves: &[Vec3]) {
-        let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) else { return };
-        let slack = layers.slack();
+        let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) else { return };
+        let slack = self_contact.slack();
         let moved = outside(&self.at, x, moves, slack);
         if !moved.contains(&true) {
             return;
@@ -101,14 +101,14 @@ impl Nearby {
         let long = moved.iter().zip(moves).filter(|(moved, m)| **moved && is_long(m)).count();
         if long as f64 > MOST_LONG * x.len() as f64 {
             self.at = vec![None; x.len()];
-            layers.pairs = tree.pairs(x, moves, layers.thickness);
+            self_contact.pairs = tree.pairs(x, moves, self_contact.thickness);
             return;
         }
         self.at.resize(x.len(), None);
         for (i, _) in moved.iter().enumerate().filter(|(_, m)| **m) {
             self.at[i] = (!is_long(&moves[i])).then_some(x[i]);
         }
-        layers.pairs = self.renewed(tree, layers, &layers.pairs, &moved, [x, moves]);
+        self_contact.pairs = self.renewed(tree, self_contact, &self_contact.pairs, &moved, [x, moves]);
     }
 
     /// The `known` pairs, those of the `moved` nodes sought anew where they are now or, for one
@@ -116,7 +116,7 @@ impl Nearby {
     fn renewed(
         &self,
         tree: &ClothTree,
-        layers: &SelfContact,
+        self_contact: &SelfContact,
         known: &[Pair],
         moved: &[bool],
         [x, moves]: [&[Vec3]; 2],
@@ -126,7 +126,12 @@ impl Nearby {
         let ways: Vec<Vec3> = self.at.iter().zip(moves).map(way).collect();
         let mut pairs: Vec<Pair> =
             known.iter().filter(|p| !p.nodes.iter().any(|&i| moved[i as usize])).copied().collect();
-        pairs.extend(tree.pairs_of(moved, &places, &ways, layers.thickness + 2.0 * layers.slack()));
+        pairs.extend(tree.pairs_of(
+            moved,
+            &places,
+            &ways,
+            self_contact.thickness + 2.0 * self_contact.slack(),
+        ));
         // Two sorted runs.
         pairs.sort();
         pairs
@@ -144,18 +149,19 @@ impl Nearby {
         if self.tree.is_none() && self.fence.is_none() {
             return 1.0;
         }
-        let Some(layers) = &system.layers else { return 1.0 };
+        let Some(self_contact) = &system.self_contact else { return 1.0 };
         let wanted = norm(moves);
-        let apart: Vec<Pair> = layers.pairs.iter().filter(|p| !layers.is_tangled(p)).copied().collect();
+        let apart: Vec<Pair> =
+            self_contact.pairs.iter().filter(|p| !self_contact.is_intersecting(p)).copied().collect();
         let meeting = meet(x, moves, &apart);
         if !meeting.is_empty() {
-            self.jammed = !layers.crowded && meeting.iter().any(|p| layers.is_merged(p, x));
+            self.jammed = !self_contact.stacked && meeting.iter().any(|p| self_contact.is_merged(p, x));
             let pushed = give_way(x, moves, &apart, meeting, &system.pinned);
-            self.keep_known(layers.slack(), x, moves, &pushed);
+            self.keep_known(self_contact.slack(), x, moves, &pushed);
             system.clear_of_body(x, moves, |i| pushed[i]);
             self.hold_apart(system, x, moves);
         }
-        let free = system.layers.as_ref().is_none_or(|l| l.tangled.is_empty());
+        let free = system.self_contact.as_ref().is_none_or(|c| c.intersecting.is_empty());
         if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
     }
 
@@ -174,31 +180,31 @@ impl Nearby {
 
     /// Ends moves before cloth meets cloth.
     fn hold_apart(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
-        let Some(layers) = &mut system.layers else { return };
-        let counts = |p: &Pair| !layers.is_tangled(p);
+        let Some(self_contact) = &mut system.self_contact else { return };
+        let counts = |p: &Pair| !self_contact.is_intersecting(p);
         // Pairs all round hold for every short move, those along a way for that way.
         let long: Vec<bool> = self.at.iter().map(Option::is_none).collect();
         let all = long.iter().all(|l| *l);
         let tree = self.tree.as_ref().filter(|_| long.contains(&true));
         let seek = |moves: &[Vec3]| {
             tree.map(|t| match all {
-                true => t.pairs(x, moves, layers.thickness),
-                false => self.renewed(t, layers, &layers.pairs, &long, [x, moves]),
+                true => t.pairs(x, moves, self_contact.thickness),
+                false => self.renewed(t, self_contact, &self_contact.pairs, &long, [x, moves]),
             })
         };
-        let first = seek(moves).unwrap_or_else(|| layers.pairs.clone());
-        layers.pairs = hold_apart(x, moves, first, counts, seek).0;
+        let first = seek(moves).unwrap_or_else(|| self_contact.pairs.clone());
+        self_contact.pairs = hold_apart(x, moves, first, counts, seek).0;
     }
 
     /// Whether cloth must be taken out of cloth.
-    pub(crate) fn is_tangled(&self, system: &System<'_>) -> bool {
-        system.is_tangled() || self.jammed
+    pub(crate) fn is_intersecting(&self, system: &System<'_>) -> bool {
+        system.is_intersecting() || self.jammed
     }
 
     /// Takes up crossings that the start has, or that are left of them.
-    pub(crate) fn untangle(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        if let (Some(tree), Some(layers)) = (&self.tree, &mut system.layers) {
-            layers.untangle(&tree.crossings(x), x);
+    pub(crate) fn resolve_intersections(&mut self, system: &mut System<'_>, x: &[Vec3]) {
+        if let (Some(tree), Some(self_contact)) = (&self.tree, &mut system.self_contact) {
+            self_contact.resolve_intersections(&tree.crossings(x), x);
             self.jammed = false;
         }
     }

@@ -4,7 +4,7 @@
 //! Where many cloths start in the air they all fall at once, and wherever two meet the step of all
 //! of them is cut short. One that comes down on cloth that holds still is a small problem: some
 //! tens of steps of a sheet's own size. Each is laid down with the weight of all that will lie on
-//! it, as if these had its shape (see [`Part::standing_for`]). What is left for the whole is what
+//! it, as if these had its shape (see [`Subdomain::standing_for`]). What is left for the whole is what
 //! this leaves out, and takes some tens of steps (block Gauss-Seidel, used once, as a start).
 //!
 //! What a cloth may meet is cut out with it (see `subdomain`) and known within a reach of where it
@@ -17,7 +17,7 @@ use crate::statics::forces::system::System;
 use crate::statics::levels::pieces::count_cloths;
 use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::state::{NewtonOptions, NewtonState, Watch};
-use crate::statics::newton::subdomain::Part;
+use crate::statics::newton::subdomain::Subdomain;
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use toile_geometry::cloth_tree::ClothTree;
@@ -42,18 +42,18 @@ const SOON: usize = 3;
 
 /// How many cloths a scene has, where they are so many and may meet that they are laid down one by
 /// one.
-pub(crate) fn pile_of(scene: &Scene) -> Option<usize> {
+pub(crate) fn stack_size(scene: &Scene) -> Option<usize> {
     Some(scene).filter(|s| s.self_collision).map(count_cloths).filter(|n| *n >= MANY)
 }
 
 /// What cloths are laid down with.
-pub(crate) struct Around<'a> {
+pub(crate) struct StackStart<'a> {
     /// Orders the elimination.
     pub(crate) layout: &'a [Vec3],
     /// Finds cloth near cloth.
     pub(crate) tree: &'a ClothTree,
     /// How fast to go.
-    pub(crate) pace: NewtonOptions,
+    pub(crate) options: NewtonOptions,
     /// Asked every few milliseconds.
     pub(crate) stop: &'a Stop<'a>,
 }
@@ -62,17 +62,17 @@ pub(crate) struct Around<'a> {
 ///
 /// # Errors
 /// [`Halt`], as [`NewtonState::step`].
-pub(crate) fn lay(
+pub(crate) fn start_one_by_one(
     system: &mut System<'_>,
-    around: &Around<'_>,
+    around: &StackStart<'_>,
     x: &mut [Vec3],
     watch: &mut Watch<'_>,
 ) -> Result<ControlFlow<()>, Halt> {
     let (of, count) = cloths(system);
     let order = outwards(system, x, &of, count);
     for (k, cloth) in order.iter().enumerate() {
-        let awake: Vec<bool> = of.iter().map(|c| c == cloth).collect();
-        if around.settle(system, x, &awake, order.len() - k, watch)?.is_break() {
+        let active: Vec<bool> = of.iter().map(|c| c == cloth).collect();
+        if around.settle(system, x, &active, order.len() - k, watch)?.is_break() {
             return Ok(ControlFlow::Break(()));
         }
     }
@@ -90,7 +90,7 @@ fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u3
     let far = distances(system, x);
     let mut mean = vec![(0u32, 0.0, 0usize); count];
     for (i, &c) in of.iter().enumerate() {
-        let layer = system.layers.as_ref().and_then(|l| l.order.get(i)).copied().unwrap_or(0);
+        let layer = system.self_contact.as_ref().and_then(|c| c.order.get(i)).copied().unwrap_or(0);
         let m = &mut mean[c as usize];
         *m = (m.0.max(layer), m.1 + far[i], m.2 + 1);
     }
@@ -103,13 +103,13 @@ fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u3
 }
 
 fn distances(system: &System<'_>, x: &[Vec3]) -> Vec<f64> {
-    let Some(s) = &system.support else { return x.iter().map(|p| -p.dot(&system.gravity)).collect() };
+    let Some(s) = &system.body_contact else { return x.iter().map(|p| -p.dot(&system.gravity)).collect() };
     let near = s.body.nearest(x, &vec![f64::INFINITY; x.len()]);
     near.into_iter().map(|n| n.map_or(f64::INFINITY, |n| n.distance)).collect()
 }
 
 /// How far a cloth has come.
-struct Way {
+struct Attempt {
     /// How far about it is known, m.
     reach: f64,
     /// The step of pseudo-time, s.
@@ -117,7 +117,7 @@ struct Way {
     steps: usize,
 }
 
-impl Way {
+impl Attempt {
     /// Finds the next reach, after so many steps within the last.
     fn adapt(&mut self, thickness: f64, steps: usize, seen_for_each: usize) {
         if seen_for_each > MOST_SEEN {
@@ -128,26 +128,26 @@ impl Way {
     }
 }
 
-impl Around<'_> {
+impl StackStart<'_> {
     /// Brings the awake nodes near rest, all else holding still; they stand for so many cloths, one
     /// on the other.
     fn settle(
         &self,
         system: &mut System<'_>,
         x: &mut [Vec3],
-        awake: &[bool],
+        active: &[bool],
         bundle: usize,
         watch: &mut Watch<'_>,
     ) -> Result<ControlFlow<()>, Halt> {
-        let tree = self.tree.clone().with_active(awake);
-        let thickness = system.layers.as_ref().map_or(0.0, |l| l.thickness);
-        let own = awake.iter().filter(|a| **a).count().max(1);
-        let mut way = Way { reach: REACH.0 * thickness, dt: self.pace.first, steps: 0 };
+        let tree = self.tree.clone().with_active(active);
+        let thickness = system.self_contact.as_ref().map_or(0.0, |c| c.thickness);
+        let own = active.iter().filter(|a| **a).count().max(1);
+        let mut way = Attempt { reach: REACH.0 * thickness, dt: self.options.first, steps: 0 };
         while way.steps < STEPS {
             let was = way.steps;
-            let part = self.cut_out(system, &tree, x, awake, way.reach).standing_for(bundle);
-            let seen = part.len() / own;
-            if let Some(end) = self.go(part, system, x, &mut way, watch)? {
+            let subdomain = self.cut_out(system, &tree, x, active, way.reach).standing_for(bundle);
+            let seen = subdomain.len() / own;
+            if let Some(end) = self.go(subdomain, system, x, &mut way, watch)? {
                 return Ok(end);
             }
             way.adapt(thickness, way.steps - was, seen);
@@ -159,24 +159,24 @@ impl Around<'_> {
     /// of the first two.
     fn go<'s>(
         &self,
-        mut part: Part<'s>,
+        mut subdomain: Subdomain<'s>,
         system: &mut System<'s>,
         x: &mut [Vec3],
-        way: &mut Way,
+        way: &mut Attempt,
         watch: &mut Watch<'_>,
     ) -> Result<Option<ControlFlow<()>>, Halt> {
-        let (mut own, layout) = (part.pick(x), part.pick(self.layout));
-        let nearby = Nearby::fenced(part.tree(self.tree, &layout), own.clone(), way.reach);
-        let mut inner = NewtonState::with(nearby, &mut part.system, &layout, &own, way.dt);
+        let (mut own, layout) = (subdomain.pick(x), subdomain.pick(self.layout));
+        let nearby = Nearby::fenced(subdomain.tree(self.tree, &layout), own.clone(), way.reach);
+        let mut inner = NewtonState::with(nearby, &mut subdomain.system, &layout, &own, way.dt);
         let mut end = None;
         while end.is_none() && way.steps < STEPS && !inner.left {
-            let outcome = inner.step(&mut part.system, &mut own, &self.pace, self.stop)?;
+            let outcome = inner.step(&mut subdomain.system, &mut own, &self.options, self.stop)?;
             way.steps += 1;
-            let flow = watch(&part.system, &own, &outcome);
+            let flow = watch(&subdomain.system, &own, &outcome);
             end = (flow.is_break() || outcome.at_rest).then_some(flow);
         }
         way.dt = inner.dt;
-        part.put_back(&own, system, x);
+        subdomain.put_back(&own, system, x);
         Ok(end)
     }
 
@@ -186,15 +186,17 @@ impl Around<'_> {
         system: &mut System<'s>,
         tree: &ClothTree,
         x: &[Vec3],
-        awake: &[bool],
+        active: &[bool],
         reach: f64,
-    ) -> Part<'s> {
-        let Some(layers) = &mut system.layers else { return Part::of(system, awake.to_vec()) };
+    ) -> Subdomain<'s> {
+        let Some(self_contact) = &mut system.self_contact else {
+            return Subdomain::of(system, active.to_vec());
+        };
         // Those of the last cloth; this one seeks its own.
-        layers.pairs.clear();
-        let near = tree.about(x, layers.thickness + 2.0 * reach);
-        let seen = near.iter().zip(awake).map(|(n, a)| *n || *a).collect();
-        Part::beside(system, awake.to_vec(), seen)
+        self_contact.pairs.clear();
+        let near = tree.about(x, self_contact.thickness + 2.0 * reach);
+        let seen = near.iter().zip(active).map(|(n, a)| *n || *a).collect();
+        Subdomain::beside(system, active.to_vec(), seen)
     }
 }
 

@@ -102,8 +102,8 @@ pub struct NewtonState {
 /// What a step found where it ended.
 pub(crate) struct Before {
     pub(crate) at: Vec<Vec3>,
-    pub(crate) lasting: f64,
-    pub(crate) sight: Vec<ContactQuery>,
+    pub(crate) contact_free: f64,
+    pub(crate) queries: Vec<ContactQuery>,
 }
 
 /// Greatest length.

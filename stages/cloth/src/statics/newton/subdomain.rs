@@ -19,7 +19,7 @@ use toile_geometry::pair::Pair;
 type Vec3 = Vector3<f64>;
 
 /// Some nodes of a system as a system of their own.
-pub(crate) struct Part<'a> {
+pub(crate) struct Subdomain<'a> {
     /// The awake nodes and those around them, which are pinned.
     pub(crate) system: System<'a>,
     /// Which nodes these are of the whole, ascending.
@@ -30,33 +30,33 @@ pub(crate) struct Part<'a> {
 }
 
 /// Widens a set of nodes by the elements they are in, so many times.
-pub(crate) fn widen(system: &System<'_>, awake: &mut [bool], rings: usize) {
+pub(crate) fn widen(system: &System<'_>, active: &mut [bool], rings: usize) {
     for _ in 0..rings {
-        let was = awake.to_vec();
+        let was = active.to_vec();
         for nodes in system.elastic.faces().iter().filter(|t| t.iter().any(|&i| was[i as usize])) {
-            nodes.iter().for_each(|&i| awake[i as usize] = true);
+            nodes.iter().for_each(|&i| active[i as usize] = true);
         }
     }
 }
 
-impl<'a> Part<'a> {
+impl<'a> Subdomain<'a> {
     /// The `awake` nodes of a system, and what holds them.
-    pub(crate) fn of(system: &System<'a>, awake: Vec<bool>) -> Self {
-        let seen = awake.clone();
-        Self::beside(system, awake, seen)
+    pub(crate) fn of(system: &System<'a>, active: Vec<bool>) -> Self {
+        let seen = active.clone();
+        Self::beside(system, active, seen)
     }
 
     /// The same with all that is `seen` from them besides: what they may meet on their way.
-    pub(crate) fn beside(system: &System<'a>, awake: Vec<bool>, mut seen: Vec<bool>) -> Self {
+    pub(crate) fn beside(system: &System<'a>, active: Vec<bool>, mut seen: Vec<bool>) -> Self {
         let mut see = |nodes: &[u32]| {
-            if nodes.iter().any(|&i| awake[i as usize]) {
+            if nodes.iter().any(|&i| active[i as usize]) {
                 nodes.iter().for_each(|&i| seen[i as usize] = true);
             }
         };
         system.elastic.couplings(&mut see);
-        system.threads.iter().for_each(|t| see(&t.nodes));
-        system.layers.iter().flat_map(|l| &l.pairs).for_each(|p| see(&p.nodes));
-        let (cut, nodes) = Subset::new(awake, &seen);
+        system.seam_forces.iter().for_each(|t| see(&t.nodes));
+        system.self_contact.iter().flat_map(|c| &c.pairs).for_each(|p| see(&p.nodes));
+        let (cut, nodes) = Subset::new(active, &seen);
         Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
     }
 
@@ -68,8 +68,8 @@ impl<'a> Part<'a> {
     /// The tree of its triangles, of which only those of awake nodes look for what they may meet.
     /// `layout` is that of the part.
     pub(crate) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
-        let awake: Vec<bool> = self.pick(self.cut.active());
-        whole.part(&self.nodes, self.cut.index(), layout).with_active(&awake)
+        let active: Vec<bool> = self.pick(self.cut.active());
+        whole.part(&self.nodes, self.cut.index(), layout).with_active(&active)
     }
 
     /// This part, to stand for so many of one shape, one on the other, of which it is the lowest:
@@ -77,19 +77,19 @@ impl<'a> Part<'a> {
     /// number, and so is what presses for friction.
     pub(crate) fn standing_for(mut self, count: usize) -> Self {
         self.bundle = count as f64;
-        self.weigh(1.0 / self.bundle);
+        self.scale_contact(1.0 / self.bundle);
         self
     }
 
     /// Scales contact and its loads.
-    fn weigh(&mut self, factor: f64) {
+    fn scale_contact(&mut self, factor: f64) {
         let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
         scale(&mut self.system.loads);
-        self.system.support.iter_mut().for_each(|s| scale(&mut s.stiffness));
-        self.system.ridges.iter_mut().for_each(|r| r.weigh(factor));
-        if let Some(l) = &mut self.system.layers {
-            scale(&mut l.stiffness);
-            l.friction_contacts.iter_mut().for_each(|g| g.load *= factor);
+        self.system.body_contact.iter_mut().for_each(|s| scale(&mut s.stiffness));
+        self.system.ridges.iter_mut().for_each(|r| r.scale(factor));
+        if let Some(c) = &mut self.system.self_contact {
+            scale(&mut c.stiffness);
+            c.friction_contacts.iter_mut().for_each(|f| f.load *= factor);
         }
     }
 
@@ -101,30 +101,30 @@ impl<'a> Part<'a> {
     /// Puts places and what the part has learnt of contacts back into the whole.
     pub(crate) fn put_back(mut self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
         if self.bundle != 1.0 {
-            self.weigh(self.bundle);
+            self.scale_contact(self.bundle);
         }
         put(&self.nodes, x, whole);
         put(&self.nodes, &self.system.anchors, &mut system.anchors);
         put(&self.nodes, &self.system.loads, &mut system.loads);
         put(&self.nodes, &self.system.slides, &mut system.slides);
-        if !system.seen.is_empty() && !self.system.seen.is_empty() {
-            put(&self.nodes, &self.system.seen, &mut system.seen);
+        if !system.distance_cache.is_empty() && !self.system.distance_cache.is_empty() {
+            put(&self.nodes, &self.system.distance_cache, &mut system.distance_cache);
         }
-        if let (Some(from), Some(to)) = (&self.system.support, &mut system.support) {
+        if let (Some(from), Some(to)) = (&self.system.body_contact, &mut system.body_contact) {
             put(&self.nodes, &from.offsets, &mut to.offsets);
             put(&self.nodes, &from.stiffness, &mut to.stiffness);
         }
-        if let (Some(from), Some(to)) = (&self.system.layers, &mut system.layers) {
+        if let (Some(from), Some(to)) = (&self.system.self_contact, &mut system.self_contact) {
             let grip = |g: &FrictionContact| FrictionContact {
                 nodes: g.nodes.map(|i| self.nodes[i as usize]),
                 ..*g
             };
-            to.take_over(|g| self.cut.touches(&g.nodes), from.friction_contacts.iter().map(grip));
+            to.replace_friction(|g| self.cut.touches(&g.nodes), from.friction_contacts.iter().map(grip));
         }
         if let (Some(from), Some(to)) = (&self.system.ridges, &mut system.ridges) {
-            to.learn(&self.cut, &self.nodes, from);
+            to.merge(&self.cut, &self.nodes, from);
         }
-        system.elastic.learn(&self.cut, &self.system.elastic);
+        system.elastic.merge(&self.cut, &self.system.elastic);
     }
 }
 
@@ -150,21 +150,21 @@ fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
             ..*h
         }),
         pinned: nodes.iter().map(asleep).collect(),
-        threads: system.threads.iter().filter(|t| cut.touches(&t.nodes)).map(thread).collect(),
-        support: system.support.as_ref().map(|s| support(s, cut, nodes)),
-        ridges: system.ridges.as_ref().map(|r| r.part(cut, nodes)),
-        layers: system.layers.as_ref().map(|l| layers(l, cut, nodes)),
+        seam_forces: system.seam_forces.iter().filter(|t| cut.touches(&t.nodes)).map(thread).collect(),
+        body_contact: system.body_contact.as_ref().map(|s| body_contact(s, cut, nodes)),
+        ridges: system.ridges.as_ref().map(|r| r.subset(cut, nodes)),
+        self_contact: system.self_contact.as_ref().map(|c| self_contact(c, cut, nodes)),
         touches: Vec::new(),
         anchors: pick(nodes, &system.anchors),
         slides: pick(nodes, &system.slides),
         loads: pick(nodes, &system.loads),
         brakes: vec![],
-        pulls: Vec::new(),
-        seen: pick(nodes, &system.seen),
+        targets: Vec::new(),
+        distance_cache: pick(nodes, &system.distance_cache),
     }
 }
 
-fn support<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyContact<'a> {
+fn body_contact<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyContact<'a> {
     let edges = whole.edges.iter().filter(|(e, _)| cut.touches(e) && cut.has_all(e));
     BodyContact {
         body: whole.body,
@@ -178,13 +178,13 @@ fn support<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> BodyCont
         hard: whole.hard,
         passes: whole.passes,
         stiffness: pick(nodes, &whole.stiffness),
-        pressed: Vec::new(),
+        overloaded: Vec::new(),
         #[cfg(toile_without = "body")]
         never: whole.never,
     }
 }
 
-fn layers(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
+fn self_contact(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
     let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
     let grip = |g: &FrictionContact| FrictionContact { nodes: cut.renumbered(g.nodes), ..*g };
     SelfContact {
@@ -192,12 +192,12 @@ fn layers(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
         never: whole.never,
         thickness: whole.thickness,
         edge: whole.edge,
-        crowded: whole.crowded,
+        stacked: whole.stacked,
         stiffness: pick(nodes, &whole.stiffness),
         order: pick(nodes, &whole.order),
         corners: pick(nodes, &whole.corners),
         friction: pick(nodes, &whole.friction),
-        away: pick(nodes, &whole.away),
+        disabled_friction: pick(nodes, &whole.disabled_friction),
         // A grip outlives its pair by the step that parts them.
         friction_contacts: whole
             .friction_contacts
@@ -211,8 +211,8 @@ fn layers(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
             .as_ref()
             .map(|h| sorted(h.iter().filter(|p| cut.touches(&p.nodes) && cut.has_all(&p.nodes)).map(pair))),
         contacts: Vec::new(),
-        tangles: Vec::new(),
-        tangled: Vec::new(),
+        intersections: Vec::new(),
+        intersecting: Vec::new(),
     }
 }
 

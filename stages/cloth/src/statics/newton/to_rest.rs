@@ -31,7 +31,7 @@ use crate::statics::forces::system::System;
 use crate::statics::newton::line_search::{descend, shorten};
 use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;
-use crate::statics::newton::stack::{Around, lay};
+use crate::statics::newton::stack::{StackStart, start_one_by_one};
 use crate::statics::newton::state::Before;
 pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Watch, greatest};
 use nalgebra::Vector3;
@@ -107,8 +107,8 @@ impl NewtonState {
         first: f64,
     ) -> Self {
         nearby.seek(system, x, &vec![Vec3::zeros(); x.len()]);
-        nearby.untangle(system, x);
-        system.look_for_pierced(x);
+        nearby.resolve_intersections(system, x);
+        system.find_pierced(x);
         Self::among(nearby, system, layout, x, first)
     }
 
@@ -121,7 +121,7 @@ impl NewtonState {
         first: f64,
     ) -> Self {
         system.seek_ridges(x);
-        system.touch(x);
+        system.update_contacts(x);
         let linear = Linear::new(system, layout);
         let outcome = Outcome { dt: first, ..Outcome::default() };
         Self {
@@ -171,41 +171,41 @@ impl NewtonState {
         &mut self,
         system: &mut System<'_>,
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         stop: &Stop,
     ) -> Result<Outcome, Halt> {
         // One way into the pool of threads a step, not one for every loop.
-        rayon::scope(|_| self.step_here(system, x, pace, stop))
+        rayon::scope(|_| self.step_here(system, x, options, stop))
     }
 
     pub(crate) fn step_here(
         &mut self,
         system: &mut System<'_>,
         x: &mut [Vec3],
-        pace: &NewtonOptions,
+        options: &NewtonOptions,
         stop: &Stop,
     ) -> Result<Outcome, Halt> {
-        if self.nearby.is_tangled(system) {
-            self.nearby.untangle(system, x);
+        if self.nearby.is_intersecting(system) {
+            self.nearby.resolve_intersections(system, x);
         }
         let before = self.before.take().filter(|b| b.at == x);
-        let (lasting, sight) = match before {
-            Some(Before { lasting, sight, .. }) => (Some(lasting), Some(sight)),
+        let (contact_free, queries) = match before {
+            Some(Before { contact_free, queries, .. }) => (Some(contact_free), Some(queries)),
             None => (None, None),
         };
-        system.touch_in_sight(x, sight);
+        system.update_contacts_with(x, queries);
         let is_new = self.linear.follow(system);
         let g = system.gradient(x);
         let used = if self.verifying { REST_STEP } else { self.dt };
         let mut moves = match self.verifying && self.reuse_factor && !is_new {
             true => self.linear.again(&g),
-            false => self.linear.step(system, x, &g, [used, self.last], pace.precision, stop)?,
+            false => self.linear.step(system, x, &g, [used, self.last], options.precision, stop)?,
         };
         self.reuse_factor = self.verifying;
         let longest = greatest(&moves);
         let residual = greatest(&g);
-        let speed = greatest_but(&moves, pace.non_static) / used;
-        let fast = moves.iter().filter(|m| m.norm() > pace.speed * used).count();
+        let speed = greatest_but(&moves, options.non_static) / used;
+        let fast = moves.iter().filter(|m| m.norm() > options.speed * used).count();
         self.outcome = Outcome {
             steps: self.outcome.steps + 1,
             speed,
@@ -217,20 +217,20 @@ impl NewtonState {
             ..self.outcome
         };
         self.last = longest;
-        shorten(&mut moves, pace.farthest / longest);
+        shorten(&mut moves, options.farthest / longest);
         let wanted = moves.clone();
-        let (mut pulled, mut kept) = self.bound(system, x, &mut moves, pace.farthest);
-        if pace.yields && !pulled && !self.verifying && self.is_misled(system, &g, &moves) {
+        let (mut pulled, mut kept) = self.bound(system, x, &mut moves, options.farthest);
+        if options.yields && !pulled && !self.verifying && self.is_misled(system, &g, &moves) {
             // What is stopped by others holds still, and the rest finds a step without it.
             let is_stopped = |(w, m): (&Vec3, &Vec3)| (w - m).norm() > STOPPED * w.norm();
             system.brakes =
                 wanted.iter().zip(&moves).map(|p| if is_stopped(p) { BRAKE } else { 0.0 }).collect();
-            let step = self.linear.step(system, x, &g, [used, self.last], pace.precision, stop);
+            let step = self.linear.step(system, x, &g, [used, self.last], options.precision, stop);
             system.brakes.clear();
             moves = step?;
             let longest = greatest(&moves);
-            shorten(&mut moves, pace.farthest / longest);
-            (pulled, kept) = self.bound(system, x, &mut moves, pace.farthest);
+            shorten(&mut moves, options.farthest / longest);
+            (pulled, kept) = self.bound(system, x, &mut moves, options.farthest);
         }
         if kept < LEAST_KEPT && !pulled && !self.verifying && self.dt > SHORTEST {
             // The cloth stays: most of the step leads cloth through cloth, and what is left of it
@@ -239,8 +239,8 @@ impl NewtonState {
             self.moves.clear();
             return Ok(self.outcome);
         }
-        let start = (!pulled && !pace.rough).then(|| match lasting {
-            Some(lasting) => system.value_at_start(x, lasting),
+        let start = (!pulled && !options.rough).then(|| match contact_free {
+            Some(contact_free) => system.value_at_start(x, contact_free),
             None => system.value(x),
         });
         let way = start.map(|start| descend(system, x, &g, &mut moves, start, &mut self.history));
@@ -249,8 +249,9 @@ impl NewtonState {
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let end = way.and_then(|w| w.end);
         self.moves = moves;
-        self.before = end.map(|v| Before { at: x.to_vec(), lasting: v.lasting, sight: v.sight });
-        self.plan(system, x, pulled, kept, pace);
+        self.before =
+            end.map(|v| Before { at: x.to_vec(), contact_free: v.contact_free, queries: v.queries });
+        self.plan(system, x, pulled, kept, options);
         Ok(self.outcome)
     }
 
@@ -263,7 +264,7 @@ impl NewtonState {
         moves: &mut [Vec3],
         farthest: f64,
     ) -> (bool, f64) {
-        let pulled = system.pull(x, moves, farthest);
+        let pulled = system.follow_targets(x, moves, farthest);
         system.clear_of_body(x, moves, |_| true);
         system.clear_of_ridges(x, moves);
         let reach = self.nearby.within_reach(x, moves);
@@ -273,43 +274,50 @@ impl NewtonState {
         let left = self.nearby.limit(system, x, moves);
         system.stop_at_ridges(x, moves);
         // Seams pull over long ways, whatever is between.
-        (pulled, if system.threads.is_empty() { left } else { 1.0 })
+        (pulled, if system.seam_forces.is_empty() { left } else { 1.0 })
     }
 
     /// Whether a step that was ended for some nodes leads the others uphill: no share of it lowers
     /// the potential.
     fn is_misled(&self, system: &System<'_>, g: &[Vec3], moves: &[Vec3]) -> bool {
         let slope: f64 = g.iter().zip(moves).map(|(g, m)| g.dot(m)).sum();
-        slope > 0.0 && system.threads.is_empty() && !system.is_tangled()
+        slope > 0.0 && system.seam_forces.is_empty() && !system.is_intersecting()
     }
 
     /// What comes after a step.
-    fn plan(&mut self, system: &mut System<'_>, x: &[Vec3], pulled: bool, kept: f64, pace: &NewtonOptions) {
-        let limit = if self.verifying { pace.speed } else { pace.speed.min(CREEP) };
+    fn plan(
+        &mut self,
+        system: &mut System<'_>,
+        x: &[Vec3],
+        pulled: bool,
+        kept: f64,
+        options: &NewtonOptions,
+    ) {
+        let limit = if self.verifying { options.speed } else { options.speed.min(CREEP) };
         let slow = self.outcome.speed < limit && !pulled;
-        self.outcome.at_rest = slow && (self.verifying || !pace.prove);
+        self.outcome.at_rest = slow && (self.verifying || !options.prove);
         if self.verifying {
             // A long step leaves strain of second order behind, which the first short ones take
             // away.
             self.proofs += 1;
             self.verifying = self.outcome.share == 1.0 && self.proofs < MOST_PROOFS;
             (self.slow_steps, self.failed) = (0, true);
-            system.layers.iter_mut().for_each(|l| l.hold(true));
+            system.self_contact.iter_mut().for_each(|c| c.hold(true));
             return;
         }
         self.proofs = 0;
-        let is_layered = system.layers.as_ref().is_some_and(|l| 2 * l.contacts.len() > x.len());
-        self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, pace);
+        let is_layered = system.self_contact.as_ref().is_some_and(|c| 2 * c.contacts.len() > x.len());
+        self.dt = next_dt(self.dt, self.outcome.share, if is_layered { kept } else { 1.0 }, options);
         if !slow {
-            system.drag(x);
+            system.drag_anchors(x);
         }
-        if self.outcome.speed > FAST * pace.speed {
-            system.layers.iter_mut().for_each(|l| l.hold(false));
+        if self.outcome.speed > FAST * options.speed {
+            system.self_contact.iter_mut().for_each(|c| c.hold(false));
         }
         let calm = slow && self.outcome.share == 1.0 && self.outcome.dt >= SLOW_STEP;
-        self.outcome.at_rest |= calm && pace.long_proof;
+        self.outcome.at_rest |= calm && options.long_proof;
         self.slow_steps = if calm { self.slow_steps + 1 } else { 0 };
-        self.verifying = pace.prove && self.slow_steps >= if self.failed { SLOW_STEPS } else { 1 };
+        self.verifying = options.prove && self.slow_steps >= if self.failed { SLOW_STEPS } else { 1 };
     }
 
     /// The cloth has moved outside a step: nothing that was found where that ended holds.
@@ -331,8 +339,8 @@ impl NewtonState {
 
     /// Looks for crossings that are left where some were being undone.
     fn finish(&mut self, system: &mut System<'_>, x: &[Vec3]) {
-        if system.is_tangled() {
-            self.nearby.untangle(system, x);
+        if system.is_intersecting() {
+            self.nearby.resolve_intersections(system, x);
         }
     }
 }
@@ -347,14 +355,14 @@ pub fn relax(
     layout: &[Vec3],
     tree: Option<ClothTree>,
     x: &mut [Vec3],
-    pace: &NewtonOptions,
+    options: &NewtonOptions,
     watch: &mut Watch<'_>,
     stop: &Stop,
 ) -> Result<Outcome, Halt> {
-    if let (true, Some(tree)) = (pace.one_by_one, &tree)
-        && lay(
+    if let (true, Some(tree)) = (options.one_by_one, &tree)
+        && start_one_by_one(
             system,
-            &Around { layout, tree, pace: NewtonOptions { prove: false, ..*pace }, stop },
+            &StackStart { layout, tree, options: NewtonOptions { prove: false, ..*options }, stop },
             x,
             watch,
         )?
@@ -362,26 +370,26 @@ pub fn relax(
     {
         return Ok(Outcome::default());
     }
-    let mut descent = NewtonState::new(system, layout, tree, x, pace.first);
-    while descent.outcome.steps < pace.steps {
-        let outcome = descent.step(system, x, pace, stop)?;
+    let mut newton = NewtonState::new(system, layout, tree, x, options.first);
+    while newton.outcome.steps < options.steps {
+        let outcome = newton.step(system, x, options, stop)?;
         if watch(system, x, &outcome).is_break() || outcome.at_rest {
             break;
         }
-        if pace.asleep {
-            descent.settle_awake(system, x, pace, stop)?;
+        if options.asleep {
+            newton.settle_active(system, x, options, stop)?;
         }
     }
-    descent.finish(system, x);
-    Ok(descent.outcome)
+    newton.finish(system, x);
+    Ok(newton.outcome)
 }
 
 /// The next step of pseudo-time after one of which the search took a `share` and contacts had left
 /// so much.
-fn next_dt(dt: f64, share: f64, kept: f64, pace: &NewtonOptions) -> f64 {
+fn next_dt(dt: f64, share: f64, kept: f64, options: &NewtonOptions) -> f64 {
     match share {
         s if s < 0.5 || kept < FEW_KEPT => (dt * 0.6).max(SHORTEST),
-        1.0 if kept >= MOST_KEPT => (dt * GROWTH).min(pace.longest),
+        1.0 if kept >= MOST_KEPT => (dt * GROWTH).min(options.longest),
         _ => dt,
     }
 }
@@ -415,14 +423,14 @@ mod tests {
         let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
         let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
         let x = scene.positions.clone();
-        let descent = NewtonState::new(&mut system, &x, None, &x, 0.05);
+        let newton = NewtonState::new(&mut system, &x, None, &x, 0.05);
         let g = system.gradient(&x);
         let down: Vec<Vec3> = g.iter().map(|g| -g * 1e-3).collect();
         let up: Vec<Vec3> = g.iter().map(|g| g * 1e-3).collect();
-        assert!(!descent.is_misled(&system, &g, &down));
-        assert!(descent.is_misled(&system, &g, &up));
-        system.threads = vec![SeamForce { nodes: [0, 1], force: 1.0, soft: 1e-3 }];
-        assert!(!descent.is_misled(&system, &g, &up));
+        assert!(!newton.is_misled(&system, &g, &down));
+        assert!(newton.is_misled(&system, &g, &up));
+        system.seam_forces = vec![SeamForce { nodes: [0, 1], force: 1.0, soft: 1e-3 }];
+        assert!(!newton.is_misled(&system, &g, &up));
     }
 
     #[test]
@@ -432,16 +440,16 @@ mod tests {
         let sheet = pieces.sewn_sheet(&cloths(&scene)).unwrap();
         let mut system = assemble(&scene, None, &pieces, &sheet, false, Models::STATIC).unwrap();
         let x = scene.positions.clone();
-        let mut descent = NewtonState::new(&mut system, &x, None, &x, 0.05);
+        let mut newton = NewtonState::new(&mut system, &x, None, &x, 0.05);
         let g = system.gradient(&x);
-        let step = |descent: &mut NewtonState, system: &System<'_>| {
-            descent.linear.step(system, &x, &g, [0.05, 1.0], Precision::Double, &|| false).unwrap()
+        let step = |newton: &mut NewtonState, system: &System<'_>| {
+            newton.linear.step(system, &x, &g, [0.05, 1.0], Precision::Double, &|| false).unwrap()
         };
-        let free = step(&mut descent, &system);
+        let free = step(&mut newton, &system);
         let lowest = (0..x.len()).max_by(|a, b| free[*a].norm().total_cmp(&free[*b].norm())).unwrap();
         system.brakes = vec![0.0; x.len()];
         system.brakes[lowest] = BRAKE;
-        let braked = step(&mut descent, &system);
+        let braked = step(&mut newton, &system);
         assert!(free[lowest].norm() > 1e-3 && braked[lowest].norm() < 1e-6);
         assert!(greatest(&braked) > 1e-3);
     }

@@ -33,7 +33,7 @@ pub(crate) fn tangled(scene: &Scene, gravity: f64, entangled: Entangled) -> Stat
 
 /// What of a level lies in each other or crosses.
 pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
-    let groups = level.system.layers.as_ref().map_or_else(Vec::new, |l| l.entangled(&level.x));
+    let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.entangled(&level.x));
     let first = groups.first().copied().unwrap_or_default();
     let panel = |node: u32| {
         let vertex = pieces.node.iter().position(|n| *n == node);

@@ -38,7 +38,7 @@ pub(crate) fn unbalanced(system: &System<'_>, gradient: &[Vec3], pieces: &Pieces
     }
     let (node, force) = worst;
     let meets_cloth =
-        system.layers.as_ref().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
+        system.self_contact.as_ref().is_some_and(|l| l.contacts.iter().any(|c| c.nodes.contains(&node)));
     let meets_body = system.touches.iter().any(|t| t.node == node);
     let meets = match (meets_cloth, meets_body) {
         (true, _) => Meets::Cloth,

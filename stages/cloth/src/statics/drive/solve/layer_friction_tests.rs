@@ -17,7 +17,7 @@ fn tilted(tangent: f64) -> Rotation3<f64> {
 /// Sheets on each other on a slope of that tangent, each with its friction; the lowest is larger
 /// and lies on a rough plate.
 fn piled(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
-    let mut scene = Scene::new("pile", generate::cloth());
+    let mut scene = Scene::new("stack", generate::cloth());
     for (k, friction) in frictions.iter().enumerate() {
         let size = if k == 0 { 0.3 } else { 0.15 };
         let mesh = Rectangle::new(layout, size, size, if k == 0 { 12 } else { 7 });
@@ -36,8 +36,8 @@ fn piled(layout: Layout, tangent: f64, frictions: &[f64]) -> Scene {
 /// How far the sheet `k` ends from its start, at most, m; whether all came to rest.
 fn slid(scene: &Scene, k: usize) -> (f64, bool) {
     // A sheet 2 % above its angle gains but 0.6 mm/s in the step that proves rest.
-    let rest = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let (state, rests) = match rest.solve(scene, &mut |_| ControlFlow::Continue(())) {
+    let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
+    let (state, rests) = match settings.solve(scene, &mut |_| ControlFlow::Continue(())) {
         Ok(state) => (state, true),
         Err(StaticsError::NotAtRest { state, .. }) => (*state, false),
         Err(StaticsError::FallsPast(_)) => return (f64::INFINITY, false),
@@ -94,17 +94,17 @@ fn a_garment_that_goes_on_remembers_what_holds_it() {
     let scene = piled(Layout::Irregular(3), 0.27, &[0.3, 0.3]);
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
-    let wearer = Collider { skin: &body, friction: b.friction };
-    let rest = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
-    let state = rest.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
+    let collider = Collider { skin: &body, friction: b.friction };
+    let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
+    let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let moved = |state: &Equilibrium| {
-        let mut live = Live::new(rest, scene.clone(), Some(wearer), state).unwrap();
+        let mut live = Live::new(settings, scene.clone(), Some(collider), state).unwrap();
         let next = live.settle(&mut |_| ControlFlow::Continue(())).unwrap();
         let ways = next.positions.iter().zip(&state.positions).map(|(a, b)| (a - b).norm());
         ways.fold(0.0, f64::max)
     };
-    let forgetful = Equilibrium { friction_contacts: vec![], ..state.clone() };
-    let (kept, lost) = (moved(&state), moved(&forgetful));
+    let continuation_options = Equilibrium { friction_contacts: vec![], ..state.clone() };
+    let (kept, lost) = (moved(&state), moved(&continuation_options));
     assert!(kept < 2e-5 && lost > 1e-4, "{kept} {lost}");
 }
 

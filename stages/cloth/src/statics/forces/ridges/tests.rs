@@ -17,10 +17,10 @@ fn over_a_blade(height: f64, slope: f64) -> (Scene, Vec<Vec3>) {
 }
 
 fn ready(system: &mut System<'_>, x: &[Vec3]) {
-    system.look_for_pierced(x);
+    system.find_pierced(x);
     system.seek_ridges(x);
-    let support = system.support.clone().unwrap();
-    system.ridges.as_mut().unwrap().touch(&support, x);
+    let body_contact = system.body_contact.clone().unwrap();
+    system.ridges.as_mut().unwrap().update_contacts(&body_contact, x);
 }
 
 /// The lowest height at which the sheet's edges pass over the blade's middle, m.

@@ -33,9 +33,10 @@ pub(crate) fn crossings_at_start(
     let sheet = pieces.open_sheet(&cloths(scene))?;
     let tree = ClothTree::new(sheet.triangles(), start).sewing(pieces.point.clone());
     let layer = |&p: &u32| (p as usize).checked_sub(1).map_or(0, |k| scene.panels[k].layer);
-    let layers = SelfContact { order: pieces.panel.iter().map(layer).collect(), ..SelfContact::default() };
+    let self_contact =
+        SelfContact { order: pieces.panel.iter().map(layer).collect(), ..SelfContact::default() };
     let found = crossings(&tree, &pieces.panel, start);
-    Ok(found.into_iter().filter(|(e, t)| !layers.is_ordered(e, t)).collect())
+    Ok(found.into_iter().filter(|(e, t)| !self_contact.is_ordered(e, t)).collect())
 }
 
 /// How far panels are moved to look whether they cross where a vertex of one lies in another, m:
