@@ -1,10 +1,11 @@
-//! A garment that stays at rest while its fabric, its pins or its wearer change.
+//! A garment that is kept in equilibrium while its fabric, its pins or its collider change.
 //!
-//! All that [`StaticEquilibrium`] knows of the finest level is kept: places, friction's anchors,
-//! near pairs, the order of elimination. A small change needs one or two of Newton's steps to
-//! follow, each a factorization and O(n) more; when the changes stop, [`Live::settle`] goes on to
-//! rest, which is proved as always. Mesh and seams stay as they are. Since friction and folds
-//! remember, the state may be another one than a fresh start would find; both are states of rest.
+//! Method: the state of the finest level is kept: positions, friction anchors, neighbour pairs and
+//! the order of elimination. After a small change one or two Newton steps suffice. When the changes
+//! stop, [`Live::settle`] goes on until rest is proved.
+//!
+//! Cost of a step: one factorization, and O(n) for the rest. Limits: mesh and seams must stay. Since
+//! friction and folds have a history, the equilibrium may differ from that of a fresh start.
 
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -23,13 +24,13 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// First step of pseudo-time of a garment that was at rest, s.
+/// First step of pseudo-time, of a garment that was at rest, s.
 const FIRST: f64 = 0.2;
 
-/// Farthest that a node may move in a step, m: a change is followed, not fallen after.
+/// Farthest that a node may move in a step, m.
 const FARTHEST: f64 = 0.05;
 
-/// A garment that can be changed.
+/// A garment in equilibrium that can be changed.
 pub struct Live<'a> {
     settings: StaticEquilibrium,
     scene: Scene,
@@ -42,7 +43,7 @@ pub struct Live<'a> {
 }
 
 impl<'a> Live<'a> {
-    /// Goes on from `state`, a state of rest of `scene` on `wearer`.
+    /// Starts from `state`, an equilibrium of `scene` on `collider`.
     ///
     /// # Errors
     /// [`StaticsError`], where the scene is at fault or the state has another number of vertices.
@@ -70,13 +71,13 @@ impl<'a> Live<'a> {
         Ok(Self { settings, scene, collider, pieces, sheet, system, newton, x })
     }
 
-    /// The scene as it is now.
+    /// The present scene.
     #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Where every vertex of the scene is, m.
+    /// The positions of all vertices of the scene, m.
     #[must_use]
     pub fn positions(&self) -> Vec<Vec3> {
         self.pieces.spread(&self.x)
@@ -106,17 +107,17 @@ impl<'a> Live<'a> {
         self.renew()
     }
 
-    /// Puts the garment on another body near the present one.
+    /// Replaces the collider by one near it.
     ///
     /// # Errors
     /// [`StaticsError`], where the scene is at fault.
-    pub fn wear(&mut self, collider: Option<Collider<'a>>) -> Result<(), StaticsError> {
+    pub fn set_collider(&mut self, collider: Option<Collider<'a>>) -> Result<(), StaticsError> {
         self.collider = collider;
         self.system.distance_cache.clear();
         self.renew()
     }
 
-    /// Leads a pinned vertex to `to` with the next steps; returns whether it is pinned.
+    /// Moves a pinned vertex to `to` within the next steps; returns whether it is pinned.
     pub fn pull(&mut self, vertex: u32, to: Vec3) -> bool {
         let node = self.pieces.node.get(vertex as usize).copied().filter(|n| self.system.pinned[*n as usize]);
         let Some(node) = node else { return false };
@@ -126,7 +127,7 @@ impl<'a> Live<'a> {
         true
     }
 
-    /// Takes up the changed scene, keeping what the last steps found.
+    /// Takes over the changed scene, and keeps the state of the last steps.
     fn renew(&mut self) -> Result<(), StaticsError> {
         self.pieces.pinned.fill(false);
         self.scene.pinned.iter().for_each(|&p| self.pieces.pinned[p as usize] = true);
@@ -156,9 +157,8 @@ impl<'a> Live<'a> {
         Ok(())
     }
 
-    /// Up to `steps` of Newton's steps towards rest; none where it is at rest already. The last one
-    /// is short: it takes away the strain that long ones leave. The residual is that of the state
-    /// it ends in.
+    /// Makes up to `steps` Newton steps towards rest; none if the garment is at rest. The last step is
+    /// short: it removes the strain that long steps leave. The residual is that of the final state.
     ///
     /// # Errors
     /// [`StaticsError::NotPositive`], where no inertia makes the matrix positive definite.
@@ -188,8 +188,8 @@ impl<'a> Live<'a> {
             non_static: self.settings.non_static,
             farthest: FARTHEST,
             prove: true,
-            rough: false,
-            yields: false,
+            skip_line_search: false,
+            holds_stopped: false,
             one_by_one: false,
             long_proof: self.settings.long_proof,
             asleep: self.settings.asleep,
@@ -208,11 +208,11 @@ impl<'a> Live<'a> {
         })
     }
 
-    /// Goes on until the garment is at rest; `progress` hears of every step.
+    /// Makes steps until the garment is at rest; `progress` is called after every step.
     ///
     /// # Errors
-    /// Every [`StaticsError`]; the steps allowed are those of the finest level of
-    /// [`StaticEquilibrium`].
+    /// Every [`StaticsError`]; the greatest number of steps is
+    /// [`StaticEquilibrium::finest_steps`].
     pub fn settle(&mut self, progress: &mut Progress<'_>) -> Result<Equilibrium, StaticsError> {
         let (clock, budget, options) = (Instant::now(), self.settings.budget, self.options());
         let first = self.newton.outcome().steps;
@@ -236,7 +236,7 @@ impl<'a> Live<'a> {
                 .system
                 .self_contact
                 .as_ref()
-                .map_or_else(Vec::new, |l| l.friction_contacts.clone()),
+                .map_or_else(Vec::new, |c| c.friction_contacts.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
             dip: self.collider.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),

@@ -1,5 +1,7 @@
-//! What a way to rest is laid out on, before anything moves: the levels, from the cut pieces to the
-//! coarsest mesh.
+//! The plan of one try: the mesh levels of a scene, from the cut pieces to the coarsest mesh.
+//!
+//! Method: each level is coarsened from the finer one (see `levels/coarsen`) until it has few enough
+//! points; levels whose cloth intersects itself at the start are dropped. Cost: O(n log n).
 
 use crate::contact::past::BodyBox;
 use crate::contact::skin::CollisionSurface;
@@ -21,28 +23,27 @@ use toile_geometry::cloth_tree::ClothTree;
 
 type Vec3 = Vector3<f64>;
 
-/// The levels of a scene. Nothing of it changes on the way, so a finer level can be made ready
-/// while a coarser one moves.
+/// The levels of a scene. A plan does not change, so that a finer level can be prepared while a
+/// coarser one is solved.
 pub(crate) struct Plan<'a> {
     pub(crate) settings: &'a StaticEquilibrium,
     pub(crate) scene: &'a Scene,
     pub(crate) body: Option<Collider<'a>>,
-    /// What keeps cloth out while it is sewn, one after the other; the body where there is nothing
-    /// else.
+    /// The solids on which the cloth is sewn, one after the other; empty for the body alone.
     pub(crate) around: &'a [&'a dyn CollisionSurface],
-    /// Says whether the caller wants to stop.
+    /// Tells whether the caller wants to stop.
     pub(crate) stopper: &'a Stopper,
-    /// The box around the body, where there is one and the cloth has weight.
+    /// The bounding box of the body, if there is one and the cloth has weight.
     pub(crate) body_box: Option<BodyBox>,
-    /// What no panel and what each panel is made of.
+    /// The fabric of vertices without a panel, then that of each panel.
     pub(crate) cloths: Vec<&'a Fabric>,
     /// Whether many cloths lie on each other.
     pub(crate) is_stack: bool,
-    /// Fine to coarse.
+    /// The pieces of each level, from fine to coarse.
     pub(crate) pieces: Vec<Pieces>,
-    /// How each level but the finest was made from the finer one.
+    /// How each level but the finest was coarsened from the finer one.
     pub(crate) coarser: Vec<Coarser>,
-    /// Where the vertices of each level start.
+    /// The initial positions of the vertices of each level, m.
     pub(crate) starts: Vec<Vec<Vec3>>,
 }
 
@@ -64,7 +65,7 @@ impl<'a> Plan<'a> {
             let finer = &starts[starts.len() - 1];
             starts.push(level.kept.iter().map(|&v| finer[v as usize]).collect());
         }
-        // A coarse mesh cannot follow a pleat: it starts where no cloth crosses.
+        // A coarse mesh cannot follow a pleat: the coarsest level must start without crossings.
         while let (Some(coarse), Some(start)) = (pieces.last(), starts.last()) {
             if settings.sew_through {
                 break;
@@ -77,7 +78,7 @@ impl<'a> Plan<'a> {
             pieces.pop();
             starts.pop();
         }
-        // A collider may stand for no body.
+        // A collider may have no surface.
         if scene.pinned.is_empty() && body_box.is_none() && gravity(scene).norm() > 0.0 {
             return Err(StaticsError::Falls);
         }
@@ -97,7 +98,12 @@ impl<'a> Plan<'a> {
         })
     }
 
-    /// What keeps cloth out while its seams close.
+    /// The level index of the coarsest level.
+    pub(crate) fn coarsest_level(&self) -> usize {
+        self.pieces.len() - 1
+    }
+
+    /// The collider while the seams close.
     pub(crate) fn sewn_on(&self) -> Option<Collider<'a>> {
         self.body.map(|w| Collider { skin: self.around.first().copied().unwrap_or(w.skin), ..w })
     }
@@ -111,17 +117,17 @@ impl<'a> Plan<'a> {
         sides.sum::<f64>() / (3 * coarsest.triangles.len()).max(1) as f64
     }
 
-    /// The vertex of the finest level that vertex `v` of level `k` is.
+    /// The vertex of the finest level that is vertex `v` of level `k`.
     pub(crate) fn finest_of(&self, k: usize, v: u32) -> u32 {
         self.coarser[..k].iter().rev().fold(v, |v, c| c.kept[v as usize])
     }
 
-    /// Points of the level that is finer than the coarsest, if there is one.
+    /// Points of the level next to the coarsest, if there is one.
     pub(crate) fn second(&self) -> Option<usize> {
         self.pieces.len().checked_sub(2).map(|k| self.pieces[k].points)
     }
 
-    /// How bending is let go in a garment of that size, if it is.
+    /// The bending continuation of a garment of that size, if it is enabled.
     pub(crate) fn continuation(&self, size: f64) -> Option<BendingContinuation> {
         let gravity = gravity(self.scene).norm();
         let edges = if self.settings.sew_through { EDGES_THROUGH } else { EDGES };
@@ -131,7 +137,7 @@ impl<'a> Plan<'a> {
             .flatten()
     }
 
-    /// Level `k`, sewn, with its nodes nowhere yet.
+    /// Level `k`, sewn, without positions of its nodes.
     pub(crate) fn level(&self, k: usize) -> Result<Level<'a>, StaticsError> {
         let pieces = &self.pieces[k];
         let sheet = pieces.sewn_sheet(&self.cloths)?;
@@ -139,23 +145,25 @@ impl<'a> Plan<'a> {
         let mut system = assemble(self.scene, self.body, pieces, &sheet, false, self.settings.models)?;
         system.seam_forces = kept_seam_forces(self.scene, pieces, self.settings.join_gap);
         system.self_contact.iter_mut().for_each(|c| c.stacked = self.is_stack);
-        if let (true, true, Some(s)) = (self.settings.bending_continuation, k > 0, &mut system.body_contact) {
-            // Offsets that grow with the edges of a passing state would shake the cloth, and with
-            // it the choice of folds.
-            s.edges.clear();
+        if let (true, true, Some(contact)) =
+            (self.settings.bending_continuation, k > 0, &mut system.body_contact)
+        {
+            // Offsets that grow in an intermediate state would move the cloth, and so change which
+            // folds form.
+            contact.edges.clear();
         }
-        system.body_contact.iter_mut().for_each(|s| s.hard = self.settings.sew_through);
+        system.body_contact.iter_mut().for_each(|c| c.hard = self.settings.sew_through);
         Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
     }
 
-    /// The tree of a level; what thread holds together is no obstacle to itself.
-    pub(crate) fn tree(&self, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
+    /// The tree of level `k`, while it is sewn or after. The two sides of a seam are no obstacle to
+    /// each other.
+    pub(crate) fn tree(&self, k: usize, sheet: &Sheet, layout: &[Vec3], sewing: bool) -> ClothTree {
         let tree = ClothTree::new(sheet.triangles(), layout);
         let kept = || self.scene.seams.iter().any(|s| !s.joined);
-        let nodes = |p: &Pieces| if sewing { p.rest.len() } else { p.nodes };
-        match self.pieces.iter().rev().find(|p| nodes(p) == layout.len()) {
-            Some(p) if sewing => tree.sewing(p.point.clone()),
-            Some(p) if kept() => tree.sewing(p.node_points()),
+        match &self.pieces[k] {
+            p if sewing => tree.sewing(p.point.clone()),
+            p if kept() => tree.sewing(p.node_points()),
             _ => tree,
         }
     }

@@ -47,7 +47,7 @@ impl NewtonState {
             let mut inner = Self::among(nearby, &mut subdomain.system, &layout, &own, self.dt);
             for _ in 0..SUBDOMAIN_STEPS {
                 let outcome = inner.step_here(&mut subdomain.system, &mut own, &options, stop)?;
-                if outcome.at_rest || inner.left {
+                if outcome.at_rest || inner.has_left {
                     break;
                 }
             }

@@ -169,7 +169,7 @@ impl StackStart<'_> {
         let nearby = Nearby::fenced(subdomain.tree(self.tree, &layout), own.clone(), way.reach);
         let mut inner = NewtonState::with(nearby, &mut subdomain.system, &layout, &own, way.dt);
         let mut end = None;
-        while end.is_none() && way.steps < STEPS && !inner.left {
+        while end.is_none() && way.steps < STEPS && !inner.has_left {
             let outcome = inner.step(&mut subdomain.system, &mut own, &self.options, self.stop)?;
             way.steps += 1;
             let flow = watch(&subdomain.system, &own, &outcome);

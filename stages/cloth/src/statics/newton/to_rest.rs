@@ -32,7 +32,7 @@ use crate::statics::newton::line_search::{descend, shorten};
 use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;
 use crate::statics::newton::stack::{StackStart, start_one_by_one};
-use crate::statics::newton::state::Before;
+use crate::statics::newton::state::StepEnd;
 pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Watch, greatest};
 use nalgebra::Vector3;
 use toile_geometry::cloth_tree::ClothTree;
@@ -135,17 +135,17 @@ impl NewtonState {
             slow_steps: 0,
             failed: false,
             dt: first,
-            last: f64::INFINITY,
-            before: None,
+            longest_move: f64::INFINITY,
+            end: None,
             moves: Vec::new(),
-            left: false,
+            has_left: false,
         }
     }
 
     /// Takes up a system whose fabric, pins or body have changed.
     pub fn renew(&mut self, system: &mut System<'_>) {
         self.linear.bind(system);
-        self.before = None;
+        self.end = None;
         self.wake();
     }
 
@@ -188,9 +188,9 @@ impl NewtonState {
         if self.nearby.is_intersecting(system) {
             self.nearby.resolve_intersections(system, x);
         }
-        let before = self.before.take().filter(|b| b.at == x);
+        let before = self.end.take().filter(|b| b.at == x);
         let (contact_free, queries) = match before {
-            Some(Before { contact_free, queries, .. }) => (Some(contact_free), Some(queries)),
+            Some(StepEnd { contact_free, queries, .. }) => (Some(contact_free), Some(queries)),
             None => (None, None),
         };
         system.update_contacts_with(x, queries);
@@ -199,7 +199,7 @@ impl NewtonState {
         let used = if self.verifying { REST_STEP } else { self.dt };
         let mut moves = match self.verifying && self.reuse_factor && !is_new {
             true => self.linear.again(&g),
-            false => self.linear.step(system, x, &g, [used, self.last], options.precision, stop)?,
+            false => self.linear.step(system, x, &g, [used, self.longest_move], options.precision, stop)?,
         };
         self.reuse_factor = self.verifying;
         let longest = greatest(&moves);
@@ -216,16 +216,16 @@ impl NewtonState {
             gained: if self.verifying { Some(speed) } else { self.outcome.gained },
             ..self.outcome
         };
-        self.last = longest;
+        self.longest_move = longest;
         shorten(&mut moves, options.farthest / longest);
         let wanted = moves.clone();
         let (mut pulled, mut kept) = self.bound(system, x, &mut moves, options.farthest);
-        if options.yields && !pulled && !self.verifying && self.is_misled(system, &g, &moves) {
+        if options.holds_stopped && !pulled && !self.verifying && self.is_misled(system, &g, &moves) {
             // What is stopped by others holds still, and the rest finds a step without it.
             let is_stopped = |(w, m): (&Vec3, &Vec3)| (w - m).norm() > STOPPED * w.norm();
             system.brakes =
                 wanted.iter().zip(&moves).map(|p| if is_stopped(p) { BRAKE } else { 0.0 }).collect();
-            let step = self.linear.step(system, x, &g, [used, self.last], options.precision, stop);
+            let step = self.linear.step(system, x, &g, [used, self.longest_move], options.precision, stop);
             system.brakes.clear();
             moves = step?;
             let longest = greatest(&moves);
@@ -239,7 +239,7 @@ impl NewtonState {
             self.moves.clear();
             return Ok(self.outcome);
         }
-        let start = (!pulled && !options.rough).then(|| match contact_free {
+        let start = (!pulled && !options.skip_line_search).then(|| match contact_free {
             Some(contact_free) => system.value_at_start(x, contact_free),
             None => system.value(x),
         });
@@ -249,8 +249,7 @@ impl NewtonState {
         x.iter_mut().zip(&moves).for_each(|(p, m)| *p += m);
         let end = way.and_then(|w| w.end);
         self.moves = moves;
-        self.before =
-            end.map(|v| Before { at: x.to_vec(), contact_free: v.contact_free, queries: v.queries });
+        self.end = end.map(|v| StepEnd { at: x.to_vec(), contact_free: v.contact_free, queries: v.queries });
         self.plan(system, x, pulled, kept, options);
         Ok(self.outcome)
     }
@@ -268,7 +267,7 @@ impl NewtonState {
         system.clear_of_body(x, moves, |_| true);
         system.clear_of_ridges(x, moves);
         let reach = self.nearby.within_reach(x, moves);
-        self.left = reach < 1.0;
+        self.has_left = reach < 1.0;
         shorten(moves, reach);
         self.nearby.seek(system, x, moves);
         let left = self.nearby.limit(system, x, moves);
@@ -322,7 +321,7 @@ impl NewtonState {
 
     /// The cloth has moved outside a step: nothing that was found where that ended holds.
     pub(crate) fn moved(&mut self) {
-        (self.before, self.reuse_factor) = (None, false);
+        (self.end, self.reuse_factor) = (None, false);
     }
 
     /// How it stands after the last step.
