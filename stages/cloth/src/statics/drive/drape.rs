@@ -225,13 +225,13 @@ impl<'a> Solve<'a> {
         level.system.elastic.scale_bending(stiff);
         let offsets =
             level.system.body_contact.as_mut().filter(|_| self.plan.settings.bending_continuation).map(|c| {
-                c.grows = true;
+                c.grows_offsets = true;
                 c.offsets.clone()
             });
         let Level { system, sheet, layout, x, .. } = &mut *level;
         let run = self.relax_uncrossed(k, system, sheet, layout, x, &options, progress);
         if let (Some(contact), Some(offsets)) = (&mut level.system.body_contact, offsets) {
-            (contact.grows, contact.offsets) = (false, offsets);
+            (contact.grows_offsets, contact.offsets) = (false, offsets);
         }
         level.system.elastic.scale_bending(1.0 / stiff);
         self.reports.push(run?);

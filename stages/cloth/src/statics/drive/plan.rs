@@ -152,7 +152,7 @@ impl<'a> Plan<'a> {
             // folds form.
             contact.edges.clear();
         }
-        system.body_contact.iter_mut().for_each(|c| c.hard = self.settings.sew_through);
+        system.body_contact.iter_mut().for_each(|c| c.stiffens_inside = self.settings.sew_through);
         Ok(Level { system, sheet, layout, x: Vec::new(), friction: None })
     }
 

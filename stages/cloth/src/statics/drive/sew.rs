@@ -279,7 +279,7 @@ impl Solve<'_> {
             assemble(self.plan.scene, Some(solid), pieces, &sheet, false, self.plan.settings.models)?;
         system.gravity = Vec3::zeros();
         system.ridges = None;
-        system.body_contact.iter_mut().for_each(|s| (s.passes, s.depth) = (true, DEEPEST));
+        system.body_contact.iter_mut().for_each(|s| (s.lets_through, s.depth) = (true, DEEPEST));
         system.height_springs = self.height_springs(&sheet, &start, stiffness, panel);
         let options = NewtonOptions {
             first: FIRST,
@@ -363,7 +363,7 @@ impl Solve<'_> {
             assemble(self.plan.scene, self.plan.sewn_on(), coarsest, sheet, true, self.plan.settings.models)?;
         if self.plan.settings.bending_continuation {
             system.elastic.scale_bending(stiff);
-            system.body_contact.iter_mut().for_each(|s| s.grows = true);
+            system.body_contact.iter_mut().for_each(|s| s.grows_offsets = true);
         }
         Ok(system)
     }

@@ -47,14 +47,14 @@ pub struct BodyContact<'a> {
     pub edges: Vec<([u32; 2], f64)>,
     /// Whether edges must stay outside the body, too; otherwise they may dip into it as far as keeps
     /// the girth right.
-    pub clear: bool,
+    pub keeps_edges_out: bool,
     /// Whether the offset of overloaded nodes grows until contact carries them.
-    pub grows: bool,
+    pub grows_offsets: bool,
     /// Whether contact becomes stiffer at nodes inside the body until they are outside: cloth that
     /// is sewn through a body may be too tight to come out otherwise.
-    pub hard: bool,
+    pub stiffens_inside: bool,
     /// Whether moves may lead into the body, which then pushes the cloth out.
-    pub passes: bool,
+    pub lets_through: bool,
     /// Stiffness of contact, N/m per node.
     pub stiffness: Vec<f64>,
     /// Nodes that pressed harder than their contact can carry in the last step.
@@ -80,7 +80,7 @@ pub type ContactQuery = (DistanceCache, Option<Nearest>);
 impl BodyContact<'_> {
     /// How near the body a move may lead node `i`, m.
     pub(crate) fn guard(&self, i: usize) -> f64 {
-        GUARD * if self.grows { self.offset } else { self.offsets[i] }
+        GUARD * if self.grows_offsets { self.offset } else { self.offsets[i] }
     }
 
     /// Increases the offset of node `i` if it is overloaded. A stiff sheet presses harder on a few
@@ -133,7 +133,8 @@ impl BodyContact<'_> {
         for (i, sag) in sags.into_iter().enumerate() {
             // A polygon around a circle has its length when its corners stand a third of the sag
             // outside.
-            let least = if self.clear { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
+            let least =
+                if self.keeps_edges_out { (sag - 0.5 * self.offset).max(sag / 3.0) } else { sag / 3.0 };
             self.offsets[i] = self.offsets[i].max(self.offset + least);
         }
     }

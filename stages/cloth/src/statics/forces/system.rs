@@ -155,7 +155,9 @@ impl System<'_> {
     /// Shortens moves that lead into the body, of the nodes that `asks` selects.
     pub fn clear_of_body(&mut self, x: &[Vec3], moves: &mut [Vec3], asks: impl Fn(usize) -> bool) {
         let is_sewing = !self.seam_forces.is_empty();
-        let Some(contact) = self.body_contact.as_mut().filter(|contact| !contact.passes) else { return };
+        let Some(contact) = self.body_contact.as_mut().filter(|contact| !contact.lets_through) else {
+            return;
+        };
         let cache = &self.distance_cache;
         let is_free = |i: usize| {
             cache
@@ -170,7 +172,7 @@ impl System<'_> {
         for (&i, m) in asked.iter().zip(guarded) {
             if (moves[i] - m).norm() > NUDGE {
                 let distance = cache.get(i).map_or(0.0, |n| n.distance);
-                match contact.grows {
+                match contact.grows_offsets {
                     true => contact.grow(i, distance),
                     // Stiffer contact would keep the seam open.
                     false if is_sewing => {}
@@ -320,7 +322,7 @@ impl System<'_> {
         contact.stiffen_overloaded();
         let ridges = &mut self.ridges;
         ridges.iter_mut().for_each(|r| r.update_contacts(contact, x));
-        if !contact.passes {
+        if !contact.lets_through {
             contact.allow_for_sag(&near, x, |edge| ridges.as_ref().is_some_and(|r| r.bridges(edge)));
         }
         let mut anchors = vec![None; x.len()];
@@ -328,7 +330,7 @@ impl System<'_> {
         self.touches.clear();
         for (i, n) in near.iter().enumerate() {
             let Some(n) = n else { continue };
-            if contact.hard && n.distance < 0.0 {
+            if contact.stiffens_inside && n.distance < 0.0 {
                 contact.overloaded.push(i as u32);
             }
             let force = contact.stiffness[i] * (contact.offsets[i] - n.distance).max(0.0);

@@ -1,4 +1,6 @@
-//! What still moves near rest settles by itself, before the whole takes its next step.
+//! Active subset: the few nodes that still move near rest are solved alone before the next step.
+//!
+//! Method: see `subdomain`. Cost: that of the active nodes and of the rings around them.
 
 use crate::statics::factor::multifrontal::{Halt, Stop};
 use crate::statics::forces::self_contact::SelfContact;
@@ -11,21 +13,20 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Share of the greatest move from which on a node is awake.
+/// Share of the greatest move above which a node is active.
 const ACTIVE: f64 = 0.3;
 
-/// Rings of triangles around the awake nodes that move with them.
+/// Rings of triangles around the active nodes that move with them.
 const RINGS: usize = 2;
 
-/// Greatest share of the nodes that is worth a system of its own.
+/// Greatest share of active nodes at which they are solved alone.
 const FEW: f64 = 0.15;
 
-/// Steps of such a part at most, before the whole looks again.
+/// Steps of the subdomain at most.
 const SUBDOMAIN_STEPS: usize = 20;
 
 impl NewtonState {
-    /// Brings the nodes that the last step moved most to rest by themselves, where they are few.
-    /// Near rest a few nodes buckle one after the other while the others sleep.
+    /// Brings the nodes that the last step moved most to rest alone, where they are few.
     ///
     /// # Errors
     /// [`Halt`], as [`Self::step`].
@@ -78,7 +79,7 @@ mod tests {
     use crate::statics::drive::solve::{Equilibrium, StaticEquilibrium};
     use std::ops::ControlFlow;
 
-    /// A skirt sewn on a form, and its steps on the finest mesh.
+    /// A skirt sewn on a form, and its steps on the finest level.
     fn skirt([nx, ny]: [u32; 2], asleep: bool) -> (Equilibrium, usize) {
         let (scene, mut levels) = (generate::tube(nx, ny), vec![]);
         let settings = StaticEquilibrium { asleep, ..StaticEquilibrium::default() };
@@ -91,12 +92,12 @@ mod tests {
     }
 
     #[test]
-    fn while_few_nodes_move_the_others_sleep_and_rest_is_found_in_fewer_steps() {
+    fn an_active_subset_finds_rest_in_fewer_steps_of_the_whole() {
         let (mut few, mut many) = (0, 0);
         for size in [[40, 14], [48, 12], [32, 16]] {
-            let ((asleep, a), (active, b)) = (skirt(size, true), skirt(size, false));
+            let ((subset, a), (all, b)) = (skirt(size, true), skirt(size, false));
             (few, many) = (few + a, many + b);
-            let apart = asleep.energy / active.energy - 1.0;
+            let apart = subset.energy / all.energy - 1.0;
             assert!(apart.abs() < 0.01, "{apart}");
         }
         assert!(few < many, "{few} {many}");

@@ -1,15 +1,14 @@
-//! A pile of many cloths comes to rest one by one, from the innermost outwards, before all of them
-//! move together.
+//! Sequential start of a stack: many cloths come to rest one by one, from the innermost outwards,
+//! before all of them move together.
 //!
-//! Where many cloths start in the air they all fall at once, and wherever two meet the step of all
-//! of them is cut short. One that comes down on cloth that holds still is a small problem: some
-//! tens of steps of a sheet's own size. Each is laid down with the weight of all that will lie on
-//! it, as if these had its shape (see [`Subdomain::standing_for`]). What is left for the whole is what
-//! this leaves out, and takes some tens of steps (block Gauss-Seidel, used once, as a start).
+//! Method: block Gauss-Seidel, one sweep, as a start. If all cloths fell at once, each collision
+//! would shorten the step of all of them. One cloth that falls on cloth at rest is a small problem of
+//! some tens of steps. It carries the weight of all cloths that will lie on it, as if they had its
+//! shape (see [`Subdomain::standing_for`]). The whole stack then needs some tens of steps.
 //!
-//! What a cloth may meet is cut out with it (see `subdomain`) and known within a reach of where it
-//! is; beyond that it is cut out anew. Cost: for each cloth O(n) a cut, and steps of its own and
-//! its neighbours' size.
+//! A cloth is solved as a subdomain with all triangles that it may meet within a reach. Where it
+//! leaves the reach, the subdomain is cut out anew. Cost: O(n) for each cut, and steps of the size of
+//! the subdomain. Limit: at least [`MANY`] cloths.
 
 use crate::scene::Scene;
 use crate::statics::factor::multifrontal::{Halt, Stop};
@@ -25,40 +24,42 @@ use toile_geometry::components::groups;
 
 type Vec3 = Vector3<f64>;
 
-/// Cloths from which on they are laid down one by one; fewer come to rest together sooner.
+/// Least number of cloths that start one by one. Fewer come to rest together sooner.
 const MANY: usize = 6;
 
 /// Steps of one cloth at most.
 const STEPS: usize = 200;
 
-/// How far about a cloth is known at first, and at least, in thicknesses.
-const REACH: (f64, f64) = (16.0, 4.0);
+/// First reach about a cloth, in thicknesses.
+const FIRST_REACH: f64 = 16.0;
 
-/// Nodes of a part for each that is awake, rounded down, above which the reach is halved.
-const MOST_SEEN: usize = 20;
+/// Least reach, in thicknesses.
+const LEAST_REACH: f64 = 4.0;
 
-/// Steps within which a cloth that leaves its reach is given a longer one.
+/// Nodes of a subdomain for each active one, rounded down, above which the reach is halved.
+const MOST_NODES: usize = 20;
+
+/// A cloth that leaves its reach in fewer steps gets a longer one.
 const SOON: usize = 3;
 
-/// How many cloths a scene has, where they are so many and may meet that they are laid down one by
-/// one.
+/// The number of cloths of a scene, if they are so many that they start one by one.
 pub(crate) fn stack_size(scene: &Scene) -> Option<usize> {
     Some(scene).filter(|s| s.self_collision).map(count_cloths).filter(|n| *n >= MANY)
 }
 
-/// What cloths are laid down with.
+/// What each cloth is solved with.
 pub(crate) struct StackStart<'a> {
     /// Orders the elimination.
     pub(crate) layout: &'a [Vec3],
-    /// Finds cloth near cloth.
+    /// Finds neighbour pairs.
     pub(crate) tree: &'a ClothTree,
-    /// How fast to go.
+    /// The options of Newton's method.
     pub(crate) options: NewtonOptions,
     /// Asked every few milliseconds.
     pub(crate) stop: &'a Stop<'a>,
 }
 
-/// Brings each cloth near rest on those before it; breaks where `watch` does.
+/// Brings each cloth near rest on those before it; ends where `watch` breaks.
 ///
 /// # Errors
 /// [`Halt`], as [`NewtonState::step`].
@@ -103,14 +104,16 @@ fn outwards(system: &System<'_>, x: &[Vec3], of: &[u32], count: usize) -> Vec<u3
 }
 
 fn distances(system: &System<'_>, x: &[Vec3]) -> Vec<f64> {
-    let Some(s) = &system.body_contact else { return x.iter().map(|p| -p.dot(&system.gravity)).collect() };
-    let near = s.body.nearest(x, &vec![f64::INFINITY; x.len()]);
+    let Some(contact) = &system.body_contact else {
+        return x.iter().map(|p| -p.dot(&system.gravity)).collect();
+    };
+    let near = contact.body.nearest(x, &vec![f64::INFINITY; x.len()]);
     near.into_iter().map(|n| n.map_or(f64::INFINITY, |n| n.distance)).collect()
 }
 
-/// How far a cloth has come.
+/// The progress of one cloth.
 struct Attempt {
-    /// How far about it is known, m.
+    /// The reach about it, m.
     reach: f64,
     /// The step of pseudo-time, s.
     dt: f64,
@@ -118,10 +121,10 @@ struct Attempt {
 }
 
 impl Attempt {
-    /// Finds the next reach, after so many steps within the last.
-    fn adapt(&mut self, thickness: f64, steps: usize, seen_for_each: usize) {
-        if seen_for_each > MOST_SEEN {
-            self.reach = (0.5 * self.reach).max(REACH.1 * thickness);
+    /// Adapts the reach, after so many steps within the last one.
+    fn adapt(&mut self, thickness: f64, steps: usize, nodes_per_active: usize) {
+        if nodes_per_active > MOST_NODES {
+            self.reach = (0.5 * self.reach).max(LEAST_REACH * thickness);
         } else if steps < SOON {
             self.reach *= 2.0;
         }
@@ -129,58 +132,58 @@ impl Attempt {
 }
 
 impl StackStart<'_> {
-    /// Brings the awake nodes near rest, all else holding still; they stand for so many cloths, one
-    /// on the other.
+    /// Brings the active nodes near rest while all others are pinned. They stand for `multiplicity`
+    /// stacked cloths.
     fn settle(
         &self,
         system: &mut System<'_>,
         x: &mut [Vec3],
         active: &[bool],
-        bundle: usize,
+        multiplicity: usize,
         watch: &mut Watch<'_>,
     ) -> Result<ControlFlow<()>, Halt> {
         let tree = self.tree.clone().with_active(active);
         let thickness = system.self_contact.as_ref().map_or(0.0, |c| c.thickness);
         let own = active.iter().filter(|a| **a).count().max(1);
-        let mut way = Attempt { reach: REACH.0 * thickness, dt: self.options.first, steps: 0 };
-        while way.steps < STEPS {
-            let was = way.steps;
-            let subdomain = self.cut_out(system, &tree, x, active, way.reach).standing_for(bundle);
-            let seen = subdomain.len() / own;
-            if let Some(end) = self.go(subdomain, system, x, &mut way, watch)? {
+        let mut attempt = Attempt { reach: FIRST_REACH * thickness, dt: self.options.first, steps: 0 };
+        while attempt.steps < STEPS {
+            let was = attempt.steps;
+            let subdomain = self.cut_out(system, &tree, x, active, attempt.reach).standing_for(multiplicity);
+            let nodes_per_active = subdomain.len() / own;
+            if let Some(end) = self.run(subdomain, system, x, &mut attempt, watch)? {
                 return Ok(end);
             }
-            way.adapt(thickness, way.steps - was, seen);
+            attempt.adapt(thickness, attempt.steps - was, nodes_per_active);
         }
         Ok(ControlFlow::Continue(()))
     }
 
-    /// Moves a part until it is at rest, `watch` breaks or it leaves what it knows; what came first
-    /// of the first two.
-    fn go<'s>(
+    /// Moves a subdomain until it is at rest, `watch` breaks or it leaves its reach; returns which of
+    /// the first two came first.
+    fn run<'s>(
         &self,
         mut subdomain: Subdomain<'s>,
         system: &mut System<'s>,
         x: &mut [Vec3],
-        way: &mut Attempt,
+        attempt: &mut Attempt,
         watch: &mut Watch<'_>,
     ) -> Result<Option<ControlFlow<()>>, Halt> {
         let (mut own, layout) = (subdomain.pick(x), subdomain.pick(self.layout));
-        let nearby = Nearby::fenced(subdomain.tree(self.tree, &layout), own.clone(), way.reach);
-        let mut inner = NewtonState::with(nearby, &mut subdomain.system, &layout, &own, way.dt);
+        let nearby = Nearby::fenced(subdomain.tree(self.tree, &layout), own.clone(), attempt.reach);
+        let mut inner = NewtonState::with(nearby, &mut subdomain.system, &layout, &own, attempt.dt);
         let mut end = None;
-        while end.is_none() && way.steps < STEPS && !inner.has_left {
+        while end.is_none() && attempt.steps < STEPS && !inner.has_left {
             let outcome = inner.step(&mut subdomain.system, &mut own, &self.options, self.stop)?;
-            way.steps += 1;
+            attempt.steps += 1;
             let flow = watch(&subdomain.system, &own, &outcome);
             end = (flow.is_break() || outcome.at_rest).then_some(flow);
         }
-        way.dt = inner.dt;
+        attempt.dt = inner.dt;
         subdomain.put_back(&own, system, x);
         Ok(end)
     }
 
-    /// The awake nodes and all triangles that they may meet while they move by up to `reach`.
+    /// The active nodes and all triangles that they may meet while they move by up to `reach`.
     fn cut_out<'s>(
         &self,
         system: &mut System<'s>,
@@ -192,11 +195,11 @@ impl StackStart<'_> {
         let Some(self_contact) = &mut system.self_contact else {
             return Subdomain::of(system, active.to_vec());
         };
-        // Those of the last cloth; this one seeks its own.
+        // These pairs are those of the last cloth.
         self_contact.pairs.clear();
         let near = tree.about(x, self_contact.thickness + 2.0 * reach);
-        let seen = near.iter().zip(active).map(|(n, a)| *n || *a).collect();
-        Subdomain::beside(system, active.to_vec(), seen)
+        let included = near.iter().zip(active).map(|(n, a)| *n || *a).collect();
+        Subdomain::with_neighbours(system, active.to_vec(), included)
     }
 }
 

@@ -80,13 +80,13 @@ pub struct NewtonState {
     /// Whether the next step is a proof step, of [`REST_STEP`].
     pub(crate) verifying: bool,
     /// Consecutive proof steps.
-    pub(crate) proofs: usize,
+    pub(crate) proof_steps: usize,
     /// Whether the factor is that of the last proof step.
     pub(crate) reuse_factor: bool,
     /// Consecutive slow steps since the last proof step.
     pub(crate) slow_steps: usize,
     /// Whether a proof step has failed.
-    pub(crate) failed: bool,
+    pub(crate) has_failed: bool,
     /// The next step of pseudo-time, s.
     pub(crate) dt: f64,
     /// Longest move of the last Newton step before it was limited, m.

@@ -1,9 +1,9 @@
-//! The part of a system that still moves, by itself: sleeping nodes hold still.
+//! Subdomain solve: the active nodes of a system as a system of their own, with all others pinned.
 //!
-//! Near rest most of a garment sleeps while a few nodes buckle one after the other. A step that
-//! moves only these, and the elements about them, costs what they cost (nonlinear elimination:
-//! Lanzkron, Rose, Wilkes 1996). The whole system looks again afterwards, so the state of rest is
-//! that of the whole.
+//! Method: nonlinear elimination (Lanzkron, Rose, Wilkes 1996). Near rest most of a garment is at rest
+//! while a few nodes buckle one after the other. The subdomain has the active nodes and the nodes to
+//! which elements, seams and contacts couple them. Cost: a step costs what its nodes cost; O(n) to cut
+//! it out. Limits: only the whole system can prove that it is at rest.
 
 use crate::contact::friction::FrictionContact;
 use crate::energy::Subset;
@@ -20,16 +20,16 @@ type Vec3 = Vector3<f64>;
 
 /// Some nodes of a system as a system of their own.
 pub(crate) struct Subdomain<'a> {
-    /// The awake nodes and those around them, which are pinned.
+    /// The active nodes, and the pinned nodes to which they are coupled.
     pub(crate) system: System<'a>,
-    /// Which nodes these are of the whole, ascending.
+    /// Their indices in the whole system, ascending.
     nodes: Vec<u32>,
     cut: Subset,
-    /// How many such parts, one on the other, it stands for.
-    bundle: f64,
+    /// How many stacked subdomains of the same shape it stands for.
+    multiplicity: f64,
 }
 
-/// Widens a set of nodes by the elements they are in, so many times.
+/// Widens a set of nodes by the elements that they are in, `rings` times.
 pub(crate) fn widen(system: &System<'_>, active: &mut [bool], rings: usize) {
     for _ in 0..rings {
         let was = active.to_vec();
@@ -40,52 +40,52 @@ pub(crate) fn widen(system: &System<'_>, active: &mut [bool], rings: usize) {
 }
 
 impl<'a> Subdomain<'a> {
-    /// The `awake` nodes of a system, and what holds them.
+    /// The `active` nodes of a system and the nodes to which they are coupled.
     pub(crate) fn of(system: &System<'a>, active: Vec<bool>) -> Self {
-        let seen = active.clone();
-        Self::beside(system, active, seen)
+        let included = active.clone();
+        Self::with_neighbours(system, active, included)
     }
 
-    /// The same with all that is `seen` from them besides: what they may meet on their way.
-    pub(crate) fn beside(system: &System<'a>, active: Vec<bool>, mut seen: Vec<bool>) -> Self {
-        let mut see = |nodes: &[u32]| {
+    /// The same with the `included` nodes, which the active ones may meet.
+    pub(crate) fn with_neighbours(system: &System<'a>, active: Vec<bool>, mut included: Vec<bool>) -> Self {
+        let mut include = |nodes: &[u32]| {
             if nodes.iter().any(|&i| active[i as usize]) {
-                nodes.iter().for_each(|&i| seen[i as usize] = true);
+                nodes.iter().for_each(|&i| included[i as usize] = true);
             }
         };
-        system.elastic.couplings(&mut see);
-        system.seam_forces.iter().for_each(|t| see(&t.nodes));
-        system.self_contact.iter().flat_map(|c| &c.pairs).for_each(|p| see(&p.nodes));
-        let (cut, nodes) = Subset::new(active, &seen);
-        Self { system: cut_out(system, &cut, &nodes), nodes, cut, bundle: 1.0 }
+        system.elastic.couplings(&mut include);
+        system.seam_forces.iter().for_each(|t| include(&t.nodes));
+        system.self_contact.iter().flat_map(|c| &c.pairs).for_each(|p| include(&p.nodes));
+        let (cut, nodes) = Subset::new(active, &included);
+        Self { system: cut_out(system, &cut, &nodes), nodes, cut, multiplicity: 1.0 }
     }
 
-    /// Values of the whole at the part's nodes.
+    /// The values of the whole system at the nodes of the subdomain.
     pub(crate) fn pick<T: Clone>(&self, of: &[T]) -> Vec<T> {
         pick(&self.nodes, of)
     }
 
-    /// The tree of its triangles, of which only those of awake nodes look for what they may meet.
-    /// `layout` is that of the part.
+    /// The tree of its triangles, in which only those of active nodes seek pairs. `layout` is that of
+    /// the subdomain.
     pub(crate) fn tree(&self, whole: &ClothTree, layout: &[Vec3]) -> ClothTree {
         let active: Vec<bool> = self.pick(self.cut.active());
         whole.part(&self.nodes, self.cut.index(), layout).with_active(&active)
     }
 
-    /// This part, to stand for so many of one shape, one on the other, of which it is the lowest:
-    /// what lies under it carries them all. Told in the forces of one: contact is softer by that
-    /// number, and so is what presses for friction.
+    /// This subdomain as the lowest of `count` stacked ones of the same shape, so that the cloth below
+    /// carries them all. In the forces of one of them, contact and the loads of friction are smaller by
+    /// that factor.
     pub(crate) fn standing_for(mut self, count: usize) -> Self {
-        self.bundle = count as f64;
-        self.scale_contact(1.0 / self.bundle);
+        self.multiplicity = count as f64;
+        self.scale_contact(1.0 / self.multiplicity);
         self
     }
 
-    /// Scales contact and its loads.
+    /// Scales the stiffness of contact and its loads.
     fn scale_contact(&mut self, factor: f64) {
         let scale = |v: &mut [f64]| v.iter_mut().for_each(|s| *s *= factor);
         scale(&mut self.system.loads);
-        self.system.body_contact.iter_mut().for_each(|s| scale(&mut s.stiffness));
+        self.system.body_contact.iter_mut().for_each(|c| scale(&mut c.stiffness));
         self.system.ridges.iter_mut().for_each(|r| r.scale(factor));
         if let Some(c) = &mut self.system.self_contact {
             scale(&mut c.stiffness);
@@ -93,15 +93,15 @@ impl<'a> Subdomain<'a> {
         }
     }
 
-    /// How many nodes it has.
+    /// The number of its nodes.
     pub(crate) fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Puts places and what the part has learnt of contacts back into the whole.
+    /// Writes positions and the state of contacts back into the whole system.
     pub(crate) fn put_back(mut self, x: &[Vec3], system: &mut System<'a>, whole: &mut [Vec3]) {
-        if self.bundle != 1.0 {
-            self.scale_contact(self.bundle);
+        if self.multiplicity != 1.0 {
+            self.scale_contact(self.multiplicity);
         }
         put(&self.nodes, x, whole);
         put(&self.nodes, &self.system.anchors, &mut system.anchors);
@@ -115,11 +115,11 @@ impl<'a> Subdomain<'a> {
             put(&self.nodes, &from.stiffness, &mut to.stiffness);
         }
         if let (Some(from), Some(to)) = (&self.system.self_contact, &mut system.self_contact) {
-            let grip = |g: &FrictionContact| FrictionContact {
-                nodes: g.nodes.map(|i| self.nodes[i as usize]),
-                ..*g
+            let whole = |c: &FrictionContact| FrictionContact {
+                nodes: c.nodes.map(|i| self.nodes[i as usize]),
+                ..*c
             };
-            to.replace_friction(|g| self.cut.touches(&g.nodes), from.friction_contacts.iter().map(grip));
+            to.replace_friction(|c| self.cut.touches(&c.nodes), from.friction_contacts.iter().map(whole));
         }
         if let (Some(from), Some(to)) = (&self.system.ridges, &mut system.ridges) {
             to.merge(&self.cut, &self.nodes, from);
@@ -137,8 +137,8 @@ fn put<T: Clone>(nodes: &[u32], from: &[T], to: &mut [T]) {
 }
 
 fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
-    let asleep = |&i: &u32| system.pinned[i as usize] || !cut.active()[i as usize];
-    let thread = |t: &SeamForce| SeamForce { nodes: cut.renumbered(t.nodes), ..*t };
+    let is_pinned = |&i: &u32| system.pinned[i as usize] || !cut.active()[i as usize];
+    let seam_force = |t: &SeamForce| SeamForce { nodes: cut.renumbered(t.nodes), ..*t };
     System {
         elastic: system.elastic.part(cut),
         masses: pick(nodes, &system.masses),
@@ -149,9 +149,9 @@ fn cut_out<'a>(system: &System<'a>, cut: &Subset, nodes: &[u32]) -> System<'a> {
             groups: pick(nodes, &h.groups),
             ..*h
         }),
-        pinned: nodes.iter().map(asleep).collect(),
-        seam_forces: system.seam_forces.iter().filter(|t| cut.touches(&t.nodes)).map(thread).collect(),
-        body_contact: system.body_contact.as_ref().map(|s| body_contact(s, cut, nodes)),
+        pinned: nodes.iter().map(is_pinned).collect(),
+        seam_forces: system.seam_forces.iter().filter(|t| cut.touches(&t.nodes)).map(seam_force).collect(),
+        body_contact: system.body_contact.as_ref().map(|c| body_contact(c, cut, nodes)),
         ridges: system.ridges.as_ref().map(|r| r.subset(cut, nodes)),
         self_contact: system.self_contact.as_ref().map(|c| self_contact(c, cut, nodes)),
         touches: Vec::new(),
@@ -173,10 +173,10 @@ fn body_contact<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> Bod
         offset: whole.offset,
         depth: whole.depth,
         edges: edges.map(|(e, l)| (cut.renumbered(*e), *l)).collect(),
-        clear: whole.clear,
-        grows: whole.grows,
-        hard: whole.hard,
-        passes: whole.passes,
+        keeps_edges_out: whole.keeps_edges_out,
+        grows_offsets: whole.grows_offsets,
+        stiffens_inside: whole.stiffens_inside,
+        lets_through: whole.lets_through,
         stiffness: pick(nodes, &whole.stiffness),
         overloaded: Vec::new(),
         #[cfg(toile_without = "body")]
@@ -186,7 +186,7 @@ fn body_contact<'a>(whole: &BodyContact<'a>, cut: &Subset, nodes: &[u32]) -> Bod
 
 fn self_contact(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact {
     let pair = |p: &Pair| Pair { nodes: cut.renumbered(p.nodes), ..*p };
-    let grip = |g: &FrictionContact| FrictionContact { nodes: cut.renumbered(g.nodes), ..*g };
+    let friction = |c: &FrictionContact| FrictionContact { nodes: cut.renumbered(c.nodes), ..*c };
     SelfContact {
         #[cfg(toile_without = "self_contact")]
         never: whole.never,
@@ -198,12 +198,12 @@ fn self_contact(whole: &SelfContact, cut: &Subset, nodes: &[u32]) -> SelfContact
         corners: pick(nodes, &whole.corners),
         friction: pick(nodes, &whole.friction),
         disabled_friction: pick(nodes, &whole.disabled_friction),
-        // A grip outlives its pair by the step that parts them.
+        // Friction outlives its pair by one step.
         friction_contacts: whole
             .friction_contacts
             .iter()
-            .filter(|g| cut.touches(&g.nodes) && cut.has_all(&g.nodes))
-            .map(grip)
+            .filter(|c| cut.touches(&c.nodes) && cut.has_all(&c.nodes))
+            .map(friction)
             .collect(),
         pairs: whole.pairs.iter().filter(|p| cut.touches(&p.nodes)).map(pair).collect(),
         held: whole

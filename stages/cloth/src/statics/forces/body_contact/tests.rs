@@ -80,7 +80,7 @@ fn contact_that_is_hard_brings_a_node_out_of_the_body() {
         system.update_contacts(&x);
         system.update_contacts(&x);
         assert_eq!((of(&system, top), of(&system, top + 1)), before, "it is not hard yet");
-        system.body_contact.as_mut().unwrap().hard = true;
+        system.body_contact.as_mut().unwrap().stiffens_inside = true;
         (0..3).for_each(|_| system.update_contacts(&x));
         assert_eq!((of(&system, top), of(&system, top + 1)), (16.0 * before.0, before.1));
         let force = system.touches.iter().find(|t| t.node as usize == top).unwrap().force;

@@ -9,14 +9,14 @@ use toile_geometry::cloth_tree::ClothTree;
 
 /// A square on a ball, creased, in contact with the ball and with itself; every third node is awake
 /// in the half of greater x.
-fn with_part(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
+fn with_subdomain(check: impl Fn(System<'_>, Vec<Vec3>, Vec<bool>)) {
     let mut scene: Scene = generate::drape(14);
     scene.material.bending_friction_warp = 1e-6;
     scene.material.bending_friction_weft = 5e-7;
-    on_its_body(&scene, |system, _, sheet| lay(&scene, system, sheet, check));
+    on_its_body(&scene, |system, _, sheet| lay_folded(&scene, system, sheet, check));
 }
 
-fn lay(
+fn lay_folded(
     scene: &Scene,
     mut system: System<'_>,
     sheet: &Sheet,
@@ -43,8 +43,8 @@ fn lay(
 }
 
 #[test]
-fn awake_nodes_feel_what_they_feel_in_the_whole() {
-    with_part(|system, x, active| {
+fn active_nodes_have_the_forces_of_the_whole() {
+    with_subdomain(|system, x, active| {
         let whole = system.gradient(&x);
         assert!(system.self_contact.as_ref().is_some_and(|c| c.contacts.len() > 20));
         assert!(system.touches.iter().any(|t| t.force > 0.0));
@@ -80,7 +80,7 @@ fn stiffness(system: &mut System<'_>, x: &[Vec3], way: &[Vec3]) -> Vec<Vec3> {
 
 #[test]
 fn awake_nodes_are_as_stiff_as_in_the_whole() {
-    with_part(|mut system, x, active| {
+    with_subdomain(|mut system, x, active| {
         let way = |i: usize| Vec3::new((3 * i) as f64, (5 * i) as f64, (7 * i) as f64).map(f64::sin);
         let ways: Vec<Vec3> = (0..x.len()).map(|i| if active[i] { way(i) } else { Vec3::zeros() }).collect();
         system.elastic.predict(&x, &ways.iter().map(|w| w * 1e-4).collect::<Vec<_>>());
@@ -98,7 +98,7 @@ fn awake_nodes_are_as_stiff_as_in_the_whole() {
 
 #[test]
 fn what_a_part_found_comes_back_to_its_nodes_alone() {
-    with_part(|mut system, x, active| {
+    with_subdomain(|mut system, x, active| {
         let mut whole = x.clone();
         system.elastic.predict(&x, &vec![Vec3::zeros(); x.len()]);
         let before = (system.loads.clone(), system.self_contact.as_ref().unwrap().friction_contacts.clone());
@@ -126,7 +126,7 @@ fn what_a_part_found_comes_back_to_its_nodes_alone() {
 
 #[test]
 fn a_grip_whose_pair_has_gone_is_left_out() {
-    with_part(|mut system, x, active| {
+    with_subdomain(|mut system, x, active| {
         let self_contact = system.self_contact.as_mut().unwrap();
         self_contact.friction = vec![0.3; x.len()];
         system.update_contacts(&x);
@@ -153,7 +153,7 @@ fn a_grip_whose_pair_has_gone_is_left_out() {
 
 #[test]
 fn what_stands_for_three_feels_a_third_of_what_carries_it() {
-    with_part(|mut system, x, active| {
+    with_subdomain(|mut system, x, active| {
         let mut subdomain = Subdomain::of(&system, active.clone());
         let own = subdomain.pick(&x);
         let contact = |system: &mut System<'_>| -> Vec<Vec3> {
