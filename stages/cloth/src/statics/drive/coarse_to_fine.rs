@@ -13,7 +13,7 @@ use crate::statics::forces::clearance::{Clearance, clearance};
 use crate::statics::forces::penetration::pierced;
 use crate::statics::forces::seam_force::{widest, widest_open_seam};
 use crate::statics::forces::system::System;
-use crate::statics::levels::assemble::{KEPT_PULL, strongest};
+use crate::statics::levels::assemble::{KEPT_FORCE, strongest};
 use crate::statics::levels::cloths::pieces_of;
 use crate::statics::newton::to_rest::{NewtonOptions, Outcome, relax};
 use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
@@ -277,7 +277,7 @@ impl<'a> Solve<'a> {
             return Ok(());
         }
         let seam = self.widest_seam(0, &self.plan.pieces[0].spread(x));
-        let force = KEPT_PULL * strongest(&self.plan.cloths);
+        let force = KEPT_FORCE * strongest(&self.plan.cloths);
         let positions = self.prolonged(0, x);
         Err(StaticsError::SeamNotClosed { seam, gap, force, reversed: vec![], positions })
     }

@@ -1,6 +1,6 @@
-//! A whole garment to rest: laid out, sewn, draped and taken out of itself.
+//! The driver of the static solver: plans the levels, sews, drapes, and resolves intersections.
 //!
-//! Depends on all other rooms.
+//! Depends on all other folders.
 
 pub(crate) mod coarse_to_fine;
 pub(crate) mod contour;

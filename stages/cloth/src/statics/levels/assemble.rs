@@ -1,4 +1,4 @@
-//! What acts on the nodes of one level: a scene turned into a [`System`].
+//! Assembles the [`System`] of one level from a scene. Cost: O(n).
 
 use crate::contact::skin::CollisionSurface;
 use crate::energy::{Cloth, Models};
@@ -17,28 +17,28 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Pressure that the contact layer carries at full depth, as a share of stretch stiffness per metre
-/// of thickness: a cloth strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of
-/// its thickness. Softer converges sooner.
+/// Pressure of contact at distance 0, as a share of stretch stiffness per metre of thickness. Cloth
+/// strained by 2 % around a limb of 0.1 m radius then sinks in by a fifth of its thickness. Softer
+/// contact converges sooner.
 const CONTACT_STIFFNESS: f64 = 0.5;
 
-/// The layer between cloth and cloth is at most this share of the shortest edge, or neighbours
-/// would push each other.
+/// Greatest thickness of self-contact, as a share of the shortest edge: neighbours must not repel
+/// each other.
 const LAYER_SHARE: f64 = 0.25;
 
-/// Who wears the garment.
+/// A collider: the solid that wears the garment, with its friction.
 #[derive(Debug, Clone, Copy)]
 pub struct Collider<'a> {
     /// The solid.
     pub skin: &'a dyn CollisionSurface,
-    /// Coulomb's coefficient of cloth on it.
+    /// Coefficient of friction of cloth on it.
     pub friction: f64,
     #[cfg(toile_without = "body")]
     pub(crate) never: std::convert::Infallible,
 }
 
-/// The system of one level's nodes: of every vertex where seams are `open`, otherwise of every sewn
-/// point.
+/// The system of the nodes of one level: of all vertices where seams are `open`, otherwise of all
+/// sewn nodes.
 pub(crate) fn assemble<'a>(
     scene: &Scene,
     body: Option<Collider<'a>>,
@@ -65,14 +65,14 @@ pub(crate) fn assemble<'a>(
         .collect();
     let longest = sheet.edges().iter().map(|e| e.rest_length).fold(0.0, f64::max);
     let thickness = |p: &usize| cloths[*p].thickness;
-    let rub = |b: Collider<'_>, p: usize| {
+    let body_friction = |b: Collider<'_>, p: usize| {
         let own = p.checked_sub(1).and_then(|k| scene.panels[k].body_friction);
-        // Hands that sew a garment on a body let it slip into place.
+        // There is no friction while seams close.
         if open { 0.0 } else { own.unwrap_or(b.friction) }
     };
     let body_contact = body.map(|b| BodyContact {
         body: b.skin,
-        friction: panel.iter().map(|&p| rub(b, p)).collect(),
+        friction: panel.iter().map(|&p| body_friction(b, p)).collect(),
         offsets: panel.iter().map(thickness).collect(),
         offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),
         depth: longest.clamp(0.02, 0.1),
@@ -97,7 +97,6 @@ pub(crate) fn assemble<'a>(
         thickness,
         edge,
         stiffness,
-        // Hands that sew let cloth slip over cloth, too.
         friction: if open || no_friction {
             vec![]
         } else {
@@ -126,7 +125,7 @@ pub(crate) fn assemble<'a>(
         height_springs: None,
         pinned,
         seam_forces: vec![],
-        ridges: body_contact.as_ref().and_then(|s| Ridges::new(s, sheet)),
+        ridges: body_contact.as_ref().and_then(|c| Ridges::new(c, sheet)),
         body_contact,
         self_contact,
         touches: vec![],
@@ -139,30 +138,29 @@ pub(crate) fn assemble<'a>(
     })
 }
 
-/// Distance at which cloth is held off cloth on a level whose nodes are of these panels, counted
-/// from 1, m.
+/// Thickness of self-contact on a level whose nodes belong to these panels, counted from 1, m.
 pub(crate) fn layer_thickness(cloths: &[&Fabric], panels: impl Iterator<Item = usize>, sheet: &Sheet) -> f64 {
     let shortest = sheet.edges().iter().map(|e| e.rest_length).fold(f64::INFINITY, f64::min);
     panels.map(|p| cloths[p].thickness).fold(0.0, f64::max).min(LAYER_SHARE * shortest)
 }
 
-/// What no panel and what each panel is made of.
+/// The fabric of vertices without a panel, then that of each panel.
 pub(crate) fn cloths(scene: &Scene) -> Vec<&Fabric> {
     std::iter::once(&scene.material).chain((0..scene.panels.len()).map(|k| scene.fabric_of(k))).collect()
 }
 
-/// The gravity in the end.
+/// Gravity in the last phase.
 pub(crate) fn gravity(scene: &Scene) -> Vec3 {
     scene.phases.last().map(|p| p.gravity).unwrap_or_default()
 }
 
-/// Force a metre of seams that stay two rows of vertices held by thread, as a share of stretch
-/// stiffness: strong enough to carry the garment without a gap.
-pub(crate) const KEPT_PULL: f64 = 0.1;
+/// Force per metre of seams that are not joined, as a share of stretch stiffness: strong enough to
+/// carry the garment without a gap.
+pub(crate) const KEPT_FORCE: f64 = 0.1;
 
-/// Threads of the seams that are not joined.
+/// The closing forces of the seams that are not joined.
 pub(crate) fn kept_seam_forces(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
-    let force = KEPT_PULL * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
+    let force = KEPT_FORCE * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
     pieces.kept_pairs().into_iter().map(|nodes| SeamForce { nodes, force, soft: 2.0 * join_gap }).collect()
 }
 
@@ -171,7 +169,7 @@ pub(crate) fn strongest(cloths: &[&Fabric]) -> f64 {
     cloths.iter().map(|c| c.stretch()).fold(0.0, f64::max)
 }
 
-/// Mean length of seam that a pair stands for, m.
+/// Mean length of seam per pair, m.
 pub(crate) fn spacing(pieces: &Pieces, pairs: &[[u32; 2]]) -> f64 {
     let mut sewn = vec![false; pieces.rest.len()];
     pairs.iter().flatten().for_each(|&v| sewn[v as usize] = true);

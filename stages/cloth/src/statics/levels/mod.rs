@@ -1,4 +1,4 @@
-//! The meshes of a garment, from the coarsest to the finest, and what acts on each.
+//! The multilevel mesh of a garment, and the forces on each mesh level.
 //!
 //! Depends on `forces`.
 

@@ -1,4 +1,4 @@
-//! A scene's cloth on its body, sewn and ready for a step: what tests of single parts begin with.
+//! For tests: the system of a scene's sewn cloth on its body.
 #![allow(clippy::unwrap_used)]
 
 use crate::contact::body::Body;

@@ -1,4 +1,4 @@
-//! Newton's method on one level: linear problem, line search, what sleeps, and when it rests.
+//! Newton's method on one level: linear problem, line search, active subset, and proof of rest.
 //!
 //! Depends on `forces`, `factor` and `levels`.
 
