@@ -1,6 +1,6 @@
 #![allow(clippy::unwrap_used, clippy::expect_used)]
 use super::body::Body;
-use super::limit::{hold_apart, limit};
+use super::step_limit::{limit_step, limit_with_search};
 use crate::mesh::Sheet;
 use crate::scene::generate;
 use nalgebra::{Vector2, Vector3};
@@ -96,7 +96,7 @@ proptest! {
         let tree = ClothTree::new(sheet.triangles(), &x);
         prop_assume!(tree.crossings(&x).is_empty());
         let pairs = tree.pairs(&x, &moves, 1e-3);
-        limit(&x, &mut moves, &pairs);
+        limit_step(&x, &mut moves, &pairs);
         let end: Vec<Vec3> = x.iter().zip(&moves).map(|(p, m)| p + m).collect();
         prop_assert_eq!(tree.crossings(&end), vec![]);
     }
@@ -194,7 +194,7 @@ fn what_falls_together_does_not_pass_what_is_held_back() {
     let first = seek(&moves);
     // The upper two never near each other on their way: no pair of theirs is found at first.
     assert!(first.iter().all(|p| p.nodes.iter().any(|&v| (v as usize) < n)));
-    hold_apart(&x, &mut moves, first, |_| true, |moves| Some(seek(moves)));
+    limit_with_search(&x, &mut moves, first, |_| true, |moves| Some(seek(moves)));
     let height = |v: usize| x[v].y + moves[v].y;
     for v in 0..n {
         assert!(

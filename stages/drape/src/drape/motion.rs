@@ -111,7 +111,7 @@ pub(crate) fn moved(
     let scene = with_phases(scene_of(soft, &setting)?, phases);
     let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
     let friction = card.map_or(0.0, |c| c.friction);
-    let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
+    let wearer = skin.as_ref().map(|surface| EngineCollider { surface, friction });
     let until = match phases {
         Some(_) => Until::Phases { longest: time.longest },
         None => course.motion.until,

@@ -17,7 +17,7 @@ use crate::engine::{self, Rests, SchemeSurface, Setting, Words, crossing, scene_
 use nalgebra::Vector3;
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use toile_cloth::contact::skin::CollisionSurface;
+use toile_cloth::contact::collision_surface::CollisionSurface;
 use toile_cloth::statics::drive::solve::{
     Collider as EngineCollider, Equilibrium, LevelReport, StaticEquilibrium as Solver, StaticsError,
 };
@@ -160,7 +160,7 @@ impl StaticEquilibrium {
         let scene = scene_of(garment, &setting)?;
         let friction = card.map_or(0.0, |c| c.friction);
         let skin = collider.map(|c| SchemeSurface::new(c.scheme.as_ref()));
-        let wearer = skin.as_ref().map(|skin| EngineCollider { skin, friction });
+        let wearer = skin.as_ref().map(|surface| EngineCollider { surface, friction });
         let mut progress = Progress { cx, wanted: self.speed, vertices: garment.positions.len(), steps: 0 };
         let clock = Instant::now();
         let reversed = surely_reversed(&scene, &scene.positions);

@@ -105,7 +105,7 @@ impl<'a> Solve<'a> {
     pub(crate) fn pierced(&self, k: usize, sheet: &Sheet, x: &[Vec3]) -> Option<Draped> {
         let finer = self.plan.pieces.get(k.checked_sub(1)?)?.points;
         let collider = self.plan.body?;
-        (pierced(sheet, collider.skin, x) > 0).then_some(Draped::TooCoarse { finer })
+        (pierced(sheet, collider.surface, x) > 0).then_some(Draped::TooCoarse { finer })
     }
 
     /// Moves nodes out where triangles between them dip into the body, and relaxes the cloth again.
@@ -121,7 +121,7 @@ impl<'a> Solve<'a> {
         let options = NewtonOptions { first: CLEARANCE_STEP, one_by_one: false, ..*options };
         for _ in 0..CLEARANCE_ROUNDS {
             let Some(Clearance { lacks, depth, triangles }) =
-                self.plan.body.map(|w| clearance(sheet, w.skin, x))
+                self.plan.body.map(|c| clearance(sheet, c.surface, x))
             else {
                 break;
             };
@@ -150,7 +150,7 @@ impl<'a> Solve<'a> {
         let outcome = self.reports.last().map(|r| r.outcome).unwrap_or_default();
         let positions = self.plan.pieces[0].spread(&x);
         let energy = system.stored(&x);
-        let depth = || self.plan.body.map_or(0.0, |w| clearance(sheet, w.skin, &x).depth);
+        let depth = || self.plan.body.map_or(0.0, |c| clearance(sheet, c.surface, &x).depth);
         let (pairs, dip) = rayon::join(|| self.crossings(sheet, &x), || self.dip.unwrap_or_else(depth));
         let slides = self.plan.pieces[0].spread(&system.displacements(&x));
         let offsets = self.plan.pieces[0].offsets(&system);

@@ -239,7 +239,7 @@ impl<'a> Live<'a> {
                 .map_or_else(Vec::new, |c| c.friction_contacts.clone()),
             offsets: self.pieces.offsets(&self.system),
             energy: self.system.stored(&self.x),
-            dip: self.collider.map_or(0.0, |w| clearance(&self.sheet, w.skin, &self.x).depth),
+            dip: self.collider.map_or(0.0, |c| clearance(&self.sheet, c.surface, &self.x).depth),
             joined_at: None,
             levels: vec![self.report(clock, first)],
             restarts: 0,

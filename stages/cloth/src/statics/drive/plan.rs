@@ -3,8 +3,8 @@
 //! Method: each level is coarsened from the finer one (see `levels/coarsen`) until it has few enough
 //! points; levels whose cloth intersects itself at the start are dropped. Cost: O(n log n).
 
+use crate::contact::collision_surface::CollisionSurface;
 use crate::contact::past::BodyBox;
-use crate::contact::skin::CollisionSurface;
 use crate::fabric::Fabric;
 use crate::mesh::Sheet;
 use crate::scene::Scene;
@@ -13,8 +13,8 @@ use crate::statics::levels::bending_continuation::{BendingContinuation, EDGES, E
 use crate::statics::levels::coarsen::{Coarser, coarsen};
 use crate::statics::levels::mesh_level::Level;
 use crate::statics::levels::pieces::Pieces;
+use crate::statics::newton::sequential_start::stack_size;
 use crate::statics::newton::settings::StaticEquilibrium;
-use crate::statics::newton::stack::stack_size;
 use crate::statics::report::error::StaticsError;
 use crate::statics::report::start::{crossing, crossings_at_start};
 use crate::stopper::Stopper;
@@ -58,7 +58,7 @@ impl<'a> Plan<'a> {
         stopper: &'a Stopper,
         start: &[Vec3],
     ) -> Result<Self, StaticsError> {
-        let body_box = body.and_then(|w| BodyBox::of(w.skin, &gravity(scene)));
+        let body_box = body.and_then(|c| BodyBox::of(c.surface, &gravity(scene)));
         let (mut pieces, mut coarser) = levels(scene, coarsest);
         let mut starts = vec![start.to_vec()];
         for level in &coarser {
@@ -105,7 +105,7 @@ impl<'a> Plan<'a> {
 
     /// The collider while the seams close.
     pub(crate) fn sewn_on(&self) -> Option<Collider<'a>> {
-        self.body.map(|w| Collider { skin: self.around.first().copied().unwrap_or(w.skin), ..w })
+        self.body.map(|c| Collider { surface: self.around.first().copied().unwrap_or(c.surface), ..c })
     }
 
     /// Mean length of the edges of the coarsest level, m.

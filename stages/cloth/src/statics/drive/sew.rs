@@ -6,7 +6,7 @@
 //! each of them pushes the sewn cloth out. Cloth without seams is only flattened. Cost: some 40 Newton
 //! steps a round. Limits: where the body keeps seams open, they are reported as open.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::scene::Seam;
 use crate::statics::drive::coarse_to_fine::Solve;
@@ -98,12 +98,12 @@ impl Solve<'_> {
         self.crossings = if self.sews_through { self.uncross()? } else { 0 };
         if let (Some(body), [first, next @ ..]) = (self.plan.body, self.plan.around) {
             // Without friction, which would hold the cloth where its seams happened to close.
-            let solid = |skin| Collider { skin, friction: 0.0 };
+            let solid = |surface| Collider { surface, friction: 0.0 };
             self.settle_on(solid(*first), progress)?;
-            for skin in next.iter().copied().chain([body.skin]) {
-                self.push_out(solid(skin), progress)?;
+            for surface in next.iter().copied().chain([body.surface]) {
+                self.push_out(solid(surface), progress)?;
             }
-            self.settle_on(solid(body.skin), progress)?;
+            self.settle_on(solid(body.surface), progress)?;
         }
         Ok(())
     }
@@ -250,7 +250,7 @@ impl Solve<'_> {
 
     /// Lets a solid push the sewn cloth out of itself.
     fn push_out(&mut self, solid: Collider<'_>, progress: &mut Progress<'_>) -> Result<(), StaticsError> {
-        self.slide(solid, PUSHED_STIFFNESS, STEPS, &|x| depth(solid.skin, x) <= SHALLOW, progress)
+        self.slide(solid, PUSHED_STIFFNESS, STEPS, &|x| depth(solid.surface, x) <= SHALLOW, progress)
     }
 
     /// Lets the sewn cloth slide on a solid to where it fits.
@@ -389,8 +389,8 @@ fn is_hopeless(before: f64, after: f64, rounds: usize) -> bool {
 }
 
 /// Greatest depth of a vertex in a solid, m.
-fn depth(skin: &dyn CollisionSurface, x: &[Vec3]) -> f64 {
-    let near = skin.nearest(x, &vec![DEEPEST; x.len()]);
+fn depth(surface: &dyn CollisionSurface, x: &[Vec3]) -> f64 {
+    let near = surface.nearest(x, &vec![DEEPEST; x.len()]);
     near.iter().flatten().map(|n| -n.distance).fold(0.0, f64::max)
 }
 

@@ -23,7 +23,7 @@
 //! friction and folds allow, one is found.
 
 use crate::contact::body::Body;
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::scene::{Panel, Scene};
 use crate::statics::drive::coarse_to_fine::{Draped, Solve};
 use crate::statics::drive::plan::Plan;
@@ -32,8 +32,8 @@ pub use crate::statics::levels::assemble::Collider;
 use crate::statics::levels::assemble::gravity;
 use crate::statics::levels::bending_continuation::COARSEST;
 use crate::statics::levels::pieces::Pieces;
+use crate::statics::newton::sequential_start::stack_size;
 pub use crate::statics::newton::settings::StaticEquilibrium;
-use crate::statics::newton::stack::stack_size;
 pub use crate::statics::report::equilibrium::{Equilibrium, LevelReport, Progress};
 pub use crate::statics::report::error::{StaticsError, Unsolvable};
 use crate::statics::report::intersecting::tangled;
@@ -52,7 +52,7 @@ impl StaticEquilibrium {
         #[cfg(not(toile_without = "body"))]
         let body = scene.body.as_ref().map(|b| (Body::new(b.vertices.clone(), &b.triangles), b.friction));
         #[cfg(not(toile_without = "body"))]
-        let collider = body.as_ref().map(|(body, friction)| Collider { skin: body, friction: *friction });
+        let collider = body.as_ref().map(|(body, friction)| Collider { surface: body, friction: *friction });
         #[cfg(toile_without = "body")]
         let collider = None;
         self.solve_on(scene, collider, progress)
@@ -98,10 +98,10 @@ impl StaticEquilibrium {
         let start = match self.sew_through {
             true => moved_out::<StaticsError>(
                 scene,
-                around.first().copied().or(collider.map(|w| w.skin)),
+                around.first().copied().or(collider.map(|c| c.surface)),
                 self.join_gap,
             )?,
-            false => check::<StaticsError>(scene, collider.map(|w| w.skin), self.join_gap)?,
+            false => check::<StaticsError>(scene, collider.map(|c| c.surface), self.join_gap)?,
         };
         if !self.from_here && !self.sew_through {
             check_lying::<StaticsError>(scene, &Pieces::new(scene), &start)?;

@@ -5,7 +5,7 @@
 //! Cost: one distance query per node that may be near. Limits: see `clearance` for what lies
 //! between vertices, and `ridges` for sharp features.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use nalgebra::Vector3;
 use toile_geometry::signed_distance::Nearest;
 

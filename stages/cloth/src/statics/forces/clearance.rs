@@ -8,7 +8,7 @@
 //! of the tree of the body per triangle, once the cloth is at rest. Limits: features finer than the
 //! lattice, of a body without triangles.
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use nalgebra::Vector3;
 use rayon::prelude::*;

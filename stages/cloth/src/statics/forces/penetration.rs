@@ -9,7 +9,7 @@
 //! of the lattice, and for those other points for which the first ones do not decide. Limits: limbs
 //! thinner than twice [`LEAST_RADIUS`].
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::mesh::Sheet;
 use crate::statics::forces::clearance::{LEAST_RADIUS, lattice};
 use nalgebra::Vector3;

@@ -193,12 +193,12 @@ impl System<'_> {
     pub fn clear_of_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(r) = &mut self.ridges else { return };
         r.seek(x, moves);
-        let pushed = r.give_way(x, moves, &self.pinned);
-        if pushed.contains(&true) {
-            self.clear_of_body(x, moves, |i| pushed[i]);
+        let changed = r.respond(x, moves, &self.pinned);
+        if changed.contains(&true) {
+            self.clear_of_body(x, moves, |i| changed[i]);
             self.ridges.iter_mut().for_each(|r| {
                 r.seek(x, moves);
-                r.hold_apart(x, moves);
+                r.limit_step(x, moves);
             });
         }
     }
@@ -207,12 +207,12 @@ impl System<'_> {
     pub fn stop_at_ridges(&mut self, x: &[Vec3], moves: &mut [Vec3]) {
         if let Some(r) = &mut self.ridges {
             r.seek(x, moves);
-            r.stop(x, moves);
+            r.scale_step(x, moves);
         }
     }
 
     /// Finds cloth that the body passes through at `x`, as the state of a coarser mesh may, so that
-    /// it is pushed back out.
+    /// it is changed back out.
     pub fn find_pierced(&mut self, x: &[Vec3]) {
         if let (Some(r), Some(contact)) = (&mut self.ridges, &self.body_contact) {
             r.find_pierced(contact, x);

@@ -1,6 +1,6 @@
 //! Assembles the [`System`] of one level from a scene. Cost: O(n).
 
-use crate::contact::skin::CollisionSurface;
+use crate::contact::collision_surface::CollisionSurface;
 use crate::energy::{Cloth, Models};
 use crate::error::ClothError;
 use crate::fabric::Fabric;
@@ -30,7 +30,7 @@ const LAYER_SHARE: f64 = 0.25;
 #[derive(Debug, Clone, Copy)]
 pub struct Collider<'a> {
     /// The solid.
-    pub skin: &'a dyn CollisionSurface,
+    pub surface: &'a dyn CollisionSurface,
     /// Coefficient of friction of cloth on it.
     pub friction: f64,
     #[cfg(toile_without = "body")]
@@ -71,7 +71,7 @@ pub(crate) fn assemble<'a>(
         if open { 0.0 } else { own.unwrap_or(b.friction) }
     };
     let body_contact = body.map(|b| BodyContact {
-        body: b.skin,
+        body: b.surface,
         friction: panel.iter().map(|&p| body_friction(b, p)).collect(),
         offsets: panel.iter().map(thickness).collect(),
         offset: panel.iter().map(thickness).fold(f64::INFINITY, f64::min),

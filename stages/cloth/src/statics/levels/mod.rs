@@ -10,4 +10,4 @@ pub mod coarsen;
 pub(crate) mod mesh_level;
 pub mod pieces;
 #[cfg(test)]
-pub(crate) mod trial;
+pub(crate) mod testing;

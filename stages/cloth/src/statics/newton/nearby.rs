@@ -1,4 +1,4 @@
-//! Neighbour pairs of cloth that may meet, kept while the cloth hardly moves.
+//! Neighbour pairs of cloth that may collide, kept while the cloth hardly moves.
 //!
 //! Method: pairs are sought up to a slack beyond the thickness of contact. The pairs of a node stay
 //! valid until it has moved by that slack, which near rest takes many steps. Then they are sought
@@ -6,8 +6,8 @@
 //! long move are sought along that move, and are valid for that step only. Cost: a search of the
 //! tree for each node that has moved. Limit: a subdomain knows pairs only within a region.
 
-use crate::contact::give_way::give_way;
-use crate::contact::limit::{hold_apart, meet};
+use crate::contact::response::respond;
+use crate::contact::step_limit::{colliding, limit_with_search};
 use crate::statics::forces::self_contact::SelfContact;
 use crate::statics::forces::system::System;
 use nalgebra::Vector3;
@@ -153,13 +153,14 @@ impl Nearby {
         let wanted = norm(moves);
         let apart: Vec<Pair> =
             self_contact.pairs.iter().filter(|p| !self_contact.is_intersecting(p)).copied().collect();
-        let meeting = meet(x, moves, &apart);
-        if !meeting.is_empty() {
-            self.jammed = !self_contact.stacked && meeting.iter().any(|p| self_contact.is_merged(p, x));
-            let pushed = give_way(x, moves, &apart, meeting, &system.pinned);
-            self.keep_known(self_contact.slack(), x, moves, &pushed);
-            system.clear_of_body(x, moves, |i| pushed[i]);
-            self.hold_apart(system, x, moves);
+        let colliding_pairs = colliding(x, moves, &apart);
+        if !colliding_pairs.is_empty() {
+            self.jammed =
+                !self_contact.stacked && colliding_pairs.iter().any(|p| self_contact.is_merged(p, x));
+            let changed = respond(x, moves, &apart, colliding_pairs, &system.pinned);
+            self.keep_known(self_contact.slack(), x, moves, &changed);
+            system.clear_of_body(x, moves, |i| changed[i]);
+            self.limit_step(system, x, moves);
         }
         let free = system.self_contact.as_ref().is_none_or(|c| c.intersecting.is_empty());
         if wanted > 0.0 && free { norm(moves) / wanted } else { 1.0 }
@@ -179,7 +180,7 @@ impl Nearby {
     }
 
     /// Shortens moves until no pair collides.
-    fn hold_apart(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
+    fn limit_step(&self, system: &mut System<'_>, x: &[Vec3], moves: &mut [Vec3]) {
         let Some(self_contact) = &mut system.self_contact else { return };
         let counts = |p: &Pair| !self_contact.is_intersecting(p);
         // Pairs sought at a position are valid for every short move, those sought along a move for
@@ -194,7 +195,7 @@ impl Nearby {
             })
         };
         let first = seek(moves).unwrap_or_else(|| self_contact.pairs.clone());
-        self_contact.pairs = hold_apart(x, moves, first, counts, seek).0;
+        self_contact.pairs = limit_with_search(x, moves, first, counts, seek).0;
     }
 
     /// Whether intersections are to be resolved.

@@ -30,7 +30,7 @@ use crate::statics::forces::system::System;
 use crate::statics::newton::line_search::{descend, shorten};
 use crate::statics::newton::linear::Linear;
 use crate::statics::newton::nearby::Nearby;
-use crate::statics::newton::stack::{StackStart, start_one_by_one};
+use crate::statics::newton::sequential_start::{StackStart, start_one_by_one};
 use crate::statics::newton::state::StepEnd;
 pub use crate::statics::newton::state::{NewtonOptions, NewtonState, Outcome, Watch, greatest};
 use nalgebra::Vector3;

@@ -1,5 +1,5 @@
-//! What is told of a level that cannot be solved: cloth that came through cloth, or a vertex whose
-//! step has no solution.
+//! Errors of a level that cannot be solved: intersections that were not resolved, or a step without
+//! a solution.
 
 use crate::scene::Scene;
 use crate::statics::levels::mesh_level::Level;
@@ -11,7 +11,7 @@ use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;
 
-/// Cloth of a level that crosses or lies in itself.
+/// The intersections of a level.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Entangled {
     /// Nodes of the level.
@@ -20,18 +20,18 @@ pub(crate) struct Entangled {
     panels: [u32; 2],
     /// How many pairs of features.
     pairs: usize,
-    /// Where one of them is, m.
+    /// The place of one of them, m.
     at: Vec3,
 }
 
-/// The error for cloth of the finest level that came through cloth and did not come free.
+/// The error of intersections of the finest level that were not resolved.
 pub(crate) fn tangled(scene: &Scene, gravity: f64, entangled: Entangled) -> StaticsError {
     let Entangled { panels, pairs, at, .. } = entangled;
     let panels = panels.map(|p| words::panel(scene, p));
     StaticsError::Tangled { panels, pairs, at, load: Load::of(scene, gravity) }
 }
 
-/// What of a level lies in each other or crosses.
+/// The intersections of a level.
 pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
     let groups = level.system.self_contact.as_ref().map_or_else(Vec::new, |c| c.entangled(&level.x));
     let first = groups.first().copied().unwrap_or_default();
@@ -47,7 +47,7 @@ pub(crate) fn entangled(pieces: &Pieces, level: &Level<'_>) -> Entangled {
     }
 }
 
-/// The error for a step that has no solution because of what is about a vertex of the finest level.
+/// The error of a step that has no solution near a vertex of the finest level.
 pub(crate) fn unsolvable(scene: &Scene, vertex: usize, at: &Vec3) -> StaticsError {
     let number = scene.panels.iter().position(|p| p.vertices.contains(&vertex)).map_or(0, |k| k as u32 + 1);
     let mut around = scene.triangles.iter().filter(|t| t.contains(&(vertex as u32))).peekable();

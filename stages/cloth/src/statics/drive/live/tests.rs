@@ -59,7 +59,7 @@ fn a_skirt_follows_its_fabric_and_comes_to_rest() {
     let scene = generate::tube(12, 14);
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
-    let collider = Collider { skin: &body, friction: b.friction };
+    let collider = Collider { surface: &body, friction: b.friction };
     let cloth = scene.material.clone();
     let mut live =
         Live::new(StaticEquilibrium::default(), scene.clone(), Some(collider), &fresh(&scene)).unwrap();

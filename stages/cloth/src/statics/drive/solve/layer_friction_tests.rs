@@ -94,7 +94,7 @@ fn a_garment_that_goes_on_remembers_what_holds_it() {
     let scene = piled(Layout::Irregular(3), 0.27, &[0.3, 0.3]);
     let b = scene.body.as_ref().unwrap();
     let body = Body::new(b.vertices.clone(), &b.triangles);
-    let collider = Collider { skin: &body, friction: b.friction };
+    let collider = Collider { surface: &body, friction: b.friction };
     let settings = StaticEquilibrium { speed: 1e-4, ..StaticEquilibrium::default() };
     let state = settings.solve(&scene, &mut |_| ControlFlow::Continue(())).unwrap();
     let moved = |state: &Equilibrium| {

@@ -296,7 +296,7 @@ fn a_skirt_is_sewn_on_a_lowered_body_and_lifted_by_it() {
         Body::new(body.vertices.iter().map(down).collect(), &body.triangles)
     };
     let (low, middle, body) = (solid(0.06), solid(0.03), solid(0.0));
-    let collider = Collider { skin: &body, friction: scene.body.as_ref().unwrap().friction };
+    let collider = Collider { surface: &body, friction: scene.body.as_ref().unwrap().friction };
     let through =
         StaticEquilibrium { bending_continuation: true, sew_through: true, ..StaticEquilibrium::default() };
     let solve = |around: &[&dyn CollisionSurface]| {

@@ -3,7 +3,7 @@ use crate::contact::body::Body;
 use crate::scene::{Scene, generate};
 use crate::statics::factor::scalar::Precision;
 use crate::statics::forces::system::System;
-use crate::statics::levels::trial::on_its_body;
+use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::to_rest::{NewtonOptions, relax};
 use nalgebra::Vector3;
 use std::ops::ControlFlow;

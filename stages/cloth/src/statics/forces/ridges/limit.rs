@@ -1,7 +1,7 @@
 //! Keeps cloth from passing a sharp feature within a step: first the cloth gives way, then moves
 //! that would still pass are shortened.
 //!
-//! The method is that of cloth against cloth (see `contact/give_way` and `contact/limit`), with
+//! The method is that of cloth against cloth (see `contact/response` and `contact/step_limit`), with
 //! features that do not move. Impacts are found by additive continuous collision detection, so no
 //! step jumps over a thin feature. Cloth that the body already passes through is not held back.
 //!
@@ -35,14 +35,14 @@ const TOUCHING: f64 = 1e-9;
 impl Ridges {
     /// Takes from `moves` the share by which the closest points of colliding pairs come too near.
     /// Nodes that are `held` stay. Returns which moves have changed.
-    pub(crate) fn give_way(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
+    pub(crate) fn respond(&self, x: &[Vec3], moves: &mut [Vec3], held: &[bool]) -> Vec<bool> {
         let mut pushed = vec![false; x.len()];
         for _ in 0..ROUNDS {
-            let meeting = self.hits(x, moves);
-            if meeting.is_empty() {
+            let impacts = self.impacts(x, moves);
+            if impacts.is_empty() {
                 break;
             }
-            for (pair, _) in meeting {
+            for (pair, _) in impacts {
                 self.push(&pair, x, moves, held, &mut pushed);
             }
         }
@@ -66,9 +66,9 @@ impl Ridges {
     }
 
     /// Shortens moves, node by node, so that no pair meets.
-    pub(crate) fn hold_apart(&self, x: &[Vec3], moves: &mut [Vec3]) {
+    pub(crate) fn limit_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
         for _ in 0..ROUNDS {
-            let hits = self.hits(x, moves);
+            let hits = self.impacts(x, moves);
             if hits.is_empty() {
                 return;
             }
@@ -78,19 +78,19 @@ impl Ridges {
             }
             moves.iter_mut().zip(share).filter(|(_, s)| *s < 1.0).for_each(|(m, s)| *m *= s);
         }
-        self.stop(x, moves);
+        self.scale_step(x, moves);
     }
 
     /// Shortens all moves alike, so that no pair meets.
-    pub(crate) fn stop(&self, x: &[Vec3], moves: &mut [Vec3]) {
-        let least = self.hits(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
+    pub(crate) fn scale_step(&self, x: &[Vec3], moves: &mut [Vec3]) {
+        let least = self.impacts(x, moves).iter().map(|(_, t)| *t).fold(1.0, f64::min);
         if least < 1.0 {
             moves.iter_mut().for_each(|m| *m *= SAFETY * least);
         }
     }
 
     /// The pairs that would meet, and when.
-    fn hits(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
+    fn impacts(&self, x: &[Vec3], moves: &[Vec3]) -> Vec<(Pair, f64)> {
         let hit = |p: &Pair| {
             if self.is_free(p) {
                 return None;

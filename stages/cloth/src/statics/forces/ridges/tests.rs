@@ -2,7 +2,7 @@
 use crate::scene::Scene;
 use crate::scene::generate;
 use crate::statics::forces::system::System;
-use crate::statics::levels::trial::on_its_body;
+use crate::statics::levels::testing::on_its_body;
 use nalgebra::Vector3;
 
 type Vec3 = Vector3<f64>;

@@ -3,7 +3,7 @@ use super::*;
 use crate::linear::Pattern;
 use crate::mesh::Sheet;
 use crate::scene::{Scene, generate};
-use crate::statics::levels::trial::on_its_body;
+use crate::statics::levels::testing::on_its_body;
 use crate::statics::newton::nearby::Nearby;
 use toile_geometry::cloth_tree::ClothTree;
 

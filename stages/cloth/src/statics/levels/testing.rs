@@ -12,7 +12,7 @@ use crate::statics::levels::pieces::Pieces;
 pub(crate) fn on_its_body(scene: &Scene, check: impl FnOnce(System<'_>, &Body, &Sheet)) {
     let worn = scene.body.as_ref().unwrap();
     let body = Body::new(worn.vertices.clone(), &worn.triangles);
-    let collider = Collider { skin: &body, friction: worn.friction };
+    let collider = Collider { surface: &body, friction: worn.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&cloths(scene)).unwrap();
     let system = assemble(scene, Some(collider), &pieces, &sheet, false, Models::STATIC).unwrap();

@@ -18,7 +18,7 @@ const NODES: usize = 25;
 fn with_system(scene: &Scene, check: impl FnOnce(System<'_>, &ClothTree, Vec<Vec3>)) {
     let ball = scene.body.as_ref().unwrap();
     let body = Body::new(ball.vertices.clone(), &ball.triangles);
-    let collider = Collider { skin: &body, friction: ball.friction };
+    let collider = Collider { surface: &body, friction: ball.friction };
     let pieces = Pieces::new(scene);
     let sheet = pieces.sewn_sheet(&fabrics(scene)).unwrap();
     let mut system = assemble(scene, Some(collider), &pieces, &sheet, false, Models::STATIC).unwrap();
