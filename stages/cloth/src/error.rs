@@ -1,5 +1,4 @@
-//! What the engine refuses, each with the place and the value, so that a caller can point at the
-//! culprit.
+//! Errors of the engine, each with the place and the value at fault.
 
 use thiserror::Error;
 

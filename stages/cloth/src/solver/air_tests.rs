@@ -263,12 +263,12 @@ proptest! {
         let power = |f: &[Vec3]| f.iter().zip(&v).map(|(f, v)| f.dot(v)).sum::<f64>();
         let still = AirDrag::new(AIR, &triangles);
         prop_assert!(power(&still.forces(&x, &v)) <= 1e-12);
-        for b in still.grips(&x, &v) {
+        for b in still.drag_tensors(&x, &v) {
             prop_assert!(b.symmetric_eigenvalues().min() >= -1e-12 && (b - b.transpose()).amax() < 1e-12);
         }
         let windy = AirDrag::new(Air { wind: Vec3::new(wind[0], wind[1], wind[2]), ..AIR }, &triangles);
         let law: Vec3 = windy.forces(&x, &v).iter().sum();
-        let held: Vec3 = windy.grips(&x, &v).iter().zip(&v).map(|(b, v)| b * (windy.air.wind - v)).sum();
+        let held: Vec3 = windy.drag_tensors(&x, &v).iter().zip(&v).map(|(b, v)| b * (windy.air.wind - v)).sum();
         prop_assert!((law - held).norm() < 1e-10 * (1.0 + law.norm()));
     }
 }

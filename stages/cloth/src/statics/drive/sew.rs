@@ -183,8 +183,8 @@ impl Solve<'_> {
 
     /// The closing forces of pairs of vertices, N each.
     fn seam_forces(&self, pairs: &[[u32; 2]], force: f64) -> Vec<SeamForce> {
-        let soft = 2.0 * self.plan.settings.join_gap;
-        pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, soft }).collect()
+        let softening = 2.0 * self.plan.settings.join_gap;
+        pairs.iter().map(|nodes| SeamForce { nodes: *nodes, force, softening }).collect()
     }
 
     /// Increases the closing force by rounds until the seams are closed; returns the force per metre

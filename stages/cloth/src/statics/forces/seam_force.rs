@@ -16,13 +16,13 @@ pub struct SeamForce {
     /// Force at large gaps, N.
     pub force: f64,
     /// Gap below which the force falls, m.
-    pub soft: f64,
+    pub softening: f64,
 }
 
 impl SeamForce {
     fn reach(&self, x: &[Vec3]) -> (Vec3, f64) {
         let d = x[self.nodes[1] as usize] - x[self.nodes[0] as usize];
-        (d, (d.norm_squared() + self.soft * self.soft).sqrt())
+        (d, (d.norm_squared() + self.softening * self.softening).sqrt())
     }
 
     pub(crate) fn value(&self, x: &[Vec3]) -> f64 {

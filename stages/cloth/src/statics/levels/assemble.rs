@@ -161,7 +161,11 @@ pub(crate) const KEPT_FORCE: f64 = 0.1;
 /// The closing forces of the seams that are not joined.
 pub(crate) fn kept_seam_forces(scene: &Scene, pieces: &Pieces, join_gap: f64) -> Vec<SeamForce> {
     let force = KEPT_FORCE * strongest(&cloths(scene)) * spacing(pieces, &pieces.seam_pairs());
-    pieces.kept_pairs().into_iter().map(|nodes| SeamForce { nodes, force, soft: 2.0 * join_gap }).collect()
+    pieces
+        .kept_pairs()
+        .into_iter()
+        .map(|nodes| SeamForce { nodes, force, softening: 2.0 * join_gap })
+        .collect()
 }
 
 /// Stretch stiffness of the stiffest panel, N/m.

@@ -469,7 +469,7 @@ mod tests {
         let up: Vec<Vec3> = g.iter().map(|g| g * 1e-3).collect();
         assert!(!newton.is_misled(&system, &g, &down));
         assert!(newton.is_misled(&system, &g, &up));
-        system.seam_forces = vec![SeamForce { nodes: [0, 1], force: 1.0, soft: 1e-3 }];
+        system.seam_forces = vec![SeamForce { nodes: [0, 1], force: 1.0, softening: 1e-3 }];
         assert!(!newton.is_misled(&system, &g, &up));
     }
 

@@ -77,9 +77,8 @@ fn a_vertex_that_slides_onto_the_next_triangle_is_held_as_before() {
 fn a_contact_seen_from_the_other_side_takes_the_way_over_turned_round() {
     let (self_contact, x) = slid(Vec3::new(1e-4, 0.0, 0.0));
     let turned = Contact { nodes: [0, 4, 1, 2], weights: [1.0, -1.0, 0.0, 0.0], ..self_contact.contacts[0] };
-    let grip =
-        FrictionHistory::of(&self_contact.friction_contacts, &x).friction_contact(&turned, &x, 1.0, MU);
-    assert!((grip.slid + Vec3::new(1e-4, 0.0, 0.0)).norm() < 1e-12, "{}", grip.slid);
+    let new = FrictionHistory::of(&self_contact.friction_contacts, &x).friction_contact(&turned, &x, 1.0, MU);
+    assert!((new.slid + Vec3::new(1e-4, 0.0, 0.0)).norm() < 1e-12, "{}", new.slid);
 }
 
 #[test]

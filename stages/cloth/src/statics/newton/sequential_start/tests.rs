@@ -78,7 +78,7 @@ fn what_hangs_together_by_thread_is_one_cloth() {
         system.seam_forces = vec![crate::statics::forces::seam_force::SeamForce {
             nodes: [0, 2 * NODES as u32],
             force: 1.0,
-            soft: 1e-3,
+            softening: 1e-3,
         }];
         assert_eq!(cloths(&system).1, 2);
         // Sheet 1 lies lower than the middle of the other two, and comes first only where that is
